@@ -1,0 +1,68 @@
+"""The errors of the whole house, one class for each party at fault."""
+
+from __future__ import annotations
+
+
+class CamwrightError(Exception):
+    """Base of every error that camwright raises on purpose.
+
+    ``exit_code`` is what the command line ends with when the error reaches it.
+    """
+
+    exit_code: int = 1
+
+
+class InputError(CamwrightError):
+    """The input is at fault: a job file, a table, an option, an argument.
+
+    Parameters
+    ----------
+    faults
+        One message for each fault found, in the order in which they stand in the input. A message holds the quantity, its
+        value and unit, the limit, the place, and the way out.
+    """
+
+    exit_code = 2
+
+    def __init__(self, *faults: str) -> None:
+        super().__init__("\n".join(faults))
+        self.faults: tuple[str, ...] = faults
+
+
+class InfeasibleError(CamwrightError):
+    """Physics is at fault: no motion keeps the limits.
+
+    Parameters
+    ----------
+    message
+        What binds, by how much, and what would work.
+    binding
+        Name of the limit that binds (``"speed"``, ``"acceleration"``, ``"jerk"``, ``"reversal"``).
+    """
+
+    exit_code = 3
+
+    def __init__(self, message: str, binding: str) -> None:
+        super().__init__(message)
+        self.binding = binding
+
+
+class SolverError(CamwrightError):
+    """The solver is at fault: it ended without an answer although the problem has one."""
+
+    exit_code = 4
+
+
+class MissingExtraError(InputError):
+    """A library of an optional extra is not installed.
+
+    Parameters
+    ----------
+    library
+        What could not be imported.
+    extra
+        The extra of camwright that brings it.
+    """
+
+    def __init__(self, library: str, extra: str) -> None:
+        super().__init__(f"{library} is not installed. It comes with: pip install 'camwright[{extra}]'")

@@ -1,0 +1,32 @@
+"""`Limits`: what the slave may do at the given line speed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Limits of the slave over time, as magnitudes.
+
+    Parameters
+    ----------
+    speed
+        Greatest speed (m/s).
+    acceleration
+        Greatest acceleration (m/s²).
+    jerk
+        Greatest jerk (m/s³).
+    reversal
+        Whether the slave may run backwards.
+    """
+
+    speed: float
+    acceleration: float
+    jerk: float
+    reversal: bool = False
+
+    @property
+    def least_velocity(self) -> float:
+        """Least velocity allowed (m/s): zero without reversal."""
+        return -self.speed if self.reversal else 0.0

@@ -1,0 +1,382 @@
+"""`CamProfile`: the slave over the master as pieces of polynomials."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from profiles.errors import InputError
+
+FloatArray = NDArray[np.float64]
+Side = Literal["left", "right"]
+Outside = Literal["raise", "repeat"]
+
+
+@dataclass(frozen=True)
+class Extremum:
+    """The least or greatest value of a derivative of a profile, and the master position where it is first reached."""
+
+    value: float
+    at: float
+
+
+@dataclass(frozen=True, eq=False)
+class CamProfile:
+    """Slave position ``y`` over master position ``x``, piece by piece a polynomial.
+
+    On piece ``i``, between ``breaks[i]`` and ``breaks[i + 1]``::
+
+        y(x) = sum_p coefficients[i, p] * (x - breaks[i])**p
+
+    Parameters
+    ----------
+    breaks
+        Shape ``(n + 1,)``, strictly increasing master positions (m).
+    coefficients
+        Shape ``(n, degree + 1)``, ascending powers; entry ``p`` in slave unit per m**p.
+
+    Notes
+    -----
+    At a break the value belongs to the piece on the stated side: ``side="right"`` (the piece that begins there) unless told
+    otherwise; the last break always belongs to the last piece, the first always to the first. Outside its domain a profile
+    raises, or repeats if asked: one period on, the slave has advanced by `advance`.
+
+    Examples
+    --------
+    >>> ramp = CamProfile.from_arrays([0.0, 0.5, 1.0], [[0.0, 1.0], [0.5, 2.0]])
+    >>> float(ramp(0.75)), float(ramp(0.5, order=1)), float(ramp(0.5, order=1, side="left"))
+    (1.0, 2.0, 1.0)
+    >>> float(ramp(1.25, outside="repeat"))
+    1.75
+    """
+
+    breaks: FloatArray
+    coefficients: FloatArray
+
+    def __post_init__(self) -> None:
+        if self.breaks.ndim != 1 or self.coefficients.ndim != 2 or len(self.breaks) != len(self.coefficients) + 1:
+            raise InputError(
+                f"a profile of n pieces needs n + 1 breaks and n rows of coefficients; "
+                f"got breaks {self.breaks.shape} and coefficients {self.coefficients.shape}"
+            )
+        if len(self.coefficients) == 0 or self.coefficients.shape[1] == 0:
+            raise InputError("a profile needs at least one piece with at least one coefficient")
+        if not (np.isfinite(self.breaks).all() and np.isfinite(self.coefficients).all()):
+            raise InputError("a profile's breaks and coefficients must be finite numbers; one is NaN or infinite")
+        steps = np.diff(self.breaks)
+        if (steps <= 0).any():
+            i = int(np.argmax(steps <= 0))
+            raise InputError(
+                f"a profile's breaks must increase: break {i + 1} ({self.breaks[i + 1]!r} m) does not lie beyond "
+                f"break {i} ({self.breaks[i]!r} m)"
+            )
+        self.breaks.setflags(write=False)
+        self.coefficients.setflags(write=False)
+
+    @classmethod
+    def from_arrays(cls, breaks: ArrayLike, coefficients: Sequence[ArrayLike] | ArrayLike) -> CamProfile:
+        """Make a profile from anything array-like; rows of coefficients may differ in length."""
+        rows = [np.atleast_1d(np.asarray(row, dtype=np.float64)) for row in coefficients]  # type: ignore[union-attr]
+        width = max((len(row) for row in rows), default=0)
+        table = np.zeros((len(rows), width))
+        for target, row in zip(table, rows, strict=True):
+            target[: len(row)] = row
+        return cls(np.array(breaks, dtype=np.float64), table)
+
+    # -- what it is -------------------------------------------------------------------------------------------------
+
+    @property
+    def start(self) -> float:
+        """First master position (m)."""
+        return float(self.breaks[0])
+
+    @property
+    def end(self) -> float:
+        """Last master position (m)."""
+        return float(self.breaks[-1])
+
+    @property
+    def length(self) -> float:
+        """Length of the domain on the master (m)."""
+        return self.end - self.start
+
+    @property
+    def advance(self) -> float:
+        """Slave travel from the start to the end of the domain (slave unit)."""
+        return float(self(self.end)) - float(self(self.start))
+
+    @property
+    def degree(self) -> int:
+        """Largest power carried."""
+        return int(self.coefficients.shape[1]) - 1
+
+    @property
+    def pieces(self) -> int:
+        """Number of polynomial pieces."""
+        return len(self.coefficients)
+
+    # -- evaluation -------------------------------------------------------------------------------------------------
+
+    def __call__(
+        self, x: ArrayLike, order: int = 0, *, side: Side = "right", outside: Outside = "raise"
+    ) -> FloatArray:
+        """Evaluate the profile or a derivative over the master.
+
+        Parameters
+        ----------
+        x
+            Master positions (m), any shape.
+        order
+            Order of the derivative with respect to the master; 0 is the position, 1 the ratio, 2 the ratio slope.
+        side
+            Which piece answers at a break.
+        outside
+            ``"raise"`` refuses positions outside the domain; ``"repeat"`` repeats the cycle with the slave's advance.
+
+        Returns
+        -------
+        ndarray
+            Same shape as ``x``, in slave unit per m**order.
+
+        Raises
+        ------
+        InputError
+            A position lies outside the domain and ``outside="raise"``.
+        """
+        position = np.asarray(x, dtype=np.float64)
+        turns: FloatArray | None = None
+        if outside == "repeat":
+            turns = np.floor((position - self.start) / self.length)
+            if side == "left":  # a seam belongs to the cycle that ends there
+                turns = turns - ((position - self.start) == turns * self.length)
+            position = np.clip(position - turns * self.length, self.start, self.end)
+        elif position.size and (position.min() < self.start or position.max() > self.end):
+            worst = position.min() if position.min() < self.start else position.max()
+            raise InputError(f"master position {worst!r} m lies outside the profile, {self.start!r} to {self.end!r} m")
+        index = np.searchsorted(self.breaks, position, side=side) - 1
+        index = np.clip(index, 0, self.pieces - 1)
+        local = position - self.breaks[index]
+        table = self._derived(order)
+        value = np.zeros_like(position)
+        for power in range(table.shape[1] - 1, -1, -1):  # Horner
+            value = value * local + table[index, power]
+        if turns is not None and order == 0:
+            value = value + turns * self.advance
+        return np.asarray(value, dtype=np.float64)
+
+    def _derived(self, order: int) -> FloatArray:
+        """Coefficients of the derivative of the given order, shape ``(n, max(1, degree + 1 - order))``."""
+        if order < 0:
+            raise InputError(f"the order of a derivative must not be negative; got {order}")
+        table = self.coefficients
+        for _ in range(order):
+            if table.shape[1] == 1:
+                return np.zeros((self.pieces, 1))
+            table = table[:, 1:] * np.arange(1, table.shape[1])
+        return table
+
+    def jumps(self, order: int = 0, *, seam: bool = True) -> FloatArray:
+        """Jump of a derivative (right minus left) at every inner break, and last at the seam of the repeated cycle.
+
+        At the seam the position (``order=0``) is compared with its own advance, so it never jumps: use `advance` and the
+        machine's pitch to judge closure of the position.
+        """
+        inner = self.breaks[1:-1]
+        value = self(inner, order) - self(inner, order, side="left")
+        if not seam:
+            return value
+        last = 0.0 if order == 0 else float(self(self.start, order)) - float(self(self.end, order))
+        return np.append(value, last)
+
+    def extrema(self, order: int = 0, start: float | None = None, end: float | None = None) -> tuple[Extremum, Extremum]:
+        """Least and greatest value of a derivative, exactly: from the roots of the next derivative on each piece.
+
+        Parameters
+        ----------
+        order
+            Order of the derivative.
+        start, end
+            Part of the domain to look at; all of it if not given. One-sided limits at breaks inside the part count.
+
+        Returns
+        -------
+        (least, greatest)
+            Value (slave unit per m**order) and master position (m).
+        """
+        first, last = self.start if start is None else start, self.end if end is None else end
+        table, slope = self._derived(order), self._derived(order + 1)
+        low, high = Extremum(math.inf, first), Extremum(-math.inf, first)
+        for i in range(self.pieces):
+            left, right = max(first, float(self.breaks[i])), min(last, float(self.breaks[i + 1]))
+            if right < left or (right == left and first < last):
+                continue
+            a, b = left - float(self.breaks[i]), right - float(self.breaks[i])
+            where = np.concatenate([[a], _roots_between(slope[i], a, b), [b]])
+            values = np.polynomial.polynomial.polyval(where, table[i])
+            k, m = int(np.argmin(values)), int(np.argmax(values))
+            if values[k] < low.value:
+                low = Extremum(float(values[k]), float(self.breaks[i] + where[k]))
+            if values[m] > high.value:
+                high = Extremum(float(values[m]), float(self.breaks[i] + where[m]))
+        return low, high
+
+    def mean_square(self, order: int, start: float | None = None, end: float | None = None) -> float:
+        """Mean of the squared derivative over a part of the domain, exactly (Gauss-Legendre of sufficient degree)."""
+        first, last = self.start if start is None else start, self.end if end is None else end
+        part = self if (first == self.start and last == self.end) else self.restrict(first, last)
+        table = part._derived(order)
+        node, weight = np.polynomial.legendre.leggauss(table.shape[1])
+        width = np.diff(part.breaks)
+        local = 0.5 * width[:, None] * (node + 1.0)
+        value = np.zeros_like(local)
+        for power in range(table.shape[1] - 1, -1, -1):
+            value = value * local + table[:, power, None]
+        return float(np.sum(0.5 * width[:, None] * weight * value**2) / part.length)
+
+    # -- making new profiles from old -------------------------------------------------------------------------------
+
+    def shift(self, master: float = 0.0, slave: float = 0.0) -> CamProfile:
+        """Move the profile along the master (m) and the slave (slave unit)."""
+        table = self.coefficients.copy()
+        table[:, 0] += slave
+        return CamProfile(self.breaks + master, table)
+
+    def scale(self, master: float = 1.0, slave: float = 1.0) -> CamProfile:
+        """Stretch the profile about the origin: ``y_new(master * x) = slave * y(x)``, ``master`` > 0."""
+        if not master > 0:
+            raise InputError(f"the master of a profile can be scaled by a positive factor only; got {master!r}")
+        powers = np.arange(self.degree + 1)
+        return CamProfile(self.breaks * master, self.coefficients * (slave / master**powers))
+
+    def add_line(self, slope: float) -> CamProfile:
+        """Add the straight line that passes through zero at the start of the domain with the given slope."""
+        table = np.zeros((self.pieces, max(2, self.degree + 1)))
+        table[:, : self.degree + 1] = self.coefficients
+        table[:, 0] += slope * (self.breaks[:-1] - self.start)
+        table[:, 1] += slope
+        return CamProfile(self.breaks.copy(), table)
+
+    def restrict(self, start: float, end: float) -> CamProfile:
+        """Cut out the part between two master positions inside the domain."""
+        if not (self.start <= start < end <= self.end):
+            raise InputError(
+                f"the part {start!r} to {end!r} m does not lie inside the profile, {self.start!r} to {self.end!r} m"
+            )
+        inner = self.breaks[(self.breaks > start) & (self.breaks < end)]
+        breaks = np.concatenate([[start], inner, [end]])
+        index = np.clip(np.searchsorted(self.breaks, breaks[:-1], side="right") - 1, 0, self.pieces - 1)
+        offset = breaks[:-1] - self.breaks[index]
+        return CamProfile(breaks, _recentred(self.coefficients[index], offset))
+
+    def repeat(self, cycles: int) -> CamProfile:
+        """String the cycle together, the slave advancing by `advance` each time."""
+        if cycles < 1:
+            raise InputError(f"a profile can be repeated once or more often; got {cycles} cycles")
+        return join(*(self.shift(n * self.length, n * self.advance) for n in range(cycles)))
+
+    def roll(self, start: float) -> CamProfile:
+        """Begin the repeated cycle at another master position of the domain; the new profile starts at (0, 0)."""
+        if not (self.start <= start < self.end):
+            raise InputError(f"the new start {start!r} m does not lie inside the profile, {self.start!r} to {self.end!r} m")
+        tail = self.restrict(start, self.end)
+        if start > self.start:
+            head = self.restrict(self.start, start).shift(self.length, self.advance)
+            tail = join(tail, head)
+        return tail.shift(-start, -float(self(start)))
+
+    def merge(self, tolerance: float = 1e-9) -> CamProfile:
+        """Join neighbouring pieces that are the same polynomial.
+
+        Two pieces are the same when the left one, carried on over the right one's length, differs from it in no power by more
+        than ``tolerance`` of the largest contribution that this power makes anywhere in the profile.
+        """
+        width = np.diff(self.breaks)
+        powers = np.arange(self.degree + 1)
+        weight = float(width.max()) ** powers
+        size = np.maximum(np.abs(self.coefficients * weight).max(axis=0), 1e-300)
+        breaks, rows = [float(self.breaks[0])], [self.coefficients[0]]
+        for i in range(1, self.pieces):
+            carried = _recentred(rows[-1][None, :], np.array([self.breaks[i] - breaks[-1]]))[0]
+            if (np.abs(carried - self.coefficients[i]) * weight <= tolerance * size).all():
+                continue
+            breaks.append(float(self.breaks[i]))
+            rows.append(self.coefficients[i])
+        return CamProfile.from_arrays([*breaks, self.end], rows)
+
+    # -- storage ----------------------------------------------------------------------------------------------------
+
+    def to_dict(self) -> dict[str, list[float] | list[list[float]]]:
+        """Plain lists for JSON; Python writes floats so that they are read back bit by bit."""
+        return {"breaks": self.breaks.tolist(), "coefficients": self.coefficients.tolist()}
+
+    @classmethod
+    def from_dict(cls, data: object) -> CamProfile:
+        """Read what `to_dict` wrote; anything else is refused."""
+        if not isinstance(data, dict) or set(data) != {"breaks", "coefficients"}:
+            raise InputError("a profile is an object with the keys 'breaks' and 'coefficients', and no others")
+        try:
+            breaks = np.array(data["breaks"], dtype=np.float64)
+            coefficients = np.array(data["coefficients"], dtype=np.float64)
+        except (TypeError, ValueError) as error:
+            raise InputError(f"a profile's breaks and coefficients must be lists of numbers: {error}") from error
+        return cls(breaks, coefficients)
+
+
+def join(*parts: CamProfile) -> CamProfile:
+    """String profiles together where one ends and the next begins.
+
+    Raises
+    ------
+    InputError
+        The master positions of two neighbours do not meet to 1e-12 of the whole length. The slave may jump: `CamProfile.jumps`
+        tells by how much.
+    """
+    if not parts:
+        raise InputError("there is nothing to join: no profile was given")
+    length = parts[-1].end - parts[0].start
+    breaks = [parts[0].breaks]
+    for left, right in zip(parts, parts[1:], strict=False):
+        if abs(left.end - right.start) > 1e-12 * abs(length):
+            raise InputError(f"profiles do not meet: one ends at {left.end!r} m, the next begins at {right.start!r} m")
+        breaks.append(right.breaks[1:])
+    width = max(part.degree for part in parts) + 1
+    tables = [np.pad(part.coefficients, ((0, 0), (0, width - part.degree - 1))) for part in parts]
+    return CamProfile(np.concatenate(breaks), np.concatenate(tables))
+
+
+def _recentred(table: FloatArray, offset: FloatArray) -> FloatArray:
+    """Taylor shift: coefficients about a new origin that lies ``offset`` to the right; shapes ``(n, m)`` and ``(n,)``."""
+    moved = np.array(table, dtype=np.float64)
+    for row, by in zip(moved, offset, strict=True):
+        if by == 0.0:
+            continue
+        for k in range(len(row) - 1):  # synthetic division, once for each power
+            for p in range(len(row) - 2, k - 1, -1):
+                row[p] += by * row[p + 1]
+    return moved
+
+
+def _roots_between(coefficients: FloatArray, a: float, b: float) -> FloatArray:
+    """Real roots of a polynomial (ascending powers) inside ``(a, b)``, found on the unit interval for the sake of scaling."""
+    if not b > a:
+        return np.zeros(0)
+    unit = _recentred(coefficients[None, :], np.array([a]))[0] * (b - a) ** np.arange(len(coefficients))
+    size = np.abs(unit).max()
+    if size == 0.0:
+        return np.zeros(0)
+    significant = np.nonzero(np.abs(unit) > 1e-15 * size)[0]
+    unit = unit[: significant[-1] + 1]
+    if len(unit) <= 1:
+        return np.zeros(0)
+    if len(unit) == 2:
+        roots = np.array([-unit[0] / unit[1]])
+    else:
+        found = np.polynomial.polynomial.polyroots(unit)
+        # a double root splits into a complex pair of about sqrt(eps); its real part is as good as the root
+        roots = found[np.abs(found.imag) < 1e-6].real
+    return a + (b - a) * roots[(roots > 0.0) & (roots < 1.0)]
