@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 
 class CamwrightError(Exception):
     """Base of every error that camwright raises on purpose.
@@ -29,6 +31,23 @@ class InputError(CamwrightError):
         self.faults: tuple[str, ...] = faults
 
 
+@dataclass(frozen=True)
+class Suggestion:
+    """A single change that makes an infeasible job work.
+
+    Parameters
+    ----------
+    change
+        What to change: ``"line_speed"``, ``"length"``, or the name of a limit.
+    value, unit
+        The nearest value that works, in the unit named; for ``"reversal"`` 1 and no unit.
+    """
+
+    change: str
+    value: float
+    unit: str
+
+
 class InfeasibleError(CamwrightError):
     """Physics is at fault: no motion keeps the limits.
 
@@ -38,13 +57,22 @@ class InfeasibleError(CamwrightError):
         What binds, by how much, and what would work.
     binding
         Name of the limit that binds (``"speed"``, ``"acceleration"``, ``"jerk"``, ``"reversal"``).
+    excess, unit
+        By how much the limit would have to be exceeded, in the unit named; None if no value of this limit alone would do.
+    suggestions
+        Single changes that work, each checked.
     """
 
     exit_code = 3
 
-    def __init__(self, message: str, binding: str) -> None:
+    def __init__(
+        self, message: str, binding: str, excess: float | None, unit: str, suggestions: tuple[Suggestion, ...]
+    ) -> None:
         super().__init__(message)
         self.binding = binding
+        self.excess = excess
+        self.unit = unit
+        self.suggestions = suggestions
 
 
 class SolverError(CamwrightError):

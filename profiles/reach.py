@@ -109,6 +109,18 @@ def fastest(distance: float, speed: float, acceleration: float, jerk: float) -> 
     return DoubleS(math.cbrt(distance / (2 * jerk)), 0.0, 0.0, jerk)
 
 
+def in_time(distance: float, time: float, speed: float, acceleration: float, jerk: float) -> DoubleS:
+    """Motion from rest to rest over a distance in exactly the given time, with a given peak acceleration and jerk.
+
+    The speed is as high as the distance needs; acceleration and jerk are those of `least_acceleration` or `least_jerk`, so that
+    distance and time fit together.
+    """
+    peak = min(speed, 2 * distance / time)
+    ramp = min(acceleration / jerk, math.sqrt(peak / jerk))
+    hold = max(0.0, peak / (jerk * ramp) - ramp)
+    return DoubleS(ramp, hold, max(0.0, time - 4 * ramp - 2 * hold), jerk)
+
+
 def greatest_reach(time: float, speed: float, acceleration: float, jerk: float) -> float:
     """Greatest distance from rest to rest in a given time."""
     ramp = acceleration / jerk

@@ -1,0 +1,72 @@
+"""`ReturnProblem`: what has to be found, as numbers over the master."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+from profiles.cycle import Cut
+from profiles.limits import Limits
+from profiles.machines import RotaryKnife
+
+Objective = Literal["peak_acceleration", "rms_acceleration", "peak_jerk", "rms_jerk"]
+OBJECTIVES: tuple[Objective, ...] = get_args(Objective)
+
+
+@dataclass(frozen=True)
+class ReturnProblem:
+    """The return between two sync zones, over the master.
+
+    Find ``y`` on ``[0, length]`` with the given ends that keeps the limits and minimises the objective. Primes are derivatives over the
+    master.
+
+    Parameters
+    ----------
+    length
+        Length of the return zone (m).
+    height
+        Slave travel ``y(length) - y(0)`` (slave unit).
+    start_ratio, end_ratio
+        ``y'`` at the two ends (slave unit per m).
+    start_slope, end_slope
+        ``y''`` at the two ends (slave unit per m²).
+    least_ratio, greatest_ratio
+        Limits of ``y'``.
+    greatest_slope
+        Limit of ``|y''|``.
+    greatest_jerk
+        Limit of ``|y'''|`` (slave unit per m³).
+    objective
+        What is minimised: the peak or the root mean square of ``y''`` or of ``y'''``.
+    """
+
+    length: float
+    height: float
+    start_ratio: float
+    end_ratio: float
+    start_slope: float
+    end_slope: float
+    least_ratio: float
+    greatest_ratio: float
+    greatest_slope: float
+    greatest_jerk: float
+    objective: Objective
+
+
+def return_problem(machine: RotaryKnife, cut: Cut, limits: Limits, objective: Objective) -> ReturnProblem:
+    """Put the return of a cutting machine into numbers: the sync zone's ends give the return's boundary values."""
+    sync = machine.sync_profile(cut)
+    v = cut.line_speed
+    return ReturnProblem(
+        length=cut.return_zone,
+        height=machine.pitch - sync.advance,
+        start_ratio=float(sync(sync.end, 1)),
+        end_ratio=float(sync(sync.start, 1)),
+        start_slope=float(sync(sync.end, 2)),
+        end_slope=float(sync(sync.start, 2)),
+        least_ratio=limits.least_velocity / v,
+        greatest_ratio=limits.speed / v,
+        greatest_slope=limits.acceleration / v**2,
+        greatest_jerk=limits.jerk / v**3,
+        objective=objective,
+    )

@@ -1,0 +1,83 @@
+"""The normalised return: unit length, unit height, no line. The solver sees nothing else."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from design.problem import Objective, ReturnProblem
+from profiles.polynomial import CamProfile
+
+# Limits far beyond what any motion of unit height in unit length needs (2, 8 and 60) are cut off to keep the solver's numbers small.
+# They still allow for jobs at the edge of the speed limit, whose motion happens in a small part of the return.
+GREATEST_SCALED_SPEED = 1e2
+GREATEST_SCALED_ACCELERATION = 1e6
+GREATEST_SCALED_JERK = 1e13
+
+
+@dataclass(frozen=True)
+class ScaledProblem:
+    """A return over ``[0, 1]``, relative to the line through its start: ``q(xi) = (y(xi L) - y'(0) xi L) / scale``.
+
+    Adding a straight line changes neither acceleration nor jerk, only shifts the speed limits; what is left for a knife is a
+    rest-to-rest motion of unit height whatever the job.
+
+    Parameters
+    ----------
+    height, end_ratio, start_slope, end_slope
+        Boundary values: ``q(1)``, ``q'(1)``, ``q''(0)``, ``q''(1)``; ``q(0) = q'(0) = 0``.
+    least_ratio, greatest_ratio, greatest_slope, greatest_jerk
+        Limits of ``q'``, ``|q''|``, ``|q'''|``.
+    """
+
+    height: float
+    end_ratio: float
+    start_slope: float
+    end_slope: float
+    least_ratio: float
+    greatest_ratio: float
+    greatest_slope: float
+    greatest_jerk: float
+    objective: Objective
+
+
+def motion_scale(problem: ReturnProblem) -> float:
+    """Slave travel that becomes 1: the largest deviation from the line that the boundary values ask for; zero if the line will do.
+
+    Signed so that the height of the scaled problem is positive.
+    """
+    length = problem.length
+    height = problem.height - problem.start_ratio * length
+    others = (
+        (problem.end_ratio - problem.start_ratio) * length,
+        problem.start_slope * length**2,
+        problem.end_slope * length**2,
+    )
+    size = max(abs(height), *(abs(value) for value in others))
+    return -size if height < 0 else size
+
+
+def scale_problem(problem: ReturnProblem, scale: float) -> ScaledProblem:
+    """Normalise a return by its length and by the scale from `motion_scale`."""
+    length = problem.length
+    ratios = sorted(
+        (limit - problem.start_ratio) * length / scale for limit in (problem.least_ratio, problem.greatest_ratio)
+    )
+    return ScaledProblem(
+        height=(problem.height - problem.start_ratio * length) / scale,
+        end_ratio=(problem.end_ratio - problem.start_ratio) * length / scale,
+        start_slope=problem.start_slope * length**2 / scale,
+        end_slope=problem.end_slope * length**2 / scale,
+        least_ratio=max(ratios[0], -GREATEST_SCALED_SPEED),
+        greatest_ratio=min(ratios[1], GREATEST_SCALED_SPEED),
+        greatest_slope=min(problem.greatest_slope * length**2 / abs(scale), GREATEST_SCALED_ACCELERATION),
+        greatest_jerk=min(problem.greatest_jerk * length**3 / abs(scale), GREATEST_SCALED_JERK),
+        objective=problem.objective,
+    )
+
+
+def unscale_profile(profile: CamProfile, problem: ReturnProblem, scale: float) -> CamProfile:
+    """Bring a solution of the scaled problem back to the master and the slave."""
+    back = profile.scale(master=problem.length, slave=scale).add_line(problem.start_ratio)
+    breaks = back.breaks.copy()
+    breaks[-1] = problem.length
+    return CamProfile(breaks, back.coefficients.copy())
