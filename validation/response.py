@@ -1,0 +1,191 @@
+"""What the real axis makes of a profile: when it meets the material, when it stays with it, how far it is off."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from profiles.cycle import Cut
+from profiles.machines import RotaryKnife
+from profiles.polynomial import CamProfile, FloatArray
+from profiles.servo import Servo
+from validation.simulation import ServoRun, hermite, simulate
+
+ON_THE_LINE = 1e-9
+"""Part of the cut length within which the axis counts as lying on the ideal sync line; well above rounding, well
+below what a drive resolves."""
+
+_ZERO = 1e-12
+"""Accuracy of a zero between two points of the axis, as a part of the step between them."""
+
+
+@dataclass(frozen=True)
+class ServoResponse:
+    """Response of the servo over all sampling phases, SI units (m).
+
+    Distances are master travel from the start of the sync zone. The sync error is the axis minus the ideal sync line,
+    the slave position at which it moves with the material.
+
+    Parameters
+    ----------
+    crossing
+        Where the sync error first changes its sign (the paper's criterion for the transition length), at the phase
+        where that is latest; 0 if the axis lies on the line throughout, ``None`` if at some phase it meets the line
+        nowhere in the zone.
+    settling
+        Beyond this distance the sync error stays within the tolerance, at every phase; 0 if it never leaves it,
+        ``None`` if at some phase it is outside at the end of the zone.
+    overshoot
+        Greatest sync error of the other sign after the crossing, at the worst phase; 0 without a crossing.
+    peak_following_error
+        Greatest magnitude of command minus axis over the whole cycle.
+    shear_zone_error
+        Greatest magnitude of the sync error in the shear zone; at its place if its length is zero.
+    phases
+        Number of sampling phases simulated.
+    """
+
+    crossing: float | None
+    settling: float | None
+    overshoot: float
+    peak_following_error: float
+    shear_zone_error: float
+    phases: int
+
+
+def servo_response(
+    profile: CamProfile, machine: RotaryKnife, cut: Cut, servo: Servo, tolerance: float | None = None
+) -> ServoResponse:
+    """Simulate the servo on a profile and measure its response.
+
+    Parameters
+    ----------
+    profile
+        One cycle over the master period ``[0, x_c]``.
+    machine
+        The machine; it says what the ideal sync line is.
+    cut
+        Cut length, line speed and zones.
+    servo
+        The servo.
+    tolerance
+        Sync error allowed for the settling length (m); the cut's sync tolerance if not given.
+
+    Raises
+    ------
+    InputError
+        As `validation.simulation.simulate`.
+    """
+    return measure_response(simulate(profile, cut, servo), profile, machine, cut, tolerance)
+
+
+def measure_response(
+    run: ServoRun, profile: CamProfile, machine: RotaryKnife, cut: Cut, tolerance: float | None = None
+) -> ServoResponse:
+    """Measure a simulated response; arguments as in `servo_response`."""
+    start = cut.return_start + cut.return_zone  # counted on like ServoRun.master
+    master, error, slope = sync_error(run, profile, machine, cut, start, start + cut.sync_zone)
+    crossing, overshoot = _crossing(master - start, error, slope, ON_THE_LINE * cut.length)
+    settling = _settling(master - start, error, slope, cut.sync_tolerance if tolerance is None else tolerance)
+    shear = start + cut.shear_zone_at
+    in_shear = sync_error(run, profile, machine, cut, shear, min(shear + cut.shear_zone, start + cut.sync_zone))[1]
+    return ServoResponse(
+        crossing=crossing,
+        settling=settling,
+        overshoot=overshoot,
+        peak_following_error=float(np.abs(run.command - run.axis).max()),
+        shear_zone_error=float(np.abs(in_shear).max()),
+        phases=run.phases,
+    )
+
+
+def sync_error(
+    run: ServoRun, profile: CamProfile, machine: RotaryKnife, cut: Cut, start: float, end: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Axis minus ideal sync line in a part of the sync zone, for every sampling phase.
+
+    The ideal line passes through the profile's position at the cut length ``x_c``, which lies in the sync zone with
+    either origin (S1: ``Y = X - x_c + y_c`` in the first cycle).
+
+    Parameters
+    ----------
+    start, end
+        The part (m), counted like `ServoRun.master`.
+
+    Returns
+    -------
+    (master, error, slope)
+        Master position (m), error (m) and its derivative over the master; shapes ``(phases, n)``.
+    """
+    zone = cut.return_start + cut.return_zone
+    sync = machine.sync_profile(cut)
+    master, axis, ratio = run.window(start, end)
+    inside = np.clip(master - zone, sync.start, sync.end)
+    line = sync(inside) + (float(profile(profile.end)) - float(sync(np.clip(cut.length - zone, sync.start, sync.end))))
+    return master, axis - line, ratio - sync(inside, 1)
+
+
+def _crossing(distance: FloatArray, error: FloatArray, slope: FloatArray, floor: float) -> tuple[float | None, float]:
+    """Latest first change of sign over the phases, and the greatest error beyond it."""
+    off = np.abs(error) > floor
+    rows = np.nonzero(off.any(axis=1))[0]
+    if len(rows) == 0:
+        return 0.0, 0.0
+    first = off[rows].argmax(axis=1)
+    side = np.sign(error[rows, first])[:, None]
+    before = np.arange(error.shape[1]) <= first[:, None]
+    met = (side * error[rows] <= 0.0) & ~before
+    at = met.argmax(axis=1)
+    crossed = met.any(axis=1)
+    after = np.arange(error.shape[1]) >= at[:, None]
+    beyond = np.where(after & crossed[:, None], -side * error[rows], 0.0)
+    overshoot = max(0.0, float(beyond.max()))
+    if not crossed.all():
+        return None, overshoot
+    return _latest_zero(distance, error, slope, rows, at - 1), overshoot
+
+
+def _settling(distance: FloatArray, error: FloatArray, slope: FloatArray, tolerance: float) -> float | None:
+    """Distance beyond which no phase is outside the tolerance."""
+    outside = np.abs(error) > tolerance
+    if outside[:, -1].any():
+        return None
+    rows = np.nonzero(outside.any(axis=1))[0]
+    if len(rows) == 0:
+        return 0.0
+    last = error.shape[1] - 1 - outside[rows, ::-1].argmax(axis=1)
+    edge = np.zeros_like(error)
+    edge[rows] = np.sign(error[rows, last])[:, None] * tolerance
+    return _latest_zero(distance, error - edge, slope, rows, last)
+
+
+def _latest_zero(
+    distance: FloatArray, error: FloatArray, slope: FloatArray, rows: NDArray[np.intp], left: NDArray[np.intp]
+) -> float:
+    """Greatest zero of the cubics between the points ``left`` and ``left + 1``, where the sign changes."""
+    x, beyond = distance[rows, left], distance[rows, left + 1]
+    latest = 0.0
+    for i in np.nonzero(beyond >= x.max())[0].tolist():  # the others end before the last of these begins
+        points = rows[i], slice(int(left[i]), int(left[i]) + 2)
+        step = float(beyond[i] - x[i])
+        latest = max(latest, float(x[i]) + step * _zero_part(step, error[points].tolist(), slope[points].tolist()))
+    return latest
+
+
+def _zero_part(step: float, value: list[float], slopes: list[float]) -> float:
+    """Zero of the cubic through two points of different sign, as a part of the step: safeguarded Newton."""
+    low, high, part = 0.0, 1.0, value[0] / (value[0] - value[1])
+    while True:
+        error, slope = hermite(part, step, value, slopes)
+        if error * value[0] > 0.0:
+            low = part
+        else:
+            high = part
+        guess = part - error / (slope * step) if slope else low
+        if not low < guess < high:
+            guess = 0.5 * (low + high)
+        if abs(guess - part) <= _ZERO:
+            return guess
+        part = guess
