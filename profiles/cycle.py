@@ -28,6 +28,8 @@ class Cut:
         What the axis may be off the material in the shear zone (m).
     origin
         Where the master is zero: at the start of the return zone (``"return"``) or at mid sync zone (``"cut"``).
+    sync_ratio
+        Speed of the tool over the speed of the material in the sync zone, 1 for sync.
     """
 
     length: float
@@ -37,6 +39,7 @@ class Cut:
     shear_zone_at: float
     sync_tolerance: float
     origin: Origin = "return"
+    sync_ratio: float = 1.0
 
     @property
     def return_zone(self) -> float:

@@ -158,13 +158,12 @@ class CamProfile:
         elif position.size and (position.min() < self.start or position.max() > self.end):
             worst = position.min() if position.min() < self.start else position.max()
             raise InputError(f"master position {worst!r} m lies outside the profile, {self.start!r} to {self.end!r} m")
-        index = np.searchsorted(self.breaks, position, side=side) - 1
-        index = np.clip(index, 0, self.pieces - 1)
-        local = position - self.breaks[index]
-        table = self._derived(order)
-        value = np.zeros_like(position)
-        for power in range(table.shape[1] - 1, -1, -1):  # Horner
-            value = value * local + table[index, power]
+        index = np.searchsorted(self.breaks[1:-1], position, side=side)
+        local = position - self.breaks.take(index)
+        value = np.zeros_like(local)
+        for coefficient in self._derived(order).T[::-1]:  # Horner
+            value *= local
+            value += coefficient.take(index)
         if turns is not None and order == 0:
             value = value + turns * self.advance
         return np.asarray(value, dtype=np.float64)

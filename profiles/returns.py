@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import numpy as np
+
 from profiles.cycle import Cut
 from profiles.errors import InputError
 from profiles.laws import LAWS, law
-from profiles.machines import RotaryKnife
+from profiles.machines import CrankSlider, Machine
 from profiles.polynomial import CamProfile, join
 
 BASELINES: tuple[str, ...] = ("linear_return", *(name for name in LAWS if name != "linear"))
@@ -39,22 +43,106 @@ def place_law(name: str, length: float, height: float, ratio: float = 1.0) -> Ca
     return CamProfile(breaks, placed.coefficients.copy())
 
 
-def baseline(name: str, machine: RotaryKnife, cut: Cut) -> CamProfile:
+def baseline_names(machine: Machine, cut: Cut) -> tuple[str, ...]:
+    """Names of the baselines that a machine can have.
+
+    Laws are defined for returns between two sync zones of the same constant ratio; where the ratio changes in the sync zone there are the
+    linear return, the quintic between the zone's ends, and for a crank the tabulated curve of S3.
+    """
+    if is_straight(machine, cut):
+        return BASELINES
+    return ("linear_return", "poly_3_4_5", *(["crank_tabulated"] if isinstance(machine, CrankSlider) else []))
+
+
+def is_straight(machine: Machine, cut: Cut) -> bool:
+    """Tell whether the slave's ratio is constant in the sync zone."""
+    return machine.sync_profile(cut).degree == 1
+
+
+def baseline(name: str, machine: Machine, cut: Cut) -> CamProfile:
     """One cycle of a baseline: its return and the machine's sync zone, with the origin that the cut states.
 
     Raises
     ------
     InputError
-        There is no such baseline.
+        There is no such baseline for this machine.
     """
-    if name not in BASELINES:
-        raise InputError(f"there is no baseline {name!r}; the baselines are {', '.join(BASELINES)}")
-    height = machine.pitch - machine.sync_profile(cut).advance
-    back = place_law("linear" if name == "linear_return" else name, cut.return_zone, height)
+    if name not in baseline_names(machine, cut):
+        raise InputError(
+            f"there is no baseline {name!r} for this machine; the baselines are {', '.join(baseline_names(machine, cut))}"
+        )
+    sync = machine.sync_profile(cut)
+    height = machine.pitch - sync.advance
+    if name == "crank_tabulated":
+        quintic = assemble(quintic_between(sync, cut.return_zone, height), machine, replace(cut, origin="return"))
+        table = tabulate_crank(quintic)
+        return table if cut.origin == "return" else table.roll(cut.length - 0.5 * cut.sync_zone)
+    if is_straight(machine, cut):
+        back = place_law("linear" if name == "linear_return" else name, cut.return_zone, height, cut.sync_ratio)
+    elif name == "linear_return":
+        back = place_law("linear", cut.return_zone, height, 0.0)
+    else:
+        back = quintic_between(sync, cut.return_zone, height)
     return assemble(back, machine, cut)
 
 
-def assemble(back: CamProfile, machine: RotaryKnife, cut: Cut) -> CamProfile:
+def quintic_between(sync: CamProfile, length: float, height: float) -> CamProfile:
+    """Quintic return that meets position, ratio and ratio slope at both ends of a sync zone (Hermite).
+
+    Parameters
+    ----------
+    sync
+        Slave in the sync zone.
+    length
+        Length of the return zone (m).
+    height
+        Slave travel in the return zone (slave unit).
+    """
+    v0, v1 = float(sync(sync.end, 1)) * length, float(sync(sync.start, 1)) * length
+    a0, a1 = float(sync(sync.end, 2)) * length**2, float(sync(sync.start, 2)) * length**2
+    d = height - v0 - a0 / 2  # what the cubic and higher powers make up for: position, ratio, ratio slope at the end
+    e, f = v1 - v0 - a0, a1 - a0
+    unit = [0.0, v0, a0 / 2, 10 * d - 4 * e + f / 2, -15 * d + 7 * e - f, 6 * d - 3 * e + f / 2]
+    return CamProfile.from_arrays([0.0, length], [unit / length ** np.arange(6)])
+
+
+def tabulate_crank(cycle: CamProfile, points: int = 360) -> CamProfile:
+    """Running curve of S3 made from a table: crank angles evenly around the turn, the master positions at which they are passed, and
+    between these the crank's speed by differences, interpolated over the master.
+
+    Parameters
+    ----------
+    cycle
+        The crank's cycle that the table is taken from, with a ratio that is never negative; it starts at the return.
+    points
+        Number of angles, 360 or more in S3.
+    """
+    angle = np.linspace(0.0, cycle.advance, points + 1)
+    dense = np.linspace(cycle.start, cycle.end, 64 * points + 1)
+    passed = np.maximum.accumulate(cycle(dense))
+    growing = np.concatenate([[True], np.diff(passed) > 0])
+    x = np.interp(angle, passed[growing], dense[growing])
+    x[0], x[-1] = cycle.start, cycle.end
+    keep = np.concatenate([[True], np.diff(x) > 1e-9 * cycle.length])
+    keep[-1] = True
+    x, angle = x[keep], angle[keep]
+    middle = 0.5 * (x[:-1] + x[1:])
+    speed = np.diff(angle) / np.diff(x)
+    # the speed between two middles is the straight line; at the seam the cycle repeats
+    around = np.concatenate([[middle[-1] - cycle.length], middle, [middle[0] + cycle.length]])
+    pace = np.concatenate([[speed[-1]], speed, [speed[0]]])
+    breaks = np.unique(np.concatenate([[cycle.start], middle, [cycle.end]]))
+    at = np.interp(breaks, around, pace)
+    rise = np.diff(breaks) * 0.5 * (at[:-1] + at[1:])
+    # differences and straight lines do not add up to the turn; S3's drive closes the cycle by the last value
+    at *= cycle.advance / rise.sum()
+    rise *= cycle.advance / rise.sum()
+    start = np.concatenate([[0.0], np.cumsum(rise)[:-1]])
+    slope = np.diff(at) / np.diff(breaks)
+    return CamProfile.from_arrays(breaks, np.stack([start, at[:-1], slope / 2], axis=1))
+
+
+def assemble(back: CamProfile, machine: Machine, cut: Cut) -> CamProfile:
     """Make one cycle over the master period ``[0, x_c]`` from a return over ``[0, x_c - l_s]`` and the machine's sync zone.
 
     The cycle starts at slave zero. With the origin at the cut it starts at mid sync zone, and the sync zone is split.
@@ -62,7 +150,15 @@ def assemble(back: CamProfile, machine: RotaryKnife, cut: Cut) -> CamProfile:
     sync = machine.sync_profile(cut)
     height = machine.pitch - sync.advance
     cycle = join(back, sync.shift(back.end - sync.start, height - float(sync(sync.start))))
+    if cut.origin == "cut":
+        cycle = cycle.roll(cut.length - 0.5 * cut.sync_zone)
     breaks = cycle.breaks.copy()
-    breaks[-1] = cut.length
-    cycle = CamProfile(breaks, cycle.coefficients.copy())
-    return cycle if cut.origin == "return" else cycle.roll(cut.length - 0.5 * cut.sync_zone)
+    breaks[-1] = cut.length  # there but for rounding
+    return CamProfile(breaks, cycle.coefficients.copy())
+
+
+def slave_at_start(machine: Machine, cut: Cut) -> float:
+    """Slave coordinate of the machine at which a cycle starts: add it to a profile's position to get the slave coordinate."""
+    sync = machine.sync_profile(cut)
+    passed = sync.end if cut.origin == "return" else 0.5 * cut.sync_zone
+    return machine.sync_start(cut) + float(sync(passed))

@@ -2,31 +2,125 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from typing import Any, ClassVar, Literal
+
+import numpy as np
 
 from profiles.cycle import Cut
-from profiles.polynomial import CamProfile
+from profiles.errors import InputError
+from profiles.fitting import fit_profile
+from profiles.machines.machine import Machine, SlaveUnit
+from profiles.polynomial import CamProfile, FloatArray
+
+Sync = Literal["tangential", "horizontal"]
+
+GREATEST_ANGLE = math.radians(80.0)
+"""Greatest angle of the blade from the cut point at which horizontal sync is offered: there the drum turns 5.8 times as fast."""
 
 
 @dataclass(frozen=True)
-class RotaryKnife:
-    """A rotary knife in sync by its circumferential speed (S1).
+class RotaryKnife(Machine):
+    """A rotary knife.
 
-    The slave position ``y`` is the travel of the blade's edge along the circumference (m).
+    The slave coordinate ``y`` is the travel of a blade's edge along the blade circle (m), zero where the blade points at the
+    material. In tangential sync the edge's speed on its circle equals the material's (S1); in horizontal sync, for thick product, the
+    component along the material does: ``dy/dx = 1 / cos(y / r)``.
 
     Parameters
     ----------
     circumference
-        Circumference of the blade circle ``y_c`` (m).
+        Circumference of the blade circle (m).
+    blades
+        Number of blades, evenly spaced.
+    gear_ratio
+        Motor turns per drum turn.
+    sync
+        Which speed of the blade is in sync.
+    drum_inertia
+        Inertia of drum, gear and motor at the drum (kg·m²).
+    drum_friction
+        Friction torque at the drum (N·m).
     """
 
+    slave_unit: ClassVar[SlaveUnit] = "m"
+
     circumference: float
+    blades: int = 1
+    gear_ratio: float = 1.0
+    sync: Sync = "tangential"
+    drum_inertia: float = 0.0
+    drum_friction: float = 0.0
+
+    @property
+    def radius(self) -> float:
+        """Radius of the blade circle ``r`` (m)."""
+        return self.circumference / (2 * math.pi)
 
     @property
     def pitch(self) -> float:
-        """Slave travel per cycle (m)."""
-        return self.circumference
+        """Slave travel per cycle: circumference over blades (m)."""
+        return self.circumference / self.blades
+
+    @property
+    def motor_ratio(self) -> float:
+        """Motor angle per edge travel (rad/m)."""
+        return self.gear_ratio / self.radius
+
+    def greatest_sync_zone(self, sync_ratio: float) -> float:
+        """Longest sync zone that horizontal sync allows (m)."""
+        return 2 * self.radius * math.sin(GREATEST_ANGLE) / sync_ratio
+
+    def sync_start(self, cut: Cut) -> float:
+        """Edge travel at the start of the sync zone, the cut point at its middle (m, negative)."""
+        half = 0.5 * cut.sync_ratio * cut.sync_zone
+        if self.sync == "tangential":
+            return -half
+        if cut.sync_zone > self.greatest_sync_zone(cut.sync_ratio):
+            raise InputError(
+                f"cut.sync_zone {cut.sync_zone * 1e3:.6g} mm takes the blade beyond ±{math.degrees(GREATEST_ANGLE):.0f}° from the cut "
+                f"point, where horizontal sync ends; the longest possible is "
+                f"{self.greatest_sync_zone(cut.sync_ratio) * 1e3:.6g} mm"
+            )
+        return -self.radius * math.asin(half / self.radius)
 
     def sync_profile(self, cut: Cut) -> CamProfile:
-        """Slave in the sync zone, from master and slave zero: ``y = x`` (``k = 1``), over ``[0, l_s]``."""
-        return CamProfile.from_arrays([0.0, cut.sync_zone], [[0.0, 1.0]])
+        """Slave in the sync zone: ``y = s x``, or ``r sin(y / r) = s (x - l_s / 2)``, with the sync ratio ``s``."""
+        if self.sync == "tangential":
+            return CamProfile.from_arrays([0.0, cut.sync_zone], [[0.0, cut.sync_ratio]])
+        start = self.sync_start(cut)
+
+        def travel(x: FloatArray) -> FloatArray:
+            blade = cut.sync_ratio * (x - 0.5 * cut.sync_zone)
+            return np.asarray(self.radius * np.arcsin(blade / self.radius) - start)
+
+        return fit_profile(travel, 0.0, cut.sync_zone)
+
+    def tool(self, y: Any) -> Any:
+        """Position of the edge along the material; along its circle in tangential sync."""
+        return y if self.sync == "tangential" else self.radius * np.sin(y / self.radius)
+
+    def tool_ratio(self, y: Any) -> Any:
+        """Derivative of `tool`."""
+        return 1.0 + 0.0 * y if self.sync == "tangential" else np.cos(y / self.radius)
+
+    def inertia(self, y: Any) -> Any:
+        """Drum inertia over ``r²`` (kg)."""
+        return self.drum_inertia / self.radius**2 + 0.0 * y
+
+    def inertia_slope(self, y: Any) -> Any:
+        """Zero: the inertia does not depend on the angle."""
+        return 0.0 * y
+
+    @property
+    def friction(self) -> float:
+        """Friction at the edge (N)."""
+        return self.drum_friction / self.radius
+
+    def tangential_mismatch(self, cut: Cut) -> float:
+        """Share of the line speed by which the edge's speed along the material falls short of it at the ends of a tangential sync zone.
+
+        The edge moves at line speed on its circle, so along the material it moves at ``cos(y / r)`` of it: ``1 - cos(l_s / 2 r)``.
+        """
+        return 1.0 - math.cos(min(0.5 * cut.sync_zone / self.radius, math.pi))

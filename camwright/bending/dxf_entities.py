@@ -1,0 +1,224 @@
+"""DXF entities as pieces of outlines: what is known of each kind, and why others are refused."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from profiles.errors import InputError
+from profiles.polynomial import FloatArray
+
+MOST_SEGMENTS = 200_000
+_PLANE = 1e-9
+"""Difference of height, in drawing units, up to which an entity lies in a plane."""
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """A stretch of die line from one entity.
+
+    Parameters
+    ----------
+    points, bulges
+        As in `profiles.bender.outline.Outline`, in drawing units.
+    name
+        Kind, handle and layer of the entity.
+    """
+
+    points: FloatArray
+    bulges: FloatArray
+    name: str
+
+    @property
+    def closed(self) -> bool:
+        """Whether the piece ends where it begins."""
+        return bool((self.points[0] == self.points[-1]).all())
+
+    def reverse(self) -> Piece:
+        """Return the same stretch from its other end."""
+        return Piece(self.points[::-1], -self.bulges[::-1], self.name)
+
+
+def describe(entity: Any) -> str:
+    """Kind, handle and layer of an entity, for messages."""
+    handle = entity.dxf.handle or getattr(entity.source_block_reference, "dxf", entity.dxf).handle
+    origin = "" if entity.dxf.handle else "in block reference "
+    return f"{entity.dxftype()} {origin}#{handle} on layer {entity.dxf.layer}"
+
+
+def piece_of(entity: Any, flattening: float) -> Piece | None:
+    """Turn an entity into a piece; nothing for an entity that is no line work.
+
+    Parameters
+    ----------
+    entity
+        The ezdxf entity.
+    flattening
+        Largest distance of a curve from its polyline, in drawing units.
+
+    Raises
+    ------
+    InputError
+        The entity is line work that cannot be bent: not flat, without length, not finite.
+    """
+    kind = entity.dxftype()
+    if kind not in _READERS:
+        return None
+    name = describe(entity)
+    try:
+        points, bulges = _READERS[kind](entity, flattening)
+    except (ArithmeticError, ValueError) as error:  # what the library makes of NaN, infinite or missing numbers
+        raise InputError(f"{name}: its geometry cannot be used: {error}") from error
+    piece = Piece(points, bulges, name)
+    if not (np.isfinite(points).all() and np.isfinite(bulges).all()):
+        raise InputError(f"{name}: a coordinate or bulge is NaN or infinite; draw the entity again")
+    if len(bulges) == 0:
+        raise InputError(f"{name}: it has fewer than two vertices; remove it")
+    empty = np.flatnonzero((np.diff(points, axis=0) == 0).all(axis=1))
+    if len(empty):
+        x, y = points[empty[0]]
+        raise InputError(f"{name}: segment {empty[0] + 1} has no length, at ({x:g}, {y:g}); remove the doubled vertex")
+    return piece
+
+
+def _flat(name: str, heights: ArrayLike) -> None:
+    z = np.asarray(heights, dtype=np.float64)
+    if len(z) and float(np.ptp(z)) > _PLANE:
+        raise InputError(
+            f"{name}: it is three-dimensional, from z = {z.min():g} to {z.max():g}; flatten it to one height, a "
+            "die line is "
+            "a plane drawing"
+        )
+
+
+def _sense(entity: Any) -> float:
+    """Tell whether an entity is drawn on the plane's face (1) or seen from behind (-1)."""
+    direction = entity.dxf.extrusion
+    if abs(direction.x) > _PLANE or abs(direction.y) > _PLANE or direction.z == 0:
+        raise InputError(
+            f"{describe(entity)}: its plane is tilted (extrusion {direction}); turn it into the drawing plane"
+        )
+    return math.copysign(1.0, direction.z)
+
+
+def _polyline(points: list[tuple[float, float]], bulges: list[float], closed: bool, sense: float) -> tuple[Any, Any]:
+    if closed and len(points) > 1:
+        if points[-1] == points[0]:
+            bulges = bulges[:-1]
+        else:
+            points = [*points, points[0]]
+    else:
+        bulges = bulges[:-1]
+    return np.array(points, dtype=np.float64).reshape(-1, 2) * [sense, 1.0], np.array(bulges, dtype=np.float64) * sense
+
+
+def _lwpolyline(entity: Any, _: float) -> tuple[Any, Any]:
+    rows = entity.get_points("xyb")
+    return _polyline([(x, y) for x, y, _ in rows], [b for _, _, b in rows], bool(entity.closed), _sense(entity))
+
+
+def _old_polyline(entity: Any, _: float) -> tuple[Any, Any]:
+    if entity.is_polygon_mesh or entity.is_poly_face_mesh:
+        raise InputError(f"{describe(entity)}: it is a mesh, not a line; remove it")
+    places = [vertex.dxf.location for vertex in entity.vertices]
+    _flat(describe(entity), [place.z for place in places])
+    sense = 1.0 if entity.is_3d_polyline else _sense(entity)
+    bulges = [vertex.dxf.get("bulge", 0.0) for vertex in entity.vertices]
+    return _polyline([(place.x, place.y) for place in places], bulges, bool(entity.is_closed), sense)
+
+
+def _line(entity: Any, _: float) -> tuple[Any, Any]:
+    start, end = entity.dxf.start, entity.dxf.end
+    _flat(describe(entity), [start.z, end.z])
+    return np.array([[start.x, start.y], [end.x, end.y]]), np.zeros(1)
+
+
+def _arc(entity: Any, _: float) -> tuple[Any, Any]:
+    if not (math.isfinite(entity.dxf.start_angle) and math.isfinite(entity.dxf.end_angle)):
+        raise InputError(f"{describe(entity)}: an angle is NaN or infinite; draw the entity again")
+    sweep = (entity.dxf.end_angle - entity.dxf.start_angle) % 360.0 or 360.0
+    return _round(entity, math.radians(entity.dxf.start_angle), math.radians(sweep))
+
+
+def _circle(entity: Any, _: float) -> tuple[Any, Any]:
+    return _round(entity, 0.0, 2 * math.pi)
+
+
+def _round(entity: Any, start: float, sweep: float) -> tuple[Any, Any]:
+    sense, centre, radius = _sense(entity), entity.dxf.center, entity.dxf.radius
+    if not radius > 0:
+        raise InputError(f"{describe(entity)}: radius {radius:g}; it must be positive")
+    parts = 1 if sweep <= math.pi else 2  # a bulge above 1 loses digits
+    angle = start + sweep * np.arange(parts + 1) / parts
+    points = np.stack([centre.x + radius * np.cos(angle), centre.y + radius * np.sin(angle)], axis=1)
+    if sweep == 2 * math.pi:
+        points[-1] = points[0]
+    return points * [sense, 1.0], np.full(parts, sense * math.tan(sweep / parts / 4))
+
+
+def _curve(entity: Any, flattening: float) -> tuple[Any, Any]:
+    places = []
+    for place in entity.flattening(flattening):
+        places.append(place)
+        if len(places) > MOST_SEGMENTS:
+            raise InputError(
+                f"{describe(entity)}: it needs more than {MOST_SEGMENTS} segments; draw it again or allow more "
+                "flattening"
+            )
+    _flat(describe(entity), [place.z for place in places])
+    points = np.array([(place.x, place.y) for place in places], dtype=np.float64).reshape(-1, 2)
+    keep = (
+        np.concatenate([[True], (np.diff(points, axis=0) != 0).any(axis=1)]) if len(points) else np.zeros(0, dtype=bool)
+    )
+    points = points[keep]
+    return points, np.zeros(max(0, len(points) - 1))
+
+
+_READERS: dict[str, Callable[[Any, float], tuple[Any, Any]]] = {
+    "LWPOLYLINE": _lwpolyline,
+    "POLYLINE": _old_polyline,
+    "LINE": _line,
+    "ARC": _arc,
+    "CIRCLE": _circle,
+    "ELLIPSE": _curve,
+    "SPLINE": _curve,
+}
+
+
+def walk(layout: Any, budget: int, depth: int) -> Iterator[tuple[Any, str]]:
+    """Go through a layout's entities, those inside block references too, each with the layer it appears on.
+
+    Raises
+    ------
+    InputError
+        References nested deeper than ``depth``, or more than ``budget`` entities in all.
+    """
+    count = 0
+    stack: list[tuple[Iterator[Any], str, int]] = [(iter(layout), "0", 0)]
+    while stack:
+        entities, layer, level = stack[-1]
+        entity = next(entities, None)
+        if entity is None:
+            stack.pop()
+            continue
+        count += 1
+        if count > budget:
+            raise InputError(f"block references unfold to more than {budget} entities; explode or purge them")
+        own = entity.dxf.layer if entity.dxf.layer != "0" or level == 0 else layer
+        if entity.dxftype() != "INSERT":
+            yield entity, own
+        elif level == depth:
+            raise InputError(f"{describe(entity)}: blocks are nested more than {depth} deep; explode them")
+        else:
+            stack.append((_members(entity), own, level + 1))
+
+
+def _members(insert: Any) -> Iterator[Any]:
+    """Entities of a block reference in their places, one for each cell of an array of references."""
+    for cell in insert.multi_insert() if insert.mcount > 1 else (insert,):
+        yield from cell.virtual_entities()

@@ -1,0 +1,60 @@
+"""Writing the figures as SVG and PNG, with the same bytes for the same results."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from matplotlib import style as matplotlib_style
+from matplotlib.figure import Figure
+
+from camwright.comparison import Comparison
+from camwright.plots.comparison import bars_figure
+from camwright.plots.profile import profile_figure
+from camwright.plots.servo import AXES, servo_figure
+from camwright.plots.style import RC
+
+if TYPE_CHECKING:
+    from camwright.results import Design
+
+
+def design_figures(design: Design, directory: Path) -> list[Path]:
+    """Write the figures of a design: ``profile``, ``servo`` and ``comparison``, each as SVG and PNG.
+
+    Parameters
+    ----------
+    design
+        What is drawn.
+    directory
+        An existing directory.
+
+    Returns
+    -------
+    list
+        The files, six.
+    """
+    from validation.simulation import simulate
+
+    job, comparison = design.job, design.comparison
+    runs = {name: simulate(comparison[name].profile, job.cut, job.servo) for name in AXES}
+    return [
+        *_written(lambda: profile_figure(comparison), directory, "profile"),
+        *_written(lambda: servo_figure(comparison, runs), directory, "servo"),
+        *comparison_figure(comparison, directory),
+    ]
+
+
+def comparison_figure(comparison: Comparison, directory: Path) -> list[Path]:
+    """Write the bars of a comparison: ``comparison.svg`` and ``comparison.png`` in an existing directory."""
+    return _written(lambda: bars_figure(comparison), directory, "comparison")
+
+
+def _written(draw: Callable[[], Figure], directory: Path, name: str) -> list[Path]:
+    """Draw a figure in the house's style, whatever the user's settings of matplotlib, and save it twice."""
+    vector, pixels = directory / f"{name}.svg", directory / f"{name}.png"
+    with matplotlib_style.context(["default", RC]):
+        figure = draw()
+        figure.savefig(vector, metadata={"Date": None, "Creator": None})
+        figure.savefig(pixels, metadata={"Software": None})
+    return [vector, pixels]

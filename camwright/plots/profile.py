@@ -1,0 +1,139 @@
+"""The profile figure: correction, ratio, acceleration and jerk over the master, zones shaded, limits marked."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from camwright.comparison import Comparison
+from camwright.plots.style import LIMIT, LINES, SHEAR_COLOUR, SYNC_COLOUR, WIDTH, shade_zones, title
+from profiles.polynomial import CamProfile, FloatArray
+from validation.motion import RATIO_JUMP, SLOPE_JUMP, slope_scale
+
+_POINTS = 48
+"""Points drawn of a piece; the ends of pieces are drawn from both sides."""
+
+_FAR = 4.0
+"""A limit is drawn as a line if it is at most this many times the greatest value drawn, else named in words."""
+
+_ROOM = 1.18
+"""Height of a panel, as a multiple of what it holds."""
+
+
+def profile_figure(comparison: Comparison) -> Figure:
+    """Draw the optimised profile beside the linear return and the quintic.
+
+    Where a derivative is unbounded, arrows stand at the jump instead of a value; they point the way of the jump.
+
+    Parameters
+    ----------
+    comparison
+        Holds the job and the profiles; those of `camwright.plots.style.LINES` are drawn.
+    """
+    cut, limits = comparison.job.cut, comparison.job.limits
+    v = cut.line_speed
+    figure = Figure(figsize=(WIDTH, 8.0), layout="constrained")
+    correction, ratio, acceleration, jerk = figure.subplots(4, 1, sharex=True)
+    shown = {row.name: row.profile for row in comparison.rows if row.name in LINES}
+    for axes in (correction, ratio, acceleration, jerk):
+        shade_zones(axes, cut)
+    for name, profile in shown.items():
+        x, y = _curve(profile, 0)
+        correction.plot(x * 1e3, (y - x) * 1e3, **LINES[name])
+        for axes, order, factor in ((ratio, 1, 1.0), (acceleration, 2, v**2), (jerk, 3, v**3)):
+            x, value = _curve(profile, order)
+            axes.plot(x * 1e3, value * factor, **LINES[name])
+    _limits(ratio, (limits.least_velocity / v, limits.speed / v), ("0", "") if not limits.reversal else ("", ""))
+    _limits(acceleration, (-limits.acceleration, limits.acceleration))
+    _limits(jerk, (-limits.jerk, limits.jerk))
+    for name, profile in shown.items():
+        _arrows(acceleration, jerk, name, profile)
+    correction.set_ylabel("y − x (mm)")
+    ratio.set_ylabel("ratio k = dy/dx")
+    acceleration.set_ylabel("acceleration (m/s²)")
+    jerk.set_ylabel("jerk (m/s³)")
+    jerk.set_xlabel("master position x (mm)")
+    jerk.set_xlim(0.0, cut.length * 1e3)
+    figure.align_ylabels()
+    figure.suptitle(
+        f"{comparison.job.name}: {cut.length * 1e3:g} mm at {v * 60:g} m/min, "
+        f"least {comparison.job.objective.replace('_', ' ')}".replace("rms", "RMS"),
+        fontsize=9.5,
+    )
+    _legend(figure, shown)
+    return figure
+
+
+def _curve(profile: CamProfile, order: int) -> tuple[FloatArray, FloatArray]:
+    """Points of a derivative over the master (m), every piece from its first to its last break."""
+    part = np.linspace(0.0, 1.0, _POINTS + 1)
+    x = profile.breaks[:-1, None] + np.diff(profile.breaks)[:, None] * part
+    x[:, -1] = profile.breaks[1:]
+    value = profile(x, order)
+    value[:, -1] = profile(x[:, -1], order, side="left")
+    return x.ravel(), value.ravel()
+
+
+def _limits(axes: Axes, bounds: tuple[float, float], names: tuple[str, str] = ("", "")) -> None:
+    """Mark limits as lines, or name those that lie far beyond all that is drawn; leave room around the curves."""
+    values = np.concatenate([np.asarray(line.get_ydata(), dtype=float) for line in axes.lines])
+    least, greatest = float(values.min()), float(values.max())
+    reach = max(abs(least), abs(greatest)) or bounds[1]
+    drawn = [bound for bound in bounds if abs(bound) <= _FAR * reach]
+    least, greatest = min([least, *drawn]), max([greatest, *drawn])
+    middle, half = 0.5 * (least + greatest), 0.5 * (greatest - least) * _ROOM
+    axes.set_ylim(middle - half, middle + half)
+    for bound in drawn:
+        axes.axhline(bound, **LIMIT)
+    del names
+    if len(drawn) < 2 and abs(bounds[1]) > _FAR * reach:
+        text = f"limit {bounds[1]:g}: off scale" if len(drawn) else f"limits ±{bounds[1]:g}: off scale"
+        axes.text(0.995, 0.96, text, transform=axes.transAxes, ha="right", va="top", fontsize=7)
+
+
+def _arrows(acceleration: Axes, jerk: Axes, name: str, profile: CamProfile) -> None:
+    """Mark where acceleration or jerk is unbounded: at jumps of the ratio, or of the ratio slope."""
+    at = profile.breaks[1:] * 1e3
+    ratio, slope = profile.jumps(1), profile.jumps(2)
+    steep = np.abs(ratio) > RATIO_JUMP
+    for x, up in zip(at[steep], ratio[steep] > 0, strict=True):
+        _arrow(acceleration, name, float(x), up=bool(up))
+    for x in at[steep | (np.abs(slope) > SLOPE_JUMP * slope_scale(profile))]:
+        _arrow(jerk, name, float(x), up=True)
+        _arrow(jerk, name, float(x), up=False)
+
+
+def _arrow(axes: Axes, name: str, x: float, *, up: bool) -> None:
+    """Draw one arrow from zero to the edge of the panel."""
+    low, high = axes.get_ylim()
+    line = LINES[name]
+    axes.annotate(
+        "",
+        xy=(x, high if up else low),
+        xytext=(x, 0.0),
+        annotation_clip=False,
+        arrowprops={
+            "arrowstyle": "-|>",
+            "color": line["color"],
+            "linestyle": line["linestyle"],
+            "linewidth": line["linewidth"],
+            "shrinkA": 0,
+            "shrinkB": 0,
+        },
+    )
+
+
+def _legend(figure: Figure, shown: dict[str, CamProfile]) -> None:
+    handles: list[Line2D | Patch] = [Line2D([], [], label=title(name), **LINES[name]) for name in LINES if name in shown]
+    handles += [
+        Line2D([], [], label="limit of the drive", **LIMIT),
+        Patch(facecolor=SYNC_COLOUR, label="sync zone"),
+        Patch(facecolor=SHEAR_COLOUR, edgecolor="#8c8c8c", hatch="////", linewidth=0, label="shear zone"),
+    ]
+    if "linear_return" in shown:
+        line = LINES["linear_return"]
+        handles.append(Line2D([], [], color=line["color"], marker="^", linestyle="-", linewidth=1.2, label="unbounded"))
+    figure.legend(handles=handles, loc="outside lower center", ncols=4)

@@ -1,0 +1,150 @@
+"""NC programs as text: written as S4 shows it (``fagor``) or as ISO code (``iso``), and read back."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from profiles.bender.program import FULL_TURN, IntArray, NcProgram
+from profiles.errors import InputError
+
+Flavour = Literal["fagor", "iso"]
+
+_MOST_FAULTS = 20
+
+
+@dataclass(frozen=True)
+class Numbering:
+    """Line numbers of the motion lines.
+
+    Parameters
+    ----------
+    first
+        Number of the first motion line; the header's lines have the numbers before it.
+    last
+        Greatest number that the control takes; the line after it has the number ``first`` again.
+    """
+
+    first: int = 10
+    last: int = 9999
+
+    def __post_init__(self) -> None:
+        if not (len(_HEADER["fagor"]) < self.first <= self.last <= 99_999_999):
+            raise InputError(
+                f"line numbers from {self.first} to {self.last}: the first must be {len(_HEADER['fagor']) + 1} or "
+                "greater, so that the "
+                "header has room, and not exceed the last, which must not exceed 99999999"
+            )
+
+    def numbers(self, blocks: int) -> IntArray:
+        """Return the numbers of the motion lines, with roll-over."""
+        return np.asarray(self.first + np.arange(blocks) % (self.last - self.first + 1), dtype=np.int64)
+
+
+# Millimetres; exact stop, so that no feed is cut short or run over at a corner; feed per minute.
+_HEADER: dict[Flavour, tuple[str, ...]] = {"fagor": ("G71", "G07", "G94"), "iso": ("G21", "G61", "G94")}
+
+
+def write_program(program: NcProgram, flavour: Flavour, numbering: Numbering, speed: float) -> str:
+    """Write a program as text.
+
+    Parameters
+    ----------
+    program
+        The program.
+    flavour
+        ``"fagor"`` or ``"iso"``.
+    numbering
+        Numbers of the motion lines.
+    speed
+        The F word: feed in mm/min, and in degrees per minute for the mould.
+    """
+    lines = [f"%{program.name}"] if flavour == "fagor" else ["%", f"({program.name})"]
+    head = [*_HEADER[flavour][:-1], f"{_HEADER[flavour][-1]} F{speed:.3f}"]
+    lines += [f"N{i + 1:03d} {words}" for i, words in enumerate(head)]
+    numbers = iter(numbering.numbers(program.blocks + 1).tolist())
+    zero = "Y0.0" if flavour == "fagor" else "Y0.000"
+    for feed, bend in zip(program.feeds.tolist(), [*program.bends.tolist(), None], strict=True):
+        if feed:
+            lines.append(f"N{next(numbers):03d} G01 G91 X{_decimal(feed)}")
+        if bend is not None:
+            lines.append(f"N{next(numbers):03d} G01 G90 Y{_decimal(bend % FULL_TURN)}")  # right: 360° - beta
+            lines.append(f"N{next(numbers):03d} G01 G90 {zero}")
+    lines.append(f"N{next(numbers):03d} M30")
+    if flavour == "iso":
+        lines.append("%")
+    return "\n".join(lines) + "\n"
+
+
+def _decimal(thousandths: int) -> str:
+    return f"{thousandths // 1000}.{thousandths % 1000:03d}"
+
+
+_MOTION = re.compile(r"N\d{3,8} G01 (G91 X|G90 Y)(-?)(\d{1,9})\.(\d{1,3})")
+_END = re.compile(r"N\d{3,8} M30")
+_HEAD = re.compile(r"N\d{3,8}(?: (?:G71|G21|G07|G61|G94|F\d+\.\d{3}))+")
+
+
+def read_program(text: str, place: str = "program") -> NcProgram:
+    """Read a program of either flavour back.
+
+    Raises
+    ------
+    InputError
+        A line that is none of: header, feed, bend, return, end; or a bend without a return. Each is named with its
+        line.
+    """
+    name, ended = "", False
+    feeds, bends, fed, bent = [], [], 0, False
+    faults: list[str] = []
+    for row, line in enumerate(text.splitlines(), start=1):
+        if line.startswith(("%", "(")):
+            name = name or line.strip("%()")
+            continue
+        what = _line(line)
+        if what is None or ended:
+            why = "stands after the end of the program" if ended else "is not a header, feed, bend, return or end line"
+            faults.append(f"{place}, line {row}: {line[:60]!r} {why}")
+            continue
+        kind, value = what
+        if bent and not (kind == "angle" and value == 0):
+            faults.append(f"{place}, line {row}: the mould must return to zero after a bend; found {line[:60]!r}")
+            bent = False
+        elif kind == "feed":
+            if value <= 0:
+                faults.append(f"{place}, line {row}: feed {value / 1e3:.3f} mm; the rule is fed forwards only")
+            fed += value
+        elif kind == "angle" and bent:
+            bent = False
+        elif kind == "angle":
+            if not 0 < value < FULL_TURN or value == FULL_TURN // 2:
+                faults.append(
+                    f"{place}, line {row}: mould angle {value / 1e3:.3f}°; a bend lies between 0 and 360°, not at 180°"
+                )
+                continue
+            feeds.append(fed)
+            bends.append(value if value < FULL_TURN // 2 else value - FULL_TURN)
+            fed, bent = 0, True
+        elif kind == "end":
+            ended = True
+        if len(faults) == _MOST_FAULTS:
+            break
+    if not faults and not ended:
+        faults.append(f"{place}: the program has no end (M30)")
+    if faults:
+        raise InputError(*faults)
+    feeds.append(fed)
+    return NcProgram(name, np.array(feeds, dtype=np.int64), np.array(bends, dtype=np.int64))
+
+
+def _line(line: str) -> tuple[Literal["header", "feed", "angle", "end"], int] | None:
+    """Read a numbered line: its kind and its value in thousandths; nothing if it is of no known kind."""
+    found = _MOTION.fullmatch(line)
+    if found is None:
+        return ("end", 0) if _END.fullmatch(line) else ("header", 0) if _HEAD.fullmatch(line) else None
+    word, sign, whole, part = found.groups()
+    value = int(whole) * 1000 + int(part.ljust(3, "0"))
+    return ("feed" if word == "G91 X" else "angle"), (-value if sign else value)

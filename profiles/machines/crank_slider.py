@@ -1,0 +1,157 @@
+"""The crank-slider: a chasing shear whose carriage is driven by a crank that always turns the same way (S3)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from profiles.cycle import Cut
+from profiles.errors import InputError
+from profiles.fitting import fit_profile
+from profiles.machines.machine import Machine, SlaveUnit
+from profiles.polynomial import CamProfile, FloatArray
+
+
+@dataclass(frozen=True)
+class CrankSlider(Machine):
+    """A carriage driven by a crank and a rod (S3).
+
+    The slave coordinate ``alpha`` is the crank angle (rad). The carriage stands at ``X(alpha) = -R cos alpha + sqrt(L² - (R sin alpha
+    - E)²)``; it moves with the material, in positive direction, between the two dead centres, where the crank passes about 90°.
+
+    Parameters
+    ----------
+    crank
+        Crank radius ``R`` (m).
+    rod
+        Rod length ``L`` (m), above ``R + |E|``.
+    offset
+        Distance ``E`` of the crank's centre from the carriage's line (m).
+    crank_inertia
+        Inertia of crank, rod's rotating share, gear and motor at the crank (kg·m²).
+    carriage_mass
+        Mass of the carriage with the rod's other share (kg).
+    gear_ratio
+        Motor turns per crank turn.
+    sync_at
+        Crank angle at mid sync zone (rad); not a number while the design is free to choose it.
+    """
+
+    slave_unit: ClassVar[SlaveUnit] = "rad"
+
+    crank: float
+    rod: float
+    offset: float = 0.0
+    crank_inertia: float = 0.0
+    carriage_mass: float = 0.0
+    gear_ratio: float = 1.0
+    sync_at: float = math.nan
+
+    @property
+    def pitch(self) -> float:
+        """One turn (rad)."""
+        return 2 * math.pi
+
+    @property
+    def motor_ratio(self) -> float:
+        """Motor angle per crank angle."""
+        return self.gear_ratio
+
+    def tool(self, y: Any) -> Any:
+        """Carriage position ``X(alpha)`` (m)."""
+        across = self.crank * np.sin(y) - self.offset
+        return -self.crank * np.cos(y) + np.sqrt(self.rod**2 - across**2)
+
+    def tool_ratio(self, y: Any) -> Any:
+        """``X'(alpha)`` (m/rad)."""
+        across = self.crank * np.sin(y) - self.offset
+        along = np.sqrt(self.rod**2 - across**2)
+        return self.crank * (np.sin(y) - across * np.cos(y) / along)
+
+    def tool_curvature(self, y: Any) -> Any:
+        """``X''(alpha)`` (m/rad²)."""
+        across = self.crank * np.sin(y) - self.offset
+        along = np.sqrt(self.rod**2 - across**2)
+        reach = self.crank * np.cos(y)
+        return reach + self.crank * across * np.sin(y) / along - reach**2 * self.rod**2 / along**3
+
+    def inertia(self, y: Any) -> Any:
+        """Inertia at the crank: ``J + m X'²`` (kg·m²)."""
+        return self.crank_inertia + self.carriage_mass * self.tool_ratio(y) ** 2
+
+    def inertia_slope(self, y: Any) -> Any:
+        """``2 m X' X''`` (kg·m²/rad)."""
+        return 2 * self.carriage_mass * self.tool_ratio(y) * self.tool_curvature(y)
+
+    @property
+    def dead_centres(self) -> tuple[float, float]:
+        """Crank angles between which the carriage moves forwards: crank and rod in one line, folded and stretched.
+
+        Folded, the crank's pin lies on the far side of its centre: ``sin(alpha) = E / (L - R)``, ``alpha`` near 0. Stretched:
+        ``sin(alpha) = E / (L + R)`` seen from the other side, ``alpha`` near pi.
+        """
+        return math.asin(self.offset / (self.crank - self.rod)), math.pi + math.asin(-self.offset / (self.rod + self.crank))
+
+    @property
+    def stroke(self) -> float:
+        """Carriage travel between the dead centres (m)."""
+        back, front = self.dead_centres
+        return float(self.tool(front) - self.tool(back))
+
+    def sync_start(self, cut: Cut) -> float:
+        """Crank angle at the start of the sync zone (rad)."""
+        if math.isnan(self.sync_at):
+            raise InputError("the place of the sync zone on the crank is not chosen yet; design the job first, or give machine.sync_at")
+        travel = cut.sync_ratio * cut.sync_zone
+        if travel >= self.stroke:
+            raise InputError(
+                f"cut.sync_zone needs {travel * 1e3:.6g} mm of carriage travel, the crank's stroke is {self.stroke * 1e3:.6g} mm; "
+                f"shorten the sync zone below {self.stroke / cut.sync_ratio * 1e3:.6g} mm or take a longer crank"
+            )
+        middle = float(self.tool(self.sync_at))
+        back, front = self.dead_centres
+        behind = middle - 0.5 * travel - float(self.tool(back))
+        ahead = float(self.tool(front)) - middle - 0.5 * travel
+        if not (back < self.sync_at < front and behind > 0 and ahead > 0):
+            least, greatest = self.sync_range(cut)
+            raise InputError(
+                f"machine.sync_at {math.degrees(self.sync_at):.6g}° leaves no room for the sync zone between the dead centres; it must lie "
+                f"between {math.degrees(least):.6g}° and {math.degrees(greatest):.6g}°"
+            )
+        return float(self.angle_at(np.array([middle - 0.5 * travel]))[0])
+
+    def sync_range(self, cut: Cut) -> tuple[float, float]:
+        """Crank angles between which `sync_at` must lie for the sync zone to fit between the dead centres (rad)."""
+        half = 0.5 * cut.sync_ratio * cut.sync_zone
+        back, front = self.dead_centres
+        least, greatest = self.angle_at(np.array([float(self.tool(back)) + half, float(self.tool(front)) - half]))
+        return float(least), float(greatest)
+
+    def sync_profile(self, cut: Cut) -> CamProfile:
+        """Crank angle in the sync zone: ``X(alpha) = X(alpha_start) + s x`` with the sync ratio ``s``."""
+        start = self.sync_start(cut)
+        from_here = float(self.tool(start))
+
+        def angle(x: FloatArray) -> FloatArray:
+            return self.angle_at(from_here + cut.sync_ratio * x) - start
+
+        return fit_profile(angle, 0.0, cut.sync_zone)
+
+    def angle_at(self, position: FloatArray) -> FloatArray:
+        """Crank angle of the forward stroke at which the carriage stands at a position (m), by safeguarded Newton steps."""
+        back, front = self.dead_centres
+        low, high = np.full(position.shape, back), np.full(position.shape, front)
+        angle = 0.5 * (low + high)
+        for _ in range(200):
+            gap = np.asarray(self.tool(angle)) - position
+            low, high = np.where(gap <= 0, angle, low), np.where(gap >= 0, angle, high)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                step = angle - gap / np.asarray(self.tool_ratio(angle))
+            new = np.where((step > low) & (step < high), step, 0.5 * (low + high))
+            if np.all(np.abs(new - angle) <= 1e-16 * math.pi):
+                break
+            angle = new
+        return np.asarray(angle)

@@ -1,0 +1,82 @@
+"""The linear carriage: a flying shear or saw that goes out with the material and comes back."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from profiles.cycle import Cut
+from profiles.errors import InputError
+from profiles.machines.machine import Machine, SlaveUnit
+from profiles.polynomial import CamProfile
+
+
+@dataclass(frozen=True)
+class LinearCarriage(Machine):
+    """A carriage on a screw or rack.
+
+    The slave coordinate is the carriage's position along the material (m), from the home position.
+
+    Parameters
+    ----------
+    stroke
+        Length of the guide that may be used (m).
+    home
+        Position of the home end of the stroke (m), where the carriage waits at rest; the stroke lies ahead of it.
+    mass
+        Moved mass, with what the motor and the transmission add (kg).
+    travel_per_turn
+        Carriage travel per motor turn (m): lead of the screw, or circumference of the pinion over the gear ratio.
+    """
+
+    slave_unit: ClassVar[SlaveUnit] = "m"
+    turns_back: ClassVar[bool] = True
+
+    stroke: float
+    home: float = 0.0
+    mass: float = 0.0
+    travel_per_turn: float = 1.0
+
+    @property
+    def pitch(self) -> float:
+        """Zero: the carriage comes back."""
+        return 0.0
+
+    @property
+    def motor_ratio(self) -> float:
+        """Motor angle per travel (rad/m)."""
+        return 2 * math.pi / self.travel_per_turn
+
+    def sync_start(self, cut: Cut) -> float:
+        """Carriage position at the start of the sync zone (m): the zone lies in the middle of the stroke.
+
+        A return between two ends of equal ratio overshoots both by the same length, so the middle leaves most room.
+        """
+        travel = cut.sync_ratio * cut.sync_zone
+        if travel >= self.stroke:
+            raise InputError(
+                f"machine.stroke {self.stroke * 1e3:.6g} mm is too short for the sync zone, over which the carriage travels "
+                f"{travel * 1e3:.6g} mm; lengthen the stroke or shorten cut.sync_zone below {self.stroke / cut.sync_ratio * 1e3:.6g} mm"
+            )
+        return self.home + 0.5 * (self.stroke - travel)
+
+    def sync_profile(self, cut: Cut) -> CamProfile:
+        """Slave in the sync zone: ``y = s x`` with the sync ratio ``s``."""
+        return CamProfile.from_arrays([0.0, cut.sync_zone], [[0.0, cut.sync_ratio]])
+
+    def tool(self, y: Any) -> Any:
+        """The carriage itself."""
+        return y
+
+    def tool_ratio(self, y: Any) -> Any:
+        """One."""
+        return 1.0 + 0.0 * y
+
+    def inertia(self, y: Any) -> Any:
+        """Moved mass (kg)."""
+        return self.mass + 0.0 * y
+
+    def inertia_slope(self, y: Any) -> Any:
+        """Zero: the mass does not change."""
+        return 0.0 * y

@@ -1,0 +1,145 @@
+"""B&R mapp Motion: ``McCamSectionsType`` in structured text, REAL throughout, with whole periods."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from profiles.errors import InputError
+from profiles.polynomial import CamProfile
+from profiles.tables.cam_table import CamTable, PieceLaw, make_table
+from profiles.tables.interpolation import in_format, quintics
+from profiles.tables.number_formats import literal
+from profiles.tables.structured_text import Value, Word, number_of, parse
+from profiles.tables.target import Header, Target, slash_comments, units_in
+from profiles.tables.text import check_ascending, check_count, refuse, shown
+
+MOST_SECTIONS = 130
+LARGEST_WHOLE = 2**24
+"""Above this, REAL does not hold every whole number."""
+
+_MEMBERS = ("MasterPoint", "SlavePoint", "FirstDerivative", "SecondDerivative")
+_LAWS = {"last_point": 0, "straight_line": 1, "5th_order_polynom": 4}
+_LAST, _LINE, _QUINTIC = 0, 1, 4
+
+
+def write(table: CamTable, header: Header) -> dict[str, str]:
+    """Write assignments that fill a ``McCamSectionsType``: quintic sections, and the last point as terminator.
+
+    Raises
+    ------
+    InputError
+        The master period or the slave's travel is not a whole number: the drive keeps both as DINT.
+    """
+    check_periods(table)
+    name = header.identifier
+    lines = []
+    for k, row in enumerate(zip(table.x, table.y, table.ratio, table.ratio_slope, strict=True)):
+        section = f"CamSections.Section[{k}]"
+        law = "5TH_ORDER_POLYNOM" if k < table.points - 1 else "LAST_POINT"
+        lines += [
+            f"{section}.{member} := {literal(value, 'float32')};" for member, value in zip(_MEMBERS, row, strict=True)
+        ]
+        lines += [f"{section}.Mode := mcCAMSECTREF_ABSOLUTE;", f"{section}.Type := mcCAMSECTLAW_{law};"]
+    text = (
+        slash_comments(header.lines(TARGET.title, table))
+        + f"PROGRAM _INIT\n    // VAR CamSections : McCamSectionsType; END_VAR   (cam {name})\n"
+        + "\n".join(f"    {line}" for line in lines)
+        + "\nEND_PROGRAM\n"
+    )
+    return {f"{name}_br.st": text}
+
+
+def check_periods(table: CamTable) -> None:
+    """Refuse periods that are no whole numbers or too large for REAL."""
+    for what, value in (("master period", table.period), ("slave's travel per cycle", table.advance)):
+        if abs(value - round(value)) > 1e-9 * max(1.0, abs(value)) or abs(value) > LARGEST_WHOLE:
+            raise InputError(
+                f"the {what} is {value!r} units; this drive takes a whole number up to {LARGEST_WHOLE}: choose a finer "
+                "unit"
+            )
+
+
+def read(text: str, place: str) -> CamTable:
+    """Sections from assignments to ``Section[…]``, up to the last point."""
+    sections: dict[int, tuple[dict[str, Value], int]] = {}
+    known = {member.lower() for member in _MEMBERS} | {"mode", "type", "inflectionpoint"}
+    for entry in parse(text, place).assignments:
+        if len(entry.path) < 3 or not isinstance(entry.path[-2], int) or entry.path[-3] != "section":
+            continue
+        member, index = str(entry.path[-1]), entry.path[-2]
+        if member not in known:
+            raise refuse(place, entry.line, f"McCamSectionType has no member {shown(member)}")
+        members, _ = sections.setdefault(index, ({}, entry.line))
+        if member in members:
+            raise refuse(place, entry.line, f"{shown(member)} of section {index} is given twice")
+        members[member] = entry.value
+    kept: list[tuple[dict[str, Value], int, int]] = []
+    for position, (index, (members, line)) in enumerate(sorted(sections.items())):
+        if index != position:
+            raise refuse(place, line, f"section {position} is missing")
+        if not _is(members.get("mode"), "mccamsectref_absolute", 0):
+            raise refuse(place, line, "sections are read with absolute positions only (mcCAMSECTREF_ABSOLUTE)")
+        law = _law(members.get("type"), place, line)
+        kept.append((members, line, law))
+        if law == _LAST:
+            break
+    if kept and kept[-1][2] != _LAST:
+        raise refuse(place, kept[-1][1], "the terminator is missing: a section of the type mcCAMSECTLAW_LAST_POINT")
+    check_count(len(kept), 2, MOST_SECTIONS, place)
+    columns = [[number_of(m.get(name.lower()), name, place, line) for m, line, _ in kept] for name in _MEMBERS]
+    check_ascending(columns[0], [line for _, line, _ in kept], place)
+    laws: list[PieceLaw] = ["line" if law == _LINE else "quintic" for _, _, law in kept[:-1]]
+    return make_table(*columns, law=tuple(laws), units=units_in(text))
+
+
+def _is(value: Value | None, name: str, number: int) -> bool:
+    return value is None or value == float(number) or (isinstance(value, Word) and value.last == name)
+
+
+def _law(value: Value | None, place: str, line: int) -> int:
+    if value is None:
+        raise refuse(place, line, "the section has no Type")
+    if isinstance(value, Word):
+        number: float = _LAWS.get(value.last.removeprefix("mccamsectlaw_"), -1)
+    else:
+        number = value if isinstance(value, float) else -1
+    if number not in (_LAST, _LINE, _QUINTIC):
+        raise refuse(place, line, "the section's Type is not read; LAST_POINT, STRAIGHT_LINE and 5TH_ORDER_POLYNOM are")
+    return int(number)
+
+
+def rebuild(table: CamTable) -> CamProfile:
+    """Points in float32, between them quintics (or lines) in float64."""
+    stored = in_format(table, "float32")
+    if not np.all(np.diff(stored.x) > 0):
+        i = int(np.argmax(np.diff(stored.x) <= 0))
+        raise InputError(f"points {i + 1} and {i + 2} have the same master position in float32; use fewer points")
+    return quintics(stored)
+
+
+TARGET = Target(
+    name="br",
+    title="B&R mapp Motion, McCamSectionsType",
+    interpolation="quintic through position, ratio and ratio slope (5TH_ORDER_POLYNOM)",
+    law="quintic",
+    placing="pieces",
+    max_points=MOST_SECTIONS,
+    number_format="float32",
+    evidence=(
+        "McCamSectionType, McCamSectionsType, McCamSectLawOfMotionEnum, MC_BR_CalcCamFromSections: type and header "
+        "files of the library McAxis in public projects. Periods are whole numbers (McCamDataType). That the "
+        "terminator carries the last position is inferred."
+    ),
+    steps=(
+        (
+            "Declare CamSections : McCamSectionsType and CamData : McCamDataType, and take the assignments over into "
+            "the init part."
+        ),
+        "Call MC_BR_CalcCamFromSections with CamSectionsAddress and CamDataAddress.",
+        "Hand CamData to MC_BR_CamPrepare, then couple with MC_BR_CamIn or the cam automat.",
+        "Positions are whole units of the axes; the head of the file states which.",
+    ),
+    write=write,
+    read=read,
+    rebuild=rebuild,
+)

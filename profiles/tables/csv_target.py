@@ -1,0 +1,79 @@
+"""The house's own CSV as a target: every knot with its derivatives and units, for spreadsheets and scripts."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from profiles.errors import InputError
+from profiles.polynomial import CamProfile
+from profiles.tables.cam_csv import read_cam_csv
+from profiles.tables.cam_csv import rebuild as rebuild_rows
+from profiles.tables.cam_table import CamTable, Unit, Units, make_table
+from profiles.tables.target import Header, Target
+from profiles.tables.text import check_count, lines_of
+
+MOST_POINTS = 32_767
+
+_METRES = Units(Unit("m", 1.0), Unit("m", 1.0))
+
+
+def write(table: CamTable, header: Header) -> dict[str, str]:
+    """Comment lines, a header with units, one row a knot.
+
+    Raises
+    ------
+    InputError
+        The table's units are not known, so that its numbers cannot be turned into millimetres.
+    """
+    if table.units is None:
+        raise InputError("a CSV table states millimetres: say what the units of this table are")
+    master, slave = table.units.master.size, table.units.slave.size
+    columns = (
+        table.x * (master * 1e3),
+        table.y * (slave * 1e3),
+        table.ratio * (slave / master),
+        table.ratio_slope * (slave / master**2),
+    )
+    rows = [",".join(map(repr, row)) for row in zip(*((column + 0.0).tolist() for column in columns), strict=True)]
+    metric = CamTable(
+        columns[0], columns[1], columns[2], columns[3], table.laws, Units(Unit("mm", 1e-3), Unit("mm", 1e-3))
+    )
+    head = [f"# {line}" for line in header.lines(TARGET.title, metric)]
+    lines = [*head, "x [mm],y [mm],dy/dx [1],d2y/dx2 [1/m]", *rows]
+    return {f"{header.identifier}_cam.csv": "\n".join(lines) + "\n"}
+
+
+def read(text: str, place: str) -> CamTable:
+    """Rows with or without derivatives; in metres, whatever the units of the file."""
+    lines_of(text, place)
+    rows = read_cam_csv(text, place)
+    check_count(len(rows.x), 2, MOST_POINTS, place)
+    law = "spline" if rows.dy is None else "quintic"
+    return make_table(rows.x, rows.y, rows.dy, rows.d2y, law=law, units=_METRES)  # type: ignore[arg-type]
+
+
+def rebuild(table: CamTable) -> CamProfile:
+    """Quintics through position, ratio and ratio slope; without derivatives a cyclic spline."""
+    if np.isnan(table.ratio).any():
+        return rebuild_rows(table.x, table.y)
+    return rebuild_rows(table.x, table.y, table.ratio, table.ratio_slope)
+
+
+TARGET = Target(
+    name="csv",
+    title="CSV with positions and derivatives",
+    interpolation="quintic through position, ratio and ratio slope",
+    law="quintic",
+    placing="pieces",
+    max_points=MOST_POINTS,
+    number_format="float64",
+    evidence="camwright's own layout; no drive imports it as it stands.",
+    steps=(
+        "Read the file with a script or a spreadsheet: the header names columns and units.",
+        "Between two rows the cam is the quintic through position, ratio and ratio slope of both.",
+    ),
+    write=write,
+    read=read,
+    rebuild=rebuild,
+    min_points=4,
+)

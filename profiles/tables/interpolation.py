@@ -1,0 +1,90 @@
+"""What controllers compute between the points of a table, as profiles."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from profiles.errors import InputError
+from profiles.polynomial import CamProfile, FloatArray
+from profiles.tables.cam_table import CamTable
+from profiles.tables.number_formats import NumberFormat, rounded
+
+
+def in_format(table: CamTable, number_format: NumberFormat) -> CamTable:
+    """Store a table as a controller does: every value rounded to the number format."""
+    return replace(
+        table,
+        x=rounded(table.x, number_format),
+        y=rounded(table.y, number_format),
+        ratio=rounded(table.ratio, number_format),
+        ratio_slope=rounded(table.ratio_slope, number_format),
+    )
+
+
+def quintics(table: CamTable) -> CamProfile:
+    """Lines and quintics through position, ratio and ratio slope of the knots, in the table's units.
+
+    With ``u`` from 0 to 1 over a piece of width ``h`` and the remainders ``P, V, A`` of position, ratio, ratio slope at
+    its end after the start's own parabola, the powers 3 to 5 of ``u`` are ``10P - 4Vh + Ah²/2``,
+    ``-15P + 7Vh - Ah²`` and ``6P - 3Vh + Ah²/2``.
+
+    Raises
+    ------
+    InputError
+        A quintic piece whose knots hold no ratio or ratio slope.
+    """
+    quintic = np.array([law == "quintic" for law in table.laws])
+    held = np.isfinite(table.ratio) & np.isfinite(table.ratio_slope)
+    missing = quintic & ~(held[:-1] & held[1:])
+    if missing.any():
+        raise InputError(
+            f"piece {int(np.argmax(missing)) + 1} is a quintic, but a knot of it has no ratio or ratio slope"
+        )
+    h = np.diff(table.x)
+    y0, y1 = table.y[:-1], table.y[1:]
+    coefficients = np.zeros((len(h), 6))
+    coefficients[:, 0] = y0
+    coefficients[~quintic, 1] = ((y1 - y0) / h)[~quintic]
+    if quintic.any():
+        v0, v1 = table.ratio[:-1] * h, table.ratio[1:] * h
+        a0, a1 = table.ratio_slope[:-1] * h**2, table.ratio_slope[1:] * h**2
+        p, v, a = y1 - y0 - v0 - 0.5 * a0, v1 - v0 - a0, a1 - a0
+        powers = [v0, 0.5 * a0, 10 * p - 4 * v + 0.5 * a, -15 * p + 7 * v - a, 6 * p - 3 * v + 0.5 * a]
+        for k, value in enumerate(powers, start=1):
+            coefficients[quintic, k] = (value / h**k)[quintic]
+    return CamProfile(table.x.copy(), coefficients)
+
+
+def chords(table: CamTable) -> CamProfile:
+    """Straight lines between the points."""
+    slope = np.diff(table.y) / np.diff(table.x)
+    return CamProfile(table.x.copy(), np.column_stack([table.y[:-1], slope]))
+
+
+def clamped_spline(x: FloatArray, y: FloatArray, start_slope: float, end_slope: float) -> CamProfile:
+    """Make the cubic spline, smooth to the second derivative, with given slopes at its ends."""
+    from scipy.interpolate import CubicSpline
+
+    spline = CubicSpline(x, y, bc_type=((1, start_slope), (1, end_slope)))
+    return CamProfile(x.copy(), np.ascontiguousarray(spline.c[::-1].T))
+
+
+def cyclic_spline(table: CamTable) -> CamProfile:
+    """Make the cubic spline, smooth to the second derivative, also across the seam of the repeated cycle.
+
+    Two points make a line, for there is nothing to bend.
+    """
+    if table.points == 2:
+        return chords(table)
+    from scipy.interpolate import CubicSpline
+
+    line = table.advance / table.period
+    level = table.y - line * (table.x - table.x[0])
+    level[-1] = level[0]
+    spline = CubicSpline(table.x, level, bc_type="periodic")
+    coefficients = np.ascontiguousarray(spline.c[::-1].T)
+    coefficients[:, 0] = table.y[:-1]
+    coefficients[:, 1] += line
+    return CamProfile(table.x.copy(), coefficients)

@@ -1,0 +1,170 @@
+"""Siemens S7-1500T: basic points of LCamHdl (quintics) and point data of the technology object (cubic spline)."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+from profiles.polynomial import CamProfile
+from profiles.tables.cam_table import CamTable, make_table
+from profiles.tables.interpolation import cyclic_spline, quintics
+from profiles.tables.number_formats import literal
+from profiles.tables.structured_text import Assignment, Program, Struct, Value, number_of, only, parse, structs_of
+from profiles.tables.target import Header, Target, slash_comments, units_in
+from profiles.tables.text import check_ascending, check_count, refuse, shown
+
+MOST_BASIC = 51
+MOST_POINTS = 10_000
+
+_BASIC = ("leadingValue", "followingValue", "velocityRatio", "accelerationRatio")
+_POINT = ("x", "y")
+
+
+def _configuration(name: str, variable: str, type_name: str, rows: list[str], head: list[str]) -> str:
+    """Write one global array in a configuration, the form of the library's own sample."""
+    return (
+        slash_comments(head)
+        + "USING Siemens.Simatic.S71500.MotionControl.Native;\n\n"
+        + f"CONFIGURATION {name}Configuration\n    VAR_GLOBAL\n"
+        + f"        {variable} : ARRAY[1..{len(rows)}] OF {type_name} := [\n"
+        + ",\n".join(f"            {row}" for row in rows)
+        + "\n        ];\n    END_VAR\nEND_CONFIGURATION\n"
+    )
+
+
+def _rows(members: tuple[str, ...], columns: tuple[object, ...]) -> list[str]:
+    return [
+        "(" + ", ".join(f"{member} := {literal(float(v))}" for member, v in zip(members, row, strict=True)) + ")"
+        for row in zip(*columns, strict=True)
+    ]
+
+
+def write(table: CamTable, header: Header) -> dict[str, str]:
+    """Write an array of ``LCamHdl_typeBasicPoint``."""
+    rows = _rows(_BASIC, (table.x, table.y, table.ratio, table.ratio_slope))
+    name = header.identifier
+    head = header.lines(TARGET.title, table)
+    return {f"{name}_lcamhdl.st": _configuration(name, "profileBasic", "LCamHdl_typeBasicPoint", rows, head)}
+
+
+def write_points(table: CamTable, header: Header) -> dict[str, str]:
+    """Write an array of ``TO_Cam_Struct_PointData``."""
+    rows = _rows(_POINT, (table.x, table.y))
+    name = header.identifier
+    head = header.lines(POINTS.title, table)
+    return {f"{name}_to_cam.st": _configuration(name, "profileXY", "TO_Cam_Struct_PointData", rows, head)}
+
+
+def read(text: str, place: str) -> CamTable:
+    """Read basic points, or point data, whichever the text holds, as initial values or as assignments."""
+    program = parse(text, place)
+    structs = _structs(program, "LCamHdl_typeBasicPoint", _BASIC, place)
+    basic = bool(structs)
+    if not basic:
+        structs = _structs(program, "TO_Cam_Struct_PointData", _POINT, place)
+    if not structs:
+        raise refuse(place, None, "there are neither basic points of LCamHdl nor points of a cam with a value")
+    members = _BASIC if basic else _POINT
+    columns = [[number_of(s.members.get(m.lower()), m, place, s.line) for s in structs] for m in members]
+    check_count(len(structs), 2, MOST_BASIC if basic else MOST_POINTS, place)
+    check_ascending(columns[0], [s.line for s in structs], place)
+    return make_table(*columns, law="quintic" if basic else "spline", units=units_in(text))
+
+
+def _structs(program: Program, type_name: str, members: tuple[str, ...], place: str) -> list[Struct]:
+    """Gather the points of a type: the initial value of one array, or assignments to its elements."""
+    known = {member.lower() for member in members}
+    arrays = program.arrays_of(type_name)
+    if arrays:
+        structs = structs_of(only(arrays, f"array of {type_name}", place), place)
+        for struct in structs:
+            for member in struct.members:
+                if member not in known:
+                    raise refuse(place, struct.line, f"{type_name} has no member {shown(member)}")
+        return structs
+    return _assigned(program.assignments, known, place)
+
+
+def _assigned(assignments: tuple[Assignment, ...], known: set[str], place: str) -> list[Struct]:
+    points: dict[int, Struct] = {}
+    names: set[tuple[str | int, ...]] = set()
+    for entry in assignments:
+        if len(entry.path) < 3 or not isinstance(entry.path[-2], int) or entry.path[-1] not in known:
+            continue
+        names.add(entry.path[:-2])
+        if len(names) > 1:
+            raise refuse(place, entry.line, "the text fills more than one array of points; leave one in the file")
+        empty: dict[str, Value] = {}
+        members = points.setdefault(entry.path[-2], Struct(empty, entry.line)).members
+        if str(entry.path[-1]) in members:
+            raise refuse(place, entry.line, f"{shown(str(entry.path[-1]))} of point {entry.path[-2]} is given twice")
+        members[str(entry.path[-1])] = entry.value
+    ordered = sorted(points.items())
+    for (before, _), (index, struct) in pairwise(ordered):
+        if index != before + 1:
+            raise refuse(place, struct.line, f"the points have a gap: {index} follows {before}")
+    return [struct for _, struct in ordered]
+
+
+def rebuild(table: CamTable) -> CamProfile:
+    """Quintics between basic points; through point data a spline with equal slopes at both ends."""
+    return cyclic_spline(table) if "spline" in table.laws else quintics(table)
+
+
+_LOADING = (
+    (
+        "In operation: select with MC_CamIn, ApplicationMode 1 (cyclic) for a cam that comes back, 2 (cyclic "
+        "appending) for a knife."
+    ),
+    "Technology objects carry no units: the values are those of the axes, as the head of the file states.",
+)
+
+TARGET = Target(
+    name="s7-1500t",
+    title="Siemens S7-1500T, LCamHdl basic points",
+    interpolation="quintic through position, ratio and ratio slope",
+    law="quintic",
+    placing="pieces",
+    max_points=MOST_BASIC,
+    number_format="float64",
+    evidence=(
+        "LCamHdl_typeBasicPoint, the limit of 51 points and the form of the array: documentation of the repository "
+        "simatic-ax/lcamhdl. The array is in the form of SIMATIC AX; the form of TIA Portal's external sources was not "
+        "seen."
+    ),
+    steps=(
+        "Install the library LCamHdl (AX: apax add @simatic-ax/lcamhdl; TIA Portal: support entry 105644659).",
+        "Add the configuration, or take its values over into an array of the library's type.",
+        "Call LCamHdl_CreateCamBasic with the array and the TO_Cam; wait for its status 16#0000.",
+        *_LOADING,
+    ),
+    write=write,
+    read=read,
+    rebuild=rebuild,
+)
+
+POINTS = Target(
+    name="s7-1500t-points",
+    title="Siemens S7-1500T, points of TO_Cam (1000) or TO_Cam_10k (10000)",
+    interpolation="cubic spline (InterpolationMode 1), equal end slopes (BoundaryConditions 1), taken as cyclic",
+    law="spline",
+    placing="free",
+    max_points=MOST_POINTS,
+    number_format="float64",
+    evidence=(
+        "TO_Cam_Struct_PointData, InterpolationSettings, limits: TIA Portal information system, 'Using "
+        "S7-1500/S7-1500T Synchronous operation functions'; form of the array: sample of simatic-ax/lcamhdl. That "
+        "equal slopes go with equal second derivatives is inferred."
+    ),
+    steps=(
+        (
+            "Add the configuration, or take its values over into an array of TO_Cam_Struct_PointData. Above 1000 "
+            "points use TO_Cam_10k."
+        ),
+        "Set InterpolationSettings.InterpolationMode to 1 and BoundaryConditions to 1.",
+        "Call LCamHdl_CreateCamBasedOnXYPoints, or MC_CopyCamData followed by MC_InterpolateCam.",
+        *_LOADING,
+    ),
+    write=write_points,
+    read=read,
+    rebuild=rebuild,
+)

@@ -1,0 +1,172 @@
+"""`Target`: a drive that a table is written for, and the header of its files."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+from profiles.polynomial import CamProfile
+from profiles.tables.cam_table import CamTable, Unit, Units
+from profiles.tables.number_formats import NumberFormat
+
+Placing = Literal["pieces", "free", "equidistant"]
+"""Where a target's points may lie: at the ends of the profile's pieces (carried whole), anywhere, or evenly spaced."""
+
+SAFETY_NOTE = (
+    "Importing corrupt files can result in unwanted behavior of the axes. "
+    "Each time you import a cam from a file, check the integrity of the imported data."
+)
+
+_POINTS = re.compile(r"(?m)^[-+0-9., \t]{0,80}[/#(*<!-]{0,4} ?points: ([0-9]{1,7}); period: ")
+_CONTROL = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029]+")
+_FACTS = re.compile(  # at the start of a comment only, so that no name of a user's can pass for it
+    r"(?m)^[-+0-9., \t]{0,80}[/#(*<!-]{0,4} ?camwright units: "
+    r"master (\S{1,20}) (\S{1,30}), slave (\S{1,20}) (\S{1,30}); advance (\S{1,30})(?!\S)"
+)
+
+
+@dataclass(frozen=True)
+class Header:
+    """What the head of a table says about its origin.
+
+    Parameters
+    ----------
+    name
+        Name of the product or job, as the user writes it.
+    version
+        Version of the program.
+    job_sha256
+        SHA-256 of the job file, or ``""`` without one.
+    facts
+        Further lines, ``(what, value)``: peak values, number of wraps judged.
+    warnings
+        Why the table was not released, if it was written all the same.
+    """
+
+    name: str
+    version: str
+    job_sha256: str = ""
+    facts: tuple[tuple[str, str], ...] = ()
+    warnings: tuple[str, ...] = ()
+
+    def lines(self, target: str, table: CamTable) -> list[str]:
+        """Write the head's lines, plain text without control characters; a target's writer puts them into comments."""
+        units = table.units
+        master, slave = (units.master.symbol, units.slave.symbol) if units else ("units", "units")
+        lines = [f"camwright {self.version}: cam table for {target}", f"name: {self.name}"]
+        if self.job_sha256:
+            lines.append(f"job SHA-256: {self.job_sha256}")
+        lines += [f"NOT RELEASED: {warning}" for warning in self.warnings]
+        lines.append(f"points: {table.points}; period: {table.period!r} {master}; cam: {table.kind}")
+        if units:
+            lines.append(
+                f"camwright units: master {master} {units.master.size!r}, slave {slave} {units.slave.size!r}; "
+                f"advance {table.advance!r}"
+            )
+        lines += [f"{what}: {value}" for what, value in self.facts]
+        lines.append(SAFETY_NOTE)
+        return [_CONTROL.sub(" ", line) for line in lines]
+
+    @property
+    def identifier(self) -> str:
+        """The name as an identifier of at most 24 letters, digits and single underscores, beginning with a letter."""
+        plain = re.sub(r"[^A-Za-z0-9]+", "_", self.name[:200]).strip("_")[:24].strip("_")
+        return plain if re.match(r"[A-Za-z]", plain) else f"Cam_{plain}".rstrip("_")
+
+
+def units_in(text: str) -> Units | None:
+    """Find the units that a head written by `Header.lines` states; ``None`` without one."""
+    facts = _stated(text)
+    return facts[0] if facts else None
+
+
+def advance_in(text: str) -> float | None:
+    """Find the slave's travel per cycle that a head written by `Header.lines` states; ``None`` without one."""
+    facts = _stated(text)
+    return facts[1] if facts else None
+
+
+def points_in(text: str) -> int | None:
+    """Find the number of points that a head written by `Header.lines` states; ``None`` without one."""
+    found = _POINTS.search(text)
+    return int(found[1]) if found else None
+
+
+def _stated(text: str) -> tuple[Units, float] | None:
+    found = _FACTS.search(text)
+    if not found:
+        return None
+    try:
+        master, slave, advance = (float(found[group]) for group in (2, 4, 5))
+    except ValueError:
+        return None
+    if not (0 < master < 1e12 and 0 < slave < 1e12 and abs(advance) < 1e12):
+        return None
+    return Units(Unit(found[1], master), Unit(found[3], slave)), advance
+
+
+def slash_comments(lines: list[str]) -> str:
+    """Write the head as ``//`` comments; braces would be pragmas, a backslash at the end a continuation."""
+    return "".join(f"// {line.translate(_HARMLESS).rstrip()}\n" for line in lines)
+
+
+_HARMLESS = str.maketrans({"{": "(", "}": ")", "\\": "/", "*": "+"})
+
+
+def companion(lines: list[str], steps: tuple[str, ...]) -> str:
+    """Write the head as a file of its own, for layouts that allow no comment."""
+    return "\n".join([*lines, "", *(f"{i}. {step}" for i, step in enumerate(steps, start=1))]) + "\n"
+
+
+@dataclass(frozen=True)
+class Target:
+    """A drive or controller that takes cam tables.
+
+    Parameters
+    ----------
+    name
+        What the user calls it by.
+    title
+        Maker and mechanism.
+    interpolation
+        What the controller computes between the points.
+    law
+        The law that its pieces follow in a `CamTable`.
+    placing
+        Where its points may lie.
+    max_points
+        Most points of a table, or ``None`` if no limit is documented.
+    number_format
+        How it stores the points.
+    evidence
+        Where the layout and the interpolation are known from, and what was inferred.
+    steps
+        What the engineer does to bring the table into the controller.
+    write
+        The table and its header as files, by name.
+    read
+        The table in a text; the second argument names the file in messages. Raises `InputError` only.
+    rebuild
+        The motion that the controller makes of a table, in its number format and in the table's units.
+    tested_on_controller
+        Whether a file written here has run on the controller.
+    min_points
+        Fewest points of a table.
+    """
+
+    name: str
+    title: str
+    interpolation: str
+    law: Literal["quintic", "spline", "line"]
+    placing: Placing
+    max_points: int | None
+    number_format: NumberFormat
+    evidence: str
+    steps: tuple[str, ...]
+    write: Callable[[CamTable, Header], dict[str, str]]
+    read: Callable[[str, str], CamTable]
+    rebuild: Callable[[CamTable], CamProfile]
+    tested_on_controller: bool = False
+    min_points: int = 2

@@ -1,0 +1,91 @@
+"""Technosoft EasyMotion Studio: two columns of integers, evenly spaced by a power of two."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from profiles.errors import InputError
+from profiles.polynomial import CamProfile
+from profiles.tables.cam_table import CamTable, make_table
+from profiles.tables.interpolation import chords, in_format
+from profiles.tables.target import Header, Target, companion
+from profiles.tables.text import check_count, integer, lines_of, refuse
+
+MOST_POINTS = 8192
+STEPS = (1, 2, 4, 8, 16, 32, 64, 128)
+
+_LARGEST = 2**31 - 1
+
+
+def write(table: CamTable, header: Header) -> dict[str, str]:
+    """Write the file, and its head as a text beside it, for the layout allows no comment.
+
+    Raises
+    ------
+    InputError
+        Master positions that are negative or not evenly spaced by one of `STEPS`, or positions beyond 32 bits.
+    """
+    stored = in_format(table, "int32")
+    steps = {int(step) for step in np.diff(stored.x)}
+    if stored.x[0] < 0 or len(steps) != 1 or not steps <= set(STEPS):
+        raise InputError(
+            "the master positions of this drive are whole internal units from 0 on, evenly spaced by "
+            f"{', '.join(map(str, STEPS))}; these are spaced by {sorted(steps)[:3]}"
+        )
+    if max(np.abs(stored.x).max(), np.abs(stored.y).max()) > _LARGEST:
+        raise InputError(f"a position exceeds the 32 bits of this drive ({_LARGEST}); choose coarser units")
+    rows = [f"{int(x)}\t{int(y)}" for x, y in zip(stored.x, stored.y, strict=True)]
+    name = header.identifier
+    beside = companion(header.lines(TARGET.title, table), TARGET.steps)
+    return {f"{name}_technosoft.txt": "\n".join(rows) + "\n", f"{name}_technosoft_head.txt": beside}
+
+
+def read(text: str, place: str) -> CamTable:
+    """Two columns of integers."""
+    x: list[int] = []
+    y: list[int] = []
+    for number, line in enumerate(lines_of(text, place), start=1):
+        cells = line.split()
+        if not cells:
+            continue
+        if len(cells) != 2:
+            raise refuse(place, number, f"the line has {len(cells)} values, not two")
+        values = [integer(cell, place, number) for cell in cells]
+        if max(map(abs, values)) > _LARGEST or values[0] < 0:
+            raise refuse(place, number, "a position lies outside 32 bits, or the master's is negative")
+        if x and (values[0] - x[-1] not in STEPS or (len(x) > 1 and values[0] - x[-1] != x[-1] - x[-2])):
+            raise refuse(place, number, f"the master positions must be evenly spaced by {', '.join(map(str, STEPS))}")
+        x.append(values[0])
+        y.append(values[1])
+    check_count(len(x), 2, MOST_POINTS, place)
+    return make_table(x, y, law="line")
+
+
+def rebuild(table: CamTable) -> CamProfile:
+    """Straight lines between whole positions."""
+    return chords(in_format(table, "int32"))
+
+
+TARGET = Target(
+    name="technosoft",
+    title="Technosoft EasyMotion Studio",
+    interpolation="straight lines",
+    law="line",
+    placing="equidistant",
+    max_points=MOST_POINTS,
+    number_format="int32",
+    evidence=(
+        "File format and limits: EasyMotion Studio help, 'CAM Tables View'. That the drive puts straight lines is "
+        "inferred."
+    ),
+    steps=(
+        "Import the file in the CAM tables view of the application.",
+        (
+            "Positions are internal units of master and slave: the text beside the file states how long one is; scale "
+            "both axes so."
+        ),
+    ),
+    write=write,
+    read=read,
+    rebuild=rebuild,
+)

@@ -1,0 +1,52 @@
+"""Profiles and units that the tests of the tables share."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from profiles import returns
+from profiles.cycle import Cut
+from profiles.machines import RotaryKnife
+from profiles.polynomial import CamProfile
+from profiles.tables.cam_table import Unit, Units
+from profiles.tables.knots import Accuracy, Choice, choose, table_units
+from profiles.tables.target import Header
+from profiles.tables.targets import TARGETS
+
+KNIFE = RotaryKnife(0.4)
+UNITS = Units(Unit("mm", 1e-3), Unit("deg", 0.4 / 360))
+HEADER = Header("Knife 600", "0.1.0", "ab" * 32, (("peak acceleration", "12.5 m/s2"),))
+
+KNIVES: dict[str, tuple[str, float, str]] = {
+    "quintic": ("poly_3_4_5", 0.6, "return"),
+    "jerk-limited": ("double_s", 0.6, "return"),
+    "short, origin at the cut": ("double_s", 0.36, "cut"),
+    "of degree 15": ("modified_sine", 0.45, "return"),
+}
+
+
+def cut(length: float = 0.6, origin: str = "return") -> Cut:
+    return Cut(length, 80 / 60, 0.2, 0.04, 0.1, 0.25e-3, origin)  # type: ignore[arg-type]
+
+
+@cache
+def knife(name: str) -> CamProfile:
+    law, length, origin = KNIVES[name]
+    return returns.baseline(law, KNIFE, cut(length, origin))
+
+
+@cache
+def chosen(target: str, name: str, points: int | None = None) -> Choice:
+    profile = knife(name)
+    units = table_units(TARGETS[target], profile, UNITS)
+    return choose(profile, TARGETS[target], units, Accuracy(), points)
+
+
+@cache
+def written(target: str, name: str) -> dict[str, str]:
+    return TARGETS[target].write(chosen(target, name).table, HEADER)
+
+
+def main_text(target: str, name: str) -> tuple[str, str]:
+    file, text = next(iter(written(target, name).items()))
+    return file, text
