@@ -2,7 +2,6 @@
 
 from design.feasibility import is_feasible, require_feasible
 from design.ipopt import SolveStatus
-from design.optimise import Solution, solve
-from design.problem import OBJECTIVES, Objective
+from design.optimise import OBJECTIVES, Objective, Solution, solve
 
 __all__ = ["OBJECTIVES", "Objective", "Solution", "SolveStatus", "is_feasible", "require_feasible", "solve"]

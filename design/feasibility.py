@@ -1,38 +1,42 @@
 """Whether a job can be done at all, and if not, what binds, by how much, and what would work.
 
-For a machine whose sync zone is a straight line the answer is a closed form: the return is the line ``y = x`` plus a motion from rest to
-rest, and `profiles.reach` tells how far such a motion can go.
+Where the sync zone is a straight line and no stroke confines the slave, the answer is a closed form: the return is that line plus a motion from
+rest to rest, and `profiles.reach` tells how far such a motion can go. Elsewhere the least peaks of speed, acceleration and jerk are
+themselves optimisations.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
+from design.problem import ReturnProblem, return_problem
+from design.solver import objective_value, solve_return
 from profiles.cycle import Cut
-from profiles.errors import InfeasibleError, Suggestion
+from profiles.errors import InfeasibleError, InputError, SolverError, Suggestion
 from profiles.limits import Limits
-from profiles.machines import RotaryKnife
+from profiles.machines import Machine
 from profiles.reach import greatest_reach, least_acceleration, least_jerk, least_speed
 
 # A job short of its way by less than this share is feasible: rounding, not physics.
 ROUNDING = 1e-12
+# The same where an optimisation decides: its accuracy.
+SOLVED = 1e-8
+# Edges found by repeated optimisation are found to this share.
+EDGE = 1e-6
 # Suggested values are rounded to this many digits, towards the safe side.
 SUGGESTED_DIGITS = 4
+# "Unlimited", as a multiple of the limit.
+FREE = 1e6
+
+_UNITS = {
+    "m": {"speed": (60.0, "m/min"), "acceleration": (1.0, "m/s^2"), "jerk": (1.0, "m/s^3")},
+    "rad": {"speed": (30.0 / math.pi, "rpm"), "acceleration": (1.0, "rad/s^2"), "jerk": (1.0, "rad/s^3")},
+}
 
 
-@dataclass(frozen=True)
-class _Correction:
-    """The rest-to-rest motion over the straight line, over time: distance (m), time (s) and the speed it may have (m/s)."""
-
-    distance: float
-    time: float
-    speed: float
-    backwards: bool
-
-
-def require_feasible(machine: RotaryKnife, cut: Cut, limits: Limits) -> None:
+def require_feasible(machine: Machine, cut: Cut, limits: Limits) -> None:
     """Refuse a job that no motion can do.
 
     Raises
@@ -40,23 +44,18 @@ def require_feasible(machine: RotaryKnife, cut: Cut, limits: Limits) -> None:
     InfeasibleError
         With the limit that binds, by how much, and the nearest line speed, cut length or limit that works.
     """
-    if is_feasible(machine, cut, limits):
-        return
-    need = _needed_limits(machine, cut, limits)
-    have = {"speed": limits.speed, "acceleration": limits.acceleration, "jerk": limits.jerk}
-    # the limit that binds is the one that would have to give least, were it the only one to give
-    share = {name: value / have[name] for name, value in need.items()}
-    motion = _correction(machine, cut, limits)
-    standing = motion.backwards and not limits.reversal and math.isfinite(share["speed"])
-    binding = min(share, key=lambda name: share[name])
-    if not math.isfinite(share[binding]):
-        binding = _most_confining(motion, limits)
-    if binding == "speed" and standing:
-        binding = "reversal"
+    if not is_feasible(machine, cut, limits):
+        raise infeasible(machine, cut, limits)
+
+
+def infeasible(machine: Machine, cut: Cut, limits: Limits) -> InfeasibleError:
+    """Say why a job is infeasible and what would work; every suggestion has been checked."""
+    need = needed_limits(machine, cut, limits)
+    binding = binding_limit(machine, cut, limits, need)
     suggestions = tuple(_suggest(machine, cut, limits, need))
-    excess, unit, words = _words(binding, need, have, cut)
+    excess, unit, words = _words(binding, need, machine, limits, cut)
     offers = "; ".join(_offer(suggestion) for suggestion in suggestions)
-    raise InfeasibleError(
+    return InfeasibleError(
         f"no motion returns the slave in time: {words} (cut.length {cut.length * 1e3:g} mm at cut.line_speed "
         f"{cut.line_speed * 60:g} m/min, sync zone {cut.sync_zone * 1e3:g} mm). "
         + (f"What works, each alone: {offers}" if offers else "No single change of speed, length or limit works"),
@@ -67,84 +66,163 @@ def require_feasible(machine: RotaryKnife, cut: Cut, limits: Limits) -> None:
     )
 
 
-def is_feasible(machine: RotaryKnife, cut: Cut, limits: Limits) -> bool:
-    """Tell whether some motion keeps the limits."""
-    if limits.speed < cut.line_speed:
+def is_feasible(machine: Machine, cut: Cut, limits: Limits) -> bool:
+    """Tell whether some motion keeps the limits. A zone that the machine cannot be in sync over counts as infeasible."""
+    try:
+        problem = return_problem(machine, cut, limits, "peak_acceleration")
+    except InputError:
         return False
-    motion = _correction(machine, cut, limits)
-    if motion.distance <= ROUNDING * cut.length:
-        return True
-    if motion.speed <= 0:
+    if not _ends_allowed(machine, cut, problem):
         return False
-    reach = greatest_reach(motion.time, motion.speed, limits.acceleration, limits.jerk)
-    return reach >= motion.distance * (1 - ROUNDING)
+    if _closed(problem):
+        distance, speed = _correction(problem)
+        if distance <= ROUNDING * problem.length:
+            return True
+        if speed <= 0:
+            return False
+        reach = greatest_reach(problem.length, speed, problem.greatest_slope, problem.greatest_jerk)
+        return reach >= distance * (1 - ROUNDING)
+    return _solved(replace(problem, greatest_slope=problem.greatest_slope * FREE)) <= problem.greatest_slope * (1 + SOLVED)
 
 
-def _correction(machine: RotaryKnife, cut: Cut, limits: Limits) -> _Correction:
-    distance = machine.pitch - cut.length
-    backwards = distance < 0
-    speed = cut.line_speed - limits.least_velocity if backwards else limits.speed - cut.line_speed
-    return _Correction(abs(distance), cut.return_zone / cut.line_speed, speed, backwards)
+def _ends_allowed(machine: Machine, cut: Cut, problem: ReturnProblem) -> bool:
+    """Whether the sync zone itself keeps the limits."""
+    sync = machine.sync_profile(cut)
+    slope = max(abs(extremum.value) for extremum in sync.extrema(2))
+    jerk = max(abs(extremum.value) for extremum in sync.extrema(3))
+    return (
+        sync.extrema(1)[1].value <= problem.greatest_ratio * (1 + ROUNDING)
+        and slope <= problem.greatest_slope * (1 + SOLVED)
+        and jerk <= problem.greatest_jerk * (1 + SOLVED)
+    )
 
 
-def _needed_limits(machine: RotaryKnife, cut: Cut, limits: Limits) -> dict[str, float]:
-    """Least value of each limit that would do, the others as they are; infinite where none does."""
-    motion = _correction(machine, cut, limits)
-    over = least_speed(motion.distance, motion.time, limits.acceleration, limits.jerk)
-    if motion.backwards:
+def _solved(problem: ReturnProblem) -> float:
+    """Least value of the problem's objective, over the master; infinite if the solver finds no motion."""
+    try:
+        return objective_value(solve_return(problem)[0], problem.objective)
+    except SolverError:
+        return math.inf
+
+
+def _closed(problem: ReturnProblem) -> bool:
+    """Whether the closed forms of `profiles.reach` apply."""
+    straight = problem.start_ratio == problem.end_ratio and problem.start_slope == problem.end_slope == 0.0
+    return straight and math.isinf(problem.least_position) and math.isinf(problem.greatest_position)
+
+
+def _correction(problem: ReturnProblem) -> tuple[float, float]:
+    """Distance of the motion over the line (slave unit), and the ratio it may have over that of the line."""
+    distance = problem.height - problem.start_ratio * problem.length
+    room = problem.start_ratio - problem.least_ratio if distance < 0 else problem.greatest_ratio - problem.start_ratio
+    return abs(distance), room
+
+
+def needed_limits(machine: Machine, cut: Cut, limits: Limits) -> dict[str, float]:
+    """Least value of each limit that would do, the others as they are (over time, slave unit); infinite where none does."""
+    none = {"speed": math.inf, "acceleration": math.inf, "jerk": math.inf}
+    try:
+        problem = return_problem(machine, cut, limits, "peak_acceleration")
+    except InputError:
+        return none
+    v = cut.line_speed
+    if _closed(problem):
+        distance, room = _correction(problem)
+        over = least_speed(distance, problem.length, problem.greatest_slope, problem.greatest_jerk)
+        backwards = problem.height < problem.start_ratio * problem.length
         # standing still is the end of what a slave can do without reversal; the rest is reversal at up to the speed limit
-        speed = over - cut.line_speed if limits.reversal else (limits.speed if over - cut.line_speed <= limits.speed else math.inf)
-    else:
-        speed = over + cut.line_speed
+        ratio = over - problem.start_ratio if backwards else over + problem.start_ratio
+        if backwards and not (limits.reversal or machine.turns_back):
+            ratio = problem.greatest_ratio if ratio <= problem.greatest_ratio else math.inf
+        if room <= 0:
+            return none | {"speed": ratio * v}
+        return {
+            "speed": ratio * v,
+            "acceleration": least_acceleration(distance, problem.length, room, problem.greatest_jerk) * v**2,
+            "jerk": least_jerk(distance, problem.length, room, problem.greatest_slope) * v**3,
+        }
+    acceleration = _solved(replace(problem, greatest_slope=problem.greatest_slope * FREE))
+    jerk = _solved(replace(problem, objective="peak_jerk", greatest_jerk=problem.greatest_jerk * FREE))
+    sync = machine.sync_profile(cut)
+    slope = max(abs(extremum.value) for extremum in sync.extrema(2))
+    snap = max(abs(extremum.value) for extremum in sync.extrema(3))
+    fast = edge(lambda speed: is_feasible(machine, cut, replace(limits, speed=speed)), limits.speed * 100.0, limits.speed, EDGE)
     return {
-        "speed": speed,
-        "acceleration": least_acceleration(motion.distance, motion.time, motion.speed, limits.jerk)
-        if motion.speed > 0
-        else math.inf,
-        "jerk": least_jerk(motion.distance, motion.time, motion.speed, limits.acceleration)
-        if motion.speed > 0
-        else math.inf,
+        "speed": math.inf if fast is None else fast,
+        "acceleration": max(acceleration, slope) * v**2 if snap <= problem.greatest_jerk else math.inf,
+        "jerk": max(jerk, snap) * v**3 if slope <= problem.greatest_slope else math.inf,
     }
 
 
-def _most_confining(motion: _Correction, limits: Limits) -> str:
-    """Limit whose release alone would carry the slave furthest, where no single one is enough."""
-    far = 1e12
-    reach = {
-        "speed": greatest_reach(motion.time, far, limits.acceleration, limits.jerk),
-        "acceleration": greatest_reach(motion.time, max(motion.speed, 1e-12), far, limits.jerk),
-        "jerk": greatest_reach(motion.time, max(motion.speed, 1e-12), limits.acceleration, far),
+def binding_limit(machine: Machine, cut: Cut, limits: Limits, need: dict[str, float]) -> str:
+    """Name the limit that binds: the one that would have to give least, were it the only one to give.
+
+    Where no single limit would be enough it is the one whose release carries the slave furthest; ``"reversal"`` where a
+    slave at its speed limit would have to run backwards; ``"sync_zone"`` where the machine cannot be in sync over the zone.
+    """
+    have = {"speed": limits.speed, "acceleration": limits.acceleration, "jerk": limits.jerk}
+    share = {name: value / have[name] for name, value in need.items()}
+    try:
+        problem = return_problem(machine, cut, limits, "peak_acceleration")
+    except InputError:
+        return "sync_zone"
+    if _closed(problem):
+        distance, room = _correction(problem)
+        backwards = problem.height < problem.start_ratio * problem.length
+        binding = min(share, key=lambda name: share[name])
+        if not math.isfinite(share[binding]):
+            room = max(room, ROUNDING)
+            a, j = problem.greatest_slope, problem.greatest_jerk
+            reach = {
+                "speed": greatest_reach(problem.length, room * FREE, a, j),
+                "acceleration": greatest_reach(problem.length, room, a * FREE, j),
+                "jerk": greatest_reach(problem.length, room, a, j * FREE),
+            }
+            binding = max(reach, key=lambda name: reach[name])
+        forced = backwards and not (limits.reversal or machine.turns_back) and math.isfinite(share["speed"])
+        return "reversal" if binding == "speed" and forced else binding
+    finite = {name: value for name, value in share.items() if math.isfinite(value)}
+    if finite:
+        return min(finite, key=lambda name: finite[name])
+    if math.isfinite(problem.greatest_position):
+        return "stroke"
+    sync = machine.sync_profile(cut)
+    own = {
+        "speed": sync.extrema(1)[1].value / problem.greatest_ratio,
+        "acceleration": max(abs(e.value) for e in sync.extrema(2)) / problem.greatest_slope,
+        "jerk": max(abs(e.value) for e in sync.extrema(3)) / problem.greatest_jerk,
     }
-    return max(reach, key=lambda name: reach[name])
-
-
-_UNITS = {"speed": (60.0, "m/min"), "acceleration": (1.0, "m/s^2"), "jerk": (1.0, "m/s^3")}
+    return max(own, key=lambda name: own[name])
 
 
 def _words(
-    binding: str, need: dict[str, float], have: dict[str, float], cut: Cut
+    binding: str, need: dict[str, float], machine: Machine, limits: Limits, cut: Cut
 ) -> tuple[float | None, str, str]:
     if binding == "reversal":
         return None, "", f"limits.reversal = false binds, the slave would have to run backwards from {cut.line_speed * 60:g} m/min"
-    factor, unit = _UNITS[binding]
-    limit, needed = have[binding] * factor, need[binding] * factor
+    if binding == "sync_zone":
+        return None, "", "cut.sync_zone binds, the machine cannot be in sync over it"
+    if binding == "stroke":
+        return None, "", "machine.stroke binds, the carriage cannot turn round within it"
+    factor, unit = _UNITS[machine.slave_unit][binding]
+    limit, needed = getattr(limits, binding) * factor, need[binding] * factor
     if not math.isfinite(needed):
         return None, unit, f"limits.{binding} {limit:g} {unit} binds, and no other value of it alone would do"
     return (
         needed - limit,
         unit,
         f"limits.{binding} binds, {needed:.6g} {unit} is needed, {limit:g} {unit} is the limit "
-        f"({100 * (needed / limit - 1):.3g} % short)",
+        f"({100 * (needed / limit - 1):.3g} % more than allowed)",
     )
 
 
-def _suggest(machine: RotaryKnife, cut: Cut, limits: Limits, need: dict[str, float]) -> list[Suggestion]:
+def _suggest(machine: Machine, cut: Cut, limits: Limits, need: dict[str, float]) -> list[Suggestion]:
     """Nearest changes that work: line speed, cut length, each limit, reversal; each checked as it is written."""
     found: list[Suggestion] = []
 
     def offer(change: str, value: float, factor: float, unit: str, up: bool, works: Callable[[float], bool]) -> None:
-        for digits in (SUGGESTED_DIGITS, SUGGESTED_DIGITS + 4, 15):
-            rounded = _rounded(value * factor, digits, up)
+        for digits in (SUGGESTED_DIGITS, SUGGESTED_DIGITS + 2, SUGGESTED_DIGITS + 5, 15):
+            rounded = rounded_to(value * factor, digits, up)
             if works(rounded / factor):
                 found.append(Suggestion(change, rounded, unit))
                 return
@@ -155,41 +233,60 @@ def _suggest(machine: RotaryKnife, cut: Cut, limits: Limits, need: dict[str, flo
     def at_length(length: float) -> bool:
         return length > cut.sync_zone and is_feasible(machine, replace(cut, length=length), limits)
 
-    slower = _edge(at_speed, cut.line_speed * 1e-6, min(cut.line_speed, limits.speed))
+    tolerance = 0.0 if _exact(machine, cut) else EDGE
+    slower = edge(at_speed, cut.line_speed * 1e-3, cut.line_speed, tolerance)
     if slower is not None:
         offer("line_speed", slower, 60.0, "m/min", False, at_speed)
-    if limits.speed >= cut.line_speed:
-        # at the pitch itself the slave need not leave the line, so between it and the job lies the edge
-        length = _edge(at_length, machine.pitch, cut.length)
-        if length is not None:
-            offer("length", length, 1e3, "mm", cut.length < machine.pitch, at_length)
+    for length, up in _lengths_to_try(machine, cut):
+        nearest = edge(at_length, length, cut.length, tolerance)
+        if nearest is not None:
+            offer("length", nearest, 1e3, "mm", up, at_length)
+            break
     for name, value in need.items():
-        if not math.isfinite(value):
+        if not math.isfinite(value) or value <= getattr(limits, name):
             continue
-        if name == "speed" and machine.pitch < cut.length and not limits.reversal:
-            if is_feasible(machine, cut, replace(limits, reversal=True)):
-                found.append(Suggestion("reversal", 1.0, ""))
-            continue
-        factor, unit = _UNITS[name]
+        factor, unit = _UNITS[machine.slave_unit][name]
         offer(name, value, factor, unit, True, lambda x, name=name: is_feasible(machine, cut, replace(limits, **{name: x})))
+    if not (limits.reversal or machine.turns_back) and is_feasible(machine, cut, replace(limits, reversal=True)):
+        found.append(Suggestion("reversal", 1.0, ""))
     return found
 
 
-def _edge(works: Callable[[float], bool], good: float, bad: float) -> float | None:
+def _exact(machine: Machine, cut: Cut) -> bool:
+    """Whether feasibility is a closed form for this machine, so that edges can be found to the last digit."""
+    try:
+        return not machine.turns_back and machine.sync_profile(cut).degree == 1
+    except InputError:
+        return False
+
+
+def _lengths_to_try(machine: Machine, cut: Cut) -> list[tuple[float, bool]]:
+    """Cut lengths at which the slave has an easy time, and whether they are longer than the job's.
+
+    A knife has none to do where the cut is as long as its own arc; a carriage or crank has more time the longer the cut.
+    """
+    if machine.slave_unit == "m" and machine.pitch > 0:
+        return [(machine.pitch / cut.sync_ratio, machine.pitch / cut.sync_ratio > cut.length)]
+    return [(cut.length * factor, True) for factor in (2.0, 8.0, 64.0)]
+
+
+def edge(works: Callable[[float], bool], good: float, bad: float, tolerance: float = 0.0) -> float | None:
     """Find the value nearest to ``bad`` that works, by bisection from ``good``; None if ``good`` does not work."""
     if not works(good):
         return None
-    while True:
+    while abs(good - bad) > tolerance * abs(bad):
         middle = 0.5 * (good + bad)
         if middle in (good, bad):
-            return good
+            break
         if works(middle):
             good = middle
         else:
             bad = middle
+    return good
 
 
-def _rounded(value: float, digits: int, up: bool) -> float:
+def rounded_to(value: float, digits: int, up: bool) -> float:
+    """Round to a number of digits, up or down."""
     scale = 10.0 ** (digits - 1 - math.floor(math.log10(abs(value))))
     return (math.ceil(value * scale - 1e-6) if up else math.floor(value * scale + 1e-6)) / scale
 

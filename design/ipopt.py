@@ -8,7 +8,7 @@ from functools import lru_cache
 from design.transcription import Programme, Shape
 
 # An answer is one that meets the tolerances, not one that nearly does.
-_QUIET = {"print_time": False, "ipopt.print_level": 0, "ipopt.sb": "yes", "ipopt.acceptable_iter": 0}
+QUIET = {"print_time": False, "ipopt.print_level": 0, "ipopt.sb": "yes", "ipopt.acceptable_iter": 0}
 
 # A first look on the grid: convex, so any start will do; it need not be more exact than the grid.
 _GRID = {"ipopt.mu_strategy": "adaptive", "ipopt.tol": 1e-8, "ipopt.max_iter": 200}
@@ -47,4 +47,4 @@ class SolveStatus(Enum):
 @lru_cache(maxsize=64)
 def programme(shape: Shape) -> Programme:
     """Build the programme of a shape, or take the one built before."""
-    return Programme(shape, _QUIET | (_POLISH if shape.free_lengths else _GRID))
+    return Programme(shape, QUIET | (_POLISH if shape.free_lengths else _GRID))

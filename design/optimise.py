@@ -1,41 +1,60 @@
-"""From a cutting machine's job to the optimal cycle: grid, structure, polish."""
+"""From a cutting machine's job to the optimal cycle."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Literal, get_args
 
 import numpy as np
 
-from design.feasibility import require_feasible
-from design.ipopt import SolveStatus, programme
-from design.problem import Objective, ReturnProblem, return_problem
-from design.scaling import ScaledProblem, motion_scale, scale_problem, unscale_profile
-from design.structure import extreme_motion, from_extreme, read_cubic, read_quintic, subdivide, tidy
-from design.transcription import PEAKS, Motion, Shape
+from design.feasibility import infeasible, require_feasible
+from design.ipopt import SolveStatus
+from design.placement import Placement, place_sync
+from design.problem import Objective as MotionObjective
+from design.problem import ReturnProblem, return_problem
+from design.solver import grid_objective, objective_value, solve_return
+from design.transcription import PEAKS
 from profiles.cycle import Cut
-from profiles.errors import SolverError
+from profiles.errors import InputError, SolverError
 from profiles.limits import Limits
-from profiles.machines import RotaryKnife
-from profiles.polynomial import CamProfile, FloatArray
-from profiles.reach import DoubleS, greatest_reach
-from profiles.returns import assemble
+from profiles.machines import CrankSlider, Machine
+from profiles.polynomial import CamProfile
+from profiles.returns import assemble, baseline, slave_at_start
 
-# Intervals of the first look and of the fallback, by the degree of the acceleration. The structure, not the grid, decides the answer:
-# 40 intervals tell apart arcs of 1/40 of the return; 160 are 0.1 % from the optimum.
-COARSE = {1: 40, 3: 40}
-FINE = {1: 160, 3: 80}
-# Limits widened on the grid where a job leaves so little room that no motion on the grid keeps them.
-WIDER = 0.1
-# Where the limits leave less than this share of the way to spare, the extreme motion is the only one to within that share.
-NO_ROOM = 1e-8
-# Objectives that differ by less than this share are the same.
-SAME = 1e-7
-# Largest share by which a limit may be exceeded by rounding; the contract says 1e-9.
-ALLOWED_EXCESS = 5e-10
-# A deviation from the straight line below this share of the return's length is no motion at all.
-NO_MOTION = 1e-13
+TorqueObjective = Literal["rms_torque", "peak_torque", "energy"]
+Objective = Literal[
+    "peak_acceleration", "rms_acceleration", "peak_jerk", "rms_jerk", "rms_torque", "peak_torque", "energy"
+]
+OBJECTIVES: tuple[Objective, ...] = get_args(Objective)
+TORQUE_OBJECTIVES: tuple[TorqueObjective, ...] = get_args(TorqueObjective)
+
+
+# Share of a peak that its smoothest motion may give away: the accuracy to which peaks are found.
+KEPT_PEAK = 1e-8
+
+
+@dataclass(frozen=True)
+class Starts:
+    """What several starts of a problem that is not convex agree on.
+
+    Parameters
+    ----------
+    converged, agreeing
+        Starts that converged, and those among them that found the best objective.
+    spread
+        Greatest objective over least, less one.
+    residual
+        Largest KKT residual of the best, scaled.
+    valleys
+        Local minima over the place of the sync zone; 1 where it was given or there is nothing to place.
+    """
+
+    converged: int
+    agreeing: int
+    spread: float
+    residual: float
+    valleys: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,6 +63,8 @@ class Solution:
 
     Parameters
     ----------
+    machine
+        The machine, with everything that the design chose.
     profile
         The whole cycle over the master period ``[0, x_c]``.
     back
@@ -53,193 +74,148 @@ class Solution:
     objective_name
         What was minimised.
     objective
-        Its value over time at the job's line speed: m/s² or m/s³; root mean squares over the return zone.
+        Its value over time at the job's line speed, of the slave: m/s² or m/s³ (rad for m with a crank), root mean squares over the return
+        zone; for torque objectives the value of the motion objective that decided, or not a number where the torque itself did.
     iterations
-        Iterations of IPOPT, grid and polish together.
+        Iterations of IPOPT, all together.
+    starts
+        Agreement of several starts; None where the problem is convex.
     """
 
+    machine: Machine
     profile: CamProfile
     back: CamProfile
     status: SolveStatus
     objective_name: Objective
     objective: float
     iterations: int
+    starts: Starts | None = None
 
 
-def solve(machine: RotaryKnife, cut: Cut, limits: Limits, objective: Objective) -> Solution:
+def solve(machine: Machine, cut: Cut, limits: Limits, objective: Objective) -> Solution:
     """Design the optimal cycle of a cutting machine.
 
     Raises
     ------
     InfeasibleError
         No motion keeps the limits; the message names the one that binds and what would work.
+    InputError
+        The machine cannot be in sync over the zone.
     SolverError
         The solver failed on a job that has an answer.
 
     Examples
     --------
+    >>> from profiles.machines import RotaryKnife
     >>> knife = RotaryKnife(circumference=0.4)
     >>> cut = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4)
     >>> result = solve(knife, cut, Limits(200 / 60, 30.0, 3000.0), "peak_acceleration")
     >>> result.status.value, round(result.objective, 3), result.profile.pieces
-    ('optimal', 9.062, 7)
+    ('optimal', 9.072, 6)
     """
+    if isinstance(machine, CrankSlider) and math.isnan(machine.sync_at):
+        return _solve_free_crank(machine, cut, limits, objective)
+    machine.sync_start(cut)
     require_feasible(machine, cut, limits)
-    problem = return_problem(machine, cut, limits, objective)
-    back, status, iterations = solve_return(problem)
-    profile = assemble(back, machine, cut)
-    order = 2 if objective.endswith("acceleration") else 3
-    return Solution(
-        profile, back, status, objective, objective_value(back, objective) * cut.line_speed**order, iterations
-    )
-
-
-def objective_value(back: CamProfile, objective: Objective) -> float:
-    """Objective of a return over the master: peak or root mean square of ``y''`` or ``y'''``, exactly."""
-    order = 2 if objective.endswith("acceleration") else 3
-    if objective.startswith("rms"):
-        return math.sqrt(back.mean_square(order))
-    least, greatest = back.extrema(order)
-    return max(-least.value, greatest.value)
-
-
-def solve_return(problem: ReturnProblem) -> tuple[CamProfile, SolveStatus, int]:
-    """Solve the return between two sync zones.
-
-    Returns
-    -------
-    (profile, status, iterations)
-        The return over ``[0, length]`` from slave zero.
-
-    Raises
-    ------
-    SolverError
-        No grid gave an answer.
-    """
-    scale = motion_scale(problem)
-    if abs(scale) <= NO_MOTION * problem.length:
-        # The straight line is the answer: nothing is faster than its own mean, and it has no acceleration.
-        line = CamProfile.from_arrays([0.0, problem.length], [[0.0, problem.height / problem.length]])
-        return line, SolveStatus.OPTIMAL, 0
-    scaled = scale_problem(problem, scale)
-    profile, status, iterations = _solve_scaled(scaled)
-    return unscale_profile(profile, problem, scale), status, iterations
-
-
-def _solve_scaled(problem: ScaledProblem) -> tuple[CamProfile, SolveStatus, int]:
-    """Grid, structure, polish; the grids are tried in turn until a polished answer is at least as good as its grid's.
-
-    From rest to rest the extreme motion (a closed form) is feasible too. It is the answer where the limits leave no room, and
-    where the solver ends with something worse, at the edge of what double precision resolves.
-    """
-    extreme = extreme_motion(problem)
-    safe: CamProfile | None = None
-    if extreme is not None:
-        safe = tidy(from_extreme(extreme), problem).profile()
-        if _room(problem) < NO_ROOM:
-            return safe, SolveStatus.OPTIMAL, 0
-    iterations = 0
-    for lengths, relax in _grids(problem, extreme):
-        grid, success, used = _on_grid(problem, lengths, relax)
-        iterations += used
-        if not success:
-            continue
-        polished, success, used = _polish(problem, grid)
-        iterations += used
-        if success and grid.degree > 1 and len(polished.lengths) > 1:
-            polished, used = _read_again(problem, polished)
-            iterations += used
-        if success and (relax > 0.0 or polished.objective <= grid.objective * (1 + SAME)):
-            profile = tidy(polished, problem).profile()
-            if excess(profile, problem) <= ALLOWED_EXCESS:
-                return _better(profile, safe, problem), SolveStatus.OPTIMAL, iterations
-        if relax == 0.0:
-            profile = tidy(grid, problem).profile()
-            if excess(profile, problem) <= ALLOWED_EXCESS:
-                safe = _better(profile, safe, problem)
-    if safe is None:
-        raise SolverError(
-            f"IPOPT ({iterations} iterations) found no return that keeps the limits on any grid, although the job is not known to be "
-            f"infeasible; loosen the limit that is nearest to binding by 1 % and report this job"
+    if objective in TORQUE_OBJECTIVES and float(machine.inertia(0.0)) + machine.friction == 0.0:
+        raise InputError(
+            f"[objective] minimise = {objective!r} needs to know what the motor moves: give the machine's inertia or mass, or minimise "
+            f"rms_acceleration"
         )
-    return safe, SolveStatus.OPTIMAL if _extreme_is_optimal(problem) else SolveStatus.ON_GRID, iterations
+    decisive = _motion_objective(machine, objective)
+    if decisive is None:
+        return _solve_torque(machine, cut, limits, objective, valleys=1)
+    problem = return_problem(machine, cut, limits, decisive)
+    back, status, iterations = solve_return(problem)
+    if decisive in PEAKS and not _unique(problem):
+        back, used = _smoothest(problem, back)
+        iterations += used
+    order = 2 if decisive.endswith("acceleration") else 3
+    value = objective_value(back, decisive) * cut.line_speed**order
+    return Solution(machine, assemble(back, machine, cut), back, status, objective, value, iterations)
 
 
-def _read_again(problem: ScaledProblem, polished: Motion) -> tuple[Motion, int]:
-    """Look at the arcs of a polished motion on a grid of their own: arcs shorter than the first grid's intervals come to light."""
-    lengths = subdivide(polished.lengths, COARSE[polished.degree])
-    grid, success, iterations = _on_grid(problem, lengths, 0.0)
-    if not success:
-        return polished, iterations
-    again, success, used = _polish(problem, grid)
-    better = success and again.objective < polished.objective
-    return (again if better else polished), iterations + used
+def _unique(problem: ReturnProblem) -> bool:
+    """Whether a peak has one minimiser only: from rest to rest it has, the extreme motion."""
+    return problem.start_ratio == problem.end_ratio and problem.start_slope == problem.end_slope == 0.0
 
 
-def _extreme_is_optimal(problem: ScaledProblem) -> bool:
-    return problem.objective in PEAKS and not (problem.end_ratio or problem.start_slope or problem.end_slope)
+def _smoothest(problem: ReturnProblem, back: CamProfile) -> tuple[CamProfile, int]:
+    """Of all returns with the least peak take the one of least RMS jerk (lexicographic choice); the given one if that fails."""
+    peak = objective_value(back, problem.objective) * (1 + KEPT_PEAK)
+    limit = "greatest_slope" if problem.objective == "peak_acceleration" else "greatest_jerk"
+    second = replace(problem, objective="rms_jerk", **{limit: min(peak, getattr(problem, limit))})
+    try:
+        smooth, _, iterations = solve_return(second)
+    except SolverError:
+        return back, 0
+    return (smooth if objective_value(smooth, problem.objective) <= peak * (1 + KEPT_PEAK) else back), iterations
 
 
-def _better(profile: CamProfile, other: CamProfile | None, problem: ScaledProblem) -> CamProfile:
-    """Choose the other profile if its objective is less by more than what counts as the same."""
-    if other is None:
-        return profile
-    name = problem.objective
-    return other if objective_value(other, name) < objective_value(profile, name) * (1 - SAME) else profile
+def _motion_objective(machine: Machine, objective: Objective) -> MotionObjective | None:
+    """Objective of the motion alone that has the same minimiser, if there is one.
+
+    With constant inertia ``I`` and friction ``F`` that never changes its sign the mean square of the force is ``I² a_rms² + F²`` (the mean
+    acceleration of a cycle is zero); without friction its peak is ``I a_max``.
+    """
+    if objective not in TORQUE_OBJECTIVES:
+        return objective
+    if isinstance(machine, CrankSlider) or objective == "energy":
+        return None
+    if objective == "rms_torque" and not (machine.turns_back and machine.friction):
+        return "rms_acceleration"
+    return "peak_acceleration" if objective == "peak_torque" and not machine.friction else None
 
 
-def excess(profile: CamProfile, problem: ScaledProblem) -> float:
-    """Largest share by which a scaled profile exceeds a limit or misses its end, exactly."""
-    low, high = profile.extrema(1)
-    slope = max(abs(extremum.value) for extremum in profile.extrema(2))
-    jerk = max(abs(extremum.value) for extremum in profile.extrema(3))
-    room = max(problem.greatest_ratio, -problem.least_ratio)
-    return max(
-        (high.value - problem.greatest_ratio) / room,
-        (problem.least_ratio - low.value) / room,
-        slope / problem.greatest_slope - 1.0,
-        jerk / problem.greatest_jerk - 1.0,
-        abs(float(profile(1.0)) - problem.height),
-        abs(float(profile(1.0, 1)) - problem.end_ratio),
+def _solve_torque(machine: Machine, cut: Cut, limits: Limits, objective: Objective, valleys: int) -> Solution:
+    from design.torque import solve_torque
+
+    problem = return_problem(machine, cut, limits, "peak_acceleration")
+    sync = machine.sync_profile(cut)
+    start = machine.sync_start(cut) + float(sync(sync.end))
+    found = solve_torque(machine, cut, problem, start, objective)  # type: ignore[arg-type]
+    starts = Starts(found.starts, found.agreeing, found.spread, found.residual, valleys)
+    profile = assemble(found.back, machine, cut)
+    return Solution(
+        machine, profile, found.back, SolveStatus.ON_GRID, objective, math.nan, found.iterations, starts
     )
 
 
-def _room(problem: ScaledProblem) -> float:
-    """Share by which the limits could move a rest-to-rest slave further than its height."""
-    far = greatest_reach(1.0, problem.greatest_ratio, problem.greatest_slope, problem.greatest_jerk)
-    return far / problem.height - 1.0
+def _solve_free_crank(machine: CrankSlider, cut: Cut, limits: Limits, objective: Objective) -> Solution:
+    """Choose the place of the sync zone first, by the objective of the motion or by the mean square of the torque."""
+
+    def cost(placed: CrankSlider) -> float:
+        if objective in TORQUE_OBJECTIVES:
+            return _torque_cost(placed, cut, limits)
+        return grid_objective(return_problem(placed, cut, limits, objective))
+
+    placement = place_sync(machine, cut, cost)
+    if placement is None:
+        raise infeasible(_easiest_place(machine, cut), cut, limits)
+    solution = solve(placement.machine, cut, limits, objective)
+    if solution.starts is None:
+        return replace(solution, starts=Starts(1, 1, 0.0, 0.0, placement.valleys))
+    return replace(solution, starts=replace(solution.starts, valleys=placement.valleys))
 
 
-def _grids(problem: ScaledProblem, extreme: DoubleS | None) -> Iterator[tuple[FloatArray, float]]:
-    """Grids to try in turn, each with the share by which the limits are widened on it."""
-    degree = _degree(problem)
-    uniform = np.full(COARSE[degree], 1.0 / COARSE[degree])
-    yield uniform, 0.0
-    if extreme is not None:
-        yield subdivide(from_extreme(extreme).lengths, COARSE[degree]), 0.0
-    yield uniform, WIDER
-    yield np.full(FINE[degree], 1.0 / FINE[degree]), 0.0
+def _torque_cost(machine: CrankSlider, cut: Cut, limits: Limits) -> float:
+    """Mean square torque of the quintic, infinite where no motion keeps the limits: a fast stand-in for the torque's own optimum.
+
+    The place matters through the inertia's change in the sync zone and the speeds that the return must join, which both share.
+    """
+    if math.isinf(grid_objective(return_problem(machine, cut, limits, "rms_acceleration"))):
+        return math.inf
+    cycle = baseline("poly_3_4_5", machine, replace(cut, origin="return"))
+    x = np.linspace(cycle.start, cycle.end, 2001)
+    y = slave_at_start(machine, replace(cut, origin="return")) + cycle(x)
+    torque = machine.inertia(y) * cycle(x, 2) + machine.inertia_slope(y) * cycle(x, 1) ** 2 / 2
+    return float(np.mean(torque**2))
 
 
-def _degree(problem: ScaledProblem) -> int:
-    """Degree of the acceleration that the optimum's pieces need: the least RMS jerk is a quintic, all else piecewise cubic."""
-    return 3 if problem.objective == "rms_jerk" else 1
+def _easiest_place(machine: CrankSlider, cut: Cut) -> CrankSlider:
+    """Mid-range: where the crank needs least speed for the sync zone."""
+    least, greatest = machine.sync_range(cut)
+    return replace(machine, sync_at=0.5 * (least + greatest))
 
 
-def _on_grid(problem: ScaledProblem, lengths: FloatArray, relax: float) -> tuple[Motion, bool, int]:
-    """Solve with given lengths of the pieces, starting from the quintic through the boundary values."""
-    degree = _degree(problem)
-    shape = Shape(("free",) * len(lengths), degree, False, problem.objective)
-    nodes = np.concatenate([[0.0], np.cumsum(lengths)])
-    x = np.interp(np.arange(len(lengths) * degree + 1) / degree, np.arange(len(lengths) + 1), nodes)
-    bend = 60 * x - 180 * x**2 + 120 * x**3
-    motion, statistics = programme(shape).solve(problem, Motion(lengths, problem.height * bend, 60.0), relax)
-    return motion, bool(statistics["success"]), int(statistics["iter_count"])
-
-
-def _polish(problem: ScaledProblem, grid: Motion) -> tuple[Motion, bool, int]:
-    """Solve for few pieces of unknown length, starting from the structure of a grid solution."""
-    start, arcs = read_cubic(grid, problem) if grid.degree == 1 else read_quintic(grid, problem)
-    shape = Shape(arcs, grid.degree, True, problem.objective)
-    motion, statistics = programme(shape).solve(problem, start)
-    return motion, bool(statistics["success"]), int(statistics["iter_count"])
+__all__ = ["OBJECTIVES", "TORQUE_OBJECTIVES", "Objective", "Placement", "Solution", "Starts", "TorqueObjective", "solve"]

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import Literal
 
 from profiles.cycle import Cut
 from profiles.limits import Limits
-from profiles.machines import RotaryKnife
+from profiles.machines import LinearCarriage, Machine
 
 Objective = Literal["peak_acceleration", "rms_acceleration", "peak_jerk", "rms_jerk"]
-OBJECTIVES: tuple[Objective, ...] = get_args(Objective)
+"""Objectives of the motion alone."""
 
 
 @dataclass(frozen=True)
@@ -38,6 +39,8 @@ class ReturnProblem:
         Limit of ``|y'''|`` (slave unit per m³).
     objective
         What is minimised: the peak or the root mean square of ``y''`` or of ``y'''``.
+    least_position, greatest_position
+        Positions between which ``y - y(0)`` must stay (slave unit); infinite where there is no stroke to keep.
     """
 
     length: float
@@ -51,12 +54,18 @@ class ReturnProblem:
     greatest_slope: float
     greatest_jerk: float
     objective: Objective
+    least_position: float = -math.inf
+    greatest_position: float = math.inf
 
 
-def return_problem(machine: RotaryKnife, cut: Cut, limits: Limits, objective: Objective) -> ReturnProblem:
+def return_problem(machine: Machine, cut: Cut, limits: Limits, objective: Objective) -> ReturnProblem:
     """Put the return of a cutting machine into numbers: the sync zone's ends give the return's boundary values."""
     sync = machine.sync_profile(cut)
     v = cut.line_speed
+    least, greatest = -math.inf, math.inf
+    if isinstance(machine, LinearCarriage):
+        end = machine.sync_start(cut) + sync.advance
+        least, greatest = machine.home - end, machine.home + machine.stroke - end
     return ReturnProblem(
         length=cut.return_zone,
         height=machine.pitch - sync.advance,
@@ -64,9 +73,11 @@ def return_problem(machine: RotaryKnife, cut: Cut, limits: Limits, objective: Ob
         end_ratio=float(sync(sync.start, 1)),
         start_slope=float(sync(sync.end, 2)),
         end_slope=float(sync(sync.start, 2)),
-        least_ratio=limits.least_velocity / v,
+        least_ratio=(-limits.speed if machine.turns_back else limits.least_velocity) / v,
         greatest_ratio=limits.speed / v,
         greatest_slope=limits.acceleration / v**2,
         greatest_jerk=limits.jerk / v**3,
         objective=objective,
+        least_position=least,
+        greatest_position=greatest,
     )

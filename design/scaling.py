@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from design.problem import Objective, ReturnProblem
 from profiles.polynomial import CamProfile
+from profiles.reach import least_acceleration
 
 # Limits far beyond what any motion of unit height in unit length needs (2, 8 and 60) are cut off to keep the solver's numbers small.
 # They still allow for jobs at the edge of the speed limit, whose motion happens in a small part of the return.
 GREATEST_SCALED_SPEED = 1e2
 GREATEST_SCALED_ACCELERATION = 1e6
-GREATEST_SCALED_JERK = 1e13
+# A ramp shorter than this share of the return cannot be told from a jump: its ends lie only 1e9 roundings apart. A jerk limit that would
+# allow shorter ramps is lowered; the least peak acceleration then grows by this share of the time that the acceleration takes.
+SHORTEST_RAMP = 2e-7
 
 
 @dataclass(frozen=True)
@@ -27,6 +31,10 @@ class ScaledProblem:
         Boundary values: ``q(1)``, ``q'(1)``, ``q''(0)``, ``q''(1)``; ``q(0) = q'(0) = 0``.
     least_ratio, greatest_ratio, greatest_slope, greatest_jerk
         Limits of ``q'``, ``|q''|``, ``|q'''|``.
+    drift
+        Slope of the line that was taken away: ``q + drift xi`` is the slave's position, in the scaled unit.
+    least_position, greatest_position
+        Limits of that position.
     """
 
     height: float
@@ -38,6 +46,19 @@ class ScaledProblem:
     greatest_slope: float
     greatest_jerk: float
     objective: Objective
+    drift: float = 0.0
+    least_position: float = -math.inf
+    greatest_position: float = math.inf
+
+    @property
+    def rest_to_rest(self) -> bool:
+        """Whether the motion over the line starts and ends at rest without acceleration."""
+        return not (self.end_ratio or self.start_slope or self.end_slope)
+
+    @property
+    def confined(self) -> bool:
+        """Whether the slave must keep to a stroke."""
+        return math.isfinite(self.least_position) or math.isfinite(self.greatest_position)
 
 
 def motion_scale(problem: ReturnProblem) -> float:
@@ -62,16 +83,24 @@ def scale_problem(problem: ReturnProblem, scale: float) -> ScaledProblem:
     ratios = sorted(
         (limit - problem.start_ratio) * length / scale for limit in (problem.least_ratio, problem.greatest_ratio)
     )
+    height = (problem.height - problem.start_ratio * length) / scale
+    greatest_ratio = min(ratios[1], GREATEST_SCALED_SPEED)
+    straight = least_acceleration(abs(height), 1.0, max(greatest_ratio, 1e-300), math.inf)
+    sharpest = max(4.0, straight if math.isfinite(straight) else 0.0) / SHORTEST_RAMP
+    places = sorted((problem.least_position / scale, problem.greatest_position / scale))
     return ScaledProblem(
-        height=(problem.height - problem.start_ratio * length) / scale,
+        height=height,
         end_ratio=(problem.end_ratio - problem.start_ratio) * length / scale,
         start_slope=problem.start_slope * length**2 / scale,
         end_slope=problem.end_slope * length**2 / scale,
         least_ratio=max(ratios[0], -GREATEST_SCALED_SPEED),
-        greatest_ratio=min(ratios[1], GREATEST_SCALED_SPEED),
+        greatest_ratio=greatest_ratio,
         greatest_slope=min(problem.greatest_slope * length**2 / abs(scale), GREATEST_SCALED_ACCELERATION),
-        greatest_jerk=min(problem.greatest_jerk * length**3 / abs(scale), GREATEST_SCALED_JERK),
+        greatest_jerk=min(problem.greatest_jerk * length**3 / abs(scale), sharpest),
         objective=problem.objective,
+        drift=problem.start_ratio * length / scale,
+        least_position=places[0],
+        greatest_position=places[1],
     )
 
 

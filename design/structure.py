@@ -12,7 +12,7 @@ from itertools import groupby
 import numpy as np
 
 from design.scaling import ScaledProblem
-from design.transcription import Arc, Motion, piece_coefficients
+from design.transcription import SPLIT, Arc, Motion, piece_coefficients, subdivision
 from profiles.polynomial import FloatArray
 from profiles.reach import DoubleS, in_time, least_acceleration, least_jerk
 
@@ -81,8 +81,12 @@ def _phase(x: FloatArray, a: FloatArray, end: float, step: float, jerk_limit: fl
     return rise, max(0.0, end - rise - fall), fall, level
 
 
-def read_quintic(grid: Motion, problem: ScaledProblem) -> tuple[Motion, tuple[Arc, ...]]:
-    """Runs of intervals with the same active limit (speed, acceleration, jerk, none), one piece each (degree 3)."""
+def read_quintic(grid: Motion, problem: ScaledProblem, touched: bool) -> tuple[Motion, tuple[Arc, ...]]:
+    """Runs of intervals with the same active limit (speed, acceleration, jerk, none), one piece each (degree 3).
+
+    An optimum may touch a limit in a single point, or keep to it for less than an interval; there too the piece ends. With
+    ``touched`` such an interval counts as active, without only one that keeps to the limit all along.
+    """
     p = grid.degree
     rows = piece_coefficients(grid.accelerations, p)
     _, ratio = grid.nodes()
@@ -90,7 +94,7 @@ def read_quintic(grid: Motion, problem: ScaledProblem) -> tuple[Motion, tuple[Ar
     for i, (h, row) in enumerate(zip(grid.lengths, rows, strict=True)):
         steps = p * np.diff(row) / h
         pace = ratio[i] + h * np.concatenate([[0.0], np.cumsum(row)]) / (p + 1)
-        kinds.append(_active(pace, row, steps, problem))
+        kinds.append(_active(pace, row, steps, problem, touched))
     x = np.concatenate([[0.0], np.cumsum(grid.lengths)])
     a = grid.accelerations
     breaks = [0.0]
@@ -120,13 +124,15 @@ _ARC_OF_LIMIT: dict[str, Arc] = {
 }
 
 
-def _active(pace: FloatArray, row: FloatArray, steps: FloatArray, problem: ScaledProblem) -> str:
-    if (pace >= problem.greatest_ratio - ACTIVE).all() or (pace <= problem.least_ratio + ACTIVE).all():
+def _active(pace: FloatArray, row: FloatArray, steps: FloatArray, problem: ScaledProblem, touched: bool) -> str:
+    """Name the limit that an interval reaches: all along it, or if ``touched`` somewhere on it."""
+    reached = np.any if touched else np.all
+    if reached(pace >= problem.greatest_ratio - ACTIVE) or reached(pace <= problem.least_ratio + ACTIVE):
         return "speed"
     for name, values, limit in (("jerk", steps, problem.greatest_jerk), ("slope", row, problem.greatest_slope)):
-        if (values >= limit * (1 - ACTIVE)).all():
+        if reached(values >= limit * (1 - ACTIVE)):
             return f"+{name}"
-        if (values <= -limit * (1 - ACTIVE)).all():
+        if reached(values <= -limit * (1 - ACTIVE)):
             return f"-{name}"
     return "none"
 
@@ -142,9 +148,9 @@ def _value(x: FloatArray, rows: FloatArray, at: float) -> float:
 def extreme_motion(problem: ScaledProblem) -> DoubleS | None:
     """Rest-to-rest motion of the least peak jerk (for jerk objectives) or peak acceleration (else) within the other limits.
 
-    None if the job is not from rest to rest.
+    None if the job is not from rest to rest, or confined to a stroke that this motion does not know of.
     """
-    if problem.end_ratio or problem.start_slope or problem.end_slope:
+    if problem.confined or not problem.rest_to_rest:
         return None
     height, speed = problem.height, problem.greatest_ratio
     if problem.objective.endswith("jerk"):
@@ -193,7 +199,7 @@ def tidy(motion: Motion, problem: ScaledProblem) -> Motion:
     if p == 1:
         lengths, a = _without_false_corners(lengths, a)
     for _ in range(3):  # each pass takes out what the one before left, down to rounding
-        rise = np.abs(np.diff(a)).reshape(len(lengths), p).max(axis=1) * p
+        rise = p * np.abs(np.diff(a).reshape(len(lengths), p) @ subdivision(p - 1, SPLIT).T).max(axis=1)
         lengths = np.maximum(lengths, rise / (problem.greatest_jerk * (1 - 1e-10)))
         lengths[int(np.argmax(lengths))] -= lengths.sum() - 1.0
         q, v = Motion(lengths, a, 0.0).nodes()

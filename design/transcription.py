@@ -54,12 +54,15 @@ class Shape:
         Whether the lengths of the pieces are unknowns.
     objective
         What is minimised.
+    confined
+        Whether the position has limits.
     """
 
     arcs: tuple[Arc, ...]
     degree: int
     free_lengths: bool
     objective: Objective
+    confined: bool = False
 
     @property
     def pieces(self) -> int:
@@ -161,9 +164,9 @@ class Programme:
             "t": 1 if shape.objective in PEAKS else 0,
         }
         unknown = {name: ca.SX.sym(name, size) for name, size in self._sizes.items()}
-        jerk_limit = ca.SX.sym("J")
+        jerk_limit, drift = ca.SX.sym("J"), ca.SX.sym("d")
         lengths = unknown["h"] if shape.free_lengths else ca.SX.sym("h", m)
-        self._equations, between = _dynamics(unknown, lengths, p)
+        self._equations, between = dynamics(unknown, lengths, p)
         equal, positive = list(self._equations), []
         if shape.free_lengths:
             equal.append(ca.sum1(lengths) - 1)
@@ -187,16 +190,17 @@ class Programme:
         if self._split > 1:
             bent, between = _finer(unknown, lengths, p, self._split)
             if shape.objective == "rms_jerk":
-                cut = ca.DM(_subdivision(p - 1, self._split))
+                cut = ca.DM(subdivision(p - 1, self._split))
                 steps = [ca.vertsplit(cut @ unknown["j"][i * p : (i + 1) * p] / jerk_limit) for i in range(m)]
                 positive += [1 - step for row in steps for step in row] + [1 + step for row in steps for step in row]
-        self._counts = (len(equal), len(positive), len(between), len(bent))
-        parameters = ca.vertcat(jerk_limit) if shape.free_lengths else ca.vertcat(jerk_limit, lengths)
+        places = _places(unknown, lengths, p, drift) if shape.confined else []
+        self._counts = (len(equal), len(positive), len(between), len(bent), len(places))
+        parameters = ca.vertcat(jerk_limit, drift, *([] if shape.free_lengths else [lengths]))
         programme = {
             "x": ca.vertcat(*(unknown[name] for name in self._sizes)),
             "p": parameters,
             "f": _cost(shape, unknown, lengths),
-            "g": ca.vertcat(*equal, *positive, *between, *bent),
+            "g": ca.vertcat(*equal, *positive, *between, *bent, *places),
         }
         self._solver = ca.nlpsol("camwright", "ipopt", programme, options)
 
@@ -234,14 +238,14 @@ class Programme:
         for name, (first, last) in ends.items():
             lower[name][0] = upper[name][0] = first
             lower[name][-1] = upper[name][-1] = last
-        equal, positive, between, bent = self._counts
+        equal, positive, between, bent, places = self._counts
         answer = self._solver(
             x0=self._pack(guess),
-            p=[jerk] if self.shape.free_lengths else [jerk, *start.lengths],
+            p=[jerk, problem.drift, *([] if self.shape.free_lengths else start.lengths)],
             lbx=self._pack(lower),
             ubx=self._pack(upper),
-            lbg=[0.0] * (equal + positive) + [low] * between + [-slope] * bent,
-            ubg=[0.0] * equal + [np.inf] * positive + [high] * between + [slope] * bent,
+            lbg=[0.0] * (equal + positive) + [low] * between + [-slope] * bent + [problem.least_position] * places,
+            ubg=[0.0] * equal + [np.inf] * positive + [high] * between + [slope] * bent + [problem.greatest_position] * places,
         )
         found = self._unpack(np.asarray(answer["x"], dtype=np.float64).ravel())
         lengths = np.maximum(found["h"], 0.0) if self.shape.free_lengths else start.lengths
@@ -255,7 +259,7 @@ class Programme:
         return dict(zip(self._sizes, np.split(flat, ends[:-1]), strict=True))
 
 
-def _dynamics(unknown: dict[str, Any], lengths: Any, p: int) -> tuple[list[Any], list[Any]]:
+def dynamics(unknown: dict[str, Any], lengths: Any, p: int) -> tuple[list[Any], list[Any]]:
     """Exact integration over the pieces: the equations at the nodes, and the ratio's coefficients inside the pieces."""
     equations, between = [], []
     for i in range(unknown["v"].numel() - 1):
@@ -271,10 +275,26 @@ def _dynamics(unknown: dict[str, Any], lengths: Any, p: int) -> tuple[list[Any],
     return equations, between
 
 
+def _places(unknown: dict[str, Any], lengths: Any, p: int, drift: Any) -> list[Any]:
+    """Bernstein coefficients of the slave's position: those of ``q`` and of the line, whose coefficients lie evenly on it."""
+    places: list[Any] = []
+    start = ca.SX(0)
+    for i in range(unknown["v"].numel() - 1):
+        h = lengths[i]
+        ratio, position = unknown["v"][i], unknown["q"][i]
+        for k in range(p + 2):
+            places.append(position + drift * (start + h * k / (p + 2)))
+            position = position + h * ratio / (p + 2)
+            if k <= p:
+                ratio = ratio + h * unknown["a"][i * p + k] / (p + 1)
+        start = start + h
+    return places
+
+
 def _finer(unknown: dict[str, Any], lengths: Any, p: int, split: int) -> tuple[list[Any], list[Any]]:
     """Bernstein coefficients of acceleration and ratio on each piece cut into equal parts."""
     bent, between = [], []
-    cut_slope, cut_ratio = ca.DM(_subdivision(p, split)), ca.DM(_subdivision(p + 1, split))
+    cut_slope, cut_ratio = ca.DM(subdivision(p, split)), ca.DM(subdivision(p + 1, split))
     for i in range(unknown["v"].numel() - 1):
         row = unknown["a"][i * p : (i + 1) * p + 1]
         ratio = [unknown["v"][i]]
@@ -286,7 +306,7 @@ def _finer(unknown: dict[str, Any], lengths: Any, p: int, split: int) -> tuple[l
 
 
 @lru_cache
-def _subdivision(degree: int, parts: int) -> FloatArray:
+def subdivision(degree: int, parts: int) -> FloatArray:
     """Matrix from Bernstein coefficients on the unit interval to those on equal parts of it, shape ``(parts (d + 1), d + 1)``.
 
     The coefficient ``k`` on ``[s, t]`` is the polar form at ``d - k`` times ``s`` and ``k`` times ``t`` (de Casteljau).

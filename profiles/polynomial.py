@@ -159,11 +159,11 @@ class CamProfile:
             worst = position.min() if position.min() < self.start else position.max()
             raise InputError(f"master position {worst!r} m lies outside the profile, {self.start!r} to {self.end!r} m")
         index = np.searchsorted(self.breaks[1:-1], position, side=side)
-        local = position - self.breaks.take(index)
+        local = position - self.breaks.take(index, mode="clip")
         value = np.zeros_like(local)
         for coefficient in self._derived(order).T[::-1]:  # Horner
             value *= local
-            value += coefficient.take(index)
+            value += coefficient.take(index, mode="clip")  # faster than the default; all are in range
         if turns is not None and order == 0:
             value = value + turns * self.advance
         return np.asarray(value, dtype=np.float64)

@@ -78,18 +78,19 @@ def sample_plant(servo: Servo, time: float) -> SampledPlant:
     w, z = servo.bandwidth, servo.damping
     sigma = z * w
     discriminant = (z * z - 1.0) * w * w  # square of half the distance between the poles
-    # c = cosh(d t), s = sinh(d t) / d with d = sqrt(discriminant); both real whatever the sign
+    # c = exp(-sigma t) cosh(d t), s = exp(-sigma t) sinh(d t) / d with d = sqrt(discriminant), real whatever its sign
+    e = math.exp(-sigma * time)
     angle = math.sqrt(abs(discriminant)) * time
     if angle < 1e-4:  # series about the double pole; the next term is below 1e-16
         q = discriminant * time * time
-        c, s = 1.0 + q / 2 + q * q / 24, time * (1.0 + q / 6 + q * q / 120)
+        c, s = e * (1.0 + q / 2 + q * q / 24), e * time * (1.0 + q / 6 + q * q / 120)
     elif discriminant < 0:
-        c, s = math.cos(angle), math.sin(angle) / math.sqrt(-discriminant)
+        c, s = e * math.cos(angle), e * math.sin(angle) / math.sqrt(-discriminant)
     else:
-        c, s = math.cosh(angle), math.sinh(angle) / math.sqrt(discriminant)
-    e = math.exp(-sigma * time)
-    # velocity loop in (v', v): exp(M t) = e ((c + sigma s) I + s M), M = [[-2 sigma, -w²], [1, 0]]
-    f = np.array([[e * (c - sigma * s), -e * w * w * s], [e * s, e * (c + sigma * s)]])
+        slow, fast = math.exp(angle - sigma * time), math.exp(-angle - sigma * time)
+        c, s = 0.5 * (slow + fast), 0.5 * (slow - fast) / math.sqrt(discriminant)
+    # velocity loop in (v', v): exp(M t) = (c + sigma s) I + s M, M = [[-2 sigma, -w²], [1, 0]]
+    f = np.array([[c - sigma * s, -w * w * s], [s, c + sigma * s]])
     # position: integral of the velocity; from v'' + 2 sigma v' + w² v = w² u follows
     # w² (p(t) - p(0)) = w² u t - (v'(t) - v'(0)) - 2 sigma (v(t) - v(0))
     transition = np.zeros((3, 3))

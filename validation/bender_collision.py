@@ -1,8 +1,9 @@
 """Where the bent part of the rule meets the mould, or the rule still to come: a simple envelope in the plane.
 
-Seen from the bent part, the machine walks along the outline: at each bend the mould and the rule behind it stand on the line of the
-rule to come, and turn with it by the mould angle. The mould is a convex shape, the same to both sides of the rule; the rule to
-come is a strip of its thickness. The height of the rule, its elasticity and lifting the part over the mould are not in it.
+Seen from the bent part, the machine walks along the outline: at each bend the mould and the rule behind it stand on
+the line of the rule to come, and turn with it by the mould angle. The mould is a convex shape, the same to both sides
+of the rule; the rule to come is a strip of its thickness. The height of the rule, its elasticity and lifting the part
+over the mould are not in it.
 """
 
 from __future__ import annotations
@@ -49,11 +50,15 @@ class MouldEnvelope:
     def __post_init__(self) -> None:
         d, w = self.distance, self.half_width
         if len(d) < 2 or len(d) != len(w) or d[0] != 0 or (np.diff(d) <= 0).any() or (w < 0).any():
-            raise InputError("the mould's envelope needs rows of increasing distance, the first 0, and half widths not below 0")
+            raise InputError(
+                "the mould's envelope needs rows of increasing distance, the first 0, and half widths not below 0"
+            )
         slopes = np.diff(w) / np.diff(d)
         if (np.diff(slopes) > 1e-12).any():
             i = int(np.argmax(np.diff(slopes) > 1e-12)) + 2
-            raise InputError(f"the mould's envelope must be convex; row {i} lies inside the line between its neighbours")
+            raise InputError(
+                f"the mould's envelope must be convex; row {i} lies inside the line between its neighbours"
+            )
 
     @property
     def depth(self) -> float:
@@ -80,9 +85,7 @@ class Collision:
     what: Literal["mould", "rule"]
 
 
-def collisions(
-    points: FloatArray, moulds: FloatArray, envelope: MouldEnvelope
-) -> tuple[Collision, ...]:
+def collisions(points: FloatArray, moulds: FloatArray, envelope: MouldEnvelope) -> tuple[Collision, ...]:
     """Find the bends at which the part bent so far meets the mould or the rule to come; the first hit of each.
 
     Parameters
@@ -128,7 +131,8 @@ def _collisions_of(
     inner = np.arange(len(bend)) - np.repeat(np.cumsum(poses) - poses, poses)
     turn = heading[bend] + moulds[bend] * inner / np.repeat(poses - 1, poses)
     following = heading[bends + 1]
-    depth = envelope.depth + np.concatenate([np.zeros(len(bend)), feeds[bends + 1]])
+    last = bends == len(moulds) - 1  # the last feed only pushes the cut rule out
+    depth = envelope.depth + np.concatenate([np.zeros(len(bend)), np.where(last, 0.0, feeds[bends + 1])])
     found: dict[int, Collision] = {}
     normals, offsets = _mould_region(envelope, depth)
     both, direction = np.concatenate([bend, bends]), np.concatenate([turn, following])
@@ -153,16 +157,17 @@ def _mould_region(envelope: MouldEnvelope, depth: FloatArray) -> tuple[FloatArra
     outward = np.stack([-rise / size, run / size], axis=1)  # of the left flank
     offset = outward[:, 0] * d[:-1] + outward[:, 1] * w[:-1]
     mirrored = outward * [1.0, -1.0]
-    flat = np.vstack([outward, mirrored, [[0.0, 1.0], [0.0, -1.0], [1.0, 0.0], [-1.0, 0.0]]])
+    # the half planes that leave most boxes out come first: behind the bend, within the depth, within the width
     widest = float(w.max())
-    limits = np.concatenate([offset, offset, [widest, widest, 0.0, 0.0]])
+    flat = np.vstack([[[-1.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.0, -1.0]], outward, mirrored])
+    limits = np.concatenate([[0.0, 0.0, widest, widest], offset, offset])
     normals = np.tile(flat, (len(depth), 1, 1))
     offsets = np.tile(limits, (len(depth), 1))
-    offsets[:, -2] = depth
+    offsets[:, 1] = depth
     if rise[-1] < 0:  # a flank that closes in again would cut the drawn-out part: it keeps its greatest width there
         closing = np.flatnonzero(rise < 0)
-        normals[:, np.concatenate([closing, closing + len(run)])] = [0.0, 0.0]
-        offsets[:, np.concatenate([closing, closing + len(run)])] = 1.0
+        both = 4 + np.concatenate([closing, closing + len(run)])
+        normals[:, both], offsets[:, both] = 0.0, 1.0
     return normals, offsets
 
 
@@ -171,7 +176,9 @@ def _hits(
 ) -> list[tuple[int, int]]:
     """Bends and the sides of the part that reach into the regions given in the frame of the rule to come."""
     cos, sin = np.cos(direction)[:, None], np.sin(direction)[:, None]
-    turned = np.stack([cos * normals[..., 0] - sin * normals[..., 1], sin * normals[..., 0] + cos * normals[..., 1]], axis=2)
+    turned = np.stack(
+        [cos * normals[..., 0] - sin * normals[..., 1], sin * normals[..., 0] + cos * normals[..., 1]], axis=2
+    )
     shifted = offsets + (turned * points[bend + 1][:, None, :]).sum(axis=2)
     # side `bend` ends at the bending point and belongs to the bend itself
     region, side = tree.inside(turned, shifted, bend)

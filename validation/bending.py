@@ -64,7 +64,7 @@ def bend(program: NcProgram, plan: BendPlan, springback: Springback) -> FloatArr
     ]
     heading = plan.heading + np.concatenate([[0.0], np.cumsum(turns)])
     steps = (program.feeds * 1e-6)[:, None] * np.stack([np.cos(heading), np.sin(heading)], axis=1)
-    return plan.vertices[0] + np.vstack([[0.0, 0.0], np.cumsum(steps, axis=0)])
+    return np.asarray(plan.vertices[0] + np.vstack([[0.0, 0.0], np.cumsum(steps, axis=0)]), dtype=np.float64)
 
 
 def prove(program: NcProgram, plan: BendPlan, springback: Springback) -> BendingProof:

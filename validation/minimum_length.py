@@ -9,7 +9,6 @@ in the return zone.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -18,19 +17,22 @@ from profiles.errors import InputError
 from profiles.limits import Limits
 from profiles.machines import RotaryKnife
 from profiles.polynomial import CamProfile
-from profiles.reach import fastest_return, shortest_return_length
+from profiles.reach import in_time, least_acceleration, shortest_return_length
 from profiles.returns import assemble, baseline
 from profiles.servo import Servo
-from validation.response import servo_response
+from validation.response import servo_response, sync_error
+from validation.simulation import simulate
 
 Binding = Literal["speed", "acceleration", "jerk", "settling"]
 
-_SCAN = 24
-"""Sync zones tried between shear zone and pitch before the shortest that works is looked for below the first that
-does."""
+_COARSE, _FINE = 8, 64
+"""Parts into which the room between shear zone and pitch is divided by the sync zones tried, first and last."""
 
-_RESOLUTION = 1e-6
-"""Accuracy of the sync zone found, relative to the pitch: well below what a drive resolves."""
+_ZONE_RESOLUTION = 1e-5
+"""Step of the sync zone with which the search ends, relative to the pitch."""
+
+_LENGTH_RESOLUTION = 3e-6
+"""Accuracy of the cut length found for a sync zone, relative to the pitch; no smaller gain is looked for."""
 
 _RELAXATION = 0.01
 """Part by which a quantity is eased to see how much the minimum gains by it."""
@@ -47,9 +49,10 @@ class MinimumCutLength:
     sync_zone
         Sync zone with which it is reached (m).
     transition
-        Transition length: the settling length of this very cycle (m), 0 for the physical bound.
+        Transition length: the settling length of this very cycle (m), 0 for the physical bound and where the knife
+        turns at the line speed throughout.
     binding
-        What binds: the quantity which, eased by one per cent, shortens the cut most.
+        What binds: the quantity which, eased by one per cent, shortens the cut most: a limit, or the settling length.
     """
 
     length: float
@@ -118,10 +121,14 @@ def physical(machine: RotaryKnife, cut: Cut, limits: Limits) -> MinimumCutLength
 def linear_return_to_tolerance(machine: RotaryKnife, cut: Cut, limits: Limits, servo: Servo) -> MinimumCutLength:
     """Shortest cut length with the axis within tolerance in the whole shear zone: linear return.
 
-    Eqs. 6 to 10 with the settling length instead of the crossing, at every sampling phase, each of the cycle in
-    question: the return runs at the speed limit (eq. 8), so a sync zone ``l_s`` makes the cut length ``l_s + (v /
-    v_max) (y_c - l_s)``; the shortest ``l_s`` is looked for that holds settling length and shear zone. The linear
-    return knows no limits of acceleration and jerk.
+    The shortest cycle of the linear return that some sync zone has and in which the axis, at every sampling phase,
+    stays within the sync tolerance over the last ``l_j`` of the sync zone. The knife runs no faster than the speed
+    limit (eq. 8), but slower where that settles sooner; the linear return knows no limits of acceleration and jerk.
+
+    Sync zones in steps of a 64th of the room between shear zone and pitch are tried; about the best, the step is
+    halved down to 1e-5 of the pitch. For each, the cut length is bisected to 3e-6 of the pitch between the shortest
+    return and the best length so far, as if a longer cut always settled better. A range of sync zones narrower than
+    the steps, or of cut lengths below the one that bisection finds, is not found.
 
     Parameters
     ----------
@@ -134,77 +141,128 @@ def linear_return_to_tolerance(machine: RotaryKnife, cut: Cut, limits: Limits, s
         The shear zone is not shorter than the pitch, or the servo cannot be simulated
         (`validation.simulation.simulate`).
     """
-
-    def cut_length(sync_zone: float, given: Limits) -> float:
-        return cut_length_eq10(sync_zone, 0.0, machine.pitch, cut.line_speed, max(given.speed, cut.line_speed))
-
-    def cycle(shape: Cut) -> CamProfile:
-        return baseline("linear_return", machine, shape)
-
-    return _shortest(machine, cut, limits, servo, cut_length, cycle)
+    return _minimum(_Search(machine, cut, limits, servo, linear=True))
 
 
 def optimised_to_tolerance(machine: RotaryKnife, cut: Cut, limits: Limits, servo: Servo) -> MinimumCutLength:
-    """Shortest cut length with the axis within tolerance in the whole shear zone: fastest return.
+    """Shortest cut length with the axis within tolerance in the whole shear zone: return of least acceleration.
 
-    As `linear_return_to_tolerance`, with the return of shortest length within the limits of speed, acceleration and
-    jerk (`profiles.reach.fastest_return`). A gentler return in a shorter sync zone is not tried.
+    As `linear_return_to_tolerance`, with the return of the least peak acceleration within the limits of speed and
+    jerk (`profiles.reach.least_acceleration`), from the shortest that the limits allow at all
+    (`profiles.reach.shortest_return_length`) to ever gentler ones.
     """
-
-    def cut_length(sync_zone: float, given: Limits) -> float:
-        return _fastest_cut(machine, cut.line_speed, given, sync_zone)
-
-    def cycle(shape: Cut) -> CamProfile:
-        back = fastest_return(machine.pitch - shape.sync_zone, *_over_master(limits, cut.line_speed))
-        return assemble(back, machine, shape)
-
-    return _shortest(machine, cut, limits, servo, cut_length, cycle)
+    return _minimum(_Search(machine, cut, limits, servo, linear=False))
 
 
-def _shortest(
-    machine: RotaryKnife,
-    cut: Cut,
-    limits: Limits,
-    servo: Servo,
-    cut_length: Callable[[float, Limits], float],
-    cycle: Callable[[Cut], CamProfile],
-) -> MinimumCutLength:
-    """Shortest sync zone that holds the settling length of its own cycle and the shear zone: a scan, then bisection.
+@dataclass(frozen=True)
+class _Search:
+    """One search for a minimum cut length; ``relief`` is the part of the transition by which it may end too late."""
 
-    The settling length may rise and fall with the sync zone (a swing of the axis slips under the tolerance); the scan
-    finds the first of equally spaced zones that works, the bisection the edge below it. A range of working zones that
-    fits between two neighbours of the scan is not found.
-    """
+    machine: RotaryKnife
+    cut: Cut
+    limits: Limits
+    servo: Servo
+    linear: bool
+    relief: float = 0.0
+
+    @property
+    def resolution(self) -> float:
+        """Accuracy of the cut length (m)."""
+        return _LENGTH_RESOLUTION * self.machine.pitch
+
+    def lower(self, sync_zone: float) -> float:
+        """Cut length of the shortest return beside a sync zone (m)."""
+        if self.linear:
+            return cut_length_eq10(sync_zone, 0.0, self.machine.pitch, self.cut.line_speed, self.limits.speed)
+        return _fastest_cut(self.machine, self.cut.line_speed, self.limits, sync_zone)
+
+    def shape(self, length: float, sync_zone: float) -> Cut:
+        """Cut with its shear zone at the end of the sync zone."""
+        at = sync_zone - self.cut.shear_zone
+        return replace(self.cut, length=length, sync_zone=sync_zone, shear_zone_at=at, origin="return")
+
+    def cycle(self, shape: Cut) -> CamProfile:
+        """Cycle with the return of this search."""
+        if self.linear:
+            return baseline("linear_return", self.machine, shape)
+        speed, acceleration, jerk = _over_master(self.limits, shape.line_speed)
+        rise, length = self.machine.pitch - shape.length, shape.return_zone
+        # rounding may ask for a little more than the limit at the shortest return
+        least = min(acceleration, least_acceleration(rise, length, speed - 1, jerk))
+        motion = in_time(rise, length, speed - 1, least, jerk).profile()
+        breaks = motion.breaks.copy()
+        breaks[-1] = length  # equal but for rounding
+        return assemble(CamProfile(breaks, motion.coefficients.copy()).add_line(1.0), self.machine, shape)
+
+    def holds(self, length: float, sync_zone: float) -> bool:
+        """Whether the axis is within tolerance in the whole shear zone at every phase."""
+        shape = self.shape(length, sync_zone)
+        profile = self.cycle(shape)
+        run = simulate(profile, shape, self.servo)
+        start = shape.shear_start + self.relief * shape.shear_zone_at
+        error = sync_error(run, profile, self.machine, shape, start, length)[1]
+        return float(abs(error).max()) <= self.cut.sync_tolerance
+
+    def shorter(self, sync_zone: float, best: float) -> float | None:
+        """Shortest cut length of a sync zone, ``None`` if it is not below the best by the resolution."""
+        high, low = best - self.resolution, self.lower(sync_zone)
+        if low > high or not self.holds(high, sync_zone):
+            return None
+        if self.holds(low, sync_zone):
+            return low
+        while high - low > self.resolution:
+            middle = 0.5 * (low + high)
+            if self.holds(middle, sync_zone):
+                high = middle
+            else:
+                low = middle
+        return high
+
+    def scan(self) -> tuple[float, float]:
+        """Best cut length and its sync zone on ever finer grids of sync zones, the pitch if there is none."""
+        best, zone = self.machine.pitch, self.machine.pitch
+        room = self.machine.pitch - self.cut.shear_zone
+        parts = _COARSE
+        while parts <= _FINE:
+            for i in range(1, parts):
+                if i % 2 == 0 and parts > _COARSE:
+                    continue  # tried on the grid before
+                trial = self.cut.shear_zone + room * i / parts
+                found = self.shorter(trial, best)
+                if found is not None:
+                    best, zone = found, trial
+            parts *= 2
+        return best, zone
+
+    def refine(self, best: float, zone: float) -> tuple[float, float]:
+        """Best cut length and sync zone about those given, by steps of the sync zone that are halved."""
+        step = 0.5 * (self.machine.pitch - self.cut.shear_zone) / _FINE
+        while step > _ZONE_RESOLUTION * self.machine.pitch:
+            for trial in (zone - step, zone + step):
+                found = self.shorter(trial, best) if self.cut.shear_zone < trial < self.machine.pitch else None
+                if found is not None:
+                    best, zone = found, trial
+                    break
+            else:
+                step *= 0.5
+        return best, zone
+
+
+def _minimum(search: _Search) -> MinimumCutLength:
+    """Search the whole room, then once more about the answer with each quantity eased, to see what binds."""
+    machine, cut = search.machine, search.cut
     _require_room(machine, cut)
-    pitch, shear = machine.pitch, cut.shear_zone
-
-    def transition(sync_zone: float) -> float:
-        """Settling length, or infinity if shear zone and settling length do not fit."""
-        length = cut_length(sync_zone, limits)
-        shape = replace(cut, length=length, sync_zone=sync_zone, shear_zone_at=sync_zone - shear, origin="return")
-        settling = servo_response(cycle(shape), machine, shape, servo).settling
-        return settling if settling is not None and required_sync_zone(settling, shear) <= sync_zone else math.inf
-
-    if limits.speed <= cut.line_speed:  # the knife cannot run ahead of the material
-        return MinimumCutLength(pitch, pitch, 0.0, "speed")
-    step = (pitch - shear) / _SCAN
-    low, high, needed = pitch - step, pitch, 0.0
-    for i in range(1, _SCAN):
-        found = transition(shear + i * step)
-        if found < math.inf:
-            low, high, needed = shear + (i - 1) * step, shear + i * step, found
-            break
-    while high - low > _RESOLUTION * pitch:
-        middle = 0.5 * (low + high)
-        found = transition(middle)
-        if found < math.inf:
-            high, needed = middle, found
-        else:
-            low = middle
-    length = cut_length(high, limits)
-    gain = {name: length - cut_length(high, eased) for name, eased in _eased(limits).items()}
-    gain["settling"] = length - cut_length(high - _RELAXATION * needed, limits)
-    return MinimumCutLength(length, high, needed, _greatest(gain))
+    if search.limits.speed <= cut.line_speed:  # the knife cannot run ahead of the material
+        return MinimumCutLength(machine.pitch, machine.pitch, 0.0, "speed")
+    best, zone = search.refine(*search.scan())
+    if zone == machine.pitch:
+        return MinimumCutLength(best, zone, 0.0, "settling")
+    shape = search.shape(best, zone)
+    settling = servo_response(search.cycle(shape), machine, shape, search.servo).settling
+    eased = {name: replace(search, limits=limits) for name, limits in _eased(search.limits).items()}
+    eased["settling"] = replace(search, relief=_RELAXATION)
+    gain = {name: best - other.refine(other.shorter(zone, best) or best, zone)[0] for name, other in eased.items()}
+    return MinimumCutLength(best, zone, zone - cut.shear_zone if settling is None else settling, _greatest(gain))
 
 
 def _fastest_cut(machine: RotaryKnife, line_speed: float, limits: Limits, sync_zone: float) -> float:

@@ -39,7 +39,7 @@ _TRANSIENT_GROWTH = 1e3
 """Added to the decay because the loop's poles are not orthogonal: with it, the part of the command that is left out
 moves the axis by less than 1e-12 of its size, over all of S1's ranges."""
 
-_BLOCK = 64
+_BLOCK = 32
 """Samples that one step of the block recursion advances."""
 
 _MOST_VALUES = 2**17
@@ -180,40 +180,68 @@ def simulate(profile: CamProfile, cut: Cut, servo: Servo) -> ServoRun:
         phases //= 2
 
     # one grid for all: phase j samples at (j / phases - 1 + k) dT from the start of the return zone, k = 0, 1, …
-    index = np.arange(-past * phases, (samples + 1) * phases)
-    master = cut.return_start + (index / phases - 1.0) * (servo.sample_time * cut.line_speed)
-    ends = profile([profile.start, profile.end])
-    mean_ratio = float(ends[1] - ends[0]) / profile.length
-    inside = master - profile.length * np.floor((master - profile.start) / profile.length)
-    inside = np.minimum(np.maximum(inside, profile.start), profile.end)
-    deviation = profile(inside) - ends[0] - mean_ratio * (inside - profile.start)
-
-    sampled = deviation[: (past + samples) * phases].reshape(past + samples, phases)
-    drive = servo.position_gain * sampled  # what the controller adds up beside the fed back position
-    drive[1:] += servo.velocity_feedforward / servo.sample_time * (sampled[1:] - sampled[:-1])
+    sample = servo.sample_time * cut.line_speed
+    master = cut.return_start + np.arange(-(past + 1) * phases, samples * phases) * (sample / phases)
+    start = float(profile.coefficients[0, 0])
+    mean_ratio = (_end(profile) - start) / profile.length
+    deviation = _deviation(profile, master, mean_ratio)
     lifted = _lift(servo, past)
-    state = _states(lifted, drive, past)
+    loop = _loop(lifted, servo, deviation[: (past + samples) * phases].reshape(-1, phases))
 
-    # between the samples the velocity reference is held, so the plant alone decides
-    held = drive[past:] - servo.position_gain * state[:, 2]
-    full = np.concatenate([state, held[:, None]], axis=1)
-    position = (lifted.position @ full).reshape(-1, phases)
-    velocity = (lifted.velocity @ full).reshape(-1, phases)
+    def by_phase(values: FloatArray) -> FloatArray:
+        """Spread the common grid to ``(phases, points)``; phases overlap, so nothing is copied."""
+        item = values.itemsize
+        return np.ndarray((phases, samples * SUBSTEPS), buffer=values, strides=(item, phases // SUBSTEPS * item))
 
-    def by_point(values: FloatArray) -> FloatArray:
-        """Spread the common grid to ``(points, phases)``; phases and points overlap, so nothing is copied."""
-        values, item = values[past * phases :], values.itemsize
-        strides = (phases // SUBSTEPS * item, item)
-        return np.lib.stride_tricks.as_strided(values, (samples * SUBSTEPS, phases), strides, writeable=False)
+    master, deviation = master[past * phases :], deviation[past * phases :]
+    line = start + mean_ratio * (master - profile.start)
+    axis = (loop @ lifted.position).reshape(phases, -1)
+    axis += by_phase(line - steady_following_error(mean_ratio * cut.line_speed, servo))
+    ratio = (loop @ (lifted.velocity / cut.line_speed)).reshape(phases, -1)
+    ratio += mean_ratio
+    return ServoRun(master=by_phase(master), command=by_phase(line + deviation), axis=axis, axis_ratio=ratio)
 
-    line = ends[0] + mean_ratio * (master - profile.start)
-    lag = steady_following_error(mean_ratio * cut.line_speed, servo)
-    return ServoRun(
-        master=by_point(master).T,
-        command=by_point(line + deviation).T,
-        axis=(by_point(line - lag) + position).T,
-        axis_ratio=(mean_ratio + velocity / cut.line_speed).T,
-    )
+
+def _end(profile: CamProfile) -> float:
+    """Position at the end of the profile (m)."""
+    width = float(profile.breaks[-1] - profile.breaks[-2])
+    value = 0.0
+    for coefficient in reversed(profile.coefficients[-1].tolist()):
+        value = value * width + coefficient
+    return value
+
+
+def _deviation(profile: CamProfile, master: FloatArray, mean_ratio: float) -> FloatArray:
+    """Repeated profile minus the straight line through its start.
+
+    As the master only rises, the points of a piece follow one another: the breaks are looked up among the points, not
+    the points among the breaks, and every coefficient is repeated for the points of its piece.
+
+    Parameters
+    ----------
+    master
+        Ascending master positions (m), any number of cycles.
+    mean_ratio
+        Slope of the line, ``advance / length`` of the profile.
+    """
+    first, last = (math.floor((float(x) - profile.start) / profile.length) for x in (master[0], master[-1]))
+    cycles = np.arange(first, last + 1) * profile.length
+    table = np.empty((profile.degree + 2, len(cycles), profile.pieces))  # coefficients and, last, start of each piece
+    table[:-1] = profile.coefficients.T[:, None]
+    table[0] -= profile.coefficients[0, 0] + mean_ratio * (profile.breaks[:-1] - profile.start)
+    table[-1] = cycles[:, None] + profile.breaks[:-1]
+    table = table.reshape(profile.degree + 2, -1)
+    bounds = np.searchsorted(master, table[-1])
+    bounds[0] = 0
+    *coefficients, starts = table.repeat(np.append(bounds[1:], len(master)) - bounds, axis=1)
+    local = master - starts
+    found = coefficients.pop()
+    while coefficients:  # Horner
+        found *= local
+        found += coefficients.pop()
+    local *= mean_ratio
+    found -= local
+    return found
 
 
 def steady_following_error(speed: float, servo: Servo) -> float:
@@ -233,21 +261,25 @@ def steady_following_error(speed: float, servo: Servo) -> float:
 
 @dataclass(frozen=True, eq=False)
 class _Lifted:
-    """The closed loop over many samples at once, and the plant between two samples; a property of the servo alone.
+    """The closed loop over many samples at once, and between two samples; a property of the servo alone.
 
-    With the state ``z`` of `profiles.servo.SampledPlant` and the closed loop's input ``f`` (m/s)::
+    With the command ``c``, the state ``z`` of `profiles.servo.SampledPlant`, the closed loop's input ``f`` (m/s), all
+    as rows, and ``w = (z, f)``::
 
-        z[0]                = history @ f[-past:0]
-        z[0 … size]         = free @ z[0] + forced @ f[0:size]
-        position, velocity  = position @ (z, u), velocity @ (z, u)    at the substeps after a sample
+        z[0]                = c[-past:0] @ history
+        w[0 … size - 1]     = z[0] @ free + f[0:size] @ forced
+        z[size]             = z[0] @ free_end + f[0:size] @ forced_end
+        position, velocity  = w @ position, w @ velocity    at the substeps after a sample
 
-    with ``history`` ``(3, past)``, ``free`` ``(3 (size + 1), 3)``, ``forced`` ``(3 (size + 1), size)``, the other two
-    ``(SUBSTEPS, 4)``.
+    with ``history`` ``(past, 3)``, ``free`` ``(3, 4 size)``, ``forced`` ``(size, 4 size)``, ``free_end`` ``(3, 3)``,
+    ``forced_end`` ``(size, 3)``, the other two ``(4, SUBSTEPS)``; ``size`` is `_BLOCK`.
     """
 
     history: FloatArray
     free: FloatArray
     forced: FloatArray
+    free_end: FloatArray
+    forced_end: FloatArray
     position: FloatArray
     velocity: FloatArray
 
@@ -258,14 +290,27 @@ def _lift(servo: Servo, past: int) -> _Lifted:
     a = closed_loop(servo)[0]
     b = sample_plant(servo, servo.sample_time).input
     powers = _powers_times(a, np.column_stack([np.eye(3), b]), _BLOCK + 1)
-    response = np.concatenate([powers[:_BLOCK, :, 3], np.zeros((1, 3))])  # last row: before the input
-    lag = np.arange(_BLOCK + 1)[:, None] - 1 - np.arange(_BLOCK)
+    free = np.zeros((3, _BLOCK, 4))
+    free[..., :3] = powers[:-1, :, :3].transpose(2, 0, 1)
+    forced = np.zeros((_BLOCK, _BLOCK, 4))
+    for i in range(_BLOCK):
+        forced[i, i + 1 :, :3] = powers[: _BLOCK - 1 - i, :, 3]
+        forced[i, i, 3] = 1.0
+    # between the samples the reference u = f - K p is held, so the plant alone decides
     plants = [sample_plant(servo, servo.sample_time * s / SUBSTEPS) for s in range(SUBSTEPS)]
-    position, velocity = (np.array([[*plant.transition[i], plant.input[i]] for plant in plants]) for i in (2, 1))
+    feedback = np.array([0.0, 0.0, servo.position_gain])
+    lead = servo.velocity_feedforward / servo.sample_time
+    response = _powers_times(a, b[:, None], past + 1)[::-1, :, 0]  # to f, the earliest first
+    position, velocity = (
+        np.array([[*(plant.transition[i] - plant.input[i] * feedback), plant.input[i]] for plant in plants]).T.copy()
+        for i in (2, 1)
+    )
     return _Lifted(
-        history=_powers_times(a, b[:, None], past)[::-1, :, 0].T,
-        free=powers[:, :, :3].reshape(-1, 3),
-        forced=response[np.where(lag < 0, _BLOCK, lag)].transpose(0, 2, 1).reshape(-1, _BLOCK),
+        history=(servo.position_gain + lead) * response[1:] - lead * np.append(response[2:], np.zeros((1, 3)), axis=0),
+        free=free.reshape(3, -1),
+        forced=forced.reshape(_BLOCK, -1),
+        free_end=powers[-1, :, :3].T.copy(),
+        forced_end=powers[_BLOCK - 1 :: -1, :, 3].copy(),
         position=position,
         velocity=velocity,
     )
@@ -281,33 +326,33 @@ def _powers_times(transition: FloatArray, start: FloatArray, length: int) -> Flo
     return found[:length]
 
 
-def _states(lifted: _Lifted, drive: FloatArray, past: int) -> FloatArray:
-    """State of the closed loop at the samples after the first ``past``, from rest at the first.
+def _loop(lifted: _Lifted, servo: Servo, command: FloatArray) -> FloatArray:
+    """State and input of the closed loop at the samples after its memory, from rest before it.
 
     All blocks and phases take one matrix product together; only the first states of the blocks depend on each other.
 
     Parameters
     ----------
-    drive
-        Input of the closed loop ``f[k] = K c[k] + alpha (c[k] - c[k-1]) / dT`` (m/s), shape ``(samples, phases)``.
-    past
-        Samples before the first state wanted.
+    command
+        The command at the samples ``c[k]`` (m), memory first, shape ``(samples, phases)``.
 
     Returns
     -------
     ndarray
-        Shape ``(samples - past, 3, phases)``.
+        ``(z, f)`` with ``f[k] = K c[k] + alpha (c[k] - c[k-1]) / dT`` (m/s), shape ``(phases, samples - past, 4)``.
     """
-    phases = drive.shape[1]
-    wanted = len(drive) - past
+    past = len(lifted.history)
+    phases, wanted = command.shape[1], len(command) - past
     blocks = -(-wanted // _BLOCK)
-    padded = np.zeros((blocks * _BLOCK, phases))
-    padded[:wanted] = drive[past:]
-    forced = lifted.forced @ padded.reshape(blocks, _BLOCK, phases)
-    found = np.empty((blocks, _BLOCK, 3, phases))
-    state = lifted.history @ drive[:past]
-    for block in range(blocks):
-        states = (lifted.free @ state + forced[block]).reshape(_BLOCK + 1, 3, phases)
-        found[block] = states[:_BLOCK]
-        state = states[_BLOCK]
-    return found.reshape(blocks * _BLOCK, 3, phases)[:wanted]
+    lead = servo.velocity_feedforward / servo.sample_time
+    inputs = np.zeros((phases, blocks * _BLOCK))
+    inputs[:, :wanted] = ((servo.position_gain + lead) * command[past:] - lead * command[past - 1 : -1]).T
+    inputs = inputs.reshape(-1, _BLOCK)
+    ends = (inputs @ lifted.forced_end).reshape(phases, blocks, 3)
+    first = np.empty((phases, blocks, 3))
+    first[:, 0] = command[:past].T @ lifted.history
+    for block in range(1, blocks):
+        first[:, block] = first[:, block - 1] @ lifted.free_end + ends[:, block - 1]
+    found = inputs @ lifted.forced
+    found += first.reshape(-1, 3) @ lifted.free
+    return found.reshape(phases, -1, 4)[:, :wanted]

@@ -80,7 +80,7 @@ def answer(result: BentDrawing, programs: Sequence[Path], files: Sequence[Path])
     return {
         "outlines": len(result.outlines),
         "bends": sum(outline.plan.bends for outline in result.outlines),
-        "length_mm": sum(1e3 * outline.proof.rule_length for outline in result.outlines),
+        "length_mm": sum(int(outline.program.feeds.sum()) for outline in result.outlines) / 1e3,
         "deviation_mm": max(1e3 * outline.proof.deviation for outline in result.outlines),
         "chord_error_mm": max(1e3 * outline.plan.chord_error for outline in result.outlines),
         "closing_error_mm": 1e3 * max(closing) if closing else None,

@@ -10,13 +10,14 @@ from typing import Any
 
 import numpy as np
 
-from camwright.bending.dxf_entities import MOST_SEGMENTS, Piece, piece_of, walk
+from camwright.bending.dxf_entities import MOST_SEGMENTS, Piece, piece_of, require_bounded, walk
 from camwright.bending.dxf_guard import MOST_ENTITIES, look_at
 from camwright.bending.job import UNITS
 from profiles.bender.outline import Outline
 from profiles.errors import InputError, MissingExtraError
 
 _DEEPEST = 8
+_MOST_UNFOLDED = MOST_ENTITIES
 _MOST_FAULTS = 20
 _INSUNITS = {1: UNITS["in"], 2: UNITS["ft"], 4: UNITS["mm"], 5: UNITS["cm"], 6: UNITS["m"]}
 _AROUND = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1)]
@@ -72,7 +73,8 @@ def read_drawing(
     faults: list[str] = []
     ignored: Counter[str] = Counter()
     try:
-        for entity, own in walk(document.modelspace(), MOST_ENTITIES, _DEEPEST):
+        require_bounded(document, _MOST_UNFOLDED, _DEEPEST)
+        for entity, own in walk(document.modelspace()):
             if layer is not None and own.casefold() != layer.casefold():
                 continue
             entry = layers.get(own.casefold())

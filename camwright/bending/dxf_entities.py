@@ -190,35 +190,49 @@ _READERS: dict[str, Callable[[Any, float], tuple[Any, Any]]] = {
 }
 
 
-def walk(layout: Any, budget: int, depth: int) -> Iterator[tuple[Any, str]]:
-    """Go through a layout's entities, those inside block references too, each with the layer it appears on.
+def require_bounded(document: Any, most: int, depth: int) -> None:
+    """Refuse a drawing whose block references unfold to too much, before any of them is unfolded.
 
     Raises
     ------
     InputError
-        References nested deeper than ``depth``, or more than ``budget`` entities in all.
+        References nested deeper than ``depth``, or more than ``most`` entities in all.
     """
-    count = 0
-    stack: list[tuple[Iterator[Any], str, int]] = [(iter(layout), "0", 0)]
-    while stack:
-        entities, layer, level = stack[-1]
-        entity = next(entities, None)
-        if entity is None:
-            stack.pop()
-            continue
-        count += 1
-        if count > budget:
-            raise InputError(f"block references unfold to more than {budget} entities; explode or purge them")
-        own = entity.dxf.layer if entity.dxf.layer != "0" or level == 0 else layer
+    sizes: dict[tuple[str, int], int] = {}
+
+    def size(layout: Any, name: str, level: int) -> int:
+        if (name, level) not in sizes:
+            total = 0
+            for entity in layout:
+                if entity.dxftype() != "INSERT":
+                    total += 1
+                    continue
+                if level == depth:
+                    raise InputError(f"{describe(entity)}: blocks are nested more than {depth} deep; explode them")
+                inner = document.blocks.get(entity.dxf.name)
+                if inner is not None:
+                    total += max(1, entity.mcount) * size(inner, entity.dxf.name, level + 1)
+            sizes[name, level] = total
+        return sizes[name, level]
+
+    if size(document.modelspace(), "", 0) > most:
+        raise InputError(f"block references unfold to more than {most} entities; purge what is no die line")
+
+
+def walk(layout: Any, layer: str | None = None) -> Iterator[tuple[Any, str]]:
+    """Go through a layout's entities, those inside block references too, each with the layer it appears on.
+
+    Parameters
+    ----------
+    layout
+        Model space, or the entities of a block reference in their places.
+    layer
+        Layer of that reference, which the block's entities on layer 0 take; ``None`` in model space.
+    """
+    for entity in layout:
+        own = layer if layer is not None and entity.dxf.layer == "0" else entity.dxf.layer
         if entity.dxftype() != "INSERT":
             yield entity, own
-        elif level == depth:
-            raise InputError(f"{describe(entity)}: blocks are nested more than {depth} deep; explode them")
-        else:
-            stack.append((_members(entity), own, level + 1))
-
-
-def _members(insert: Any) -> Iterator[Any]:
-    """Entities of a block reference in their places, one for each cell of an array of references."""
-    for cell in insert.multi_insert() if insert.mcount > 1 else (insert,):
-        yield from cell.virtual_entities()
+            continue
+        for cell in entity.multi_insert() if entity.mcount > 1 else (entity,):
+            yield from walk(cell.virtual_entities(), own)

@@ -28,6 +28,8 @@ def draw(outline: BentOutline, directory: Path, name: str) -> None:
 
     with mpl.rc_context(_STYLE):
         for kind, figure in (("proof", _proof_figure(outline)), ("times", _times_figure(outline))):
+            figure.draw_without_rendering()
+            figure.set_layout_engine("none")  # laid out once for both files
             figure.savefig(directory / f"{name}-{kind}.svg", metadata={"Date": None, "Creator": None})
             figure.savefig(directory / f"{name}-{kind}.png", dpi=150, metadata={"Software": None})
 

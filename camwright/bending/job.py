@@ -155,9 +155,9 @@ def load_bender(path: Path | None = None) -> BenderJob:
         )
     drive = BenderDrive(feed_limits, mould_limits, finger, play)
     return BenderJob(
-        name, thickness, height, least_radius, hardness, divide, springback, greatest, least_turn,
-        least_step, drive, envelope, servo, feed_window, mould_window, gap, flattening, None if units == "none" else units, flavour, numbering, warnings,
-        hashlib.sha256(text.encode()).hexdigest(),
+        name, thickness, height, least_radius, hardness, divide, springback, greatest, least_turn, least_step, drive,
+        envelope, servo, feed_window, mould_window, gap, flattening, None if units == "none" else units, flavour,
+        numbering, warnings, hashlib.sha256(text.encode()).hexdigest(),
     )  # fmt: skip
 
 

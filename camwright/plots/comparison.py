@@ -14,6 +14,10 @@ from camwright.plots.style import LIMIT, LINES, WIDTH, title
 
 _BASELINE = "#b5b5b5"
 _UNBOUNDED_HATCH = "xxxx"
+_BEYOND_HATCH = "////"
+_BEYOND = 1e-9
+"""Part of a limit by which rounding may exceed it."""
+
 _FAR = 4.0
 """A limit is drawn as a line if it is at most this many times the longest bar, else named in words."""
 
@@ -56,11 +60,14 @@ def bars_figure(comparison: Comparison) -> Figure:
         handles=[
             Patch(facecolor=LINES["optimised"]["color"], label="optimised"),
             Patch(facecolor=_BASELINE, label="baseline"),
-            Patch(facecolor="white", edgecolor="#777777", hatch=_UNBOUNDED_HATCH, linewidth=0.5, label="unbounded or none"),
+            Patch(facecolor=_BASELINE, edgecolor="black", hatch=_BEYOND_HATCH, linewidth=0.0, label="beyond the limit"),
+            Patch(
+                facecolor="white", edgecolor="#777777", hatch=_UNBOUNDED_HATCH, linewidth=0.5, label="unbounded or none"
+            ),
             Line2D([], [], label="limit of the drive", **LIMIT),
         ],
         loc="outside lower center",
-        ncols=4,
+        ncols=5,
     )
     return figure
 
@@ -81,7 +88,17 @@ def _bars(axes: Axes, names: Sequence[str], values: Sequence[float | None], limi
             axes.text(0.5 * width, i, without, ha="center", va="center", fontsize=6.5,
                       bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8})  # fmt: skip
         else:
-            axes.barh(i, value, 0.66, color=LINES["optimised"]["color"] if name == "optimised" else _BASELINE)
+            beyond = limit is not None and value > limit * (1 + _BEYOND)
+            colour = LINES["optimised"]["color"] if name == "optimised" else _BASELINE
+            axes.barh(
+                i,
+                value,
+                0.66,
+                facecolor=colour,
+                edgecolor="black",
+                linewidth=0.0,
+                hatch=_BEYOND_HATCH if beyond else "",
+            )
             axes.text(value + 0.03 * width, i, f"{value:.4g}", ha="left", va="center", fontsize=6.5)
     axes.grid(visible=False)
     axes.tick_params(axis="y", length=0)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from matplotlib import style as matplotlib_style
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from camwright.comparison import Comparison
 from camwright.plots.comparison import bars_figure
@@ -55,6 +56,8 @@ def _written(draw: Callable[[], Figure], directory: Path, name: str) -> list[Pat
     vector, pixels = directory / f"{name}.svg", directory / f"{name}.png"
     with matplotlib_style.context(["default", RC]):
         figure = draw()
+        ConstrainedLayoutEngine().execute(figure)
+        figure.set_layout_engine("none")  # laid out once: each file would do it again
         figure.savefig(vector, metadata={"Date": None, "Creator": None})
         figure.savefig(pixels, metadata={"Software": None})
     return [vector, pixels]

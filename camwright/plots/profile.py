@@ -19,6 +19,9 @@ _POINTS = 48
 _FAR = 4.0
 """A limit is drawn as a line if it is at most this many times the greatest value drawn, else named in words."""
 
+_NOTHING = 1e-9
+"""Values below this part of a limit are rounding: the limits alone are drawn."""
+
 _ROOM = 1.18
 """Height of a panel, as a multiple of what it holds."""
 
@@ -46,7 +49,7 @@ def profile_figure(comparison: Comparison) -> Figure:
         for axes, order, factor in ((ratio, 1, 1.0), (acceleration, 2, v**2), (jerk, 3, v**3)):
             x, value = _curve(profile, order)
             axes.plot(x * 1e3, value * factor, **LINES[name])
-    _limits(ratio, (limits.least_velocity / v, limits.speed / v), ("0", "") if not limits.reversal else ("", ""))
+    _limits(ratio, (limits.least_velocity / v, limits.speed / v))
     _limits(acceleration, (-limits.acceleration, limits.acceleration))
     _limits(jerk, (-limits.jerk, limits.jerk))
     for name, profile in shown.items():
@@ -60,7 +63,7 @@ def profile_figure(comparison: Comparison) -> Figure:
     figure.align_ylabels()
     figure.suptitle(
         f"{comparison.job.name}: {cut.length * 1e3:g} mm at {v * 60:g} m/min, "
-        f"least {comparison.job.objective.replace('_', ' ')}".replace("rms", "RMS"),
+        f"least {comparison.job.objective.replace('_', ' ').replace('rms', 'RMS')}",
         fontsize=9.5,
     )
     _legend(figure, shown)
@@ -77,20 +80,21 @@ def _curve(profile: CamProfile, order: int) -> tuple[FloatArray, FloatArray]:
     return x.ravel(), value.ravel()
 
 
-def _limits(axes: Axes, bounds: tuple[float, float], names: tuple[str, str] = ("", "")) -> None:
+def _limits(axes: Axes, bounds: tuple[float, float]) -> None:
     """Mark limits as lines, or name those that lie far beyond all that is drawn; leave room around the curves."""
     values = np.concatenate([np.asarray(line.get_ydata(), dtype=float) for line in axes.lines])
     least, greatest = float(values.min()), float(values.max())
-    reach = max(abs(least), abs(greatest)) or bounds[1]
+    reach = max(abs(least), abs(greatest))
+    if reach <= _NOTHING * bounds[1]:
+        reach = bounds[1]
     drawn = [bound for bound in bounds if abs(bound) <= _FAR * reach]
     least, greatest = min([least, *drawn]), max([greatest, *drawn])
     middle, half = 0.5 * (least + greatest), 0.5 * (greatest - least) * _ROOM
     axes.set_ylim(middle - half, middle + half)
     for bound in drawn:
         axes.axhline(bound, **LIMIT)
-    del names
-    if len(drawn) < 2 and abs(bounds[1]) > _FAR * reach:
-        text = f"limit {bounds[1]:g}: off scale" if len(drawn) else f"limits ±{bounds[1]:g}: off scale"
+    if bounds[1] > _FAR * reach:
+        text = f"limit {bounds[1]:g}: off scale" if drawn else f"limits ±{bounds[1]:g}: off scale"
         axes.text(0.995, 0.96, text, transform=axes.transAxes, ha="right", va="top", fontsize=7)
 
 
@@ -127,7 +131,9 @@ def _arrow(axes: Axes, name: str, x: float, *, up: bool) -> None:
 
 
 def _legend(figure: Figure, shown: dict[str, CamProfile]) -> None:
-    handles: list[Line2D | Patch] = [Line2D([], [], label=title(name), **LINES[name]) for name in LINES if name in shown]
+    handles: list[Line2D | Patch] = [
+        Line2D([], [], label=title(name), **LINES[name]) for name in LINES if name in shown
+    ]
     handles += [
         Line2D([], [], label="limit of the drive", **LIMIT),
         Patch(facecolor=SYNC_COLOUR, label="sync zone"),

@@ -1,4 +1,4 @@
-"""The servo figure: the axis against the ideal sync line, and the sync error over the sync zone, at every sampling phase."""
+"""The servo figure: the axis against the ideal sync line, and the sync error over the sync zone, at every phase."""
 
 from __future__ import annotations
 
@@ -63,31 +63,27 @@ def servo_figure(comparison: Comparison, runs: Mapping[str, ServoRun]) -> Figure
         for sign in (-1.0, 1.0):
             axes.axhline(sign * job.cut.sync_tolerance * 1e3, **LIMIT)
         axes.set_ylabel("sync error (mm)")
-    whole.set_title("axis minus ideal sync line")
+    whole.set_title(
+        "axis minus ideal sync line\n" + _findings([(title(name), comparison[name].response) for name in AXES])
+    )
     close.set_title("the same, close to the tolerance")
     close.set_ylim(-_CLOSE * job.cut.sync_tolerance * 1e3, _CLOSE * job.cut.sync_tolerance * 1e3)
     close.set_xlim(0.0, zone * 1e3)
     close.set_xlabel("master from the start of the sync zone (mm)")
-    _findings(whole, [(title(name), comparison[name].response) for name in AXES])
     servo = job.servo
     figure.suptitle(
-        f"{job.name}: the servo at {job.cut.line_speed * 60:g} m/min "
+        f"{job.name}: the servo at {job.cut.line_speed * 60:g} m/min, all {runs[AXES[0]].phases} sampling phases\n"
         f"(ω = {servo.bandwidth:g} rad/s, ζ = {servo.damping:g}, K = {servo.position_gain:g} 1/s, "
-        f"ΔT = {servo.sample_time * 1e3:g} ms, α = {servo.velocity_feedforward:g}), {runs[AXES[0]].phases} sampling phases",
+        f"ΔT = {servo.sample_time * 1e3:g} ms, α = {servo.velocity_feedforward:g})",
         fontsize=8.5,
     )
     _legend(figure)
     return figure
 
 
-def _thin(name: str) -> dict[str, Any]:
-    """Line style of one sampling phase among many."""
-    return {**LINES[name], "linewidth": 0.6, "alpha": 0.75}
-
-
-def _columns(values: FloatArray) -> FloatArray:
-    """Give one column a phase, as many points as a line needs."""
-    return values[:, :: max(1, values.shape[1] // _MOST_POINTS)].T
+def _phase(name: str, phase: int) -> dict[str, Any]:
+    """Line style of a sampling phase: the first in the profile's own, the others thin beside it."""
+    return LINES[name] if phase == 0 else {**LINES[name], "linestyle": "-", "linewidth": 0.4}
 
 
 def _meeting(axes: Axes, row: Measured, comparison: Comparison, run: ServoRun) -> None:
@@ -98,12 +94,12 @@ def _meeting(axes: Axes, row: Measured, comparison: Comparison, run: ServoRun) -
     last = _AFTER * cut.sync_zone
     origin = float(row.profile(start, outside="repeat"))
     shown = (run.master >= start + first) & (run.master <= start + last)
-    pieces = [np.nonzero(mask)[0] for mask in shown]
+    pieces = [np.nonzero(row_shown)[0] for row_shown in shown]
     axes.plot([first * 1e3, last * 1e3], [first * 1e3, last * 1e3], color="black", linewidth=0.9, zorder=1)
     for phase, index in enumerate(pieces):
         master, axis = (run.master[phase, index] - start) * 1e3, (run.axis[phase, index] - origin) * 1e3
-        axes.plot(_stride(master), _stride(axis), **_thin(row.name))
-    index = pieces[0]
+        axes.plot(_stride(master), _stride(axis), **_phase(row.name, phase))
+    index = pieces[0]  # the command is the same at every phase
     axes.plot(
         _stride((run.master[0, index] - start) * 1e3),
         _stride((run.command[0, index] - origin) * 1e3),
@@ -121,6 +117,7 @@ def _meeting(axes: Axes, row: Measured, comparison: Comparison, run: ServoRun) -
 
 
 def _stride(values: FloatArray) -> FloatArray:
+    """Take as many points as a line needs."""
     return values[:: max(1, len(values) // _MOST_POINTS)]
 
 
@@ -129,18 +126,19 @@ def _errors(axes: Axes, row: Measured, comparison: Comparison, run: ServoRun) ->
     job = comparison.job
     start = job.cut.return_start + job.cut.return_zone
     master, error, _ = sync_error(run, row.profile, job.machine, job.cut, start, start + job.cut.sync_zone)
-    axes.plot(_columns(master - start) * 1e3, _columns(error) * 1e3, **_thin(row.name))
+    for phase in range(run.phases):
+        axes.plot(_stride(master[phase] - start) * 1e3, _stride(error[phase]) * 1e3, **_phase(row.name, phase))
     colour = LINES[row.name]["color"]
     crossing, settling = row.response.crossing, row.response.settling
     if crossing is not None:
         axes.plot([crossing * 1e3], [0.0], color=colour, linestyle="none", **_CROSSING)
     if settling is not None:
-        tolerance = job.cut.sync_tolerance * 1e3
-        axes.plot([settling * 1e3], [tolerance], color=colour, linestyle="none", **_SETTLING)
+        there = [float(np.interp(settling, x - start, y)) for x, y in zip(master, error, strict=True)]
+        axes.plot([settling * 1e3], [max(there, key=abs) * 1e3], color=colour, linestyle="none", **_SETTLING)
 
 
-def _findings(axes: Axes, rows: list[tuple[str, ServoResponse]]) -> None:
-    """Write crossing, overshoot and settling length of each profile into the panel."""
+def _findings(rows: list[tuple[str, ServoResponse]]) -> str:
+    """Write crossing, overshoot and settling length of each profile, one a line."""
     lines = []
     for name, response in rows:
         crossing, settling = response.crossing, response.settling
@@ -150,10 +148,7 @@ def _findings(axes: Axes, rows: list[tuple[str, ServoResponse]]) -> None:
             + f", overshoot {response.overshoot * 1e3:.2f} mm, "
             + ("not settled in the zone" if settling is None else f"settled after {settling * 1e3:.1f} mm")
         )
-    axes.text(
-        0.985, 0.06, "\n".join(lines), transform=axes.transAxes, ha="right", va="bottom", fontsize=7.5, linespacing=1.5,
-        bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 2.0},
-    )  # fmt: skip
+    return "\n".join(lines)
 
 
 def _legend(figure: Figure) -> None:

@@ -1,4 +1,4 @@
-"""The look of all figures: sizes, colours and line styles that hold up in black and white, and the marks of the zones."""
+"""The look of all figures: sizes, colours, line styles that hold up in black and white, and the marks of zones."""
 
 from __future__ import annotations
 
@@ -18,6 +18,8 @@ RC: dict[str, Any] = {
     "axes.labelsize": 8,
     "axes.linewidth": 0.6,
     "axes.titlesize": 8.5,
+    "figure.constrained_layout.w_pad": 0.06,
+    "figure.dpi": 200,
     "font.family": "DejaVu Sans",
     "font.size": 8,
     "grid.color": "#e4e4e4",
@@ -25,7 +27,6 @@ RC: dict[str, Any] = {
     "hatch.linewidth": 0.5,
     "legend.fontsize": 8,
     "legend.frameon": False,
-    "savefig.dpi": 200,
     "svg.hashsalt": "camwright",
     "xtick.labelsize": 7.5,
     "ytick.labelsize": 7.5,

@@ -91,16 +91,16 @@ class BoxTree:
         regions, sides = [np.zeros(0, dtype=np.int64)], [np.zeros(0, dtype=np.int64)]
         while todo:
             level, q, node = todo.pop()
-            low, high = self.low[level][node], self.high[level][node]
             keep = (node << level) < before[q]
-            keep &= low[:, 0] <= high[:, 0]
-            q, node, low, high = q[keep], node[keep], low[keep], high[keep]
-            alive = np.ones(len(q), dtype=np.bool_)
+            keep &= self.low[level][node, 0] <= self.high[level][node, 0]
+            q, node = q[keep], node[keep]
+            low, high = self.low[level], self.high[level]
             for h in range(offsets.shape[1]):
-                n = normals[q, h]
-                nearest = np.where(n > 0, low, high)
-                alive &= (n * nearest).sum(axis=1) <= offsets[q, h]
-            q, node = q[alive], node[alive]
+                nx, ny = normals[q, h, 0], normals[q, h, 1]
+                nearest = nx * np.where(nx > 0, low[node, 0], high[node, 0])
+                nearest += ny * np.where(ny > 0, low[node, 1], high[node, 1])
+                reaching = nearest <= offsets[q, h]
+                q, node = q[reaching], node[reaching]
             if level == 0:
                 regions.append(q)
                 sides.append(node)

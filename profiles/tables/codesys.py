@@ -6,8 +6,9 @@ import numpy as np
 
 from profiles.polynomial import CamProfile
 from profiles.tables.cam_table import CamTable, PieceLaw, make_table
-from profiles.tables.interpolation import chords, cyclic_spline, quintics
+from profiles.tables.interpolation import chords, quintics
 from profiles.tables.number_formats import literal
+from profiles.tables.splines import cyclic_spline
 from profiles.tables.structured_text import (
     Call,
     Declaration,
@@ -125,7 +126,7 @@ def rebuild(table: CamTable) -> CamProfile:
     """Quintics between XYVA points; between XY points chords, or with cubic interpolation a spline."""
     if all(law == "line" for law in table.laws) and np.isnan(table.ratio).all():
         return chords(table)
-    return cyclic_spline(table) if "spline" in table.laws else quintics(table)
+    return cyclic_spline(table.x, table.y) if "spline" in table.laws else quintics(table)
 
 
 def write_builder(table: CamTable, header: Header) -> dict[str, str]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 
 from profiles.errors import InputError
@@ -9,11 +11,13 @@ from profiles.polynomial import CamProfile
 from profiles.tables.cam_csv import read_cam_csv
 from profiles.tables.cam_csv import rebuild as rebuild_rows
 from profiles.tables.cam_table import CamTable, Unit, Units, make_table
+from profiles.tables.splines import cyclic_spline
 from profiles.tables.target import Header, Target
-from profiles.tables.text import check_count, lines_of
+from profiles.tables.text import check_ascending, check_count, lines_of, real, refuse
 
 MOST_POINTS = 32_767
 
+_PLAIN = re.compile(r"\s*[-+.0-9][-+.,0-9eE]{0,40}\s*[,;\t]\s*[-+.0-9][-+.,0-9eE]{0,40}\s*")
 _METRES = Units(Unit("m", 1.0), Unit("m", 1.0))
 
 
@@ -44,18 +48,42 @@ def write(table: CamTable, header: Header) -> dict[str, str]:
 
 
 def read(text: str, place: str) -> CamTable:
-    """Rows with or without derivatives; in metres, whatever the units of the file."""
-    lines_of(text, place)
+    """Rows with or without derivatives, in metres; or two columns of plain numbers without header and units."""
+    lines = lines_of(text, place)
+    first = next((line for line in lines if line.strip() and not line.lstrip().startswith("#")), "")
+    if _PLAIN.fullmatch(first):
+        return _plain(lines, place)
     rows = read_cam_csv(text, place)
     check_count(len(rows.x), 2, MOST_POINTS, place)
     law = "spline" if rows.dy is None else "quintic"
     return make_table(rows.x, rows.y, rows.dy, rows.d2y, law=law, units=_METRES)  # type: ignore[arg-type]
 
 
+def _plain(lines: list[str], place: str) -> CamTable:
+    """Two columns with ``;`` or a tab between, decimal point or comma; or with a comma between and a decimal point."""
+    x: list[float] = []
+    y: list[float] = []
+    numbers: list[int] = []
+    for number, line in enumerate(lines, start=1):
+        if not line.strip() or line.lstrip().startswith("#"):
+            continue
+        separator = next((sign for sign in ";\t" if sign in line), ",")
+        cells = line.strip().split(separator)
+        if len(cells) != 2:
+            raise refuse(place, number, f"the line has {len(cells)} values, not master and slave")
+        x.append(real(cells[0], place, number, comma=separator != ","))
+        y.append(real(cells[1], place, number, comma=separator != ","))
+        numbers.append(number)
+    check_count(len(x), 2, MOST_POINTS, place)
+    check_ascending(x, numbers, place)
+    note = "no derivatives and no units in the file: a cubic spline is assumed"
+    return make_table(x, y, law="spline", notes=(note,))
+
+
 def rebuild(table: CamTable) -> CamProfile:
     """Quintics through position, ratio and ratio slope; without derivatives a cyclic spline."""
     if np.isnan(table.ratio).any():
-        return rebuild_rows(table.x, table.y)
+        return cyclic_spline(table.x, table.y)
     return rebuild_rows(table.x, table.y, table.ratio, table.ratio_slope)
 
 

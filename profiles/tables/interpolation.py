@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from profiles.errors import InputError
-from profiles.polynomial import CamProfile, FloatArray
+from profiles.polynomial import CamProfile
 from profiles.tables.cam_table import CamTable
 from profiles.tables.number_formats import NumberFormat, rounded
 
@@ -61,30 +61,3 @@ def chords(table: CamTable) -> CamProfile:
     """Straight lines between the points."""
     slope = np.diff(table.y) / np.diff(table.x)
     return CamProfile(table.x.copy(), np.column_stack([table.y[:-1], slope]))
-
-
-def clamped_spline(x: FloatArray, y: FloatArray, start_slope: float, end_slope: float) -> CamProfile:
-    """Make the cubic spline, smooth to the second derivative, with given slopes at its ends."""
-    from scipy.interpolate import CubicSpline
-
-    spline = CubicSpline(x, y, bc_type=((1, start_slope), (1, end_slope)))
-    return CamProfile(x.copy(), np.ascontiguousarray(spline.c[::-1].T))
-
-
-def cyclic_spline(table: CamTable) -> CamProfile:
-    """Make the cubic spline, smooth to the second derivative, also across the seam of the repeated cycle.
-
-    Two points make a line, for there is nothing to bend.
-    """
-    if table.points == 2:
-        return chords(table)
-    from scipy.interpolate import CubicSpline
-
-    line = table.advance / table.period
-    level = table.y - line * (table.x - table.x[0])
-    level[-1] = level[0]
-    spline = CubicSpline(table.x, level, bc_type="periodic")
-    coefficients = np.ascontiguousarray(spline.c[::-1].T)
-    coefficients[:, 0] = table.y[:-1]
-    coefficients[:, 1] += line
-    return CamProfile(table.x.copy(), coefficients)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from profiles.errors import InputError
 from profiles.polynomial import CamProfile
 from profiles.tables.cam_table import CamTable, make_table
-from profiles.tables.interpolation import cyclic_spline
 from profiles.tables.number_formats import decimals
+from profiles.tables.splines import cyclic_spline
 from profiles.tables.target import Header, Target, companion
 from profiles.tables.text import check_ascending, check_count, lines_of, real, refuse, shown
 
@@ -72,7 +72,7 @@ def read(text: str, place: str) -> CamTable:
 
 def rebuild(table: CamTable) -> CamProfile:
     """Rebuild the cubic spline, smooth across the seam."""
-    return cyclic_spline(table)
+    return cyclic_spline(table.x, table.y)
 
 
 TARGET = Target(
@@ -81,7 +81,7 @@ TARGET = Target(
     interpolation="cubic spline, taken as cyclic",
     law="spline",
     placing="free",
-    max_points=MOST_POINTS,
+    max_points=None,
     number_format="float64",
     evidence=(
         "KAS online help, pages 'Import Cam Profile' (complete sample), 'Cam Profile Segments', 'Cam Table'. That "

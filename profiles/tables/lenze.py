@@ -59,7 +59,7 @@ TARGET = Target(
     interpolation="not documented; judged as straight lines",
     law="line",
     placing="free",
-    max_points=MOST_POINTS,
+    max_points=None,
     number_format="float64",
     evidence=(
         "File format with sample: Lenze manual 566345, p. 14. The interpolation and a limit of points are not given "

@@ -12,8 +12,9 @@ import numpy as np
 from profiles.errors import InputError
 from profiles.polynomial import CamProfile, join
 from profiles.tables.cam_table import CamTable, PieceLaw, make_table
-from profiles.tables.interpolation import clamped_spline, in_format, quintics
+from profiles.tables.interpolation import in_format, quintics
 from profiles.tables.number_formats import decimals
+from profiles.tables.splines import clamped_spline
 from profiles.tables.target import Header, Target, units_in
 from profiles.tables.text import check_ascending, check_count, integer, real, refuse, shown
 

@@ -7,8 +7,8 @@ import numpy as np
 from profiles.errors import InputError
 from profiles.polynomial import CamProfile
 from profiles.tables.cam_table import CamTable, make_table
-from profiles.tables.interpolation import clamped_spline
 from profiles.tables.number_formats import decimals
+from profiles.tables.splines import clamped_spline
 from profiles.tables.target import Header, Target, companion
 from profiles.tables.text import check_count, lines_of, real, refuse, shown
 
@@ -101,7 +101,7 @@ TARGET = Target(
     interpolation="cubic spline with given slopes at both ends, through evenly spaced values",
     law="spline",
     placing="equidistant",
-    max_points=MOST_POINTS,
+    max_points=None,
     number_format="float64",
     evidence=(
         "File format with sample: Machine Expert online help, Motion Sizer File Formats; that both ends are among the "

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from profiles.polynomial import CamProfile
 from profiles.tables.cam_table import CamTable, make_table
-from profiles.tables.interpolation import cyclic_spline
 from profiles.tables.number_formats import decimals
+from profiles.tables.splines import cyclic_spline
 from profiles.tables.target import Header, Target, companion
 from profiles.tables.text import check_ascending, check_count, integer, lines_of, real, refuse
 
@@ -50,7 +50,7 @@ def read(text: str, place: str) -> CamTable:
 
 def rebuild(table: CamTable) -> CamProfile:
     """Rebuild the spline of ``ST_PointsListSpline``."""
-    return cyclic_spline(table)
+    return cyclic_spline(table.x, table.y)
 
 
 TARGET = Target(

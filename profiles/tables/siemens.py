@@ -6,8 +6,9 @@ from itertools import pairwise
 
 from profiles.polynomial import CamProfile
 from profiles.tables.cam_table import CamTable, make_table
-from profiles.tables.interpolation import cyclic_spline, quintics
+from profiles.tables.interpolation import quintics
 from profiles.tables.number_formats import literal
+from profiles.tables.splines import cyclic_spline
 from profiles.tables.structured_text import Assignment, Program, Struct, Value, number_of, only, parse, structs_of
 from profiles.tables.target import Header, Target, slash_comments, units_in
 from profiles.tables.text import check_ascending, check_count, refuse, shown
@@ -107,7 +108,7 @@ def _assigned(assignments: tuple[Assignment, ...], known: set[str], place: str) 
 
 def rebuild(table: CamTable) -> CamProfile:
     """Quintics between basic points; through point data a spline with equal slopes at both ends."""
-    return cyclic_spline(table) if "spline" in table.laws else quintics(table)
+    return cyclic_spline(table.x, table.y) if "spline" in table.laws else quintics(table)
 
 
 _LOADING = (

@@ -6,8 +6,9 @@ import numpy as np
 
 from profiles.polynomial import CamProfile
 from profiles.tables.cam_table import CamTable, PieceLaw, make_table
-from profiles.tables.interpolation import cyclic_spline, quintics
+from profiles.tables.interpolation import quintics
 from profiles.tables.number_formats import literal
+from profiles.tables.splines import cyclic_spline
 from profiles.tables.structured_text import Program, Struct, Value, Word, number_of, parse
 from profiles.tables.target import Header, Target, slash_comments, units_in
 from profiles.tables.text import check_ascending, check_count, refuse, shown
@@ -176,7 +177,7 @@ def _point_type(value: Value | None, place: str, line: int) -> int:
 
 def rebuild(table: CamTable) -> CamProfile:
     """Lines on POLYNOM1, quintics on POLYNOM5_MM; a spline through a position table."""
-    return cyclic_spline(table) if "spline" in table.laws else quintics(table)
+    return cyclic_spline(table.x, table.y) if "spline" in table.laws else quintics(table)
 
 
 def write_positions(table: CamTable, header: Header) -> dict[str, str]:

@@ -351,8 +351,8 @@ def test_an_unknown_layout_or_target_is_refused() -> None:
 # -- fuzzing
 
 PIECES = """( ) [ ] := := ; , .. : . # // (* *) { } ' " = < > <Tag </Tag> dX dY a[1].MasterPos p 1 0 -1 2.5 1e3 1e999
-16#F ARRAY OF [0..1] SMC_CAMXYVA MC_MotionFunctionPoint LREAL# 3( Append Poly5 Bound TABLE( Begintable EndTable CamPoints
-SPLINE CYCLIC;YES; Lines Tabletype ٣ é"""
+16#F ARRAY OF [0..1] SMC_CAMXYVA MC_MotionFunctionPoint LREAL# 3( Append Poly5 Bound TABLE( Begintable EndTable
+CamPoints SPLINE CYCLIC;YES; Lines Tabletype ٣ é"""
 WORDS = st.sampled_from([*PIECES.split(), "\n", "\t", "\u2028"])
 
 

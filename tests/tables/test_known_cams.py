@@ -7,7 +7,8 @@ import pytest
 from numpy.polynomial import Polynomial
 
 from profiles.tables.cam_table import make_table
-from profiles.tables.interpolation import clamped_spline, cyclic_spline, quintics
+from profiles.tables.interpolation import quintics
+from profiles.tables.splines import clamped_spline, cyclic_spline
 from profiles.tables.targets import TARGETS, detect
 from profiles.tables.text import decode
 
@@ -254,6 +255,26 @@ def test_a_written_zebra_table_comes_back() -> None:
     assert back.laws == ("quintic", "line")
 
 
+@pytest.mark.parametrize("points", [2, 3, 4, 5, 12, 200])
+def test_splines_against_scipy(points: int) -> None:
+    from scipy.interpolate import CubicSpline
+
+    rng = np.random.default_rng(points)
+    x = np.cumsum(rng.uniform(0.1, 1, points))
+    y = rng.uniform(0, 1, points)
+    dense = np.linspace(x[0], x[-1], 999)
+    theirs = CubicSpline(x, y, bc_type=((1, 0.5), (1, -2.0)))
+    for order in range(3):
+        assert clamped_spline(x, y, 0.5, -2.0)(dense, order) == pytest.approx(theirs(dense, order), abs=1e-9)
+    if points > 2:
+        y[-1] = y[0]
+        theirs = CubicSpline(x, y, bc_type="periodic")
+        for order in range(3):
+            assert cyclic_spline(x, y)(dense, order) == pytest.approx(theirs(dense, order), abs=1e-9)
+    else:
+        assert cyclic_spline(x, y)(dense, 1) == pytest.approx((y[1] - y[0]) / (x[1] - x[0]))
+
+
 def test_splines_against_their_conditions() -> None:
     rng = np.random.default_rng(3)
     x = np.cumsum(rng.uniform(0.1, 1, 12))
@@ -261,7 +282,7 @@ def test_splines_against_their_conditions() -> None:
     clamped = clamped_spline(x, y, 0.3, -0.7)
     assert clamped(x) == pytest.approx(y)
     assert [float(clamped(x[0], 1)), float(clamped(x[-1], 1))] == pytest.approx([0.3, -0.7])
-    cyclic = cyclic_spline(make_table(x, y))
+    cyclic = cyclic_spline(x, y)
     for order in (0, 1, 2):
         assert cyclic.jumps(order) == pytest.approx(np.zeros(11), abs=1e-11)
     assert cyclic.advance == pytest.approx(y[-1] - y[0])
@@ -274,3 +295,12 @@ def test_a_quintic_against_its_conditions() -> None:
         for order, column in enumerate((table.y, table.ratio, table.ratio_slope)):
             for side in ("left", "right"):
                 assert rebuilt(x, order, side=side) == pytest.approx(column[k])  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("text", ["0,0\n1.5,2\n3,3\n", "# mine\n0;0\n1,5;2\n3;3", "0\t0\n1,5\t2.0\n3\t3\n"])
+def test_two_plain_columns(text: str) -> None:
+    if "\t" not in text:
+        assert detect(text, "t").name == "csv"
+    table = TARGETS["csv"].read(text, "t")
+    assert (table.x.tolist(), table.y.tolist(), table.units) == ([0, 1.5, 3], [0, 2, 3], None)
+    assert TARGETS["csv"].rebuild(table).jumps(2) == pytest.approx([0, 0], abs=1e-12)

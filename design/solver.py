@@ -1,0 +1,249 @@
+"""The return between two sync zones: grid, structure, polish."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from design.ipopt import SolveStatus, programme
+from design.problem import Objective, ReturnProblem
+from design.scaling import ScaledProblem, motion_scale, scale_problem, unscale_profile
+from design.structure import extreme_motion, from_extreme, read_cubic, read_quintic, subdivide, tidy
+from design.transcription import PEAKS, Arc, Motion, Shape
+from profiles.errors import SolverError
+from profiles.polynomial import CamProfile, FloatArray
+from profiles.reach import DoubleS, greatest_reach
+
+# Intervals of the first look and of the fallback, by the degree of the acceleration. The structure, not the grid, decides the answer:
+# 40 intervals tell apart arcs of 1/40 of the return; 160 are 0.1 % from the optimum.
+COARSE = {1: 40, 3: 40}
+FINE = {1: 160, 3: 80}
+# Limits widened on the grid where a job leaves so little room that no motion on the grid keeps them.
+WIDER = 0.1
+# Where the limits leave less than this share of the way to spare, the extreme motion is the only one to within that share.
+NO_ROOM = 1e-8
+# Objectives that differ by less than this share are the same.
+SAME = 1e-7
+# By this share a polished answer may be above its grid's, by the degree of the acceleration: on the grid the solver widens limits by
+# 1e-8, which a mean square of the jerk shows enlarged.
+GRID_ERROR = {1: SAME, 3: 1e-5}
+# How often the arcs of a polished motion are looked at again.
+READINGS = 4
+# Largest share by which a limit may be exceeded by rounding; the contract says 1e-9.
+ALLOWED_EXCESS = 5e-10
+# Arcs of a polished motion shorter than this share of the return have vanished and get no grid of their own.
+LEAST_ARC = 1e-5
+# A deviation from the straight line below this share of the return's length is no motion at all.
+NO_MOTION = 1e-13
+
+
+def objective_value(back: CamProfile, objective: Objective) -> float:
+    """Objective of a return over the master: peak or root mean square of ``y''`` or ``y'''``, exactly."""
+    order = 2 if objective.endswith("acceleration") else 3
+    if objective.startswith("rms"):
+        return math.sqrt(back.mean_square(order))
+    least, greatest = back.extrema(order)
+    return max(-least.value, greatest.value, 0.0)
+
+
+def solve_return(problem: ReturnProblem) -> tuple[CamProfile, SolveStatus, int]:
+    """Solve the return between two sync zones.
+
+    Returns
+    -------
+    (profile, status, iterations)
+        The return over ``[0, length]`` from slave zero.
+
+    Raises
+    ------
+    SolverError
+        No grid gave an answer.
+    """
+    scale = motion_scale(problem)
+    if abs(scale) <= NO_MOTION * problem.length:
+        # The straight line is the answer: nothing is faster than its own mean, and it has no acceleration.
+        line = CamProfile.from_arrays([0.0, problem.length], [[0.0, problem.height / problem.length]])
+        return line, SolveStatus.OPTIMAL, 0
+    scaled = scale_problem(problem, scale)
+    profile, status, iterations = _solve_scaled(scaled)
+    return unscale_profile(profile, problem, scale), status, iterations
+
+
+def _solve_scaled(problem: ScaledProblem) -> tuple[CamProfile, SolveStatus, int]:
+    """Grid, structure, polish; the grids are tried in turn until a polished answer is at least as good as its grid's.
+
+    From rest to rest the extreme motion (a closed form) is feasible too. It is the answer where the limits leave no room, and
+    where the solver ends with something worse, at the edge of what double precision resolves.
+    """
+    extreme = extreme_motion(problem)
+    safe: CamProfile | None = None
+    if extreme is not None:
+        safe = tidy(from_extreme(extreme), problem).profile()
+        if _room(problem) < NO_ROOM:
+            return safe, SolveStatus.OPTIMAL, 0
+    iterations = 0
+    reached = math.inf  # the least objective on any grid: a polished answer must be as good
+    for lengths, relax in _grids(problem, extreme):
+        grid, success, used = _on_grid(problem, lengths, relax)
+        iterations += used
+        if not success:
+            continue
+        if relax == 0.0:
+            reached = min(reached, grid.objective)
+        polished, success, used = _polish(problem, grid)
+        iterations += used
+        if success and grid.degree > 1 and len(polished.lengths) > 1:
+            polished, finer, used = _read_again(problem, polished)
+            reached = min(reached, finer)
+            iterations += used
+        if success and polished.objective <= reached * (1 + GRID_ERROR[grid.degree]):
+            profile = tidy(polished, problem).profile()
+            if excess(profile, problem) <= ALLOWED_EXCESS:
+                return _better(profile, safe, problem), SolveStatus.OPTIMAL, iterations
+        if relax == 0.0:
+            profile = tidy(grid, problem).profile()
+            if excess(profile, problem) <= ALLOWED_EXCESS:
+                safe = _better(profile, safe, problem)
+    if safe is None:
+        raise SolverError(
+            f"IPOPT ({iterations} iterations) found no return that keeps the limits on any grid, although the job is not known to be "
+            f"infeasible; loosen the limit that is nearest to binding by 1 % and report this job"
+        )
+    return safe, SolveStatus.OPTIMAL if _extreme_is_optimal(problem) else SolveStatus.ON_GRID, iterations
+
+
+def _read_again(problem: ScaledProblem, polished: Motion) -> tuple[Motion, float, int]:
+    """Look at the arcs of a polished motion on grids of their own, until nothing new shows: arcs shorter than an interval come to light.
+
+    Returns
+    -------
+    (motion, reached, iterations)
+        The best polished motion, and the least objective on any of these grids.
+    """
+    iterations, reached = 0, math.inf
+    for _ in range(READINGS):
+        arcs = polished.lengths[polished.lengths > LEAST_ARC]
+        if len(arcs) < 2:
+            break
+        grid, success, used = _on_grid(problem, subdivide(arcs / arcs.sum(), COARSE[polished.degree]), 0.0)
+        iterations += used
+        if not success:
+            break
+        reached = min(reached, grid.objective)
+        again, success, used = _polish(problem, grid)
+        iterations += used
+        if not success or again.objective >= polished.objective * (1 - SAME):
+            break
+        polished = again
+    return polished, reached, iterations
+
+
+def _extreme_is_optimal(problem: ScaledProblem) -> bool:
+    return problem.objective in PEAKS and problem.rest_to_rest and not problem.confined
+
+
+def _better(profile: CamProfile, other: CamProfile | None, problem: ScaledProblem) -> CamProfile:
+    """Choose the other profile if its objective is less by more than what counts as the same."""
+    if other is None:
+        return profile
+    name = problem.objective
+    return other if objective_value(other, name) < objective_value(profile, name) * (1 - SAME) else profile
+
+
+def excess(profile: CamProfile, problem: ScaledProblem) -> float:
+    """Largest share by which a scaled profile exceeds a limit or misses its end, exactly."""
+    low, high = profile.extrema(1)
+    slope = max(abs(extremum.value) for extremum in profile.extrema(2))
+    jerk = max(abs(extremum.value) for extremum in profile.extrema(3))
+    room = max(problem.greatest_ratio, -problem.least_ratio)
+    return max(
+        (high.value - problem.greatest_ratio) / room,
+        (problem.least_ratio - low.value) / room,
+        slope / problem.greatest_slope - 1.0,
+        jerk / problem.greatest_jerk - 1.0,
+        abs(float(profile(1.0)) - problem.height),
+        _beyond(profile, problem),
+        abs(float(profile(1.0, 1)) - problem.end_ratio),
+    )
+
+
+def _beyond(profile: CamProfile, problem: ScaledProblem) -> float:
+    """How far the slave leaves the positions it may take (in units of the scaled height)."""
+    if not problem.confined:
+        return 0.0
+    low, high = profile.add_line(problem.drift).extrema(0)
+    return max(high.value - problem.greatest_position, problem.least_position - low.value)
+
+
+def _room(problem: ScaledProblem) -> float:
+    """Share by which the limits could move a rest-to-rest slave further than its height."""
+    far = greatest_reach(1.0, problem.greatest_ratio, problem.greatest_slope, problem.greatest_jerk)
+    return far / problem.height - 1.0
+
+
+def grid_objective(problem: ReturnProblem) -> float:
+    """Objective on the coarse grid alone, over the master: a few per cent above the optimum, smooth in the problem's numbers.
+
+    Infinite if no motion on the grid keeps the limits; root mean squares as such.
+    """
+    scale = motion_scale(problem)
+    if abs(scale) <= NO_MOTION * problem.length:
+        return 0.0
+    scaled = scale_problem(problem, scale)
+    count = COARSE[_degree(scaled)]
+    motion, success, _ = _on_grid(scaled, np.full(count, 1.0 / count), 0.0)
+    if not success:
+        return math.inf
+    value = motion.objective if problem.objective in PEAKS else math.sqrt(max(0.0, motion.objective))
+    return value * abs(scale) / problem.length ** (2 if problem.objective.endswith("acceleration") else 3)
+
+
+def _grids(problem: ScaledProblem, extreme: DoubleS | None) -> Iterator[tuple[FloatArray, float]]:
+    """Grids to try in turn, each with the share by which the limits are widened on it."""
+    degree = _degree(problem)
+    uniform = np.full(COARSE[degree], 1.0 / COARSE[degree])
+    yield uniform, 0.0
+    if extreme is not None:
+        yield subdivide(from_extreme(extreme).lengths, COARSE[degree]), 0.0
+    yield uniform, WIDER
+    yield np.full(FINE[degree], 1.0 / FINE[degree]), 0.0
+
+
+def _degree(problem: ScaledProblem) -> int:
+    """Degree of the acceleration that the optimum's pieces need: the least RMS jerk is a quintic, all else piecewise cubic."""
+    return 3 if problem.objective == "rms_jerk" else 1
+
+
+def _on_grid(problem: ScaledProblem, lengths: FloatArray, relax: float) -> tuple[Motion, bool, int]:
+    """Solve with given lengths of the pieces, starting from the quintic through the boundary values."""
+    degree = _degree(problem)
+    shape = Shape(("free",) * len(lengths), degree, False, problem.objective, problem.confined)
+    nodes = np.concatenate([[0.0], np.cumsum(lengths)])
+    x = np.interp(np.arange(len(lengths) * degree + 1) / degree, np.arange(len(lengths) + 1), nodes)
+    bend = 60 * x - 180 * x**2 + 120 * x**3
+    motion, statistics = programme(shape).solve(problem, Motion(lengths, problem.height * bend, 60.0), relax)
+    return motion, bool(statistics["success"]), int(statistics["iter_count"])
+
+
+def _polish(problem: ScaledProblem, grid: Motion) -> tuple[Motion, bool, int]:
+    """Solve for few pieces of unknown length, starting from the structure of a grid solution.
+
+    A quintic grid can be read in two ways; the second is taken where the first ends with something worse than the grid.
+    """
+    if grid.degree == 1:
+        return _polish_arcs(problem, *read_cubic(grid, problem))
+    best, success, iterations = _polish_arcs(problem, *read_quintic(grid, problem, touched=True))
+    if not success or best.objective > grid.objective * (1 + GRID_ERROR[grid.degree]):
+        other, also, used = _polish_arcs(problem, *read_quintic(grid, problem, touched=False))
+        iterations += used
+        if also and (not success or other.objective < best.objective):
+            best, success = other, True
+    return best, success, iterations
+
+
+def _polish_arcs(problem: ScaledProblem, start: Motion, arcs: tuple[Arc, ...]) -> tuple[Motion, bool, int]:
+    shape = Shape(arcs, start.degree, True, problem.objective, problem.confined)
+    motion, statistics = programme(shape).solve(problem, start)
+    return motion, bool(statistics["success"]), int(statistics["iter_count"])

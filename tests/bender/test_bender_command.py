@@ -1,0 +1,317 @@
+"""``camwright bend`` from the command line: programs, JSON keys, exit codes, calibration, sheets, the serial line."""
+
+import json
+import math
+import os
+import re
+import threading
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from camwright.bending.job import BUNDLED_BENDER, load_bender
+from camwright.bending.springback_file import BUNDLED
+from camwright.cli import main
+from profiles.bender.nc_code import read_program
+from profiles.errors import InputError
+
+Make = Callable[..., Path]
+STEP = [(0, 0), (22, 0), (22, 22), (34.5, 22)]
+EXAMPLE = Path(__file__).parents[2] / "examples" / "bender" / "carton.dxf"
+
+
+def run(capsys: pytest.CaptureFixture[str], *arguments: object) -> tuple[int, dict, str]:
+    code = main(["bend", *map(str, arguments), "--json"])
+    out, err = capsys.readouterr()
+    return code, json.loads(out), err
+
+
+def changed(tmp_path: Path, *changes: tuple[str, str]) -> Path:
+    text = BUNDLED_BENDER.read_text(encoding="utf-8")
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    path = tmp_path / "bender.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_fragment_of_the_paper_from_a_drawing(drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    path = drawing(lambda m, _: m.add_lwpolyline(STEP))
+    code, answer, _ = run(capsys, path, "--out", tmp_path / "out", "--no-figures")
+    assert code == 0
+    assert (answer["outlines"], answer["bends"], answer["length_mm"]) == (1, 2, 56.5)
+    assert answer["closing_error_mm"] is None
+    assert answer["program"] == str(tmp_path / "out" / "drawing.nc")
+    assert answer["deviation_mm"] == pytest.approx(0, abs=1e-9)
+    assert answer["cycle_time_s"] < 0.85 * answer["baseline_cycle_time_s"]
+    assert isinstance(answer["warnings"], list)
+    assert (
+        "N010 G01 G91 X22.000\nN011 G01 G90 Y90.000\nN012 G01 G90 Y0.0\nN013 G01 G91 X22.000\n"
+        "N014 G01 G90 Y270.000\nN015 G01 G90 Y0.0\nN016 G01 G91 X12.500\n"
+    ) in Path(answer["program"]).read_text()
+    assert sorted(file.name for file in (tmp_path / "out").iterdir()) == ["drawing-bends.csv", "drawing.nc"]
+
+
+def test_the_paper_s_arc_rule_by_job(drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    path = drawing(lambda m, _: m.add_circle((0, 0), 5.5))
+    job = changed(tmp_path, ('rule = "chord_error"', 'rule = "sides"'), ('chord_error = "0.05 mm"', "sides = 25"))
+    _, answer, _ = run(capsys, path, "--job", job, "--out", tmp_path / "out", "--no-figures")
+    assert answer["bends"] == 25
+    program = read_program(Path(answer["program"]).read_text())
+    assert abs(program.bends - 16_900).max() <= 2  # beta(5.5 mm) = 16.9°, rounding distributed
+    _, fewer, _ = run(capsys, path, "--out", tmp_path / "out", "--no-figures")
+    assert fewer["bends"] < 25
+
+
+def test_example_drawing_with_everything(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    code, answer, _ = run(capsys, EXAMPLE, "--out", tmp_path)
+    assert code == 0
+    assert answer["outlines"] == 3
+    assert answer["passed"]
+    assert answer["cycle_time_s"] < 0.85 * answer["baseline_cycle_time_s"]
+    assert answer["deviation_mm"] <= answer["chord_error_mm"] + 0.005
+    assert answer["closing_error_mm"] <= 0.010
+    files = {Path(file).name for file in answer["files"]}
+    assert {"carton-1.nc", "carton-1-bends.csv", "carton-1-proof.svg", "carton-1-times.png", "sheet.pdf"} <= files
+    assert all(Path(file).stat().st_size > 0 for file in answer["files"])
+    page = (tmp_path / "sheet.html").read_text(encoding="utf-8")
+    assert answer["programs"][0]["sha256"] in page
+    assert page.count("<svg") == 3
+    assert "http://" not in page.replace("http://www.w3.org", "").replace("http://purl.org", "").replace(
+        "http://creativecommons.org", ""
+    )
+    assert (tmp_path / "sheet.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_same_input_same_bytes(drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    path = drawing(lambda m, _: m.add_lwpolyline(STEP))
+    for name in ("a", "b"):
+        run(capsys, path, "--out", tmp_path / name)
+    for file in (tmp_path / "a").iterdir():
+        assert file.read_bytes() == (tmp_path / "b" / file.name).read_bytes(), file.name
+
+
+def test_names_are_escaped(drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    def draw(m, d):
+        d.layers.add("A&B'{{x}}#strong[y]")
+        m.add_lwpolyline(STEP, dxfattribs={"layer": "A&B'{{x}}#strong[y]"})
+
+    path = drawing(draw, name="a'b&c.dxf")
+    code, answer, _ = run(capsys, path, "--out", tmp_path / "out")
+    assert code == 0
+    page = (tmp_path / "out" / "sheet.html").read_text(encoding="utf-8")
+    assert "A&amp;B&#39;{{x}}#strong[y]" in page
+    assert Path(answer["program"]).name == "a'b&c.nc"
+    assert Path(answer["program"]).read_text().startswith("%A-B-C\n")
+
+
+def test_start_and_reverse(drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    path = drawing(lambda m, _: m.add_lwpolyline([(0, 0), (40, 0), (40, 20), (0, 20)], close=True))
+
+    def feeds(*more: str) -> list[int]:
+        _, answer, _ = run(capsys, path, "--out", tmp_path / "out", "--no-figures", *more)
+        program = read_program(Path(answer["program"]).read_text())
+        assert (program.bends < 0).all() == ("--reverse" in more)
+        return program.feeds.tolist()
+
+    assert feeds() == [40_000, 20_000, 40_000, 20_000]
+    assert feeds("--start", "39,1") == [20_000, 40_000, 20_000, 40_000]
+    assert feeds("--reverse") == [20_000, 40_000, 20_000, 40_000]
+
+
+def test_collisions_are_reported_by_line(drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    path = drawing(lambda m, _: m.add_lwpolyline([(0, 0), (100, 0), (100, 4), (-100, 4)]))
+    code, answer, _ = run(capsys, path, "--out", tmp_path / "out", "--no-figures")
+    assert code == 0
+    assert answer["collisions"] == 1
+    assert any("line N014 (bend 2): the part bent so far, side 1 from (0.000, 0.000) mm, meets the mould" in w
+               for w in answer["warnings"])  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("draw", "message"),
+    [
+        (
+            lambda m: m.add_lwpolyline([(0, 0), (20, 0), (20, 20), (10, -20)]),
+            r"LWPOLYLINE #2F on layer 0: the outline crosses itself at \(15.000, 0.000\) mm",
+        ),
+        (
+            lambda m: m.add_lwpolyline([(0, 0), (20, 0), (0, 0.01)]),
+            "LWPOLYLINE #2F on layer 0: bend 1 .* lies outside the springback table",
+        ),
+        (
+            lambda m: m.add_line((50, 0), (50, 0.02)),
+            "LINE #2F on layer 0: .* a feed of 0.020 mm is shorter than the machine's least step of 0.050 mm",
+        ),
+        (
+            lambda m: m.add_arc((0, 0), 0.3, 0, 90),
+            "ARC #2F on layer 0: segment 1: radius 0.300 mm is less than the rule's least radius 0.500 mm",
+        ),
+    ],
+)
+def test_what_the_bender_cannot_do(drawing: Make, tmp_path: Path, capsys, draw, message: str):
+    path = drawing(lambda m, _: draw(m))
+    code, answer, err = run(capsys, path, "--out", tmp_path / "out")
+    assert code == 2
+    assert answer["status"] == "error"
+    assert re.search(message, err)
+    assert str(path.name) in err
+    assert not (tmp_path / "out").exists()
+
+
+def test_beyond_the_mould_s_range(drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    path = drawing(lambda m, _: m.add_lwpolyline(STEP))
+    job = changed(tmp_path, ('greatest_angle = "175 deg"', 'greatest_angle = "60 deg"'))
+    code, _, err = run(capsys, path, "--job", job, "--out", tmp_path / "out")
+    assert code == 2
+    assert err.count("needs a mould angle of 90.000°, beyond the mould's range of 60.000°") == 2
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (('thickness = "0.71 mm"', "thickness = 0.71"), "[rule] thickness = 0.71: a number without a unit"),
+        (('gap = "0.01 mm"', 'gaps = "0.01 mm"'), "[drawing] gaps: there is no such key; did you mean gap?"),
+        (('gap = "0.01 mm"', 'gaps = "0.01 mm"'), "[drawing] gap: missing"),
+        (('hardness = "standard"', 'hardness = "soft"'), "no table for a rule of 0.71 mm, hardness 'soft'"),
+        (('flavour = "fagor"', 'flavour = "heidenhain"'), "flavour = 'heidenhain': not known; write one of fagor, iso"),
+        (('greatest_angle = "175 deg"', 'greatest_angle = "180 deg"'), "the mould turns by less than 180° to a side"),
+        (('table = "example"', 'table = "mine.toml"'), "mine.toml: there is no such springback table"),
+        (('["30 mm", "5 mm"]', '["30 mm", "1 mm"]'), "must be convex"),
+        (("damping = 0.8", "damping = 0"), "[servo] damping = 0: not a number above 0"),
+        (("first_line = 10", "first_line = 10.5"), "[program] first_line = 10.5: not a whole number"),
+        (('jerk = "1000 m/s^3"', 'jerk = "1000 m/s^2"'), "but a jerk is expected"),
+        (("[feed]", "[fed]"), "[feed]: missing; add the table [feed]"),
+        (('name = "example-bender"', "name = "), "not TOML"),
+    ],
+)  # fmt: skip
+def test_faults_of_the_bender_job(tmp_path: Path, change: tuple[str, str], message: str):
+    with pytest.raises(InputError) as error:
+        load_bender(changed(tmp_path, change))
+    assert message in str(error.value)
+    assert "bender.toml" in str(error.value) or "example.toml" in str(error.value) or "mine.toml" in str(error.value)
+
+
+def test_printed_table_warns_by_row_and_does_not_cover(
+    drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+):
+    job = changed(tmp_path, ('table = "example"', 'table = "paper-printed"'))
+    path = drawing(lambda m, _: m.add_lwpolyline([(0, 0), (20, 0), (40, 6)]))  # 16.7°
+    code, answer, _ = run(capsys, path, "--job", job, "--out", tmp_path / "out", "--no-figures")
+    assert code == 0
+    assert any("paper-printed: angle table, row 2" in text and "under-bends" in text for text in answer["warnings"])
+    gamma = math.degrees(math.atan2(6, 20))
+    program = read_program(Path(answer["program"]).read_text())
+    assert program.bends[0] / 1e3 == pytest.approx(16.8 + 0.14 * (gamma - 15), abs=1e-3)
+    code, _, err = run(capsys, drawing(lambda m, _: m.add_lwpolyline(STEP)), "--job", job, "--out", tmp_path / "b")
+    assert code == 2
+    assert "measure a row for it" in err
+
+
+def test_bundled_tables_can_be_read():
+    assert {path.stem for path in BUNDLED.glob("*.toml")} == {"example", "paper-printed"}
+    assert [text for text in load_bender().warnings if "under-bends" in text] == []
+
+
+def test_calibration(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    path = tmp_path / "steel.csv"
+    path.write_text(
+        "mould_deg,workpiece_deg,radius_mm\n0.1,0.09,\n16.8,15.0,\n16.8,15.2,\n48,45.1,\n93,90,\n\n16.9,14.4,5.5\n16.8,14.4,6\n"
+    )
+    code, answer, _ = run(capsys, "--calibrate", path, "--out", tmp_path / "out")
+    assert code == 0
+    assert (answer["test_bends"], answer["angle_rows"], answer["radius_rows"]) == (7, 4, 2)
+    assert answer["largest_residual_deg"] == pytest.approx(0.1)
+    residuals = (tmp_path / "out" / "steel-residuals.csv").read_text().splitlines()
+    assert residuals[2:4] == ["3,,16.8,15,0.1000", "4,,16.8,15.2,-0.1000"]
+    # the table it wrote is one that a job can name
+    job = changed(tmp_path, ('table = "example"', 'table = "out/steel.toml"'))
+    table = load_bender(job).springback
+    assert math.degrees(table.mould_angle(math.radians(15.1))) == pytest.approx(16.8)
+    assert math.degrees(table.mould_angle(math.radians(90))) == pytest.approx(93)
+    assert float(table.factor(table.radius[:1])[0]) == pytest.approx(16.9 / 14.4)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("mould,workpiece\n1,2\n", "row 1: the columns are mould, workpiece"),
+        ("mould_deg,workpiece_deg\n1,x\n", "row 2: '1,x' is not numbers"),
+        ("mould_deg,workpiece_deg\n1\n", "row 2: '1': give 2 numbers above zero"),
+        ("mould_deg,workpiece_deg\n1,nan\n", "row 2: '1,nan': give 2 numbers"),
+        ("mould_deg,workpiece_deg\n190,80\n", "row 2: an angle of 190°"),
+        ("mould_deg,workpiece_deg\n20,18\n", "the angle table has 1 rows"),
+        ("mould_deg,workpiece_deg\n20,18\n30,17\n", "row 2: the mould angle 20.000° does not exceed the 30.000°"),
+    ],
+)
+def test_measurements_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str, message: str):
+    path = tmp_path / "m.csv"
+    path.write_text(text)
+    code, _, err = run(capsys, "--calibrate", path, "--out", tmp_path / "out")
+    assert code == 2
+    assert message in err
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ([], "no drawing is named"),
+        (["x.dxf", "--calibrate", "m.csv"], "leave the drawing out"),
+        (["x.dxf", "--start", "1"], "--start '1': not a place"),
+        (["x.dxf", "--start", "1,nan"], "not a place"),
+        (["x.dxf", "--handshake", "none"], "handshake"),
+        (["x.dxf", "--job", "none.toml"], "none.toml: there is no such bender job"),
+    ],
+)
+def test_arguments_refused(capsys: pytest.CaptureFixture[str], arguments: list[str], message: str):
+    code, _, err = run(capsys, *arguments)
+    assert code == 2
+    assert message in err
+
+
+def test_tables_for_people(drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    path = drawing(lambda m, _: m.add_lwpolyline(STEP))
+    assert main(["bend", str(path), "--out", str(tmp_path / "out"), "--no-figures"]) == 0
+    out = capsys.readouterr().out
+    assert "Programs of drawing.dxf" in out
+    assert "56.500" in out
+    assert "passed" in out
+    assert main(["bend", str(path), "--out", str(tmp_path / "out"), "--no-figures", "--quiet"]) == 0
+    assert capsys.readouterr().out == ""
+
+
+@pytest.mark.parametrize("handshake", ["xonxoff", "rtscts"])
+def test_serial_line(drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str], handshake: str):
+    pytest.importorskip("serial")
+    machine, port = os.openpty()
+    received = bytearray()
+
+    def listen() -> None:
+        while b"M30\r\n" not in received:
+            received.extend(os.read(machine, 4096))
+            if handshake == "xonxoff" and len(received) < 200:
+                os.write(machine, b"\x13")  # hold, then go on
+                os.write(machine, b"\x11")
+
+    listener = threading.Thread(target=listen, daemon=True)
+    listener.start()
+    path = drawing(lambda m, _: m.add_lwpolyline(STEP))
+    code, answer, _ = run(
+        capsys, path, "--out", tmp_path / "out", "--no-figures", "--port", os.ttyname(port), "--handshake", handshake
+    )
+    listener.join(5)
+    os.close(port)
+    os.close(machine)
+    assert code == 0
+    assert bytes(received).replace(b"\r\n", b"\n").decode() == Path(answer["program"]).read_text()
+
+
+def test_serial_line_that_is_none(drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    pytest.importorskip("serial")
+    path = drawing(lambda m, _: m.add_lwpolyline(STEP))
+    code, _, err = run(capsys, path, "--out", tmp_path / "out", "--no-figures", "--port", tmp_path / "tty")
+    assert code == 2
+    assert "the serial line cannot be used" in err

@@ -1,0 +1,152 @@
+"""The bender's moves: shortest under their limits, overlapped where the mould is clear, settled in the servo."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from design.moves import BenderDrive, Dwell, clearance, feed_delay, overlapped_table, sequential_table
+from profiles.bender.motion import double_s_moves, trapezoid_moves
+from profiles.errors import InputError
+from profiles.limits import Limits
+from profiles.reach import fastest
+from profiles.servo import Servo, closed_loop
+from validation.bender_servo import settling_times
+
+DRIVE = BenderDrive(
+    Limits(0.5, 5.0, 1000.0, True),
+    Limits(*np.radians([720.0, 20_000.0, 4e6]).tolist(), True),
+    8e-3,
+    math.radians(2.5),
+)
+SERVO = Servo(500.0, 0.8, 100.0, 1e-3, 1.0)
+NONE = Dwell()
+
+
+@pytest.mark.parametrize("distance", [1e-5, 5e-4, 5e-3, 0.02, 0.049, 0.2, 2.0])
+def test_double_s_is_ruckig_s_answer(distance: float):
+    ruckig = pytest.importorskip("ruckig")
+    limits = DRIVE.feed
+    task = ruckig.InputParameter(1)
+    task.target_position = [distance]
+    task.max_velocity, task.max_acceleration, task.max_jerk = [limits.speed], [limits.acceleration], [limits.jerk]
+    answer = ruckig.Trajectory(1)
+    ruckig.Ruckig(1).calculate(task, answer)
+    move = double_s_moves(np.array([distance]), limits)
+    assert float(move.time[0]) == pytest.approx(answer.duration, rel=1e-9)
+    t = np.linspace(0, answer.duration, 50)
+    there = [answer.at_time(s)[0][0] for s in t]
+    assert move.position(t[None, :])[0] == pytest.approx(there, abs=1e-9 * distance + 1e-15)
+
+
+@given(st.floats(1e-6, 3.0))
+def test_double_s_against_its_profile(distance: float):
+    limits = DRIVE.feed
+    move = double_s_moves(np.array([distance]), limits)
+    profile = fastest(distance, limits.speed, limits.acceleration, limits.jerk).profile()
+    t = np.linspace(0, profile.end, 33)
+    assert move.position(t[None, :])[0] == pytest.approx(profile(t), abs=1e-11 * distance + 1e-16)
+    assert float(move.distance[0]) == pytest.approx(distance, rel=1e-11)
+
+
+@given(st.floats(1e-6, 3.0))
+def test_trapezoid_against_closed_form(distance: float):
+    v, a = DRIVE.feed.speed, DRIVE.feed.acceleration
+    move = trapezoid_moves(np.array([distance]), DRIVE.feed)
+    expected = distance / v + v / a if distance >= v * v / a else 2 * math.sqrt(distance / a)
+    assert float(move.time[0]) == pytest.approx(expected, rel=1e-12)
+    assert float(move.distance[0]) == pytest.approx(distance, rel=1e-12)
+
+
+def test_sequential_table_adds_up():
+    feeds, moulds = np.array([0.022, 0.022, 0.0125]), np.radians([90.0, -90.0])
+    table = sequential_table(feeds, moulds, DRIVE, Dwell(0.01, 0.02))
+    bend = float(trapezoid_moves(np.radians([90.0]), DRIVE.mould).time[0])
+    feed = trapezoid_moves(feeds, DRIVE.feed).time
+    assert table.total == pytest.approx(feed.sum() + 3 * 0.01 + 4 * (bend + 0.02))
+    assert table.bend_start[0] == pytest.approx(feed[0] + 0.01)
+    assert table.return_start[1] == pytest.approx(table.feed_start[1] + feed[1] + 0.01 + bend + 0.02)
+
+
+@given(st.floats(2e-4, 0.2), st.floats(1.0, 150.0), st.floats(0.8, 1.0))
+def test_the_overlapped_feed_stays_clear_of_the_finger(feed: float, mould: float, share: float):
+    f, b = double_s_moves(np.array([feed]), DRIVE.feed), double_s_moves(np.radians([mould]), DRIVE.mould)
+    turn = math.radians(mould) * share
+    wait = float(feed_delay(f, b, np.array([turn]), DRIVE)[0])
+    assert 0 <= wait <= float(b.time[0])
+    t = np.linspace(0, float(b.time[0]), 4000)
+    finger = math.radians(mould) - b.position(t[None, :])[0]
+    fed = f.position((t - wait)[None, :])[0]
+    fed[t < wait] = 0
+    near = finger > DRIVE.play
+    assert (fed[near] <= clearance(finger[near], np.full(near.sum(), turn), DRIVE.finger_radius) + 1e-9).all()
+    # and it does not wait for long without need: 15 ms earlier it would meet the finger, or it starts with the return
+    if wait > 0.015:
+        early = f.position((t - wait + 0.015)[None, :])[0] * (t > wait - 0.015)
+        assert (early[near] > clearance(finger[near], np.full(near.sum(), turn), DRIVE.finger_radius)).any()
+
+
+def test_clearance_by_geometry():
+    # finger on the axis: the radius; on the flank: nothing; half way up a right angle: r sin(45°) / sin(90°)
+    angles = np.radians([0.0, 90.0, 45.0])
+    assert clearance(angles, np.full(3, math.pi / 2), 8e-3) == pytest.approx([8e-3, 0, 8e-3 / math.sqrt(2)], abs=1e-12)
+    # the flank of a bend by gamma begins at x and passes the finger: the finger is on its line at exactly the clearance
+    gamma, phi = math.radians(60), math.radians(25)
+    x = float(clearance(np.array([phi]), np.array([gamma]), 8e-3)[0])
+    finger = 8e-3 * np.array([math.cos(phi), math.sin(phi)])
+    assert math.atan2(finger[1], finger[0] - x) == pytest.approx(gamma)
+
+
+@given(st.integers(0, 10**6), st.integers(0, 12))
+def test_overlapped_table_keeps_the_order_of_the_moves(seed: int, count: int):
+    random = np.random.default_rng(seed)
+    feeds, moulds = random.uniform(2e-4, 0.1, count + 1), np.radians(random.uniform(-120, 120, count))
+    dwell = Dwell(0.01, 0.02)
+    table = overlapped_table(feeds, moulds, 0.95 * moulds, DRIVE, dwell)
+    bend_end = table.bend_start + table.bends.time
+    feed_end = table.feed_start + table.feeds.time + dwell.feed
+    assert (table.return_start >= bend_end + dwell.mould - 1e-12).all()
+    assert (table.feed_start[1:] >= table.return_start - 1e-12).all()
+    return_end = table.return_start + table.bends.time
+    assert (table.bend_start[1:] >= return_end[:-1] - 1e-12).all()
+    # when the rule has arrived, the mould has moved through its play at most
+    for k in range(count):
+        moved = float(table.bends.take(np.array([k])).position(np.array([[feed_end[k] - table.bend_start[k]]]))[0, 0])
+        assert moved <= DRIVE.play + 1e-9
+    assert table.total >= float(feed_end[-1]) - 1e-12
+    assert table.total <= sequential_table(feeds, moulds, DRIVE, dwell).total + 0.02 * (3 * count + 1)
+
+
+def test_cycle_of_the_paper_s_fragment():
+    feeds, moulds = np.full(11, 0.022), np.radians(np.full(10, 90.0))
+    faster, paper = overlapped_table(feeds, moulds, moulds, DRIVE, NONE), sequential_table(feeds, moulds, DRIVE, NONE)
+    assert faster.total < 0.85 * paper.total
+
+
+def test_settling_against_a_plain_loop():
+    moves = double_s_moves(np.array([0.001, 0.02, 0.2]), DRIVE.feed)
+    found = settling_times(moves, SERVO, 1e-5)
+    a, b = closed_loop(SERVO)
+    for i in range(3):
+        z, before, last, goal = np.zeros(3), 0.0, 0, float(moves.distance[i])
+        for k in range(2000):
+            if abs(goal - z[2]) > 1e-5:
+                last = k + 1
+            command = float(moves.take(np.array([i])).position(np.array([[k * 1e-3]]))[0, 0])
+            z = a @ z + b @ np.array([command, before])
+            before = command
+        assert found[i] == pytest.approx(max(0.0, last * 1e-3 - float(moves.time[i])), abs=1e-12)
+
+
+def test_jerk_limited_moves_settle_no_later_than_trapezoids():
+    distances = np.geomspace(2e-4, 0.2, 30)
+    smooth = settling_times(double_s_moves(distances, DRIVE.feed), SERVO, 1e-5)
+    sharp = settling_times(trapezoid_moves(distances, DRIVE.feed), SERVO, 1e-5)
+    assert smooth.max() < sharp.max()
+
+
+def test_unstable_servo_is_refused():
+    with pytest.raises(InputError, match="unstable"):
+        settling_times(double_s_moves(np.array([0.01]), DRIVE.feed), Servo(500.0, 0.8, 3000.0, 1e-3, 1.0), 1e-5)

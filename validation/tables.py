@@ -1,0 +1,250 @@
+"""Judging a cam table as the drive will run it: its rebuilt motion over several wraps, with allowances for rounding."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from profiles.cycle import Cut
+from profiles.errors import InputError
+from profiles.limits import Limits
+from profiles.machines import RotaryKnife
+from profiles.polynomial import CamProfile, Extremum, FloatArray
+from profiles.servo import Servo, spectral_radius
+from validation.checks import Check
+from validation.motion import RATIO_JUMP, greatest_jump, greatest_magnitude
+from validation.response import ServoResponse, servo_response
+
+LEAST_WRAPS = 3
+
+ALLOWANCE = 0.01
+"""What a limit may be exceeded by, relative to the limit: interpolation and number format, stated in every report."""
+
+_SAME_PERIOD = 1e-3
+"""How far a table's period may be off the cut length, relative to it, to be the table of this cut at all."""
+
+_STEP = 1e-9
+"""Step of the position at a join, relative to the cut length, that is rounding."""
+
+_NODES = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, 17))
+_PHASES = 4096
+
+
+@dataclass(frozen=True, eq=False)
+class TableJudgement:
+    """What the drive makes of a table, judged.
+
+    Parameters
+    ----------
+    checks
+        All checks, in a fixed order.
+    cycle
+        One rebuilt cycle, over the master period ``[0, x_c]``.
+    servo
+        Response of the servo to it, ``None`` if the servo is unstable.
+    wraps
+        Number of cycles that were run.
+    """
+
+    checks: tuple[Check, ...]
+    cycle: CamProfile
+    servo: ServoResponse | None
+    wraps: int
+
+    @property
+    def passed(self) -> bool:
+        """Whether every check passed."""
+        return all(check.passed for check in self.checks)
+
+
+def one_cycle(rebuilt: CamProfile, cut: Cut) -> CamProfile:
+    """Put a rebuilt cycle over the master period ``[0, x_c]`` exactly; its slave positions stay.
+
+    Raises
+    ------
+    InputError
+        The table's period is not the cut length, to `_SAME_PERIOD`.
+    """
+    if abs(rebuilt.length - cut.length) > _SAME_PERIOD * cut.length:
+        raise InputError(
+            f"the table's master period is {rebuilt.length * 1e3:.10g} mm, but the cut length is "
+            f"{cut.length * 1e3:.10g} mm; check the units, or name the job that the table was made for"
+        )
+    moved = rebuilt.shift(-rebuilt.start).scale(master=cut.length / rebuilt.length)
+    breaks = moved.breaks.copy()
+    breaks[-1] = cut.length
+    return CamProfile(breaks, moved.coefficients.copy())
+
+
+def judge_table(
+    rebuilt: CamProfile,
+    machine: RotaryKnife,
+    cut: Cut,
+    limits: Limits,
+    servo: Servo,
+    wraps: int = LEAST_WRAPS,
+) -> TableJudgement:
+    """Judge the motion that a drive makes of a table.
+
+    The cycle is repeated with the table's own period and advance, as the drive repeats it, and compared with the
+    material over all wraps: what the number format loses in one cycle adds up. Limits may be exceeded by `ALLOWANCE`;
+    a jerk, and an acceleration where the drive puts straight lines, is judged as the drive's own differences of its
+    positions at the servo's sample time, at every sampling phase.
+
+    Parameters
+    ----------
+    rebuilt
+        One cycle as the drive interpolates it, in SI units. At the start of the master's period the slave is at zero.
+    machine, cut, limits, servo
+        What it is judged by.
+    wraps
+        Number of cycles to run, at least `LEAST_WRAPS`.
+
+    Raises
+    ------
+    InputError
+        Too few wraps, or a table of another cut length.
+    """
+    if wraps < LEAST_WRAPS:
+        raise InputError(f"a table is run over at least {LEAST_WRAPS} wraps; got {wraps}")
+    cycle = one_cycle(rebuilt, cut)
+    response = servo_response(cycle, machine, cut, servo) if spectral_radius(servo) < 1.0 else None
+    run = rebuilt.shift(-rebuilt.start).repeat(wraps)
+    checks = (
+        *_closing(rebuilt, machine, cut, wraps),
+        *_sync(run, machine, cut, wraps),
+        *_limits(cycle, run, cut, limits, servo),
+        Check(
+            "shear_zone_error",
+            response is not None and response.shear_zone_error <= cut.sync_tolerance,
+            response.shear_zone_error if response else None,
+            cut.sync_tolerance,
+            "m",
+            None,
+            "axis against material in the shear zone, at every sampling phase (S1's servo)",
+        ),
+    )
+    return TableJudgement(checks, cycle, response, wraps)
+
+
+def _at_most(name: str, value: float, limit: float, unit: str, at: float | None, source: str) -> Check:
+    return Check(name, value <= limit, value, limit, unit, at, source)
+
+
+def _closing(rebuilt: CamProfile, machine: RotaryKnife, cut: Cut, wraps: int) -> list[Check]:
+    """Give what period and advance are off, added up over the wraps, and steps at the joins."""
+    step = greatest_jump(rebuilt, 0)
+    over = f"over {wraps} wraps, in the target's number format"
+    return [
+        _at_most(
+            "period",
+            wraps * abs(rebuilt.length - cut.length),
+            cut.sync_tolerance,
+            "m",
+            None,
+            f"period against cut length {over}",
+        ),
+        _at_most(
+            "closure",
+            wraps * abs(rebuilt.advance - machine.pitch),
+            cut.sync_tolerance,
+            "m",
+            None,
+            f"advance against pitch {over}",
+        ),
+        _at_most("position_joins", step.value, _STEP * cut.length, "m", step.at, "no jump of the position at any join"),
+    ]
+
+
+def _sync(run: CamProfile, machine: RotaryKnife, cut: Cut, wraps: int) -> list[Check]:
+    """Slave against material in the sync zones of all wraps: position, and ratio."""
+    sync = machine.sync_profile(cut)
+    worst, at, ratio, ratio_at = 0.0, None, 0.0, None
+    zone = cut.return_start + cut.return_zone
+    for wrap in range(wraps):
+        for start, end in cut.sync_parts:
+            x = _places(run, wrap * cut.length + start, min(wrap * cut.length + end, run.end))
+            inside = np.clip(
+                x - wrap * cut.length - (zone if end == cut.length else zone - cut.length), sync.start, sync.end
+            )
+            last = float(sync(np.clip(cut.length - zone, sync.start, sync.end)))
+            turns = wrap + 1 if end == cut.length else wrap
+            error = run(x) - (sync(inside) - last + turns * machine.pitch)
+            slip = _middle(run, x) - sync(inside[:-1], 1)
+            if np.abs(error).max() > worst:
+                worst, at = float(np.abs(error).max()), float(x[np.abs(error).argmax()] - wrap * cut.length)
+            if np.abs(slip).max() > ratio:
+                ratio, ratio_at = float(np.abs(slip).max()), float(x[np.abs(slip).argmax()] - wrap * cut.length)
+    return [
+        _at_most("sync_position", worst, cut.sync_tolerance, "m", at, f"slave against material, {wraps} wraps"),
+        _at_most(
+            "sync_ratio",
+            ratio,
+            cut.sync_tolerance / cut.sync_zone,
+            "1",
+            ratio_at,
+            "k = 1 in the sync zone (S1), against the sync tolerance over the sync zone",
+        ),
+    ]
+
+
+def _places(run: CamProfile, start: float, end: float) -> FloatArray:
+    """Master positions between two, dense on every piece."""
+    inner = run.breaks[(run.breaks > start) & (run.breaks < end)]
+    breaks = np.concatenate([[start], inner, [end]])
+    return np.unique(np.concatenate([(breaks[:-1, None] + np.diff(breaks)[:, None] * _NODES).ravel(), [end]]))
+
+
+def _middle(run: CamProfile, x: FloatArray) -> FloatArray:
+    """Give the ratio inside each interval between neighbouring positions, clear of joins."""
+    return run(0.5 * (x[1:] + x[:-1]), 1)
+
+
+def _limits(cycle: CamProfile, run: CamProfile, cut: Cut, limits: Limits, servo: Servo) -> list[Check]:
+    """Speed, acceleration and reversal of the cycle; differences over all wraps."""
+    v = cut.line_speed
+    speed, least = _extremes(cycle, 1)
+    sampled = _sampled(run, cut, servo)
+    if greatest_jump(run, 1).value <= RATIO_JUMP:
+        found, _ = _extremes(cycle, 2)
+        acceleration, at = v * v * found.value, found.at
+        how = "exact"
+    else:
+        acceleration, at = sampled[0]
+        how = "differences at the servo's sample time"
+    jerk, jerk_at = sampled[1]
+    allowed = 1.0 + ALLOWANCE
+    backward = limits.speed if limits.reversal else ALLOWANCE * v
+    return [
+        _at_most("speed", v * speed.value, allowed * limits.speed, "m/s", speed.at, "exact"),
+        _at_most("acceleration", acceleration, allowed * limits.acceleration, "m/s^2", at, how),
+        _at_most("jerk", jerk, allowed * limits.jerk, "m/s^3", jerk_at, "differences at the servo's sample time"),
+        _at_most("reversal", max(0.0, -v * least.value), backward, "m/s", least.at, "greatest backward speed"),
+    ]
+
+
+def _extremes(cycle: CamProfile, order: int) -> tuple[Extremum, Extremum]:
+    """Find the greatest magnitude and the least value; constants on thousands of pieces need no roots."""
+    if cycle.degree > order:
+        return greatest_magnitude(cycle, order), cycle.extrema(order)[0]
+    value = cycle(cycle.breaks[:-1], order)
+    largest, least = int(np.abs(value).argmax()), int(value.argmin())
+    return (
+        Extremum(float(abs(value[largest])), float(cycle.breaks[largest])),
+        Extremum(float(value[least]), float(cycle.breaks[least])),
+    )
+
+
+def _sampled(run: CamProfile, cut: Cut, servo: Servo) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Greatest second and third difference of positions at the sample time, and where they begin, over all phases."""
+    time = servo.sample_time
+    step = cut.line_speed * time
+    joins = (run.breaks[:, None] - step * np.arange(4)).ravel()  # differences peak where a sample falls on a join
+    x = np.concatenate([np.linspace(0.0, cut.length, _PHASES, endpoint=False), joins[joins >= 0.0]])
+    y = [run(x + k * step, outside="repeat") for k in range(4)]
+    found = []
+    for order, difference in ((2, y[2] - 2 * y[1] + y[0]), (3, y[3] - 3 * y[2] + 3 * y[1] - y[0])):
+        size = np.abs(difference) / time**order
+        found.append((float(size.max()), float(x[size.argmax()]) % cut.length))
+    return found[0], found[1]
