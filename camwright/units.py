@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache
 from typing import TYPE_CHECKING, cast
@@ -50,6 +50,13 @@ KINDS: dict[str, Kind] = {
     "angular rate": Kind("an angular rate", {"[angle]": 1, "[time]": -1}, "120 rad/s", "rad/s", 1e-6, 1e9),
     "gain": Kind("a gain", {"[time]": -1}, "35 1/s", "1/s", 1e-6, 1e9),
     "angle": Kind("an angle", {"[angle]": 1}, "90 deg", "rad", 1e-9, 1e6),
+    "angular acceleration": Kind(
+        "an angular acceleration", {"[angle]": 1, "[time]": -2}, "2000 rad/s^2", "rad/s^2", 1e-9, 1e12
+    ),
+    "angular jerk": Kind("an angular jerk", {"[angle]": 1, "[time]": -3}, "50000 rad/s^3", "rad/s^3", 1e-9, 1e15),
+    "mass": Kind("a mass", {"[mass]": 1}, "20 kg", "kg", 1e-9, 1e9),
+    "inertia": Kind("an inertia", {"[mass]": 1, "[length]": 2}, "0.05 kg m^2", "kg m^2", 1e-12, 1e12),
+    "torque": Kind("a torque", {"[mass]": 1, "[length]": 2, "[time]": -2}, "12 N m", "N m", 1e-9, 1e12),
 }
 """The kinds of quantities by name."""
 
@@ -61,6 +68,10 @@ micro- = 1e-6 = µ- = μ- = u-
 meter = [length] = m = metre
 second = [time] = s = sec
 radian = [angle] = rad
+kilogram = [mass] = kg
+gram = 0.001 * kilogram = g
+pound = 0.45359237 * kilogram = lb
+newton = kilogram * meter / second ** 2 = N
 inch = 0.0254 * meter = in = inches
 foot = 0.3048 * meter = ft = feet
 minute = 60 * second = min
@@ -76,27 +87,36 @@ _LONGEST = 100
 _TEXT = re.compile(r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?)\s*(.*)", re.DOTALL)
 _NAME_AND_POWER = r"([^\W\d_]{1,24}|°)(?:\s*(?:\*\*|\^)\s*([+-]?[1-9]))?"
 _FACTOR = re.compile(r"([*/·]?)\s*" + _NAME_AND_POWER)
-_UNIT = re.compile(rf"(?:1?\s*/\s*)?{_NAME_AND_POWER}(?:\s*[*/·]\s*{_NAME_AND_POWER})*")
+_UNIT = re.compile(
+    rf"(?:1?\s*/\s*{_NAME_AND_POWER}|{_NAME_AND_POWER}(?:\s+{_NAME_AND_POWER})*)(?:\s*[*/·]\s*{_NAME_AND_POWER})*"
+)
+# A space multiplies, as in "12 N m", but only ahead of any "*" or "/": "m/s s" could be read in two ways.
 _SUPERSCRIPT = re.compile("⁻?[¹²³]")
 _PLAIN = str.maketrans("⁻¹²³", "-123")
 
 
-def quantity(text: object, kind: str, *, zero: bool = False) -> float:
+def quantity(
+    text: object, kind: str, *, zero: bool = False, signed: bool = False, example: str | None = None
+) -> float:
     """Read a quantity: a number and a unit of the right dimension.
 
     Parameters
     ----------
     text
-        What the user wrote: a number, a space, a unit. A unit is made of names, ``*``, ``/`` and powers.
+        What the user wrote: a number, a space, a unit. A unit is made of names, ``*`` or a space, ``/`` and powers.
     kind
         Name of the kind expected, a key of `KINDS`.
     zero
         Whether zero is allowed.
+    signed
+        Whether zero and negative values are allowed.
+    example
+        What messages tell to write; the example of the kind if not given.
 
     Returns
     -------
     float
-        The value in the SI unit of the kind, positive (or zero if allowed).
+        The value in the SI unit of the kind, positive unless allowed otherwise.
 
     Raises
     ------
@@ -112,7 +132,7 @@ def quantity(text: object, kind: str, *, zero: bool = False) -> float:
         ...
     profiles.errors.InputError: 200: a number without a unit; write e.g. "200 m/min"
     """
-    wanted = KINDS[kind]
+    wanted = KINDS[kind] if example is None else replace(KINDS[kind], example=example)
     hint = f'write e.g. "{wanted.example}"'
     if isinstance(text, int | float) and not isinstance(text, bool):
         raise InputError(f'{shown(text)}: a number without a unit; write e.g. "{_repeated(text, wanted)}"')
@@ -130,14 +150,14 @@ def quantity(text: object, kind: str, *, zero: bool = False) -> float:
     if dimension != wanted.dimension:
         raise InputError(f"{shown(text)}: {_described(dimension)}, but {wanted.name} is expected; {hint}")
     exact = Fraction(number) * factor
-    if zero and exact == 0:
+    if (zero or signed) and exact == 0:
         return 0.0
-    if exact <= 0:
+    if exact <= 0 and not signed:
         least = "not below zero" if zero else "greater than zero"
         raise InputError(
             f"{shown(text)}: {'negative' if exact < 0 else 'zero'}; {wanted.name} {least} is expected; {hint}"
         )
-    if not (wanted.least <= exact <= wanted.greatest):
+    if not (wanted.least <= abs(exact) <= wanted.greatest):
         raise InputError(
             f"{shown(text)}: outside the range of {wanted.name}, "
             f"{wanted.least:g} to {wanted.greatest:g} {wanted.unit}; {hint}"
@@ -172,7 +192,7 @@ def _unit(text: str, place: str, wanted: Kind) -> tuple[Fraction, dict[str, int]
         if known is None:
             raise InputError(
                 f"{place}: there is no unit {shown(name)}; {hint}; units are m, mm, cm, um, in, ft, s, ms, min, h, "
-                "rad, deg, rev, rpm"
+                "rad, deg, rev, rpm, kg, g, lb, N"
             )
         powers[known] = powers.get(known, 0) + (-1 if sign == "/" else 1) * int(power or 1)
     registry = _registry()

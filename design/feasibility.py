@@ -10,14 +10,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from functools import lru_cache
 
 from design.problem import ReturnProblem, return_problem
-from design.solver import objective_value, solve_return
+from design.solver import limit_margin
 from profiles.cycle import Cut
 from profiles.errors import InfeasibleError, InputError, SolverError, Suggestion
 from profiles.limits import Limits
 from profiles.machines import Machine
-from profiles.reach import greatest_reach, least_acceleration, least_jerk, least_speed
+from profiles.polynomial import CamProfile
+from profiles.reach import greatest_reach, in_time, least_acceleration, least_jerk, least_speed
 
 # A job short of its way by less than this share is feasible: rounding, not physics.
 ROUNDING = 1e-12
@@ -74,41 +76,66 @@ def is_feasible(machine: Machine, cut: Cut, limits: Limits) -> bool:
         return False
     if not _ends_allowed(machine, cut, problem):
         return False
-    if _closed(problem):
+    if _straight(problem):
         distance, speed = _correction(problem)
-        if distance <= ROUNDING * problem.length:
+        if distance > ROUNDING * problem.length:
+            if speed <= 0:
+                return False
+            reach = greatest_reach(problem.length, speed, problem.greatest_slope, problem.greatest_jerk)
+            if reach < distance * (1 - ROUNDING):
+                return False
+        if _closed(problem) or _keeps_stroke(problem):
             return True
-        if speed <= 0:
-            return False
-        reach = greatest_reach(problem.length, speed, problem.greatest_slope, problem.greatest_jerk)
-        return reach >= distance * (1 - ROUNDING)
-    return _solved(replace(problem, greatest_slope=problem.greatest_slope * FREE)) <= problem.greatest_slope * (1 + SOLVED)
+    return _margin(problem) <= 1 + SOLVED
+
+
+def _margin(problem: ReturnProblem) -> float:
+    """Least common factor on the limits; infinite where the solver does not find one."""
+    try:
+        return limit_margin(problem)
+    except SolverError:
+        return math.inf
+
+
+def _keeps_stroke(problem: ReturnProblem) -> bool:
+    """Whether the softest motion over the line stays within the stroke, so that the closed form is the whole truth."""
+    distance, room = _correction(problem)
+    if distance <= ROUNDING * problem.length:
+        return problem.least_position <= min(0.0, problem.height) and problem.greatest_position >= max(0.0, problem.height)
+    acceleration = least_acceleration(distance, problem.length, room, problem.greatest_jerk)
+    if not math.isfinite(acceleration):
+        return False
+    motion = in_time(distance, problem.length, room, acceleration, problem.greatest_jerk).profile()
+    sign = 1.0 if problem.height > problem.start_ratio * problem.length else -1.0
+    low, high = motion.scale(slave=sign).add_line(problem.start_ratio).extrema(0)
+    return low.value >= problem.least_position and high.value <= problem.greatest_position
 
 
 def _ends_allowed(machine: Machine, cut: Cut, problem: ReturnProblem) -> bool:
     """Whether the sync zone itself keeps the limits."""
-    sync = machine.sync_profile(cut)
-    slope = max(abs(extremum.value) for extremum in sync.extrema(2))
-    jerk = max(abs(extremum.value) for extremum in sync.extrema(3))
+    ratio, slope, jerk = _sync_peaks(machine.sync_profile(cut))
     return (
-        sync.extrema(1)[1].value <= problem.greatest_ratio * (1 + ROUNDING)
+        ratio <= problem.greatest_ratio * (1 + ROUNDING)
         and slope <= problem.greatest_slope * (1 + SOLVED)
         and jerk <= problem.greatest_jerk * (1 + SOLVED)
     )
 
 
-def _solved(problem: ReturnProblem) -> float:
-    """Least value of the problem's objective, over the master; infinite if the solver finds no motion."""
-    try:
-        return objective_value(solve_return(problem)[0], problem.objective)
-    except SolverError:
-        return math.inf
+@lru_cache(maxsize=256)
+def _sync_peaks(sync: CamProfile) -> tuple[float, float, float]:
+    """Greatest ratio, ratio slope and its slope in a sync zone, as magnitudes."""
+    slope, jerk = (max(abs(extremum.value) for extremum in sync.extrema(order)) for order in (2, 3))
+    return sync.extrema(1)[1].value, slope, jerk
+
+
+def _straight(problem: ReturnProblem) -> bool:
+    """Whether the return is a straight line plus a motion from rest to rest."""
+    return problem.start_ratio == problem.end_ratio and problem.start_slope == problem.end_slope == 0.0
 
 
 def _closed(problem: ReturnProblem) -> bool:
-    """Whether the closed forms of `profiles.reach` apply."""
-    straight = problem.start_ratio == problem.end_ratio and problem.start_slope == problem.end_slope == 0.0
-    return straight and math.isinf(problem.least_position) and math.isinf(problem.greatest_position)
+    """Whether the closed forms of `profiles.reach` are the whole truth: straight, and no stroke to keep."""
+    return _straight(problem) and math.isinf(problem.least_position) and math.isinf(problem.greatest_position)
 
 
 def _correction(problem: ReturnProblem) -> tuple[float, float]:
@@ -126,7 +153,7 @@ def needed_limits(machine: Machine, cut: Cut, limits: Limits) -> dict[str, float
     except InputError:
         return none
     v = cut.line_speed
-    if _closed(problem):
+    if _straight(problem) and not (math.isfinite(problem.greatest_position) and _reaches(problem)):
         distance, room = _correction(problem)
         over = least_speed(distance, problem.length, problem.greatest_slope, problem.greatest_jerk)
         backwards = problem.height < problem.start_ratio * problem.length
@@ -141,17 +168,28 @@ def needed_limits(machine: Machine, cut: Cut, limits: Limits) -> dict[str, float
             "acceleration": least_acceleration(distance, problem.length, room, problem.greatest_jerk) * v**2,
             "jerk": least_jerk(distance, problem.length, room, problem.greatest_slope) * v**3,
         }
-    acceleration = _solved(replace(problem, greatest_slope=problem.greatest_slope * FREE))
-    jerk = _solved(replace(problem, objective="peak_jerk", greatest_jerk=problem.greatest_jerk * FREE))
-    sync = machine.sync_profile(cut)
-    slope = max(abs(extremum.value) for extremum in sync.extrema(2))
-    snap = max(abs(extremum.value) for extremum in sync.extrema(3))
-    fast = edge(lambda speed: is_feasible(machine, cut, replace(limits, speed=speed)), limits.speed * 100.0, limits.speed, EDGE)
-    return {
-        "speed": math.inf if fast is None else fast,
-        "acceleration": max(acceleration, slope) * v**2 if snap <= problem.greatest_jerk else math.inf,
-        "jerk": max(jerk, snap) * v**3 if slope <= problem.greatest_slope else math.inf,
-    }
+    def eased(name: str) -> float:
+        """Value of one limit alone that would do: the edge of feasibility between the limit and a multiple of it."""
+
+        def works(value: float) -> bool:
+            return is_feasible(machine, cut, replace(limits, **{name: value}))
+
+        good = getattr(limits, name)
+        while not works(good):
+            good *= 8.0
+            if good > FREE * getattr(limits, name):
+                return math.inf
+        return edge(works, good, getattr(limits, name), EDGE) or math.inf
+
+    return {name: eased(name) for name in none}
+
+
+def _reaches(problem: ReturnProblem) -> bool:
+    """Whether the limits of speed, acceleration and jerk are enough for a straight return, the stroke left aside."""
+    distance, room = _correction(problem)
+    return room > 0 and greatest_reach(problem.length, room, problem.greatest_slope, problem.greatest_jerk) >= distance * (
+        1 - ROUNDING
+    )
 
 
 def binding_limit(machine: Machine, cut: Cut, limits: Limits, need: dict[str, float]) -> str:
@@ -166,8 +204,8 @@ def binding_limit(machine: Machine, cut: Cut, limits: Limits, need: dict[str, fl
         problem = return_problem(machine, cut, limits, "peak_acceleration")
     except InputError:
         return "sync_zone"
-    if _closed(problem):
-        distance, room = _correction(problem)
+    if _straight(problem) and not _reaches(problem):
+        _, room = _correction(problem)
         backwards = problem.height < problem.start_ratio * problem.length
         binding = min(share, key=lambda name: share[name])
         if not math.isfinite(share[binding]):
@@ -186,11 +224,11 @@ def binding_limit(machine: Machine, cut: Cut, limits: Limits, need: dict[str, fl
         return min(finite, key=lambda name: finite[name])
     if math.isfinite(problem.greatest_position):
         return "stroke"
-    sync = machine.sync_profile(cut)
+    ratio, slope, jerk = _sync_peaks(machine.sync_profile(cut))
     own = {
-        "speed": sync.extrema(1)[1].value / problem.greatest_ratio,
-        "acceleration": max(abs(e.value) for e in sync.extrema(2)) / problem.greatest_slope,
-        "jerk": max(abs(e.value) for e in sync.extrema(3)) / problem.greatest_jerk,
+        "speed": ratio / problem.greatest_ratio,
+        "acceleration": slope / problem.greatest_slope,
+        "jerk": jerk / problem.greatest_jerk,
     }
     return max(own, key=lambda name: own[name])
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from design.problem import Objective, ReturnProblem
 from profiles.polynomial import CamProfile
@@ -60,11 +60,28 @@ class ScaledProblem:
         """Whether the slave must keep to a stroke."""
         return math.isfinite(self.least_position) or math.isfinite(self.greatest_position)
 
+    @property
+    def forward(self) -> bool:
+        """Whether the slave may not run backwards."""
+        return self.least_ratio >= -self.drift * (1 + 1e-12)
+
+    def eased(self, factor: float) -> ScaledProblem:
+        """Multiply the limits of speed, acceleration and jerk by a common factor."""
+        high = (self.greatest_ratio + self.drift) * factor - self.drift
+        low = self.least_ratio if self.forward else (self.least_ratio + self.drift) * factor - self.drift
+        return replace(
+            self,
+            greatest_ratio=high,
+            least_ratio=low,
+            greatest_slope=self.greatest_slope * factor,
+            greatest_jerk=self.greatest_jerk * factor,
+        )
+
 
 def motion_scale(problem: ReturnProblem) -> float:
     """Slave travel that becomes 1: the largest deviation from the line that the boundary values ask for; zero if the line will do.
 
-    Signed so that the height of the scaled problem is positive.
+    From rest to rest it is signed so that the height of the scaled problem is positive; elsewhere it is positive.
     """
     length = problem.length
     height = problem.height - problem.start_ratio * length
@@ -74,7 +91,8 @@ def motion_scale(problem: ReturnProblem) -> float:
         problem.end_slope * length**2,
     )
     size = max(abs(height), *(abs(value) for value in others))
-    return -size if height < 0 else size
+    simple = not any(others) and math.isinf(problem.least_position) and math.isinf(problem.greatest_position)
+    return -size if simple and height < 0 else size
 
 
 def scale_problem(problem: ReturnProblem, scale: float) -> ScaledProblem:

@@ -29,6 +29,9 @@ from profiles.polynomial import CamProfile, FloatArray
 
 PEAKS: tuple[Objective, ...] = ("peak_acceleration", "peak_jerk")
 
+Cost = Objective | Literal["margin"]
+"""What a programme minimises: an objective of the motion, or the least common factor on all limits that some motion keeps."""
+
 Arc = Literal["free", "ramp", "hold", "cruise"]
 """What a piece is known to be: nothing, linear in the acceleration, of constant acceleration, of constant speed."""
 
@@ -61,7 +64,7 @@ class Shape:
     arcs: tuple[Arc, ...]
     degree: int
     free_lengths: bool
-    objective: Objective
+    objective: Cost
     confined: bool = False
 
     @property
@@ -161,10 +164,10 @@ class Programme:
             "q": m + 1,
             "j": m * p if shape.objective == "rms_jerk" else 0,
             "h": m if shape.free_lengths else 0,
-            "t": 1 if shape.objective in PEAKS else 0,
+            "t": 1 if shape.objective in (*PEAKS, "margin") else 0,
         }
         unknown = {name: ca.SX.sym(name, size) for name, size in self._sizes.items()}
-        jerk_limit, drift = ca.SX.sym("J"), ca.SX.sym("d")
+        jerk_limit, drift, slope_limit, ratio_limit = (ca.SX.sym(name) for name in "JdAR")
         lengths = unknown["h"] if shape.free_lengths else ca.SX.sym("h", m)
         self._equations, between = dynamics(unknown, lengths, p)
         equal, positive = list(self._equations), []
@@ -176,6 +179,9 @@ class Programme:
                 step = p * (unknown["a"][i * p + k + 1] - unknown["a"][i * p + k])
                 if shape.objective == "rms_jerk":
                     equal.append(lengths[i] * unknown["j"][i * p + k] - step)
+                elif shape.objective == "margin":
+                    bound = unknown["t"] * lengths[i]
+                    positive += [bound - step / jerk_limit, bound + step / jerk_limit]
                 elif shape.objective == "peak_jerk":
                     bound = unknown["t"] * lengths[i]
                     positive += [bound - step, bound + step]
@@ -185,6 +191,13 @@ class Programme:
             inner = unknown["a"]
             positive += [unknown["t"] - inner[k] for k in range(m * p + 1)]
             positive += [unknown["t"] + inner[k] for k in range(m * p + 1)]
+        elif shape.objective == "margin":
+            for k in range(m * p + 1):
+                share = unknown["a"][k] / slope_limit
+                positive += [unknown["t"] - share, unknown["t"] + share]
+            for pace in [*ca.vertsplit(unknown["v"]), *between]:
+                share = (pace + drift) / ratio_limit
+                positive += [unknown["t"] - share, unknown["t"] + share]
         # On a long piece the hull of a polynomial of higher degree is far too wide; halved often enough, it fits.
         bent: list[Any] = []
         if self._split > 1:
@@ -195,7 +208,9 @@ class Programme:
                 positive += [1 - step for row in steps for step in row] + [1 + step for row in steps for step in row]
         places = _places(unknown, lengths, p, drift) if shape.confined else []
         self._counts = (len(equal), len(positive), len(between), len(bent), len(places))
-        parameters = ca.vertcat(jerk_limit, drift, *([] if shape.free_lengths else [lengths]))
+        parameters = ca.vertcat(jerk_limit, drift, slope_limit, ratio_limit)
+        if not shape.free_lengths:
+            parameters = ca.vertcat(parameters, lengths)
         programme = {
             "x": ca.vertcat(*(unknown[name] for name in self._sizes)),
             "p": parameters,
@@ -228,12 +243,15 @@ class Programme:
         low, high = problem.least_ratio * factor, problem.greatest_ratio * factor
         steps = p * np.diff(start.accelerations) / np.repeat(np.maximum(start.lengths, 1e-12), p)
         guess = {"a": start.accelerations, "v": v, "q": q, "j": steps, "h": start.lengths, "t": [start.objective]}
-        hull = slope if self._split == 1 else np.inf
+        margin = self.shape.objective == "margin"
+        if margin:  # the limits are rows of the programme; only standing still is a limit of its own
+            low, high = (low if problem.forward else -np.inf), np.inf
+        hull = np.inf if margin or self._split > 1 else slope
         lower = {"a": [-hull] * (m * p + 1), "v": [low] * (m + 1), "q": [-np.inf] * (m + 1)}
         pace = jerk if self._split == 1 else np.inf
         lower |= {"j": [-pace] * (m * p), "h": [0.0] * m, "t": [0.0]}
         upper = {"a": [hull] * (m * p + 1), "v": [high] * (m + 1), "q": [np.inf] * (m + 1)}
-        upper |= {"j": [pace] * (m * p), "h": [1.0] * m, "t": [jerk if self.shape.objective == "peak_jerk" else slope]}
+        upper |= {"j": [pace] * (m * p), "h": [1.0] * m, "t": [np.inf if margin else jerk if self.shape.objective == "peak_jerk" else slope]}
         ends = {"a": (problem.start_slope, problem.end_slope), "v": (0.0, problem.end_ratio), "q": (0.0, problem.height)}
         for name, (first, last) in ends.items():
             lower[name][0] = upper[name][0] = first
@@ -241,7 +259,13 @@ class Programme:
         equal, positive, between, bent, places = self._counts
         answer = self._solver(
             x0=self._pack(guess),
-            p=[jerk, problem.drift, *([] if self.shape.free_lengths else start.lengths)],
+            p=[
+                jerk,
+                problem.drift,
+                slope,
+                problem.greatest_ratio + problem.drift,
+                *([] if self.shape.free_lengths else start.lengths),
+            ],
             lbx=self._pack(lower),
             ubx=self._pack(upper),
             lbg=[0.0] * (equal + positive) + [low] * between + [-slope] * bent + [problem.least_position] * places,
@@ -339,7 +363,7 @@ def _known_arcs(shape: Shape, a: Any) -> list[Any]:
 
 def _cost(shape: Shape, unknown: dict[str, Any], lengths: Any) -> Any:
     """Objective: the bound of a peak, or the mean square by the Gram matrix of the Bernstein polynomials."""
-    if shape.objective in PEAKS:
+    if shape.objective in (*PEAKS, "margin"):
         return unknown["t"]
     p = shape.degree
     cost = ca.SX(0)

@@ -2,7 +2,7 @@
 
 A law is a rest-to-rest motion of unit height in unit time: ``s(0) = 0``, ``s(1) = 1``; placing it on a machine is the work of
 `profiles.returns`. Every law is carried as pieces of polynomials. Sinusoids are Taylor polynomials of degree 15 on pieces of at
-most an eighth of a period of the sine, where the first power left out is below 1e-16 of the amplitude.
+most an eighth of a period of the sine: the first power left out of the acceleration is below 1e-15 of its amplitude.
 """
 
 from __future__ import annotations
@@ -118,14 +118,7 @@ def _double_s() -> CamProfile:
 def _cycloid() -> CamProfile:
     # s = x - sin(2 pi x) / (2 pi)
     w = 2 * math.pi
-    breaks = _steps(0.0, 1.0, w)
-    rows = []
-    for origin in breaks[:-1]:
-        row = -_sine(w, 0.0, float(origin)) / w
-        row[0] += origin
-        row[1] += 1.0
-        rows.append(row)
-    return CamProfile.from_arrays(breaks, rows)
+    return _from_acceleration_series([(0.0, 1.0, lambda x: w * _sine(w, 0.0, x))], w)
 
 
 def _modified_trapezoid() -> CamProfile:

@@ -167,6 +167,18 @@ def test_a_profile_and_its_position_offset_move_the_axis_alike() -> None:
     assert np.allclose(there.command, here.command + 5.0, rtol=0, atol=1e-13)
 
 
+def test_many_pieces_shorter_than_the_grid_change_nothing() -> None:
+    # the same curve cut into 5000 pieces: many between two points, none of some pieces among the points
+    profile = baseline("poly_3_4_5", KNIFE, CUT)
+    edges = np.union1d(np.linspace(0.0, CUT.length, 5001), profile.breaks)
+    pieces = [profile.restrict(a, b).coefficients[0] for a, b in zip(edges, edges[1:], strict=False) if b - a > 1e-9]
+    starts = [a for a, b in zip(edges, edges[1:], strict=False) if b - a > 1e-9]
+    fine = CamProfile.from_arrays([*starts, CUT.length], pieces)
+    here, there = simulate(profile, CUT, PAPER), simulate(fine, CUT, PAPER)
+    assert np.abs(here.axis - there.axis).max() <= 1e-14
+    assert np.abs(here.command - there.command).max() <= 1e-14
+
+
 def test_window_has_its_ends_and_lies_on_the_axis() -> None:
     profile = baseline("linear_return", KNIFE, CUT)
     run = simulate(profile, CUT, PAPER)

@@ -40,6 +40,19 @@ from profiles.errors import InputError
         ("90 deg", "angle", math.pi / 2),
         (" 90 ° ", "angle", math.pi / 2),
         ("+.5 rev", "angle", math.pi),
+        ("2000 rad/s^2", "angular acceleration", 2000.0),
+        ("50000 rad/s³", "angular jerk", 50000.0),
+        ("20 kg", "mass", 20.0),
+        ("250 g", "mass", 0.25),
+        ("10 lb", "mass", 4.5359237),
+        ("0.05 kg m^2", "inertia", 0.05),
+        ("0.05 kg*m^2", "inertia", 0.05),
+        ("0.05 kg·m²", "inertia", 0.05),
+        ("500 kg cm^2", "inertia", 0.05),
+        ("12 N m", "torque", 12.0),
+        ("12 N*m", "torque", 12.0),
+        ("12 kg m^2/s^2", "torque", 12.0),
+        ("12000 N mm", "torque", 12.0),
     ],
 )
 def test_a_quantity_is_the_float_nearest_to_its_value(text: str, kind: str, value: float) -> None:
@@ -90,7 +103,11 @@ def test_every_example_is_of_its_kind_and_of_no_other(kind: str) -> None:
         ("٣ m", "length", "'٣ m': not a length, a finite number and a unit"),
         ("0,6 m", "length", "'0,6 m': ',6 m' is not a unit"),
         ("1_0 m", "length", "'1_0 m': '_0 m' is not a unit"),
-        ("3 m m", "length", "'3 m m': 'm m' is not a unit"),
+        ("3 m m", "length", "'3 m m': a quantity in length^2, but a length is expected"),
+        ("3 m/s s", "length", "'3 m/s s': 'm/s s' is not a unit"),
+        ("3 1/s m", "speed", "'3 1/s m': '1/s m' is not a unit"),
+        ("12 Nm", "torque", "'12 Nm': there is no unit 'Nm'"),
+        ("12 kg", "torque", "'12 kg': a mass, but a torque is expected; write e.g. \"12 N m\""),
         ("5 11/s", "gain", "'5 11/s': '11/s' is not a unit"),
         ("10**10**10 m", "length", "'10**10**10 m': '**10**10 m' is not a unit"),
         ("1 m**9**9", "length", "'1 m**9**9': 'm**9**9' is not a unit"),
@@ -111,6 +128,17 @@ def test_zero_is_read_where_it_is_allowed() -> None:
     assert quantity("0 mm", "length", zero=True) == 0.0
     with pytest.raises(InputError, match=r"negative; a length not below zero is expected"):
         quantity("-1 mm", "length", zero=True)
+
+
+def test_signs_are_read_where_they_are_allowed() -> None:
+    assert [quantity(text, "length", signed=True) for text in ("-20 mm", "0 mm", "20 mm")] == [-0.02, 0.0, 0.02]
+    with pytest.raises(InputError, match=r"outside the range of a length"):
+        quantity("-1e9 m", "length", signed=True)
+
+
+def test_the_example_in_messages_can_be_chosen() -> None:
+    with pytest.raises(InputError, match='300: a number without a unit; write e.g. "300 rpm"'):
+        quantity(300, "angular rate", example="120 rpm")
 
 
 @given(st.text(max_size=200) | st.text("0123456789eE+-.*/^ ·mskin()[]1²³⁻°\\\x00\n", max_size=120))

@@ -8,7 +8,6 @@ in the return zone.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -30,6 +29,9 @@ _COARSE, _FINE = 8, 64
 
 _ZONE_RESOLUTION = 1e-5
 """Step of the sync zone with which the search ends, relative to the pitch."""
+
+_GAIN_RESOLUTION = 1e-4
+"""The same where only the gain by an eased quantity is asked for."""
 
 _LENGTH_RESOLUTION = 3e-6
 """Accuracy of the cut length found for a sync zone, relative to the pitch; no smaller gain is looked for."""
@@ -234,10 +236,10 @@ class _Search:
             parts *= 2
         return best, zone
 
-    def refine(self, best: float, zone: float) -> tuple[float, float]:
+    def refine(self, best: float, zone: float, resolution: float) -> tuple[float, float]:
         """Best cut length and sync zone about those given, by steps of the sync zone that are halved."""
         step = 0.5 * (self.machine.pitch - self.cut.shear_zone) / _FINE
-        while step > _ZONE_RESOLUTION * self.machine.pitch:
+        while step > resolution * self.machine.pitch:
             for trial in (zone - step, zone + step):
                 found = self.shorter(trial, best) if self.cut.shear_zone < trial < self.machine.pitch else None
                 if found is not None:
@@ -254,15 +256,20 @@ def _minimum(search: _Search) -> MinimumCutLength:
     _require_room(machine, cut)
     if search.limits.speed <= cut.line_speed:  # the knife cannot run ahead of the material
         return MinimumCutLength(machine.pitch, machine.pitch, 0.0, "speed")
-    best, zone = search.refine(*search.scan())
+    best, zone = search.refine(*search.scan(), _ZONE_RESOLUTION)
     if zone == machine.pitch:
         return MinimumCutLength(best, zone, 0.0, "settling")
     shape = search.shape(best, zone)
     settling = servo_response(search.cycle(shape), machine, shape, search.servo).settling
     eased = {name: replace(search, limits=limits) for name, limits in _eased(search.limits).items()}
     eased["settling"] = replace(search, relief=_RELAXATION)
-    gain = {name: best - other.refine(other.shorter(zone, best) or best, zone)[0] for name, other in eased.items()}
-    return MinimumCutLength(best, zone, zone - cut.shear_zone if settling is None else settling, _greatest(gain))
+    gain = {
+        name: best - other.refine(other.shorter(zone, best) or best, zone, _GAIN_RESOLUTION)[0]
+        for name, other in eased.items()
+    }
+    # settled it has, in tolerance as it is; to rounding, before the shear zone begins
+    transition = zone - cut.shear_zone if settling is None else settling
+    return MinimumCutLength(best, zone, transition, _greatest(gain))
 
 
 def _fastest_cut(machine: RotaryKnife, line_speed: float, limits: Limits, sync_zone: float) -> float:

@@ -19,7 +19,7 @@ import numpy as np
 from profiles.cycle import Cut
 from profiles.errors import InputError
 from profiles.polynomial import CamProfile, FloatArray
-from profiles.servo import Servo, closed_loop, sample_plant, spectral_radius
+from profiles.servo import Servo, sample_plant, spectral_radius
 from validation.motion import require_period
 
 Number = TypeVar("Number", float, FloatArray)
@@ -181,7 +181,8 @@ def simulate(profile: CamProfile, cut: Cut, servo: Servo) -> ServoRun:
 
     # one grid for all: phase j samples at (j / phases - 1 + k) dT from the start of the return zone, k = 0, 1, …
     sample = servo.sample_time * cut.line_speed
-    master = cut.return_start + np.arange(-(past + 1) * phases, samples * phases) * (sample / phases)
+    index = np.arange(-(past + 1) * phases, samples * phases, dtype=np.float64)
+    master = cut.return_start + index * (sample / phases)
     start = float(profile.coefficients[0, 0])
     mean_ratio = (_end(profile) - start) / profile.length
     deviation = _deviation(profile, master, mean_ratio)
@@ -191,7 +192,10 @@ def simulate(profile: CamProfile, cut: Cut, servo: Servo) -> ServoRun:
     def by_phase(values: FloatArray) -> FloatArray:
         """Spread the common grid to ``(phases, points)``; phases overlap, so nothing is copied."""
         item = values.itemsize
-        return np.ndarray((phases, samples * SUBSTEPS), buffer=values, strides=(item, phases // SUBSTEPS * item))
+        strides = (item, phases // SUBSTEPS * item)
+        spread: FloatArray = np.ndarray((phases, samples * SUBSTEPS), np.float64, buffer=values, strides=strides)
+        spread.setflags(write=False)
+        return spread
 
     master, deviation = master[past * phases :], deviation[past * phases :]
     line = start + mean_ratio * (master - profile.start)
@@ -230,15 +234,15 @@ def _deviation(profile: CamProfile, master: FloatArray, mean_ratio: float) -> Fl
     table[:-1] = profile.coefficients.T[:, None]
     table[0] -= profile.coefficients[0, 0] + mean_ratio * (profile.breaks[:-1] - profile.start)
     table[-1] = cycles[:, None] + profile.breaks[:-1]
-    table = table.reshape(profile.degree + 2, -1)
-    bounds = np.searchsorted(master, table[-1])
+    bounds = np.searchsorted(master, table[-1].ravel())
     bounds[0] = 0
-    *coefficients, starts = table.repeat(np.append(bounds[1:], len(master)) - bounds, axis=1)
-    local = master - starts
-    found = coefficients.pop()
-    while coefficients:  # Horner
+    counts = np.append(bounds[1:], len(master)) - bounds
+    repeated = table.reshape(profile.degree + 2, -1).repeat(counts, axis=1)
+    local = master - repeated[-1]
+    found: FloatArray = repeated[-2]
+    for coefficient in repeated[-3::-1]:  # Horner
         found *= local
-        found += coefficients.pop()
+        found += coefficient
     local *= mean_ratio
     found -= local
     return found
@@ -287,43 +291,44 @@ class _Lifted:
 @lru_cache(maxsize=32)
 def _lift(servo: Servo, past: int) -> _Lifted:
     """Powers of the closed loop: ``z[j] = A^j z[0] + sum_i A^(j-1-i) b f[i]``."""
-    a = closed_loop(servo)[0]
-    b = sample_plant(servo, servo.sample_time).input
-    powers = _powers_times(a, np.column_stack([np.eye(3), b]), _BLOCK + 1)
+    plant = sample_plant(servo, servo.sample_time)
+    gain, lead = servo.position_gain, servo.velocity_feedforward / servo.sample_time
+    a = plant.transition.copy()
+    a[:, 2] -= gain * plant.input
+    response = _powers_times(a, plant.input[:, None], max(past, _BLOCK) + 1)[..., 0]
+    earliest_first = np.append(response[past - 1 :: -1], np.zeros((1, 3)), axis=0)
+    powers = _powers_times(a, np.eye(3), _BLOCK + 1)
     free = np.zeros((3, _BLOCK, 4))
-    free[..., :3] = powers[:-1, :, :3].transpose(2, 0, 1)
+    free[..., :3] = powers[:-1].transpose(2, 0, 1)
     forced = np.zeros((_BLOCK, _BLOCK, 4))
-    for i in range(_BLOCK):
-        forced[i, i + 1 :, :3] = powers[: _BLOCK - 1 - i, :, 3]
-        forced[i, i, 3] = 1.0
-    # between the samples the reference u = f - K p is held, so the plant alone decides
-    plants = [sample_plant(servo, servo.sample_time * s / SUBSTEPS) for s in range(SUBSTEPS)]
-    feedback = np.array([0.0, 0.0, servo.position_gain])
-    lead = servo.velocity_feedforward / servo.sample_time
-    response = _powers_times(a, b[:, None], past + 1)[::-1, :, 0]  # to f, the earliest first
-    position, velocity = (
-        np.array([[*(plant.transition[i] - plant.input[i] * feedback), plant.input[i]] for plant in plants]).T.copy()
-        for i in (2, 1)
-    )
+    before, after = np.triu_indices(_BLOCK, 1)
+    forced[before, after, :3] = response[after - before - 1]
+    forced[np.arange(_BLOCK), np.arange(_BLOCK), 3] = 1.0
+    # between the samples the reference u = f - K p is held, so the plant alone decides: on (z, u), then on (z, f)
+    part = sample_plant(servo, servo.sample_time / SUBSTEPS)
+    held = np.eye(4)
+    held[:3] = np.column_stack([part.transition, part.input])
+    between = _powers_times(held, np.eye(4), SUBSTEPS)
+    between[:, :, 2] -= gain * between[:, :, 3]
     return _Lifted(
-        history=(servo.position_gain + lead) * response[1:] - lead * np.append(response[2:], np.zeros((1, 3)), axis=0),
+        history=(gain + lead) * earliest_first[:-1] - lead * earliest_first[1:],
         free=free.reshape(3, -1),
         forced=forced.reshape(_BLOCK, -1),
-        free_end=powers[-1, :, :3].T.copy(),
-        forced_end=powers[_BLOCK - 1 :: -1, :, 3].copy(),
-        position=position,
-        velocity=velocity,
+        free_end=powers[-1].T.copy(),
+        forced_end=response[_BLOCK - 1 :: -1].copy(),
+        position=between[:, 2].T.copy(),
+        velocity=between[:, 1].T.copy(),
     )
 
 
 def _powers_times(transition: FloatArray, start: FloatArray, length: int) -> FloatArray:
-    """Powers of a matrix times columns: ``A^j S`` for ``j`` = 0 … ``length - 1``, shape ``(length, 3, columns)``."""
-    found = start[None]
-    power = transition
-    while len(found) < length:  # twice as many in each round
-        found = np.concatenate([found, power @ found])
+    """Powers of a matrix times columns: ``A^j S`` for ``j`` = 0 … ``length - 1``, shape ``(length, rows, columns)``."""
+    found, power, done = start, transition, 1
+    while done < length:  # twice as many in each round, side by side
+        found = np.concatenate([found, power @ found], axis=1)
         power = power @ power
-    return found[:length]
+        done *= 2
+    return found.reshape(len(start), done, -1)[:, :length].transpose(1, 0, 2).copy()
 
 
 def _loop(lifted: _Lifted, servo: Servo, command: FloatArray) -> FloatArray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -91,6 +92,8 @@ def answer(result: BentDrawing, programs: Sequence[Path], files: Sequence[Path])
         ],
         "cycle_time_s": sum(outline.times.total for outline in result.outlines),
         "baseline_cycle_time_s": sum(outline.paper_times.total for outline in result.outlines),
+        "feed_overshoot_mm": max(1e3 * outline.feed_overshoot[0] for outline in result.outlines),
+        "mould_overshoot_deg": max(math.degrees(outline.mould_overshoot[0]) for outline in result.outlines),
         "collisions": sum(len(outline.collisions) for outline in result.outlines),
         "passed": result.passed,
         "warnings": list(result.warnings),

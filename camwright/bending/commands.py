@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
 from camwright.output import Voice
-from profiles.errors import InputError
+from profiles.errors import InputError, MissingExtraError
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -66,7 +67,7 @@ def bend(
         result = _bent(drawing, bender, layer, place, reverse, step)
         names = _names(drawing.stem, len(result.outlines))
         programs = [directory / f"{name}.nc" for name in names]
-        files = _write(result, names, directory, figures=not no_figures, step=step)
+        result, files = _write(result, names, directory, figures=not no_figures, step=step)
     if port is not None:
         from camwright.bending.sending import send
 
@@ -125,12 +126,15 @@ def _bent(
     return BentDrawing(drawing, hashlib.sha256(drawing.read_bytes()).hexdigest(), bender, bent, found.warnings)
 
 
-def _write(result: BentDrawing, names: list[str], directory: Path, *, figures: bool, step: Step) -> list[Path]:
-    """Write programs, bend lists, figures and sheets, all or none; where they are then."""
+def _write(
+    result: BentDrawing, names: list[str], directory: Path, *, figures: bool, step: Step
+) -> tuple[BentDrawing, list[Path]]:
+    """Write programs, bend lists, figures and sheets, all or none; a missing library leaves the sheets out, noted."""
     from camwright.bending.bend_list import csv_text
     from camwright.files import staged
 
     step("writing files")
+    notes: tuple[str, ...] = ()
     with staged(directory) as aside:
         for name, outline in zip(names, result.outlines, strict=True):
             (aside / f"{name}.nc").write_bytes(outline.text.encode("ascii"))
@@ -144,8 +148,12 @@ def _write(result: BentDrawing, names: list[str], directory: Path, *, figures: b
             for name, outline in zip(shown, result.outlines, strict=False):
                 draw(outline, aside, name)
             step("typesetting the sheet")
-            write_sheet(result, aside, [aside / f"{name}-proof.svg" for name in shown])
-        return [directory / name for name in sorted(file.name for file in aside.iterdir())]
+            try:
+                write_sheet(result, aside, [aside / f"{name}-proof.svg" for name in shown])
+            except MissingExtraError as error:
+                notes = (f"no sheet: {error}",)
+        files = [directory / name for name in sorted(file.name for file in aside.iterdir())]
+    return replace(result, notes=result.notes + notes), files
 
 
 def _calibrate(measurements: Path, bender: BenderJob, out: Path | None, voice: Voice) -> int:

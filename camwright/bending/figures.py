@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 _BENDS_SHOWN = 6
 _PER_MOVE = 60
-_STYLE: dict[Any, Any] = {"svg.hashsalt": "camwright", "svg.fonttype": "none", "font.size": 9.0}
+_STYLE: dict[Any, Any] = {"svg.hashsalt": "camwright", "svg.fonttype": "path", "font.size": 9.0}
 _DRAWN, _BENT, _WORST = "#b9c4d0", "#11304f", "#c1121f"
 
 

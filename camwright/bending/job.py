@@ -189,9 +189,9 @@ def _limits(table: TomlTable, prefix: str) -> Limits:
 
 
 def _servo(table: TomlTable) -> Servo:
-    bandwidth, damping = table.quantity("bandwidth", "angular rate"), table.number("damping", 0.0, 100.0)
+    bandwidth, damping = table.quantity("bandwidth", "angular rate"), table.number("damping", 0.0, 100.0, above=True)
     gain, sample = table.quantity("position_gain", "gain"), table.quantity("sample_time", "time")
-    ahead = table.number("velocity_feedforward", -1e-300, 1.0)
+    ahead = table.number("velocity_feedforward", 0.0, 1.0)
     table.close()
     return Servo(bandwidth, damping, gain, sample, ahead)
 

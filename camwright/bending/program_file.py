@@ -23,7 +23,7 @@ from profiles.bender.program import NcProgram
 from profiles.errors import InputError
 from profiles.polynomial import FloatArray
 from validation.bender_collision import Collision, collisions
-from validation.bender_servo import settling_times
+from validation.bender_servo import arrivals
 from validation.bending import BendingProof, prove
 from validation.checks import Check
 
@@ -57,6 +57,8 @@ class BentOutline:
         Optimised moves with overlaps, and sequential trapezoidal moves.
     dwell, paper_dwell
         What the axes wait for their servos in these.
+    feed_overshoot, mould_overshoot
+        Greatest overshoot of either axis in the discrete servo, and what is allowed (m, rad).
     paper_bends, paper_error
         Number of bends and chord error (m) by the paper's rule, 25 sides to a circle.
     """
@@ -70,6 +72,8 @@ class BentOutline:
     paper_times: TimeTable
     dwell: Dwell
     paper_dwell: Dwell
+    feed_overshoot: tuple[float, float]
+    mould_overshoot: tuple[float, float]
     paper_bends: int
     paper_error: float
 
@@ -91,6 +95,11 @@ class BentOutline:
             Check("deviation", self.proof.deviation <= limit, self.proof.deviation, limit, "m", None,
                   "virtual bending: chord error and rounding"),
         ]  # fmt: skip
+        for name, (value, allowed), unit in (
+            ("feed_overshoot", self.feed_overshoot, "m"),
+            ("mould_overshoot", self.mould_overshoot, "rad"),
+        ):
+            found.append(Check(name, value <= allowed, value, allowed, unit, None, "discrete servo (S1): window"))
         closing = self.proof.closing_error
         if closing is not None:
             found.append(
@@ -196,14 +205,11 @@ def _finished(plan: BendPlan, program: NcProgram, job: BenderJob) -> BentOutline
     proof = prove(read, plan, job.springback)
     feeds = np.asarray(read.feeds * 1e-6, dtype=np.float64)
     moulds = np.asarray(np.radians(read.bends / 1e3), dtype=np.float64)
-    dwell = Dwell(
-        _dwell(double_s_moves(_spread(feeds), drive.feed), job, job.feed_window),
-        _dwell(double_s_moves(_spread(np.abs(moulds)), drive.mould), job, job.mould_window),
-    )
-    paper_dwell = Dwell(
-        _dwell(trapezoid_moves(_spread(feeds), drive.feed), job, job.feed_window),
-        _dwell(trapezoid_moves(_spread(np.abs(moulds)), drive.mould), job, job.mould_window),
-    )
+    feed = _worst(double_s_moves(_spread(feeds), drive.feed), job, job.feed_window)
+    mould = _worst(double_s_moves(_spread(np.abs(moulds)), drive.mould), job, job.mould_window)
+    paper_feed = _worst(trapezoid_moves(_spread(feeds), drive.feed), job, job.feed_window)
+    paper_mould = _worst(trapezoid_moves(_spread(np.abs(moulds)), drive.mould), job, job.mould_window)
+    dwell, paper_dwell = Dwell(feed[0], mould[0]), Dwell(paper_feed[0], paper_mould[0])
     paper = plan_bends(plan.outline, EqualSides(), job.least_turn)
     return BentOutline(
         plan,
@@ -215,6 +221,8 @@ def _finished(plan: BendPlan, program: NcProgram, job: BenderJob) -> BentOutline
         sequential_table(feeds, moulds, drive, paper_dwell),
         dwell,
         paper_dwell,
+        (feed[1], job.feed_window),
+        (mould[1], job.mould_window),
         paper.bends,
         paper.chord_error,
     )
@@ -230,6 +238,9 @@ def _spread(distances: FloatArray) -> FloatArray:
     )
 
 
-def _dwell(moves: Moves, job: BenderJob, window: float) -> float:
-    """Find what an axis waits after each move: the longest settling time among its moves (s)."""
-    return float(settling_times(moves, job.servo, window).max()) if len(moves.time) else 0.0
+def _worst(moves: Moves, job: BenderJob, window: float) -> tuple[float, float]:
+    """Longest settling time (s) and greatest overshoot (m or rad) of an axis among its moves."""
+    if not len(moves.time):
+        return 0.0, 0.0
+    found = arrivals(moves, job.servo, window)
+    return float(found.settling.max()), float(found.overshoot.max())

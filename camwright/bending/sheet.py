@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import shutil
 import tempfile
@@ -63,6 +64,7 @@ def _outline_data(outline: BentOutline, result: BentDrawing) -> dict[str, Any]:
     paper = f"paper's rule: {outline.paper_bends}, chord error {1e3 * outline.paper_error:.3f} mm"
     sequential = f"sequential trapezoids {outline.paper_times.total:.2f} s"
     allowed = 1e3 * (outline.plan.chord_error + ROUNDING)
+    over = np.degrees(outline.mould_overshoot[0])
     rows = bend_rows(outline, result.job, _MOST_ROWS)
     return {
         "name": outline.program.name,
@@ -74,6 +76,7 @@ def _outline_data(outline: BentOutline, result: BentDrawing) -> dict[str, Any]:
             ["Largest deviation", f"{1e3 * proof.deviation:.4f} mm (allowed {allowed:.4f} mm)"],
             ["Closing error", closing],
             ["Cycle time", f"{outline.times.total:.2f} s; {sequential} ({-100 * gain:+.1f} %)"],
+            ["Overshoot", f"feed {1e3 * outline.feed_overshoot[0]:.4f} mm, mould {over:.4f}°"],
             ["Collisions", str(len(outline.collisions)) if outline.collisions else "none"],
         ],
         "bends": [_row(row) for row in rows],
@@ -111,16 +114,17 @@ def write_sheet(result: BentDrawing, directory: Path, figures: list[Path]) -> No
     MissingExtraError
         The typesetting libraries are not installed.
     """
+    for library in ("typst", "jinja2"):
+        if importlib.util.find_spec(library) is None:
+            raise MissingExtraError(library, "recipe")
     data = sheet_data(result)
     _write_pdf(data, directory / "sheet.pdf", figures)
     _write_html(data, directory / "sheet.html", figures)
 
 
 def _write_pdf(data: dict[str, Any], target: Path, figures: list[Path]) -> None:
-    try:
-        import typst
-    except ImportError as error:
-        raise MissingExtraError("typst", "recipe") from error
+    import typst
+
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder)
         shutil.copy(_TEMPLATES / "sheet.typ", place / "sheet.typ")
@@ -132,10 +136,8 @@ def _write_pdf(data: dict[str, Any], target: Path, figures: list[Path]) -> None:
 
 
 def _write_html(data: dict[str, Any], target: Path, figures: list[Path]) -> None:
-    try:
-        import jinja2
-    except ImportError as error:
-        raise MissingExtraError("jinja2", "recipe") from error
+    import jinja2
+
     loader = jinja2.FileSystemLoader(_TEMPLATES)
     environment = jinja2.Environment(loader=loader, autoescape=True, undefined=jinja2.StrictUndefined)
     drawings = [_inline(figure.read_text(encoding="utf-8")) for figure in figures[:_MOST_OUTLINES]]

@@ -95,14 +95,16 @@ class TomlTable:
             found.append((first, second))
         return found
 
-    def number(self, key: str, least: float, greatest: float, default: float | None = None) -> float:
-        """Read a bare number above ``least`` and at most ``greatest``."""
-        value = self._value(key, default)
+    def number(self, key: str, least: float, greatest: float, *, above: bool = False) -> float:
+        """Read a bare number from ``least`` (or above it) to ``greatest``."""
+        value = self._value(key, None)
         if value is None:
             return greatest
-        if isinstance(value, bool) or not isinstance(value, int | float) or not least < value <= greatest:
+        plain = isinstance(value, int | float) and not isinstance(value, bool)
+        if not plain or not (least < value <= greatest if above else least <= value <= greatest):
             self.faults.append(
-                f"{self.place} {key} = {shown(value)}: not a number above {least:g} and up to {greatest:g}"
+                f"{self.place} {key} = {shown(value)}: not a number {'above' if above else 'from'} {least:g} "
+                f"up to {greatest:g}"
             )
             return greatest
         return float(value)

@@ -48,6 +48,12 @@ def drawing_view(result: BentDrawing, files: Sequence[Path]) -> RenderableType:
         )
     more = len(result.outlines) - _MOST_ROWS
     notes = [Text(f"{more} more programs are not shown")] if more > 0 else []
+    notes += [
+        Text(f"{outline.program.name}: {check.name} {check.value:.3g} {check.unit}, allowed {check.limit:.3g}", "bold red")
+        for outline in result.outlines
+        for check in outline.checks
+        if not check.passed
+    ]
     notes += [Text(f"warning: {text}", "yellow") for text in result.warnings]
     notes += [Text(f"wrote {file}") for file in files]
     return Group(table, *notes)

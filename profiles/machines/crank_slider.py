@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, ClassVar
 
 import numpy as np
@@ -132,13 +133,7 @@ class CrankSlider(Machine):
 
     def sync_profile(self, cut: Cut) -> CamProfile:
         """Crank angle in the sync zone: ``X(alpha) = X(alpha_start) + s x`` with the sync ratio ``s``."""
-        start = self.sync_start(cut)
-        from_here = float(self.tool(start))
-
-        def angle(x: FloatArray) -> FloatArray:
-            return self.angle_at(from_here + cut.sync_ratio * x) - start
-
-        return fit_profile(angle, 0.0, cut.sync_zone)
+        return _in_sync(self, self.sync_start(cut), cut.sync_zone, cut.sync_ratio)
 
     def angle_at(self, position: FloatArray) -> FloatArray:
         """Crank angle of the forward stroke at which the carriage stands at a position (m), by safeguarded Newton steps."""
@@ -155,3 +150,14 @@ class CrankSlider(Machine):
                 break
             angle = new
         return np.asarray(angle)
+
+
+@lru_cache(maxsize=256)
+def _in_sync(machine: CrankSlider, start: float, zone: float, ratio: float) -> CamProfile:
+    """Crank angle in sync; kept, because line speed and cut length do not change it."""
+    from_here = float(machine.tool(start))
+
+    def angle(x: FloatArray) -> FloatArray:
+        return machine.angle_at(from_here + ratio * x) - start
+
+    return fit_profile(angle, 0.0, zone)

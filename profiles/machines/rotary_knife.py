@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, ClassVar, Literal
 
 import numpy as np
@@ -89,13 +90,7 @@ class RotaryKnife(Machine):
         """Slave in the sync zone: ``y = s x``, or ``r sin(y / r) = s (x - l_s / 2)``, with the sync ratio ``s``."""
         if self.sync == "tangential":
             return CamProfile.from_arrays([0.0, cut.sync_zone], [[0.0, cut.sync_ratio]])
-        start = self.sync_start(cut)
-
-        def travel(x: FloatArray) -> FloatArray:
-            blade = cut.sync_ratio * (x - 0.5 * cut.sync_zone)
-            return np.asarray(self.radius * np.arcsin(blade / self.radius) - start)
-
-        return fit_profile(travel, 0.0, cut.sync_zone)
+        return _horizontal(self.radius, self.sync_start(cut), cut.sync_zone, cut.sync_ratio)
 
     def tool(self, y: Any) -> Any:
         """Position of the edge along the material; along its circle in tangential sync."""
@@ -124,3 +119,13 @@ class RotaryKnife(Machine):
         The edge moves at line speed on its circle, so along the material it moves at ``cos(y / r)`` of it: ``1 - cos(l_s / 2 r)``.
         """
         return 1.0 - math.cos(min(0.5 * cut.sync_zone / self.radius, math.pi))
+
+
+@lru_cache(maxsize=256)
+def _horizontal(radius: float, start: float, zone: float, ratio: float) -> CamProfile:
+    """Edge travel in horizontal sync; kept, because line speed and cut length do not change it."""
+
+    def travel(x: FloatArray) -> FloatArray:
+        return np.asarray(radius * np.arcsin(ratio * (x - 0.5 * zone) / radius) - start)
+
+    return fit_profile(travel, 0.0, zone)

@@ -4,6 +4,7 @@ import json
 import math
 import os
 import re
+import sys
 import threading
 from collections.abc import Callable
 from pathlib import Path
@@ -93,6 +94,25 @@ def test_same_input_same_bytes(drawing: Make, tmp_path: Path, capsys: pytest.Cap
         assert file.read_bytes() == (tmp_path / "b" / file.name).read_bytes(), file.name
 
 
+def test_without_the_typesetting_libraries_there_is_no_sheet(
+    drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    path = drawing(lambda m, _: m.add_line((0, 0), (9, 0)))
+    code, answer, _ = run(capsys, path, "--out", tmp_path / "out")
+    assert code == 0
+    assert answer["bends"] == 0
+    assert any("no sheet: typst is not installed" in text and "camwright[recipe]" in text for text in answer["warnings"])
+    assert not [file for file in answer["files"] if "sheet" in file]
+
+
+def test_without_the_drawing_library(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setitem(sys.modules, "ezdxf", None)
+    code, _, err = run(capsys, EXAMPLE, "--out", tmp_path / "out")
+    assert code == 2
+    assert "pip install 'camwright[bend]'" in err
+
+
 def test_names_are_escaped(drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     def draw(m, d):
         d.layers.add("A&B'{{x}}#strong[y]")
@@ -159,6 +179,20 @@ def test_what_the_bender_cannot_do(drawing: Make, tmp_path: Path, capsys, draw, 
     assert re.search(message, err)
     assert str(path.name) in err
     assert not (tmp_path / "out").exists()
+
+
+def test_overshoot_fails_a_check(drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    path = drawing(lambda m, _: m.add_lwpolyline(STEP))
+    job = changed(tmp_path, ("velocity_feedforward = 0.0", "velocity_feedforward = 1.0"))
+    assert main(["bend", str(path), "--job", str(job), "--out", str(tmp_path / "out"), "--no-figures"]) == 1
+    assert "DRAWING: feed_overshoot 0.000" in capsys.readouterr().out
+    code, answer, _ = run(capsys, path, "--job", job, "--out", tmp_path / "out", "--no-figures")
+    assert code == 1
+    assert not answer["passed"]
+    assert answer["feed_overshoot_mm"] > 0.1
+    code, answer, _ = run(capsys, path, "--out", tmp_path / "out", "--no-figures")
+    assert code == 0
+    assert answer["feed_overshoot_mm"] < 1e-6
 
 
 def test_beyond_the_mould_s_range(drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]):

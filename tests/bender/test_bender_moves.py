@@ -13,7 +13,7 @@ from profiles.errors import InputError
 from profiles.limits import Limits
 from profiles.reach import fastest
 from profiles.servo import Servo, closed_loop
-from validation.bender_servo import settling_times
+from validation.bender_servo import arrivals
 
 DRIVE = BenderDrive(
     Limits(0.5, 5.0, 1000.0, True),
@@ -127,26 +127,36 @@ def test_cycle_of_the_paper_s_fragment():
 
 def test_settling_against_a_plain_loop():
     moves = double_s_moves(np.array([0.001, 0.02, 0.2]), DRIVE.feed)
-    found = settling_times(moves, SERVO, 1e-5)
+    found = arrivals(moves, SERVO, 1e-5)
     a, b = closed_loop(SERVO)
     for i in range(3):
-        z, before, last, goal = np.zeros(3), 0.0, 0, float(moves.distance[i])
+        z, before, last, beyond, goal = np.zeros(3), 0.0, 0, 0.0, float(moves.distance[i])
         for k in range(2000):
             if abs(goal - z[2]) > 1e-5:
                 last = k + 1
+            beyond = max(beyond, z[2] - goal)
             command = float(moves.take(np.array([i])).position(np.array([[k * 1e-3]]))[0, 0])
             z = a @ z + b @ np.array([command, before])
             before = command
-        assert found[i] == pytest.approx(max(0.0, last * 1e-3 - float(moves.time[i])), abs=1e-12)
+        assert found.settling[i] == pytest.approx(max(0.0, last * 1e-3 - float(moves.time[i])), abs=1e-12)
+        assert found.overshoot[i] == pytest.approx(beyond, abs=1e-15)
 
 
 def test_jerk_limited_moves_settle_no_later_than_trapezoids():
     distances = np.geomspace(2e-4, 0.2, 30)
-    smooth = settling_times(double_s_moves(distances, DRIVE.feed), SERVO, 1e-5)
-    sharp = settling_times(trapezoid_moves(distances, DRIVE.feed), SERVO, 1e-5)
+    smooth = arrivals(double_s_moves(distances, DRIVE.feed), SERVO, 1e-5).settling
+    sharp = arrivals(trapezoid_moves(distances, DRIVE.feed), SERVO, 1e-5).settling
     assert smooth.max() < sharp.max()
+
+
+def test_velocity_feedforward_makes_the_feed_overshoot():
+    moves = double_s_moves(np.geomspace(2e-4, 0.2, 30), DRIVE.feed)
+    without = Servo(500.0, 0.8, 100.0, 1e-3, 0.0)
+    assert arrivals(moves, SERVO, 1e-5).overshoot.max() > 1e-4
+    assert arrivals(moves, without, 1e-5).overshoot.max() < 1e-9
+    assert arrivals(moves, without, 1e-5).settling.max() < arrivals(moves, SERVO, 1e-5).settling.max()
 
 
 def test_unstable_servo_is_refused():
     with pytest.raises(InputError, match="unstable"):
-        settling_times(double_s_moves(np.array([0.01]), DRIVE.feed), Servo(500.0, 0.8, 3000.0, 1e-3, 1.0), 1e-5)
+        arrivals(double_s_moves(np.array([0.01]), DRIVE.feed), Servo(500.0, 0.8, 3000.0, 1e-3, 1.0), 1e-5)

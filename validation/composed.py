@@ -1,0 +1,147 @@
+"""Quantities along a cycle as polynomials: a formula of the slave's position and its derivatives, piece by piece.
+
+A torque or a tool's speed is a smooth function of the slave's polynomials. Interpolated at Chebyshev points it becomes polynomials itself, so that
+peaks, mean squares and zeros come from the same exact roads as those of the motion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from profiles.errors import InputError
+from profiles.polynomial import CamProfile, FloatArray, join
+
+TOLERANCE = 1e-13
+"""Error of a composed quantity, relative to its largest magnitude."""
+
+DEGREE = 9
+"""Degree of the pieces."""
+
+_MOST_HALVINGS = 14
+"""How often a piece may be halved; a smooth quantity needs few."""
+
+_POINTS = 0.5 - 0.5 * np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
+"""Chebyshev points on the unit interval; none of them is an end, so a piece answers for itself alone."""
+
+_BETWEEN = 0.5 - 0.5 * np.cos(np.pi * np.arange(DEGREE + 2) / (DEGREE + 1))
+"""Points where the interpolation is farthest from its own points: there its error is judged."""
+
+
+def compose(formula: Callable[[FloatArray, FloatArray, FloatArray], FloatArray], profile: CamProfile) -> CamProfile:
+    """Polynomials of a formula of ``y``, ``y'``, ``y''``, to 1e-13 of its largest magnitude.
+
+    Parameters
+    ----------
+    formula
+        Smooth function of position (slave unit), ratio and ratio slope, arrays of one shape.
+    profile
+        The slave over the master.
+
+    Returns
+    -------
+    CamProfile
+        The quantity over the master, its breaks among them those of the profile. It jumps where the profile's derivatives do.
+
+    Raises
+    ------
+    InputError
+        The formula has no finite value somewhere, or is not smooth.
+    """
+    lower, piece = profile.breaks[:-1], np.arange(profile.pieces)
+    width = np.diff(profile.breaks)
+    origin = lower.copy()  # where the polynomial of each part is counted from
+    done: list[tuple[FloatArray, FloatArray]] = []
+    size = 0.0
+    to_powers = _to_powers()
+    for halving in range(_MOST_HALVINGS + 1):
+        values = formula(*_states(profile, piece, lower - origin, width, _POINTS))
+        size = max(size, float(np.abs(values).max(initial=0.0)))
+        rows = values @ to_powers.T
+        truth = formula(*_states(profile, piece, lower - origin, width, _BETWEEN))
+        found = np.polynomial.polynomial.polyval(_BETWEEN, rows.T, tensor=True)
+        error = np.abs(found - truth).max(axis=1)
+        if not np.isfinite(error).all():
+            raise InputError("a quantity along the cycle has no finite value: the machine cannot take all positions of this profile")
+        good = error <= TOLERANCE * size
+        done.append((lower[good], rows[good] / width[good, None] ** np.arange(DEGREE + 1)))
+        if good.all():
+            break
+        if halving == _MOST_HALVINGS:
+            raise InputError(
+                f"a quantity along the cycle is not smooth at master {float(lower[~good][0])!r} m: pieces of {float(width[~good][0])!r} m "
+                f"do not carry it as polynomials"
+            )
+        half = 0.5 * width[~good]
+        origin, piece = np.repeat(origin[~good], 2), np.repeat(piece[~good], 2)
+        lower = np.stack([lower[~good], lower[~good] + half], axis=1).ravel()
+        width = np.repeat(half, 2)
+    starts = np.concatenate([start for start, _ in done])
+    order = np.argsort(starts)
+    return CamProfile(np.append(starts[order], profile.end), np.concatenate([rows for _, rows in done])[order])
+
+
+def _states(
+    profile: CamProfile, piece: FloatArray, start: FloatArray, width: FloatArray, points: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Position, ratio and ratio slope at points of parts of pieces, by each part's own piece; shapes ``(parts, points)``."""
+    local = start[:, None] + width[:, None] * points
+    states = []
+    table = profile.coefficients
+    for _ in range(3):
+        value = np.zeros_like(local)
+        for power in range(table.shape[1] - 1, -1, -1):  # Horner
+            value = value * local + table[piece, power, None]
+        states.append(value)
+        table = table[:, 1:] * np.arange(1, table.shape[1]) if table.shape[1] > 1 else np.zeros((profile.pieces, 1))
+    return states[0], states[1], states[2]
+
+
+def _to_powers() -> FloatArray:
+    """Matrix from values at the points to coefficients over the unit interval, ascending powers, by way of Chebyshev's polynomials."""
+    chebyshev = np.linalg.inv(np.polynomial.chebyshev.chebvander(2 * _POINTS - 1, DEGREE))
+    unit = np.polynomial.Polynomial([-1.0, 2.0])
+    columns = []
+    for k in range(DEGREE + 1):
+        powers = np.polynomial.chebyshev.cheb2poly(np.eye(DEGREE + 1)[k])
+        composed = np.polynomial.Polynomial(powers)(unit).coef
+        columns.append(np.pad(composed, (0, DEGREE + 1 - len(composed))))
+    return np.array(columns).T @ chebyshev
+
+
+def integral(profile: CamProfile) -> CamProfile:
+    """Antiderivative over the master, continuous, zero at the start."""
+    powers = np.arange(1, profile.degree + 2)
+    rows = np.concatenate([np.zeros((profile.pieces, 1)), profile.coefficients / powers], axis=1)
+    rise = np.sum(rows * np.diff(profile.breaks)[:, None] ** np.arange(profile.degree + 2), axis=1)
+    rows[1:, 0] = np.cumsum(rise)[:-1]
+    return CamProfile(profile.breaks.copy(), rows)
+
+
+def zeros(profile: CamProfile, order: int = 0) -> FloatArray:
+    """Master positions inside the pieces where a derivative is zero, without those of pieces on which it is zero throughout."""
+    table = profile.coefficients
+    for _ in range(order):
+        table = table[:, 1:] * np.arange(1, table.shape[1]) if table.shape[1] > 1 else np.zeros((profile.pieces, 1))
+    width = np.diff(profile.breaks)
+    unit = table * width[:, None] ** np.arange(table.shape[1])
+    found = []
+    for start, length, row in zip(profile.breaks[:-1], width, unit, strict=True):
+        size = np.abs(row).max()
+        if size == 0.0 or abs(row[0]) > np.abs(row[1:]).sum():  # the constant term outweighs the rest: no zero
+            continue
+        significant = np.nonzero(np.abs(row) > 1e-15 * size)[0]
+        roots = np.polynomial.polynomial.polyroots(row[: significant[-1] + 1])
+        real = roots[np.abs(roots.imag) < 1e-6].real
+        found.append(start + length * real[(real > 0.0) & (real < 1.0)])
+    return np.unique(np.concatenate(found)) if found else np.zeros(0)
+
+
+def split(profile: CamProfile, places: FloatArray) -> CamProfile:
+    """Give a profile further breaks, none nearer to another than 1e-12 of its length."""
+    least = 1e-12 * profile.length
+    apart = [float(x) for x in places if np.abs(profile.breaks - x).min() > least]
+    kept = [x for i, x in enumerate(apart) if i == 0 or x - apart[i - 1] > least]
+    edges = [profile.start, *kept, profile.end]
+    return join(*(profile.restrict(a, b) for a, b in zip(edges[:-1], edges[1:], strict=True))) if kept else profile

@@ -1,0 +1,142 @@
+"""What a profile asks of the motor: torque, speed and energy, for every machine."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from profiles.cycle import Cut
+from profiles.machines import Machine
+from profiles.polynomial import CamProfile, FloatArray
+from profiles.returns import slave_at_start
+from validation.composed import compose, integral, split, zeros
+from validation.motion import greatest_magnitude, is_steady, require_period
+
+_STANDING = 1e-9
+"""Ratio, relative to the cycle's greatest, below which the slave stands still on a piece: friction then asks for no torque."""
+
+
+@dataclass(frozen=True)
+class MotorMeasures:
+    """What one cycle asks of the motor, at the motor's shaft.
+
+    ``None`` stands for what cannot be told: the machine gives neither inertia nor friction, or the profile's acceleration is unbounded.
+
+    Parameters
+    ----------
+    peak_torque
+        Greatest magnitude of the torque (N·m).
+    rms_torque
+        Root mean square of the torque over the whole cycle, which is what heats the motor (N·m).
+    peak_speed
+        Greatest speed (rad/s).
+    min_velocity
+        Least velocity, negative where the motor turns back (rad/s).
+    energy
+        Energy drawn in one cycle, nothing recovered (J): integral of ``max(torque × velocity, 0)``.
+    regenerated
+        Energy fed back in one cycle (J): integral of ``max(-torque × velocity, 0)``.
+    """
+
+    peak_torque: float | None
+    rms_torque: float | None
+    peak_speed: float
+    min_velocity: float
+    energy: float | None
+    regenerated: float | None
+
+
+def measure_motor(profile: CamProfile, machine: Machine, cut: Cut) -> MotorMeasures:
+    """Measure what a profile asks of the motor, at the line speed of the cut.
+
+    The torque is ``(I(y) ÿ + I'(y) ẏ² / 2 + F sign(ẏ)) / ratio`` with the machine's inertia ``I``, friction ``F`` and motor ratio; friction
+    asks for nothing where the slave stands still. Peaks come from roots of polynomials, mean squares and energies from exact
+    integration: to rounding where the inertia is constant, else to 1e-12 of the largest torque (`validation.composed.compose`).
+
+    Parameters
+    ----------
+    profile
+        One cycle over the master period ``[0, x_c]`` (slave unit).
+    machine
+        The machine, its sync zone placed.
+    cut
+        The cut it is judged for.
+
+    Raises
+    ------
+    InputError
+        The profile does not run over ``[0, x_c]``, or the machine's sync zone is not placed.
+    """
+    require_period(profile, cut)
+    pace = cut.line_speed * machine.motor_ratio
+    peak_speed = pace * greatest_magnitude(profile, 1).value
+    min_velocity = pace * profile.extrema(1)[0].value
+    if not (is_steady(profile, machine, cut) and moves_something(machine)):
+        return MotorMeasures(None, None, peak_speed, min_velocity, None, None)
+    torque = motor_torque(profile, machine, cut)
+    drawn, regenerated = _energies(torque, profile, machine)
+    return MotorMeasures(
+        peak_torque=greatest_magnitude(torque, 0).value,
+        rms_torque=math.sqrt(torque.mean_square(0)),
+        peak_speed=peak_speed,
+        min_velocity=min_velocity,
+        energy=drawn,
+        regenerated=regenerated,
+    )
+
+
+def moves_something(machine: Machine) -> bool:
+    """Whether the job gives the machine any inertia, mass or friction."""
+    anywhere = np.linspace(0.0, machine.pitch or 1.0, 9)
+    return bool(np.any(machine.inertia(anywhere) > 0.0)) or machine.friction > 0.0
+
+
+def motor_torque(profile: CamProfile, machine: Machine, cut: Cut) -> CamProfile:
+    """Torque at the motor over the master (N·m), as polynomials; at a jump both one-sided values belong to it.
+
+    Parameters
+    ----------
+    profile
+        One cycle with a bounded acceleration; its position may begin anywhere.
+    """
+    start = slave_at_start(machine, cut) - float(profile(profile.start))
+    v, ratio = cut.line_speed, machine.motor_ratio
+
+    def inertial(y: FloatArray, slope: FloatArray, bend: FloatArray) -> FloatArray:
+        place = start + y
+        return np.asarray(v**2 / ratio * (machine.inertia(place) * bend + machine.inertia_slope(place) * slope**2 / 2))
+
+    one_way = split(profile, zeros(profile, 1))
+    torque = compose(inertial, one_way)
+    direction = _direction(one_way)[np.searchsorted(one_way.breaks[1:-1], torque.breaks[:-1], side="right")]
+    table = torque.coefficients.copy()
+    table[:, 0] += machine.friction / ratio * direction
+    return CamProfile(torque.breaks.copy(), table)
+
+
+def _direction(one_way: CamProfile) -> FloatArray:
+    """Sign of the ratio on each piece, none of which turns; zero where the slave stands."""
+    middle = one_way(0.5 * (one_way.breaks[:-1] + one_way.breaks[1:]), 1)
+    standing = np.abs(middle) <= _STANDING * greatest_magnitude(one_way, 1).value
+    return np.where(standing, 0.0, np.sign(middle))
+
+
+def _energies(torque: CamProfile, profile: CamProfile, machine: Machine) -> tuple[float, float]:
+    """Energy drawn and energy fed back in one cycle (J): the work over the slave's travel, split where it changes its sign."""
+    parts = split(torque, zeros(torque))
+    travel = machine.motor_ratio * _on(profile, parts.breaks)
+    count = parts.degree + travel.shape[1]
+    product = np.zeros((parts.pieces, count))
+    for power in range(parts.degree + 1):
+        product[:, power : power + travel.shape[1]] += parts.coefficients[:, power, None] * travel
+    work = np.diff(integral(CamProfile(parts.breaks.copy(), product))(parts.breaks))
+    return float(work[work > 0].sum()), float(-work[work < 0].sum())
+
+
+def _on(profile: CamProfile, breaks: FloatArray) -> FloatArray:
+    """Coefficients of the ratio on pieces between breaks, those of the profile among them."""
+    table = split(profile, breaks[1:-1])
+    ratio = table.coefficients[:, 1:] * np.arange(1, table.degree + 1)
+    return np.asarray(ratio[np.clip(np.searchsorted(table.breaks[:-1], breaks[:-1], side="right") - 1, 0, table.pieces - 1)])
