@@ -10,14 +10,17 @@ from typing import TYPE_CHECKING, Any
 
 from camwright.comparison import Comparison, Measured
 from camwright.cut_lengths import CutLengths
-from camwright.design_file import job_numbers, objective_answer
+from camwright.design_file import job_numbers, objective_answer, starts_answer
 from camwright.job import Job
 from profiles.errors import CamwrightError, InfeasibleError
 
 if TYPE_CHECKING:
     from camwright.results import Design
+    from design.extremes import Extremes
+    from profiles.machines.machine import SlaveUnit
     from validation.checks import Check
     from validation.motion import Motion
+    from validation.motor import MotorMeasures
     from validation.report import ValidationReport
     from validation.response import ServoResponse
 
@@ -38,11 +41,14 @@ def design_answer(design: Design, files: Sequence[Path]) -> dict[str, Any]:
         "job": design.job.name,
         "status": design.solution.status.value,
         "objective": objective_answer(design),
+        "lower_bound_method": design.bound.method,
+        "starts": starts_answer(design),
         "pieces": design.profile.pieces,
         "profiles": _profiles(design.comparison),
         "checks": _checks(design.report.checks),
         "passed": design.passed,
         "minimum_cut_length_mm": _lengths(design.lengths),
+        "tangential_mismatch": design.report.tangential_mismatch,
         "files": [str(file) for file in files],
     }
 
@@ -56,16 +62,19 @@ def compare_answer(comparison: Comparison, files: Sequence[Path]) -> dict[str, A
     }
 
 
-def limits_answer(job: Job, lengths: CutLengths) -> dict[str, Any]:
-    """Answer of ``camwright limits``."""
+def limits_answer(job: Job, far: Extremes, lengths: CutLengths | None) -> dict[str, Any]:
+    """Answer of ``camwright limits``; null where nothing works, or where the published equations are not about the machine."""
     return {
         "job": job.name,
+        "max_line_speed_m_per_min": None if far.max_line_speed is None else far.max_line_speed * 60,
+        "min_cut_length_mm": millimetres(far.min_cut_length),
+        "binding": {"line_speed": far.line_speed_binding, "cut_length": far.cut_length_binding},
         "minimum_cut_length_mm": _lengths(lengths),
-        "binding": lengths.binding,
-        "eq10_with_settling_mm": millimetres(lengths.eq10_settling),
+        "physical_bound_binding": lengths.binding if lengths else None,
+        "eq10_with_settling_mm": millimetres(lengths.eq10_settling) if lengths else None,
         "transition_length_mm": {
-            "crossing": millimetres(lengths.crossing),
-            "settling": millimetres(lengths.settling),
+            "crossing": millimetres(lengths.crossing) if lengths else None,
+            "settling": millimetres(lengths.settling) if lengths else None,
         },
     }
 
@@ -75,7 +84,7 @@ def validate_answer(job: Job, file: Path, report: ValidationReport) -> dict[str,
     return {
         "job": job.name,
         "file": str(file),
-        "profile": _measures(report.motion, report.servo),
+        "profile": _measures(report.motion, report.tool, report.motor, report.servo, job.machine.slave_unit),
         "checks": _checks(report.checks),
         "passed": report.passed,
     }
@@ -91,31 +100,41 @@ def error_answer(exit_code: int, message: str, failure: CamwrightError | None) -
     answer: dict[str, Any] = {"status": "error", "exit_code": exit_code, "message": message}
     if isinstance(failure, InfeasibleError):
         answer["status"] = "infeasible"
-        answer |= {"binding": failure.binding, "excess": failure.excess, "unit": failure.unit}
+        answer |= {"binding": failure.binding, "excess": {"value": failure.excess, "unit": failure.unit}}
         answer["suggestions"] = [asdict(suggestion) for suggestion in failure.suggestions]
     return answer
 
 
 def _profiles(comparison: Comparison) -> dict[str, Any]:
     """Measures of each profile by name."""
-    return {row.name: _row(row) for row in comparison.rows}
+    return {row.name: _row(row, comparison.job.machine.slave_unit) for row in comparison.rows}
 
 
-def _row(row: Measured) -> dict[str, Any]:
+def _row(row: Measured, unit: SlaveUnit) -> dict[str, Any]:
     """Measures of one profile of a comparison."""
-    return _measures(row.motion, row.response)
+    return _measures(row.motion, row.tool, row.motor, row.response, unit)
 
 
-def _measures(motion: Motion, response: ServoResponse | None) -> dict[str, Any]:
-    """Measures of a profile; null where a value is unbounded or does not exist."""
-    return {
-        "peak_speed_m_per_s": motion.peak_speed,
-        "min_speed_m_per_s": motion.min_speed,
-        "peak_acceleration_m_per_s2": motion.peak_acceleration,
-        "rms_acceleration_m_per_s2": motion.rms_acceleration,
-        "peak_jerk_m_per_s3": motion.peak_jerk,
-        "rms_jerk_m_per_s3": motion.rms_jerk,
-        "sync_ratio_error": motion.sync_ratio_error,
+def _measures(
+    slave: Motion, tool: Motion, motor: MotorMeasures, response: ServoResponse | None, unit: SlaveUnit
+) -> dict[str, Any]:
+    """Measures of a profile; null where a value is unbounded or does not exist. A slave that turns has its own measures."""
+    measures = {
+        "peak_speed_m_per_s": tool.peak_speed,
+        "min_speed_m_per_s": tool.min_speed,
+        "peak_acceleration_m_per_s2": tool.peak_acceleration,
+        "rms_acceleration_m_per_s2": tool.rms_acceleration,
+        "peak_jerk_m_per_s3": tool.peak_jerk,
+        "rms_jerk_m_per_s3": tool.rms_jerk,
+        "sync_ratio_error": slave.sync_ratio_error,
+        "motor": {
+            "peak_torque_N_m": motor.peak_torque,
+            "rms_torque_N_m": motor.rms_torque,
+            "peak_speed_rad_per_s": motor.peak_speed,
+            "min_velocity_rad_per_s": motor.min_velocity,
+            "energy_J": motor.energy,
+            "regenerated_J": motor.regenerated,
+        },
         "servo": None
         if response is None
         else {
@@ -126,6 +145,11 @@ def _measures(motion: Motion, response: ServoResponse | None) -> dict[str, Any]:
             "shear_zone_error_mm": millimetres(response.shear_zone_error),
         },
     }
+    if unit == "rad":
+        own = asdict(slave)
+        del own["sync_ratio_error"]
+        measures["slave"] = {"unit": "rad", **own}
+    return measures
 
 
 def _checks(checks: Sequence[Check]) -> list[dict[str, Any]]:
@@ -133,8 +157,10 @@ def _checks(checks: Sequence[Check]) -> list[dict[str, Any]]:
     return [asdict(check) for check in checks]
 
 
-def _lengths(lengths: CutLengths) -> dict[str, float | None]:
-    """Minimum cut lengths in mm."""
+def _lengths(lengths: CutLengths | None) -> dict[str, float | None]:
+    """Minimum cut lengths in mm; null for machines that the published equations are not about."""
+    if lengths is None:
+        return dict.fromkeys(("eq9", "eq10", "physical", "linear_return_to_tolerance", "optimised_to_tolerance"))
     return {
         "eq9": millimetres(lengths.eq9),
         "eq10": millimetres(lengths.eq10),

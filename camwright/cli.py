@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, cast
 
@@ -62,17 +63,17 @@ def _design(
 ) -> int:
     """Design the optimal cam of a job; write the design, the cam table and the figures."""
     from camwright.answers import design_answer
+    from camwright.comparison import law_names
     from camwright.design_file import design_text
     from camwright.files import staged
     from camwright.job import load_job
     from camwright.profile_files import cam_text
     from camwright.results import STEPS, design
-    from profiles.returns import BASELINES
 
     asked = load_job(job)
     directory = _directory(out, asked)
     voice = Voice(as_json, quiet)
-    with voice.progress(STEPS + len(BASELINES) + 2) as step:
+    with voice.progress(STEPS + len(law_names(asked.machine, asked.cut)) + 2) as step:
         result = design(asked, step)
         texts = {"design.json": design_text(result), "cam.csv": cam_text(result)}
         step("writing files")
@@ -107,22 +108,21 @@ def _compare(
 ) -> int:
     """Compare the optimal cam with the linear return and the standard motion laws."""
     from camwright.answers import compare_answer
-    from camwright.comparison import compare, require_baselines
+    from camwright.comparison import compare, law_names, require_laws
     from camwright.files import staged
     from camwright.job import load_job
-    from profiles.returns import BASELINES
 
-    names = tuple(dict.fromkeys(laws)) if laws else BASELINES
-    require_baselines(names)
     asked = load_job(job)
+    names = tuple(dict.fromkeys(laws)) if laws else law_names(asked.machine, asked.cut)
+    require_laws(names, asked.machine, asked.cut)
     voice = Voice(as_json, quiet)
     files: list[Path] = []
     with voice.progress(len(names) + 3) as step:
         from design.optimise import solve
 
         step("solving")
-        optimised = solve(asked.machine, asked.cut, asked.limits, asked.objective).profile
-        result = compare(asked, optimised, names, step)
+        solution = solve(asked.machine, asked.cut, asked.limits, asked.objective)
+        result = compare(replace(asked, machine=solution.machine), solution.profile, names, step)
         if not no_figures:
             from camwright.plots import comparison_figure
 
@@ -145,23 +145,27 @@ def _compare(
 
 @app.command("limits")
 def _limits(job: _GivenJob, as_json: _Json = False, quiet: _Quiet = False) -> int:
-    """Say how short the machine of a job can cut, and which limit binds."""
+    """Say how fast and how short the machine of a job can cut, and which limit binds."""
     from camwright.answers import limits_answer
     from camwright.cut_lengths import cut_lengths
     from camwright.job import load_job
 
     asked = load_job(job)
     voice = Voice(as_json, quiet)
-    with voice.progress(1) as step:
+    with voice.progress(2) as step:
+        from design.extremes import extremes
+
+        step("finding the highest line speed and the shortest cut")
+        far = extremes(asked.machine, asked.cut, asked.limits)
         step("finding minimum cut lengths")
         lengths = cut_lengths(asked)
 
     def view() -> RenderableType:
         from camwright.tables import limits_view
 
-        return limits_view(lengths)
+        return limits_view(asked, far, lengths)
 
-    voice.answer(lambda: limits_answer(asked, lengths), view)
+    voice.answer(lambda: limits_answer(asked, far, lengths), view)
     return 0
 
 

@@ -4,18 +4,28 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from camwright.job import Job
 from camwright.progress import Step, ignore
+from profiles.cross_cutter import QUINTIC_RATIO, quintic_return
+from profiles.cycle import Cut
 from profiles.errors import InputError
+from profiles.machines import CrankSlider, Machine
 from profiles.polynomial import CamProfile
-from profiles.returns import BASELINES, baseline
+from profiles.returns import assemble, baseline, baseline_names, is_straight
 
 if TYPE_CHECKING:
     from validation.motion import Motion
+    from validation.motor import MotorMeasures
     from validation.response import ServoResponse
+
+QUINTIC = "quintic"
+"""The return of S2; where the polynomial 3-4-5 would run backwards it decelerates, perhaps stands, and accelerates."""
+
+_LEAST_MEAN_RATIO = 1e-9
+# Below this mean ratio of the return S2's curve would stand still but for rounding.
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +39,11 @@ class Measured:
     profile
         One cycle.
     motion
-        Measures of its motion at line speed.
+        Measures of the slave's motion at line speed (slave unit).
+    tool
+        Measures of the tool's motion (m): the same where the slave is counted in metres.
+    motor
+        What the motor must give.
     response
         What the servo makes of it.
     """
@@ -37,6 +51,8 @@ class Measured:
     name: str
     profile: CamProfile
     motion: Motion
+    tool: Motion
+    motor: MotorMeasures
     response: ServoResponse
 
 
@@ -47,7 +63,7 @@ class Comparison:
     Parameters
     ----------
     job
-        The job.
+        The job, its machine with everything that the design chose.
     rows
         The profiles, sorted by peak acceleration, the unbounded ones last.
     """
@@ -60,8 +76,28 @@ class Comparison:
         return next(row for row in self.rows if row.name == name)
 
 
-def require_baselines(names: Sequence[str]) -> None:
-    """Refuse names of baselines that do not exist, all at once.
+def law_names(machine: Machine, cut: Cut) -> tuple[str, ...]:
+    """Names of all baselines of a machine: those of `profiles.returns`, and the return of S2 where it is another one.
+
+    Examples
+    --------
+    >>> from camwright import load_job
+    >>> job = load_job()
+    >>> "quintic" in law_names(job.machine, job.cut), "cycloid" in law_names(job.machine, job.cut)
+    (False, True)
+    """
+    if isinstance(machine, CrankSlider) and math.isnan(machine.sync_at):
+        least, greatest = machine.sync_range(cut)
+        machine = replace(machine, sync_at=0.5 * (least + greatest))  # the names are the same at every place
+    names = baseline_names(machine, cut)
+    if not is_straight(machine, cut):
+        return names
+    mean = (machine.pitch - cut.sync_ratio * cut.sync_zone) / (cut.sync_ratio * cut.return_zone)
+    return (*names, QUINTIC) if _LEAST_MEAN_RATIO < mean < QUINTIC_RATIO else names
+
+
+def require_laws(names: Sequence[str], machine: Machine, cut: Cut) -> None:
+    """Refuse names of baselines that do not exist for a machine, all at once.
 
     Raises
     ------
@@ -70,27 +106,28 @@ def require_baselines(names: Sequence[str]) -> None:
     """
     import difflib
 
+    known = law_names(machine, cut)
     faults = []
     for name in names:
-        if name not in BASELINES:
-            near = difflib.get_close_matches(name[:50], BASELINES, n=1)
-            advice = f"did you mean {near[0]}?" if near else f"the laws are {', '.join(BASELINES)}"
-            faults.append(f"--with {name[:50]!r}: there is no such law; {advice}")
+        if name not in known:
+            near = difflib.get_close_matches(name[:50], known, n=1)
+            advice = f"did you mean {near[0]}?" if near else f"the laws are {', '.join(known)}"
+            faults.append(f"--with {name[:50]!r}: there is no such law for this machine; {advice}")
     if faults:
         raise InputError(*faults)
 
 
-def compare(job: Job, optimised: CamProfile, names: Sequence[str] = BASELINES, step: Step = ignore) -> Comparison:
+def compare(job: Job, optimised: CamProfile, names: Sequence[str] | None = None, step: Step = ignore) -> Comparison:
     """Measure the optimised profile of a job and baselines.
 
     Parameters
     ----------
     job
-        The job.
+        The job, the place of its sync zone chosen.
     optimised
         Its optimised cycle.
     names
-        Names of baselines, from `profiles.returns.BASELINES`.
+        Names of baselines, from `law_names`; all of them if not given.
     step
         Told what begins now.
 
@@ -99,8 +136,9 @@ def compare(job: Job, optimised: CamProfile, names: Sequence[str] = BASELINES, s
     InputError
         There is no such baseline.
     """
-    require_baselines(names)
-    profiles = {"optimised": optimised, **{name: baseline(name, job.machine, job.cut) for name in names}}
+    chosen = law_names(job.machine, job.cut) if names is None else names
+    require_laws(chosen, job.machine, job.cut)
+    profiles = {"optimised": optimised, **{name: _law(name, job.machine, job.cut) for name in chosen}}
     rows = []
     for name, profile in profiles.items():
         step(f"measuring {name}")
@@ -109,14 +147,25 @@ def compare(job: Job, optimised: CamProfile, names: Sequence[str] = BASELINES, s
     return Comparison(job, tuple(rows))
 
 
+def _law(name: str, machine: Machine, cut: Cut) -> CamProfile:
+    """Make one cycle of a baseline."""
+    if name != QUINTIC:
+        return baseline(name, machine, cut)
+    height = machine.pitch / cut.sync_ratio - cut.sync_zone  # S2 has ratio 1 in sync
+    return assemble(quintic_return(cut.return_zone, height).scale(slave=cut.sync_ratio), machine, cut)
+
+
 def _measure(name: str, profile: CamProfile, job: Job) -> Measured:
     """Measure one profile."""
-    from validation.motion import measure_motion
+    from validation.motion import measure_motion, measure_tool
+    from validation.motor import measure_motor
     from validation.response import servo_response
 
     return Measured(
         name,
         profile,
-        measure_motion(profile, job.cut),
+        measure_motion(profile, job.machine, job.cut),
+        measure_tool(profile, job.machine, job.cut),
+        measure_motor(profile, job.machine, job.cut),
         servo_response(profile, job.machine, job.cut, job.servo),
     )

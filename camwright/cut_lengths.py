@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from camwright.job import Job
+from profiles.machines import RotaryKnife
 
 if TYPE_CHECKING:
     from validation.minimum_length import MinimumCutLength
@@ -46,8 +47,11 @@ class CutLengths:
         return self.physical.binding
 
 
-def cut_lengths(job: Job) -> CutLengths:
+def cut_lengths(job: Job) -> CutLengths | None:
     """Find the minimum cut lengths of a job.
+
+    They are those of a rotary knife whose edge runs at line speed in the sync zone, as the published equations have it; ``None``
+    for other machines, for horizontal sync, and for a sync ratio other than 1.
 
     Raises
     ------
@@ -66,6 +70,8 @@ def cut_lengths(job: Job) -> CutLengths:
     from validation.response import servo_response
 
     machine, cut, limits, servo = job.machine, job.cut, job.limits, job.servo
+    if not isinstance(machine, RotaryKnife) or machine.sync != "tangential" or cut.sync_ratio != 1.0:
+        return None
     response = servo_response(baseline("linear_return", machine, cut), machine, cut, servo)
 
     def eq10(transition: float | None, shear_zone: float) -> float | None:

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import hashlib
 import json
-from dataclasses import asdict, dataclass
+import math
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, get_args
 
 from camwright.files import read_text
 from camwright.job import Job, parse_job
+from camwright.job_file import Objective
 from camwright.provenance import SCHEMA_VERSION, provenance
 from profiles.errors import InputError
+from profiles.machines import CrankSlider, LinearCarriage, Machine, RotaryKnife
 from profiles.polynomial import CamProfile
 
 if TYPE_CHECKING:
@@ -19,6 +22,9 @@ if TYPE_CHECKING:
 
 MOST_BYTES = 1 << 26
 """The most bytes that a design or table file may have."""
+
+_UNITS = {"rms_torque": "N m", "peak_torque": "N m", "energy": "J"}
+_OVER_TIME = {"acceleration": "/s^2", "jerk": "/s^3"}
 
 _KEYS = ("schema_version", "status", "objective", "profile", "job", "provenance")
 
@@ -39,11 +45,31 @@ class StoredDesign:
     job: Job
 
 
+def machine_numbers(machine: Machine) -> dict[str, Any]:
+    """Write a machine under the keys of a job file; the place of a crank's sync zone is null while it is free."""
+    if isinstance(machine, RotaryKnife):
+        return {
+            "kind": "rotary_knife",
+            "circumference": machine.circumference,
+            "blades": machine.blades,
+            "gear_ratio": machine.gear_ratio,
+            "sync": machine.sync,
+            "inertia": machine.drum_inertia,
+            "friction": machine.drum_friction,
+        }
+    if isinstance(machine, LinearCarriage):
+        return {"kind": "linear_carriage", **asdict(machine)}
+    if isinstance(machine, CrankSlider):
+        free = math.isnan(machine.sync_at)
+        return {"kind": "crank_slider", **asdict(machine), "sync_at": None if free else machine.sync_at}
+    raise TypeError(f"{type(machine).__name__} has no table in job files")
+
+
 def job_numbers(job: Job) -> dict[str, Any]:
     """Write a job as plain numbers in SI units."""
     return {
         "name": job.name,
-        "machine": {"kind": "rotary_knife", **asdict(job.machine)},
+        "machine": machine_numbers(job.machine),
         "cut": asdict(job.cut),
         "limits": asdict(job.limits),
         "servo": asdict(job.servo),
@@ -52,15 +78,27 @@ def job_numbers(job: Job) -> dict[str, Any]:
     }
 
 
+def objective_unit(design: Design) -> str:
+    """Unit of a design's objective."""
+    return _UNITS.get(design.solution.objective_name, design.job.machine.slave_unit) + _OVER_TIME.get(
+        design.solution.objective_name.rpartition("_")[2], ""
+    )
+
+
 def objective_answer(design: Design) -> dict[str, Any]:
-    """Write the objective of a design: name, value, unit, lower bound and gap."""
+    """Write the objective of a design: name, value, unit, lower bound and gap, null where there is no bound."""
     return {
         "name": design.solution.objective_name,
-        "value": design.solution.objective,
-        "unit": "m/s^2" if design.solution.objective_name.endswith("acceleration") else "m/s^3",
-        "lower_bound": design.bound.value,
+        "value": design.objective,
+        "unit": objective_unit(design),
+        "lower_bound": None if math.isnan(design.bound.value) else design.bound.value,
         "gap": design.gap,
     }
+
+
+def starts_answer(design: Design) -> dict[str, Any] | None:
+    """Write what several starts agree on; null where one was enough because the problem is convex."""
+    return None if design.solution.starts is None else asdict(design.solution.starts)
 
 
 def design_text(design: Design) -> str:
@@ -69,6 +107,8 @@ def design_text(design: Design) -> str:
         "schema_version": SCHEMA_VERSION,
         "status": design.solution.status.value,
         "objective": objective_answer(design),
+        "lower_bound_method": design.bound.method,
+        "starts": starts_answer(design),
         "profile": design.profile.to_dict(),
         "job": {"toml": design.job.text, "si": job_numbers(design.job)},
         "provenance": provenance(design.job.sha256),
@@ -120,27 +160,75 @@ def parse_design(text: str, place: str) -> StoredDesign:
         profile = CamProfile.from_dict(data["profile"])
     except InputError as error:
         raise InputError(f"{place}: {error}") from error
-    return StoredDesign(profile, parse_job(job["toml"], f"{place}, job.toml"))
+    return StoredDesign(profile, _placed(parse_job(job["toml"], f"{place}, job.toml"), job.get("si"), place))
+
+
+def _placed(job: Job, numbers: object, place: str) -> Job:
+    """Put a crank's sync zone where the design chose it."""
+    machine = job.machine
+    if not isinstance(machine, CrankSlider) or not math.isnan(machine.sync_at):
+        return job
+    stored = numbers.get("machine") if isinstance(numbers, dict) else None
+    angle = stored.get("sync_at") if isinstance(stored, dict) else None
+    least, greatest = machine.sync_range(job.cut)
+    if isinstance(angle, bool) or not isinstance(angle, int | float) or not least < angle < greatest:
+        raise InputError(
+            f"{place}: not a design.json: job.si.machine.sync_at, where on the crank the sync zone lies, must be a number from "
+            f"{least:.6g} to {greatest:.6g} (rad)"
+        )
+    return replace(job, machine=replace(machine, sync_at=float(angle)))
 
 
 def design_schema() -> dict[str, Any]:
     """Make the JSON Schema of a design.json."""
-    number, text = {"type": "number"}, {"type": "string"}
+    number, whole, text = {"type": "number"}, {"type": "integer"}, {"type": "string"}
+    maybe = {"type": ["number", "null"]}
+    objectives = list(get_args(Objective))
     numbers = {"type": "array", "items": number, "minItems": 1}
 
     def table(**entries: Any) -> dict[str, Any]:
         return {"type": "object", "properties": entries, "required": list(entries), "additionalProperties": False}
 
+    machines = [
+        table(
+            kind={"const": "rotary_knife"},
+            circumference=number,
+            blades=whole,
+            gear_ratio=number,
+            sync={"enum": ["tangential", "horizontal"]},
+            inertia=number,
+            friction=number,
+        ),
+        table(kind={"const": "linear_carriage"}, stroke=number, home=number, mass=number, travel_per_turn=number),
+        table(
+            kind={"const": "crank_slider"},
+            crank=number,
+            rod=number,
+            offset=number,
+            crank_inertia=number,
+            carriage_mass=number,
+            gear_ratio=number,
+            sync_at={**number, "description": "crank angle at mid sync zone (rad), given or chosen"},
+        ),
+    ]
     root = table(
         schema_version={"const": SCHEMA_VERSION},
         status={"type": "string", "description": "how the solver ended"},
         objective=table(
-            name={"enum": ["peak_acceleration", "rms_acceleration", "peak_jerk", "rms_jerk"]},
+            name={"enum": objectives},
             value=number,
-            unit={"enum": ["m/s^2", "m/s^3"]},
-            lower_bound=number,
-            gap={"type": "number", "description": "(value - lower_bound) / value"},
+            unit={"enum": ["m/s^2", "m/s^3", "rad/s^2", "rad/s^3", "N m", "J"]},
+            lower_bound=maybe,
+            gap={**maybe, "description": "(value - lower_bound) / value; null without a bound"},
         ),
+        lower_bound_method={"type": "string", "description": "how the lower bound was found; none where there is none"},
+        starts={
+            "oneOf": [
+                {"type": "null"},
+                table(converged=whole, agreeing=whole, spread=number, residual=number, valleys=whole),
+            ],
+            "description": "agreement of several starts; null where the problem is convex",
+        },
         profile=table(
             breaks={**numbers, "minItems": 2, "description": "ends of the pieces on the master (m)"},
             coefficients={
@@ -154,7 +242,7 @@ def design_schema() -> dict[str, Any]:
             toml={"type": "string", "description": "the job file as it was read"},
             si=table(
                 name=text,
-                machine=table(kind={"const": "rotary_knife"}, circumference=number),
+                machine={"oneOf": machines},
                 cut=table(
                     length=number,
                     line_speed=number,
@@ -163,6 +251,7 @@ def design_schema() -> dict[str, Any]:
                     shear_zone_at=number,
                     sync_tolerance=number,
                     origin={"enum": ["return", "cut"]},
+                    sync_ratio=number,
                 ),
                 limits=table(speed=number, acceleration=number, jerk=number, reversal={"type": "boolean"}),
                 servo=table(
@@ -172,7 +261,7 @@ def design_schema() -> dict[str, Any]:
                     sample_time=number,
                     velocity_feedforward=number,
                 ),
-                objective={"enum": ["peak_acceleration", "rms_acceleration", "peak_jerk", "rms_jerk"]},
+                objective={"enum": objectives},
                 points={"type": "integer", "minimum": 2},
             ),
         ),

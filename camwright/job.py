@@ -9,11 +9,14 @@ from pathlib import Path
 
 from camwright.files import read_text
 from camwright.job_checks import conflicts
+from camwright.job_fields import Known
 from camwright.job_file import JobFile, Objective, read_structure
+from camwright.machine_checks import moved_by_nothing, sync_zone_of
+from camwright.machine_tables import machine_of
 from profiles.cycle import Cut
 from profiles.errors import InputError
 from profiles.limits import Limits
-from profiles.machines import RotaryKnife
+from profiles.machines import Machine
 from profiles.servo import Servo
 
 BUNDLED_JOB = Path(__file__).parent / "jobs" / "paper-600.toml"
@@ -44,15 +47,16 @@ class Job:
     name
         What the job is called.
     machine
-        The machine.
+        The machine; a crank may leave the place of its sync zone to the design.
     cut
         The cycle on the master.
     limits
-        What the slave may do.
+        What the slave may do, in its own unit.
     servo
         The discrete servo.
     objective
-        What is made least: ``"peak_acceleration"``, ``"rms_acceleration"``, ``"peak_jerk"`` or ``"rms_jerk"``.
+        What is made least: ``"peak_acceleration"``, ``"rms_acceleration"``, ``"peak_jerk"``, ``"rms_jerk"``, ``"rms_torque"``,
+        ``"peak_torque"`` or ``"energy"``.
     output
         How the cam is written.
     text
@@ -62,7 +66,7 @@ class Job:
     """
 
     name: str
-    machine: RotaryKnife
+    machine: Machine
     cut: Cut
     limits: Limits
     servo: Servo
@@ -117,30 +121,33 @@ def parse_job(text: str, place: str) -> Job:
     except ValueError as error:  # TOMLDecodeError, and integers beyond Python's limit of digits
         end = f"at the end, line {text.rstrip().count(chr(10)) + 1}"
         raise InputError(f"{place}: not TOML: {str(error).replace('at end of document', end)}") from error
-    file, values, faults = read_structure(data)
-    if isinstance(data.get("cut"), dict) and "shear_zone" not in data["cut"]:
-        values["shear_zone"] = 0.0
-    faults += conflicts(values)
-    if file is None or faults:
+    file, known, faults = read_structure(data)
+    faults += conflicts(known)
+    machine = machine_of(known)
+    if file is not None and machine is not None:
+        faults += filter(None, [moved_by_nothing(machine, file.objective.minimise)])
+    if file is None or machine is None or faults:
         raise InputError(*(f"{place}: {fault}" for fault in faults))
-    return _job(file, text)
+    return _job(file, machine, known, text)
 
 
-def _job(file: JobFile, text: str) -> Job:
+def _job(file: JobFile, machine: Machine, known: Known, text: str) -> Job:
     """Make the job of a file without faults; fill in what it leaves out."""
     cut, servo = file.cut, file.servo
-    at = cut.sync_zone - cut.shear_zone if cut.shear_zone_at is None else cut.shear_zone_at
+    zone = sync_zone_of(known, machine) or cut.sync_zone
+    at = zone - cut.shear_zone if cut.shear_zone_at is None else cut.shear_zone_at
     return Job(
         name=file.name,
-        machine=RotaryKnife(file.machine.circumference),
+        machine=machine,
         cut=Cut(
             length=cut.length,
             line_speed=cut.line_speed,
-            sync_zone=cut.sync_zone,
+            sync_zone=zone,
             shear_zone=cut.shear_zone,
-            shear_zone_at=min(at, cut.sync_zone - cut.shear_zone),
+            shear_zone_at=min(at, zone - cut.shear_zone),
             sync_tolerance=cut.sync_tolerance,
             origin=file.output.origin,
+            sync_ratio=cut.sync_ratio,
         ),
         limits=Limits(file.limits.speed, file.limits.acceleration, file.limits.jerk, file.limits.reversal),
         servo=Servo(servo.bandwidth, servo.damping, servo.position_gain, servo.sample_time, servo.velocity_feedforward),

@@ -1,26 +1,32 @@
-"""What the numbers of a job must be to each other."""
+"""What the numbers of a job must be to each other, whatever the machine."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from camwright.job_fields import Known
+from camwright.machine_checks import machine_conflicts, sync_zone_of
+from camwright.machine_tables import machine_of
+from profiles.machines import Machine
 from profiles.servo import Servo, spectral_radius
 
 
-def conflicts(values: Mapping[str, float]) -> list[str]:
+def conflicts(known: Known) -> list[str]:
     """Check the numbers of a job against each other.
 
     Parameters
     ----------
-    values
-        The numbers that are right in themselves, by key, in SI units. A check is made when all its numbers are there.
+    known
+        The numbers that are right in themselves. A check is made when all its numbers are there.
 
     Returns
     -------
     list
         One message for each conflict: quantity, value, limit, place, way out.
     """
-    return [*_zones(values), *_speeds(values), *_servo(values)]
+    machine = machine_of(known)
+    numbers = known.numbers
+    return [*_zones(known, machine), *machine_conflicts(known, machine), *_servo(numbers)]
 
 
 def _mm(value: float) -> str:
@@ -28,28 +34,19 @@ def _mm(value: float) -> str:
     return f"{value * 1e3:.10g} mm"
 
 
-def _m_per_min(value: float) -> str:
-    """Write a speed in metres per minute."""
-    return f"{value * 60:.10g} m/min"
-
-
-def _zones(values: Mapping[str, float]) -> Iterator[str]:
+def _zones(known: Known, machine: Machine | None) -> Iterator[str]:
     """Check that the zones fit into what holds them."""
-    sync = values.get("sync_zone")
+    sync = sync_zone_of(known, machine)
     if sync is None:
         return
-    length, circumference = values.get("length"), values.get("circumference")
+    numbers = known.numbers
+    length = numbers.get("length")
     if length is not None and sync >= length:
         yield (
             f"[cut] sync_zone = {_mm(sync)}: not below [cut] length = {_mm(length)}, so no return zone is left; "
             "shorten the sync zone or cut longer"
         )
-    if circumference is not None and sync >= circumference:
-        yield (
-            f"[cut] sync_zone = {_mm(sync)}: not below [machine] circumference = {_mm(circumference)}, so the knife "
-            "would turn a whole turn in sync; shorten the sync zone"
-        )
-    shear, at = values.get("shear_zone"), values.get("shear_zone_at")
+    shear, at = numbers.get("shear_zone"), numbers.get("shear_zone_at")
     if shear is not None and shear > sync:
         yield (
             f"[cut] shear_zone = {_mm(shear)}: above [cut] sync_zone = {_mm(sync)}, in which it must lie; "
@@ -59,16 +56,6 @@ def _zones(values: Mapping[str, float]) -> Iterator[str]:
         yield (
             f"[cut] shear_zone_at = {_mm(at)}: the shear zone of {_mm(shear)} would end {_mm(at + shear)} after the "
             f"start of the sync zone of {_mm(sync)}; begin it at {_mm(sync - shear)} at the latest"
-        )
-
-
-def _speeds(values: Mapping[str, float]) -> Iterator[str]:
-    """Check that the slave may run at line speed: in the sync zone it does."""
-    speed, line_speed = values.get("speed"), values.get("line_speed")
-    if speed is not None and line_speed is not None and speed < line_speed:
-        yield (
-            f"[limits] speed = {_m_per_min(speed)}: below [cut] line_speed = {_m_per_min(line_speed)}, at which the "
-            f"knife runs in the sync zone; run the line at {_m_per_min(speed)} at most or raise the limit"
         )
 
 

@@ -4,157 +4,123 @@ from __future__ import annotations
 
 import difflib
 import json
-import math
 from typing import Annotated, Any, Literal, cast
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, ValidationInfo, WithJsonSchema
-from pydantic_core import ErrorDetails, PydanticCustomError
+from pydantic import BaseModel, Field, ValidationError
+from pydantic_core import ErrorDetails
 
-from camwright.units import KINDS, quantity, shown
-from profiles.errors import InputError
+from camwright.job_fields import (
+    TURNING,
+    Known,
+    Table,
+    checked,
+    number_field,
+    quantity_field,
+    slave_field,
+    whole_field,
+    zone_field,
+)
+from camwright.machine_tables import TABLES, MachineTable
+from camwright.units import shown
 
-Objective = Literal["peak_acceleration", "rms_acceleration", "peak_jerk", "rms_jerk"]
+Objective = Literal[
+    "peak_acceleration", "rms_acceleration", "peak_jerk", "rms_jerk", "rms_torque", "peak_torque", "energy"
+]
 
 _LONGEST_NAME = 60
 _REFUSED_IN_NAMES = '/\\<>:"|?*'
 
 
-def _quantity(kind: str, *, zero: bool = False) -> tuple[BeforeValidator, WithJsonSchema]:
-    """Make the parts of a field that is written as a number with a unit."""
-
-    def read(value: object, info: ValidationInfo) -> float:
-        try:
-            return _kept(quantity(value, kind, zero=zero), info)
-        except InputError as error:
-            raise PydanticCustomError("quantity", "{message}", {"message": str(error)}) from error
-
-    wanted = KINDS[kind]
-    least = "zero or more" if zero else "greater than zero"
-    schema = {
-        "type": "string",
-        "description": f"{wanted.name}, {least}, as a number and a unit",
-        "examples": [wanted.example],
-        "minLength": 3,
-        "maxLength": 100,
-        "pattern": r"^\s*[+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,3})?\s*([A-Za-z°µμ/]|1\s*/).*$",
-    }
-    return BeforeValidator(read), WithJsonSchema(schema)
-
-
-def _kept(value: float, info: ValidationInfo) -> float:
-    """Keep a number that is right in itself, so that it can be checked against others although the file has faults."""
-    cast(dict[str, float], info.context)[cast(str, info.field_name)] = value
-    return value
-
-
-def _number(least: float, greatest: float, words: str, *, above: bool = False) -> BeforeValidator:
-    """Make the validator of a field that is written as a bare number in a range."""
-
-    def read(value: object, info: ValidationInfo) -> float:
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            message = f"{shown(value)}: not a number; write e.g. {info.field_name} = 0.7"
-        elif not (least < value <= greatest if above else least <= value <= greatest) or not math.isfinite(value):
-            message = f"{shown(value)}: {words}"
-        else:
-            return _kept(float(value), info)
-        raise PydanticCustomError("number", "{message}", {"message": message})
-
-    return BeforeValidator(read)
-
-
-def _name(value: object) -> str:
-    """Check the name of a job: it is also the name of the output directory."""
+def _name(value: object) -> str | None:
+    """Say what is wrong with the name of a job: it is also the name of the output directory."""
     if not isinstance(value, str):
-        message = f'{shown(value)}: not a text; write e.g. "paper-600"'
-    elif not value.strip() or len(value) > _LONGEST_NAME:
-        message = f"{shown(value)}: a name has 1 to {_LONGEST_NAME} characters"
-    elif not value.isprintable() or any(letter in _REFUSED_IN_NAMES for letter in value):
-        message = (
+        return f'{shown(value)}: not a text; write e.g. "paper-600"'
+    if not value.strip() or len(value) > _LONGEST_NAME:
+        return f"{shown(value)}: a name has 1 to {_LONGEST_NAME} characters"
+    if not value.isprintable() or any(letter in _REFUSED_IN_NAMES for letter in value):
+        return (
             f"{shown(value)}: a name is on one line and has none of {_REFUSED_IN_NAMES}; it names the output directory"
         )
-    elif value[0] in ". " or value[-1] in ". ":
-        message = f"{shown(value)}: a name neither begins nor ends with a dot or a space; it names the output directory"
-    else:
-        return value
-    raise PydanticCustomError("name", "{message}", {"message": message})
+    if value[0] in ". " or value[-1] in ". ":
+        return f"{shown(value)}: a name neither begins nor ends with a dot or a space; it names the output directory"
+    return None
 
 
-class _Table(BaseModel):
-    """A table of a job file: no unknown keys, no conversions."""
-
-    model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False)
-
-
-class MachineTable(_Table):
-    """The machine."""
-
-    kind: Annotated[Literal["rotary_knife"], Field(description="which machine", examples=["rotary_knife"])]
-    circumference: Annotated[float, *_quantity("length")]
-
-
-class CutTable(_Table):
+class CutTable(Table):
     """What is cut, how fast, and where the knife must be in sync."""
 
-    length: Annotated[float, *_quantity("length")]
-    line_speed: Annotated[float, *_quantity("speed")]
-    sync_zone: Annotated[float, *_quantity("length")]
-    shear_zone: Annotated[float, *_quantity("length", zero=True), Field(json_schema_extra={"default": "0 mm"})] = 0.0
-    shear_zone_at: Annotated[float | None, *_quantity("length", zero=True)] = None
-    sync_tolerance: Annotated[float, *_quantity("length"), Field(json_schema_extra={"default": "0.1 mm"})] = 1e-4
+    length: Annotated[float, *quantity_field("length")]
+    line_speed: Annotated[float, *quantity_field("speed")]
+    sync_zone: Annotated[float, *zone_field("length", "sync_angle", "rotary_knife")]
+    shear_zone: Annotated[float, *quantity_field("length", zero=True), Field(json_schema_extra={"default": "0 mm"})] = (
+        0.0
+    )
+    shear_zone_at: Annotated[float | None, *quantity_field("length", zero=True)] = None
+    sync_tolerance: Annotated[float, *quantity_field("length"), Field(json_schema_extra={"default": "0.1 mm"})] = 1e-4
+    sync_ratio: Annotated[
+        float,
+        number_field(0.1, 10.0, "it is the speed of the tool over that of the material, from 0.1 to 10; 1 is in sync", "1.0"),
+        Field(description="speed of the tool over that of the material in the sync zone",
+              json_schema_extra={"minimum": 0.1, "maximum": 10}),
+    ] = 1.0  # fmt: skip
 
 
-class LimitsTable(_Table):
+class LimitsTable(Table):
     """What the slave may do."""
 
-    speed: Annotated[float, *_quantity("speed")]
-    acceleration: Annotated[float, *_quantity("acceleration")]
-    jerk: Annotated[float, *_quantity("jerk")]
+    speed: Annotated[float, *slave_field("speed", "angular rate", "300 rpm")]
+    acceleration: Annotated[float, *slave_field("acceleration", "angular acceleration", "2000 rad/s^2")]
+    jerk: Annotated[float, *slave_field("jerk", "angular jerk", "50000 rad/s^3")]
     reversal: Annotated[bool, Field(description="whether the slave may run backwards")] = False
 
 
-class ServoTable(_Table):
+class ServoTable(Table):
     """The discrete servo."""
 
-    bandwidth: Annotated[float, *_quantity("angular rate")]
+    bandwidth: Annotated[float, *quantity_field("angular rate")]
     damping: Annotated[
         float,
-        _number(0.0, 100.0, "the damping ratio must be above 0 (else the velocity loop never settles) and at most 100; "
-                "drives have 0.7 to 0.9", above=True),
+        number_field(0.0, 100.0, "the damping ratio must be above 0 (else the velocity loop never settles) and at most 100; "
+                     "drives have 0.7 to 0.9", "0.7", above=True),
         Field(description="damping ratio of the velocity loop", examples=[0.7],
               json_schema_extra={"exclusiveMinimum": 0, "maximum": 100}),
     ]  # fmt: skip
-    position_gain: Annotated[float, *_quantity("gain")]
-    sample_time: Annotated[float, *_quantity("time")]
+    position_gain: Annotated[float, *quantity_field("gain")]
+    sample_time: Annotated[float, *quantity_field("time")]
     velocity_feedforward: Annotated[
         float,
-        _number(0.0, 1.0, "it is the share of the command's velocity that is fed forward, from 0 (none) to 1 (all, no "
-                "following error at constant speed); more makes the axis run ahead of its command"),
+        number_field(0.0, 1.0, "it is the share of the command's velocity that is fed forward, from 0 (none) to 1 (all, no "
+                     "following error at constant speed); more makes the axis run ahead of its command", "1.0"),
         Field(description="share of the command's velocity fed forward", examples=[1.0],
               json_schema_extra={"minimum": 0, "maximum": 1}),
     ]  # fmt: skip
 
 
-class ObjectiveTable(_Table):
+class ObjectiveTable(Table):
     """What is made least."""
 
     minimise: Annotated[Objective, Field(description="what is made least")] = "peak_acceleration"
 
 
-class OutputTable(_Table):
+class OutputTable(Table):
     """How the cam is written."""
 
     origin: Annotated[
         Literal["return", "cut"], Field(description="master zero: start of the return zone, or mid sync zone")
     ] = "return"
-    points: Annotated[int, Field(ge=2, le=100_000, description="rows of cam.csv")] = 361
+    points: Annotated[
+        int,
+        whole_field(2, 100_000, 361),
+        Field(description="rows of cam.csv", json_schema_extra={"minimum": 2, "maximum": 100_000}),
+    ] = 361
 
 
-class JobFile(_Table):
+class JobFile(Table):
     """A job for camwright: one machine, one product, one drive."""
 
     name: Annotated[
         str,
-        BeforeValidator(_name),
+        checked(_name),
         Field(
             description="names the job and its output directory",
             json_schema_extra={"minLength": 1, "maxLength": _LONGEST_NAME, "pattern": r'^[^/\\<>:"|?*\n\r]+$'},
@@ -178,7 +144,7 @@ def job_schema() -> dict[str, Any]:
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
 
 
-def read_structure(data: dict[str, Any]) -> tuple[JobFile | None, dict[str, float], list[str]]:
+def read_structure(data: dict[str, Any]) -> tuple[JobFile | None, Known, list[str]]:
     """Check the structure and every single value of a job file.
 
     Parameters
@@ -188,41 +154,66 @@ def read_structure(data: dict[str, Any]) -> tuple[JobFile | None, dict[str, floa
 
     Returns
     -------
-    (file, values, faults)
-        The file, or nothing if it has faults; the numbers that are right in themselves, by key, in SI units; one
+    (file, known, faults)
+        The file, or nothing if it has faults; what is right in itself, defaults of what was left out included; one
         message for each fault, each with its place.
     """
-    values: dict[str, float] = {}
+    known = Known()
+    machine = data.get("machine")
+    if isinstance(machine, dict):
+        kind, sync = machine.get("kind"), machine.get("sync", known.sync)
+        known.kind = kind if isinstance(kind, str) and kind in TABLES else None
+        known.sync = sync if sync in ("tangential", "horizontal") else None
+    for name in JobFile.model_fields:
+        if isinstance(data.get(name), dict):
+            _fill_in(known, data[name], _model_at([name], known))
     try:
-        return JobFile.model_validate(data, context=values), values, []
+        return JobFile.model_validate(data, context=known), known, []
     except ValidationError as error:
-        return None, values, [_fault(entry) for entry in error.errors(include_url=False)]
+        return None, known, [_fault(entry, known) for entry in error.errors(include_url=False)]
 
 
-def _fault(error: ErrorDetails) -> str:
+def _fill_in(known: Known, table: dict[str, Any], model: type[BaseModel] | None) -> None:
+    """Keep the default numbers of what a table leaves out."""
+    for key, field in model.model_fields.items() if model is not None else ():
+        if key not in table and isinstance(field.default, int | float) and not isinstance(field.default, bool):
+            known.numbers[key] = field.default
+
+
+def _fault(error: ErrorDetails, known: Known) -> str:
     """Say what is wrong, where, and the way out."""
-    place, key = [str(part) for part in error["loc"][:-1]], str(error["loc"][-1])
-    model = _model_at(place)
-    where = f"[{place[0]}] {key}" if place else (f"[{key}]" if _is_table(key) else key)
+    parts = [str(part) for part in error["loc"]]
+    if len(parts) > 2:  # the kind of the machine, which pydantic puts between its table and the key
+        del parts[1]
+    place, key = parts[:-1], parts[-1]
     kind, value = error["type"], error["input"]
+    if kind in ("union_tag_not_found", "union_tag_invalid"):
+        if kind == "union_tag_not_found":
+            return '[machine] kind: missing; add e.g. kind = "rotary_knife"'
+        return f"[machine] kind = {shown(value['kind'])}: not known; write {_choice(list(TABLES))}"
+    where = f"[{place[0]}] {key}" if place else (f"[{key}]" if _is_table(key) else key)
     if kind == "missing":
-        return f"{where}: missing; {_example(place, key)}"
+        return f"{where}: missing; {_example(place, key, known)}"
     if kind == "extra_forbidden":
-        known = list(model.model_fields)
+        known_keys = list(cast(type[BaseModel], _model_at(place, known)).model_fields)
         where = f"[{place[0]}] {shown(key)[1:-1]}" if place else shown(key)[1:-1]
-        near = difflib.get_close_matches(key[:100], known, n=1, cutoff=0.5)
-        advice = f"did you mean {near[0]}?" if near else f"the keys here are {', '.join(known)}"
+        near = difflib.get_close_matches(key[:100], known_keys, n=1, cutoff=0.5)
+        advice = f"did you mean {near[0]}?" if near else f"the keys here are {', '.join(known_keys)}"
         return f"{where}: there is no such key; {advice}"
-    if kind in ("quantity", "number", "name"):
+    if kind == "value":
         return f"{where} = {error['msg']}"
     if kind == "literal_error":
         allowed = str(error["ctx"]["expected"]).replace("'", '"')
         return f"{where} = {shown(value)}: not known; write {allowed}"
     if kind == "bool_type":
         return f"{where} = {shown(value)}: neither true nor false; write true or false without quotes"
-    if kind in ("int_type", "int_from_float", "greater_than_equal", "less_than_equal", "int_parsing_size"):
-        return f"{where} = {shown(value)}: not a whole number from 2 to 100000; write e.g. {key} = 361"
     return f"{where} = {shown(value)}: not a table; write [{key}] on a line of its own and its keys below"
+
+
+def _choice(words: list[str]) -> str:
+    """Write words to choose from."""
+    quoted = [f'"{word}"' for word in words]
+    return f"{', '.join(quoted[:-1])} or {quoted[-1]}"
 
 
 def _is_table(key: str) -> bool:
@@ -230,14 +221,20 @@ def _is_table(key: str) -> bool:
     return key in JobFile.model_fields and key != "name"
 
 
-def _model_at(place: list[str]) -> type[BaseModel]:
-    """Find the model of a table by its place."""
-    return cast(type[BaseModel], JobFile.model_fields[place[0]].annotation) if place else JobFile
+def _model_at(place: list[str], known: Known) -> type[BaseModel] | None:
+    """Find the model of a table by its place; nothing for a machine of no known kind and for what is no table."""
+    if not place:
+        return JobFile
+    if place[0] == "machine":
+        return TABLES.get(known.kind or "")
+    model = JobFile.model_fields[place[0]].annotation
+    return model if isinstance(model, type) and issubclass(model, BaseModel) else None
 
 
-def _example(place: list[str], key: str) -> str:
+def _example(place: list[str], key: str, known: Known) -> str:
     """Say what to write for a key or table that is missing."""
     if not place:
         return f"add the table [{key}]" if _is_table(key) else f'add e.g. {key} = "paper-600"'
-    schema = _model_at(place).model_json_schema()["properties"][key]
-    return f"add e.g. {key} = {json.dumps(schema['examples'][0])}"
+    schema = cast(type[BaseModel], _model_at(place, known)).model_json_schema()["properties"][key]
+    example = schema["examples"][-1 if place[0] == "limits" and known.kind in TURNING else 0]
+    return f"add e.g. {key} = {json.dumps(example)}"

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+import re
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,6 +15,7 @@ from camwright.files import read_text
 from camwright.job import Job
 from camwright.provenance import provenance
 from profiles.errors import InputError
+from profiles.machines import CrankSlider, Machine
 from profiles.polynomial import CamProfile
 from profiles.tables.cam_csv import read_cam_csv, rebuild, write_cam_csv
 
@@ -20,6 +24,10 @@ if TYPE_CHECKING:
 
 _ROUNDING = 1e-6
 """What a table's ends may miss those of the cycle by, as a part of the cut length: tables are rounded."""
+
+
+_SYNC_AT = re.compile(r"^# sync_at: ([0-9.eE+-]{1,30}) rad$", re.MULTILINE)
+"""The comment line of a cam.csv that says where on the crank its sync zone lies."""
 
 
 def cam_text(design: Design) -> str:
@@ -34,11 +42,21 @@ def cam_text(design: Design) -> str:
     libraries = origin.pop("libraries")
     entries = {"job": design.job.name, **origin, **(libraries if isinstance(libraries, dict) else {})}
     comments = [f"{name}: {value}" for name, value in entries.items()]
-    return write_cam_csv(design.profile, design.job.output.points, comments)
+    machine = design.job.machine
+    if isinstance(machine, CrankSlider):
+        comments.append(f"sync_at: {machine.sync_at!r} rad")
+    return write_cam_csv(design.profile, design.job.output.points, comments, machine.slave_unit)
 
 
 def read_profile(path: Path, job: Job) -> CamProfile:
-    """Read one cycle from a design.json or a table, told apart by the first character.
+    """Read one cycle like `read_cycle`, without the machine."""
+    return read_cycle(path, job)[0]
+
+
+def read_cycle(path: Path, job: Job) -> tuple[CamProfile, Machine]:
+    """Read one cycle from a design.json or a table, told apart by the first character, and the machine to judge it by.
+
+    The machine is the job's; where the job leaves the place of a crank's sync zone free, it is that of the file.
 
     Parameters
     ----------
@@ -52,15 +70,46 @@ def read_profile(path: Path, job: Job) -> CamProfile:
     Raises
     ------
     InputError
-        The file cannot be read, holds no profile, or one of another cut length.
+        The file cannot be read, holds no profile, or one of another cut length or slave unit.
     """
     text = read_text(path, "profile file", MOST_BYTES)
     if text.removeprefix("\ufeff").lstrip().startswith("{"):
-        profile = parse_design(text, str(path)).profile
+        stored = parse_design(text, str(path))
+        profile, unit = stored.profile, stored.job.machine.slave_unit
+        place = stored.job.machine.sync_at if isinstance(stored.job.machine, CrankSlider) else math.nan
     else:
         rows = read_cam_csv(text, str(path))
-        profile = rebuild(rows.x, rows.y, rows.dy, rows.d2y)
-    return _one_cycle(profile, job.cut.length, str(path))
+        profile, unit = rebuild(rows.x, rows.y, rows.dy, rows.d2y), rows.slave_unit
+        place = _sync_at(text)
+    if unit != job.machine.slave_unit:
+        raise InputError(
+            f"{path}: the slave is counted in {unit}, but that of the job's machine in {job.machine.slave_unit}; name the job that the "
+            "file was made for"
+        )
+    return _one_cycle(profile, job.cut.length, str(path)), _placed(job, place, str(path))
+
+
+def _sync_at(text: str) -> float:
+    """Crank angle at mid sync zone that a cam.csv states (rad); not a number if it states none."""
+    found = _SYNC_AT.search(text)
+    try:
+        return float(found.group(1)) if found else math.nan
+    except ValueError:
+        return math.nan
+
+
+def _placed(job: Job, place: float, file: str) -> Machine:
+    """Give the job's machine, a free sync zone placed where the file has it."""
+    machine = job.machine
+    if not isinstance(machine, CrankSlider) or not math.isnan(machine.sync_at):
+        return machine
+    if math.isnan(place):
+        raise InputError(
+            f"{file}: does not say where on the crank its sync zone lies, and neither does the job; give [machine] sync_at"
+        )
+    machine = replace(machine, sync_at=place)
+    machine.sync_start(job.cut)
+    return machine
 
 
 def _one_cycle(profile: CamProfile, length: float, place: str) -> CamProfile:

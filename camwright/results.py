@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from camwright.comparison import Comparison, compare
 from camwright.cut_lengths import CutLengths, cut_lengths
 from camwright.job import Job
-from camwright.profile_files import read_profile
+from camwright.profile_files import read_cycle
 from camwright.progress import Step, ignore
 from profiles.polynomial import CamProfile
 
@@ -29,7 +30,7 @@ class Design:
     Parameters
     ----------
     job
-        What was asked for.
+        What was asked for, its machine with everything that the design chose.
     solution
         The optimal cycle, its objective, and how the solver ended.
     bound
@@ -39,7 +40,7 @@ class Design:
     comparison
         The optimal cycle beside the baselines.
     lengths
-        How short the machine can cut.
+        How short the machine can cut; ``None`` for machines that the published equations are not about.
     """
 
     job: Job
@@ -47,7 +48,7 @@ class Design:
     bound: Bound
     report: ValidationReport
     comparison: Comparison
-    lengths: CutLengths
+    lengths: CutLengths | None
 
     @property
     def profile(self) -> CamProfile:
@@ -55,10 +56,19 @@ class Design:
         return self.solution.profile
 
     @property
-    def gap(self) -> float:
-        """How far the objective lies above its lower bound, as a part of the objective."""
-        value = self.solution.objective
-        return (value - self.bound.value) / value if value > 0.0 else 0.0
+    def objective(self) -> float:
+        """The objective at the job's line speed: m/s² or m/s³ (rad for m with a crank), N·m or J at the motor."""
+        motor = self.comparison["optimised"].motor
+        torques = {"rms_torque": motor.rms_torque, "peak_torque": motor.peak_torque, "energy": motor.energy}
+        value = torques.get(self.solution.objective_name)
+        return self.solution.objective if value is None else value
+
+    @property
+    def gap(self) -> float | None:
+        """How far the objective lies above its lower bound, as a part of the objective; ``None`` without a bound."""
+        if math.isnan(self.bound.value):
+            return None
+        return (self.objective - self.bound.value) / self.objective if self.objective > 0.0 else 0.0
 
     @property
     def passed(self) -> bool:
@@ -96,13 +106,14 @@ def design(job: Job, step: Step = ignore) -> Design:
 
     step("solving")
     solution = solve(job.machine, job.cut, job.limits, job.objective)
+    placed = replace(job, machine=solution.machine)
     step("bounding the objective from below")
-    bound = lower_bound(solution.profile, job.machine, job.cut, job.limits, job.objective)
+    bound = lower_bound(solution.profile, placed.machine, job.cut, job.limits, job.objective)
     step("checking")
-    report = judge(solution.profile, job.machine, job.cut, job.limits, job.servo)
-    comparison = compare(job, solution.profile, step=step)
+    report = judge(solution.profile, placed.machine, job.cut, job.limits, job.servo)
+    comparison = compare(placed, solution.profile, step=step)
     step("finding minimum cut lengths")
-    return Design(job, solution, bound, report, comparison, cut_lengths(job))
+    return Design(placed, solution, bound, report, comparison, cut_lengths(placed))
 
 
 def validate(profile: CamProfile | str | Path, job: Job) -> ValidationReport:
@@ -131,5 +142,7 @@ def validate(profile: CamProfile | str | Path, job: Job) -> ValidationReport:
     """
     from validation.report import validate as judge
 
-    cycle = profile if isinstance(profile, CamProfile) else read_profile(Path(profile), job)
-    return judge(cycle, job.machine, job.cut, job.limits, job.servo)
+    if isinstance(profile, CamProfile):
+        return judge(profile, job.machine, job.cut, job.limits, job.servo)
+    cycle, machine = read_cycle(Path(profile), job)
+    return judge(cycle, machine, job.cut, job.limits, job.servo)

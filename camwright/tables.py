@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,40 +14,70 @@ from rich.text import Text
 from camwright.comparison import Comparison
 from camwright.cut_lengths import CutLengths
 from camwright.job import Job
+from profiles.machines import CrankSlider, LinearCarriage, Machine, RotaryKnife
 
 if TYPE_CHECKING:
     from camwright.results import Design
+    from design.extremes import Extremes
     from validation.checks import Check
     from validation.report import ValidationReport
 
 
 def design_view(design: Design, files: Sequence[Path]) -> RenderableType:
     """Show a design: objective, comparison, checks, minimum cut lengths, files."""
-    solution = design.solution
-    unit = "m/s²" if solution.objective_name.endswith("acceleration") else "m/s³"
-    head = Text(
-        f"{design.job.name}: {solution.status.value}, {solution.objective_name} {_number(solution.objective)} {unit} "
-        f"in {design.profile.pieces} pieces; lower bound {_number(design.bound.value)} {unit} "
-        f"({design.bound.method}), gap {design.gap:.1e}"
-    )
+    lengths = [] if design.lengths is None else [lengths_view(design.lengths)]
     return Group(
-        head,
+        Text("\n".join(_head(design))),
         compare_view(design.comparison),
         checks_view(design.report.checks),
-        limits_view(design.lengths),
+        *lengths,
         files_view(files),
     )
+
+
+def _head(design: Design) -> list[str]:
+    """Say how the design ended: objective and bound, what was chosen, how well several starts agree."""
+    from camwright.design_file import objective_unit
+
+    solution, unit = design.solution, objective_unit(design).replace("^2", "²").replace("^3", "³")
+    bound = (
+        "no lower bound is known"
+        if design.gap is None
+        else f"lower bound {_number(design.bound.value)} {unit} ({design.bound.method}), gap {design.gap:.1e}"
+    )
+    lines = [
+        f"{design.job.name}: {solution.status.value}, {solution.objective_name} {_number(design.objective)} {unit} "
+        f"in {design.profile.pieces} pieces; {bound}"
+    ]
+    if isinstance(solution.machine, CrankSlider):
+        lines.append(f"sync zone on the crank: its middle at {math.degrees(solution.machine.sync_at):.5g}°")
+    starts = solution.starts
+    if starts is not None:
+        lines.append(
+            f"{starts.agreeing} of {starts.converged} starts agree, spread {starts.spread:.1e}, KKT residual "
+            f"{starts.residual:.1e}; {starts.valleys} local minima over the place of the sync zone"
+        )
+    mismatch = design.report.tangential_mismatch
+    if mismatch is not None:
+        lines.append(
+            f"along the material a blade in tangential sync falls short of the line speed by {100 * mismatch:.3g} % at the ends of the "
+            "sync zone"
+        )
+    return lines
 
 
 def compare_view(comparison: Comparison) -> RenderableType:
     """Show profiles side by side, the least peak acceleration first."""
     table = Table(title="Profiles, by peak acceleration", title_justify="left")
     table.add_column("profile")
+    unit = comparison.job.machine.slave_unit
+    moved = comparison["optimised"].motor.rms_torque is not None
     for name, unit in (
-        ("peak speed", "m/s"),
-        ("peak acc.", "m/s²"),
-        ("RMS acc.", "m/s²"),
-        ("peak jerk", "m/s³"),
+        ("peak speed", f"{unit}/s"),
+        ("peak acc.", f"{unit}/s²"),
+        ("RMS acc.", f"{unit}/s²"),
+        ("peak jerk", f"{unit}/s³"),
+        *((("peak torque", "N m"), ("RMS torque", "N m"), ("energy", "J")) if moved else ()),
         ("crossing", "mm"),
         ("settling", "mm"),
         ("following", "mm"),
@@ -54,13 +85,15 @@ def compare_view(comparison: Comparison) -> RenderableType:
     ):
         table.add_column(f"{name}\n{unit}", justify="right")
     for row in comparison.rows:
-        motion, servo = row.motion, row.response
+        motion, motor, servo = row.motion, row.motor, row.response
+        torques = (_number(value, "unbounded") for value in (motor.peak_torque, motor.rms_torque, motor.energy))
         table.add_row(
             row.name,
             _number(motion.peak_speed),
             _number(motion.peak_acceleration, "unbounded"),
             _number(motion.rms_acceleration, "unbounded"),
             _number(motion.peak_jerk, "unbounded"),
+            *(torques if moved else ()),
             _mm(servo.crossing),
             _mm(servo.settling),
             _mm(servo.peak_following_error),
@@ -88,7 +121,23 @@ def checks_view(checks: Sequence[Check]) -> RenderableType:
     return table
 
 
-def limits_view(lengths: CutLengths) -> RenderableType:
+def limits_view(job: Job, far: Extremes, lengths: CutLengths | None) -> RenderableType:
+    """Show how fast and how short a job can be done, and what binds."""
+    speed = f"{_number(far.max_line_speed * 60)} m/min" if far.max_line_speed else "none works"
+    length = f"{_mm(far.min_cut_length)} mm" if far.min_cut_length else "none works"
+    table = Table(title="How fast, how short", title_justify="left")
+    for name in ("", "", "binds"):
+        table.add_column(name)
+    table.add_row(f"highest line speed at a cut length of {_mm(job.cut.length)} mm", speed, far.line_speed_binding)
+    table.add_row(
+        f"shortest cut length at {_number(job.cut.line_speed * 60)} m/min with a sync zone of {_mm(job.cut.sync_zone)} mm",
+        length,
+        far.cut_length_binding,
+    )
+    return table if lengths is None else Group(table, lengths_view(lengths))
+
+
+def lengths_view(lengths: CutLengths) -> RenderableType:
     """Show minimum cut lengths and what binds them."""
     table = Table(title="Minimum cut length", title_justify="left")
     table.add_column("by")
@@ -116,13 +165,26 @@ def validate_view(file: Path, report: ValidationReport) -> RenderableType:
 
 def check_view(job: Job) -> RenderableType:
     """Show what a job file says."""
-    cut, limits = job.cut, job.limits
+    cut, limits, unit = job.cut, job.limits, job.machine.slave_unit
+    speed = f"{_number(limits.speed * 60)} m/min" if unit == "m" else f"{_number(limits.speed * 30 / math.pi)} rpm"
     return Text(
         f"{job.name}: cut {_mm(cut.length)} mm at {_number(cut.line_speed * 60)} m/min, "
-        f"circumference {_mm(job.machine.circumference)} mm, sync zone {_mm(cut.sync_zone)} mm, "
-        f"shear zone {_mm(cut.shear_zone)} mm; at most {_number(limits.speed * 60)} m/min, "
-        f"{_number(limits.acceleration)} m/s², {_number(limits.jerk)} m/s³. The job file has no faults."
+        f"{_machine(job.machine)}, sync zone {_mm(cut.sync_zone)} mm, "
+        f"shear zone {_mm(cut.shear_zone)} mm; at most {speed}, "
+        f"{_number(limits.acceleration)} {unit}/s², {_number(limits.jerk)} {unit}/s³. The job file has no faults."
     )
+
+
+def _machine(machine: Machine) -> str:
+    """Say what a machine is like."""
+    if isinstance(machine, CrankSlider):
+        return f"crank {_mm(machine.crank)} mm, rod {_mm(machine.rod)} mm, offset {_mm(machine.offset)} mm"
+    if isinstance(machine, LinearCarriage):
+        return f"stroke {_mm(machine.stroke)} mm"
+    if isinstance(machine, RotaryKnife):
+        blades = "" if machine.blades == 1 else f", {machine.blades} blades"
+        return f"circumference {_mm(machine.circumference)} mm{blades}, {machine.sync} sync"
+    raise TypeError(f"{type(machine).__name__} has no words")
 
 
 def files_view(files: Sequence[Path]) -> RenderableType:

@@ -72,6 +72,7 @@ kilogram = [mass] = kg
 gram = 0.001 * kilogram = g
 pound = 0.45359237 * kilogram = lb
 newton = kilogram * meter / second ** 2 = N
+newton_meter = newton * meter = Nm
 inch = 0.0254 * meter = in = inches
 foot = 0.3048 * meter = ft = feet
 minute = 60 * second = min
@@ -95,9 +96,7 @@ _SUPERSCRIPT = re.compile("⁻?[¹²³]")
 _PLAIN = str.maketrans("⁻¹²³", "-123")
 
 
-def quantity(
-    text: object, kind: str, *, zero: bool = False, signed: bool = False, example: str | None = None
-) -> float:
+def quantity(text: object, kind: str, *, zero: bool = False, signed: bool = False, example: str | None = None) -> float:
     """Read a quantity: a number and a unit of the right dimension.
 
     Parameters
@@ -192,7 +191,7 @@ def _unit(text: str, place: str, wanted: Kind) -> tuple[Fraction, dict[str, int]
         if known is None:
             raise InputError(
                 f"{place}: there is no unit {shown(name)}; {hint}; units are m, mm, cm, um, in, ft, s, ms, min, h, "
-                "rad, deg, rev, rpm, kg, g, lb, N"
+                "rad, deg, rev, rpm, kg, g, lb, N, Nm"
             )
         powers[known] = powers.get(known, 0) + (-1 if sign == "/" else 1) * int(power or 1)
     registry = _registry()

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from functools import lru_cache
+from functools import lru_cache, partial
 
 from design.problem import ReturnProblem, return_problem
 from design.solver import limit_margin
@@ -26,7 +26,7 @@ ROUNDING = 1e-12
 # The same where an optimisation decides: its accuracy.
 SOLVED = 1e-8
 # Edges found by repeated optimisation are found to this share.
-EDGE = 1e-6
+EDGE = 1e-7
 # Suggested values are rounded to this many digits, towards the safe side.
 SUGGESTED_DIGITS = 4
 # "Unlimited", as a multiple of the limit.
@@ -74,7 +74,7 @@ def is_feasible(machine: Machine, cut: Cut, limits: Limits) -> bool:
         problem = return_problem(machine, cut, limits, "peak_acceleration")
     except InputError:
         return False
-    if not _ends_allowed(machine, cut, problem):
+    if max(_sync_shares(machine, cut, problem).values()) > 1 + SOLVED:
         return False
     if _straight(problem):
         distance, speed = _correction(problem)
@@ -89,8 +89,20 @@ def is_feasible(machine: Machine, cut: Cut, limits: Limits) -> bool:
     return _margin(problem) <= 1 + SOLVED
 
 
+def margin(machine: Machine, cut: Cut, limits: Limits) -> float:
+    """Least common factor on the limits with which the machine can do the cut, sync zone and return; at most 1 if it can.
+
+    Infinite where the machine cannot be in sync over the zone at all.
+    """
+    try:
+        problem = return_problem(machine, cut, limits, "peak_acceleration")
+    except InputError:
+        return math.inf
+    return max(_margin(problem), *_sync_shares(machine, cut, problem).values())
+
+
 def _margin(problem: ReturnProblem) -> float:
-    """Least common factor on the limits; infinite where the solver does not find one."""
+    """Least common factor for the return alone; infinite where the solver does not find one."""
     try:
         return limit_margin(problem)
     except SolverError:
@@ -111,14 +123,14 @@ def _keeps_stroke(problem: ReturnProblem) -> bool:
     return low.value >= problem.least_position and high.value <= problem.greatest_position
 
 
-def _ends_allowed(machine: Machine, cut: Cut, problem: ReturnProblem) -> bool:
-    """Whether the sync zone itself keeps the limits."""
+def _sync_shares(machine: Machine, cut: Cut, problem: ReturnProblem) -> dict[str, float]:
+    """Shares of the limits that the sync zone itself uses."""
     ratio, slope, jerk = _sync_peaks(machine.sync_profile(cut))
-    return (
-        ratio <= problem.greatest_ratio * (1 + ROUNDING)
-        and slope <= problem.greatest_slope * (1 + SOLVED)
-        and jerk <= problem.greatest_jerk * (1 + SOLVED)
-    )
+    return {
+        "speed": ratio / problem.greatest_ratio,
+        "acceleration": slope / problem.greatest_slope,
+        "jerk": jerk / problem.greatest_jerk,
+    }
 
 
 @lru_cache(maxsize=256)
@@ -169,17 +181,18 @@ def needed_limits(machine: Machine, cut: Cut, limits: Limits) -> dict[str, float
             "jerk": least_jerk(distance, problem.length, room, problem.greatest_slope) * v**3,
         }
     def eased(name: str) -> float:
-        """Value of one limit alone that would do: the edge of feasibility between the limit and a multiple of it."""
+        """Value of one limit alone that would do: where the common factor on all limits is 1."""
+        low = getattr(limits, name)
 
-        def works(value: float) -> bool:
-            return is_feasible(machine, cut, replace(limits, **{name: value}))
+        def factor(value: float) -> float:
+            return margin(machine, cut, with_limit(limits, name, value))
 
-        good = getattr(limits, name)
-        while not works(good):
+        good = low * 4.0
+        while factor(good) > 1.0:
             good *= 8.0
-            if good > FREE * getattr(limits, name):
+            if good > FREE * low:
                 return math.inf
-        return edge(works, good, getattr(limits, name), EDGE) or math.inf
+        return low if factor(low) <= 1.0 else margin_edge(factor, good, low)
 
     return {name: eased(name) for name in none}
 
@@ -224,12 +237,7 @@ def binding_limit(machine: Machine, cut: Cut, limits: Limits, need: dict[str, fl
         return min(finite, key=lambda name: finite[name])
     if math.isfinite(problem.greatest_position):
         return "stroke"
-    ratio, slope, jerk = _sync_peaks(machine.sync_profile(cut))
-    own = {
-        "speed": ratio / problem.greatest_ratio,
-        "acceleration": slope / problem.greatest_slope,
-        "jerk": jerk / problem.greatest_jerk,
-    }
+    own = _sync_shares(machine, cut, problem)
     return max(own, key=lambda name: own[name])
 
 
@@ -284,10 +292,20 @@ def _suggest(machine: Machine, cut: Cut, limits: Limits, need: dict[str, float])
         if not math.isfinite(value) or value <= getattr(limits, name):
             continue
         factor, unit = _UNITS[machine.slave_unit][name]
-        offer(name, value, factor, unit, True, lambda x, name=name: is_feasible(machine, cut, replace(limits, **{name: x})))
+        offer(name, value, factor, unit, True, partial(_works_with, machine, cut, limits, name))
     if not (limits.reversal or machine.turns_back) and is_feasible(machine, cut, replace(limits, reversal=True)):
         found.append(Suggestion("reversal", 1.0, ""))
     return found
+
+
+def _works_with(machine: Machine, cut: Cut, limits: Limits, name: str, value: float) -> bool:
+    return is_feasible(machine, cut, with_limit(limits, name, value))
+
+
+def with_limit(limits: Limits, name: str, value: float) -> Limits:
+    """Change one limit: ``"speed"``, ``"acceleration"`` or ``"jerk"``."""
+    changed = {"speed": limits.speed, "acceleration": limits.acceleration, "jerk": limits.jerk, name: value}
+    return Limits(changed["speed"], changed["acceleration"], changed["jerk"], limits.reversal)
 
 
 def _exact(machine: Machine, cut: Cut) -> bool:
@@ -321,6 +339,19 @@ def edge(works: Callable[[float], bool], good: float, bad: float, tolerance: flo
         else:
             bad = middle
     return good
+
+
+def margin_edge(factor: Callable[[float], float], good: float, bad: float) -> float:
+    """Find where the least common factor on the limits is 1, between a value that works and one that does not."""
+    from scipy.optimize import brentq
+
+    def over(x: float) -> float:
+        return math.log(min(max(factor(x), 1e-6), 1e6)) - 1e-9
+
+    at_good, at_bad = over(good), over(bad)
+    if at_good >= 0 or at_bad <= 0:
+        return good
+    return float(brentq(over, good, bad, rtol=EDGE))
 
 
 def rounded_to(value: float, digits: int, up: bool) -> float:

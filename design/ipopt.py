@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from enum import Enum
 from functools import lru_cache
+from typing import Any
 
 from design.transcription import Programme, Shape
 
 # An answer is one that meets the tolerances, not one that nearly does.
-QUIET = {"print_time": False, "ipopt.print_level": 0, "ipopt.sb": "yes", "ipopt.acceptable_iter": 0}
+QUIET: dict[str, Any] = {"print_time": False, "ipopt.print_level": 0, "ipopt.sb": "yes", "ipopt.acceptable_iter": 0}
 
 # A first look on the grid: convex, so any start will do; it need not be more exact than the grid.
 _GRID = {"ipopt.mu_strategy": "adaptive", "ipopt.tol": 1e-8, "ipopt.max_iter": 200}

@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Literal, get_args
+from typing import Literal, cast, get_args
 
 import numpy as np
 
+from design.extremes import roomiest
 from design.feasibility import infeasible, require_feasible
 from design.ipopt import SolveStatus
-from design.placement import Placement, place_sync
+from design.placement import place_sync
 from design.problem import Objective as MotionObjective
 from design.problem import ReturnProblem, return_problem
-from design.solver import grid_objective, objective_value, solve_return
+from design.solver import grid_objective, objective_value, smoothest, solve_return
 from design.transcription import PEAKS
 from profiles.cycle import Cut
-from profiles.errors import InputError, SolverError
+from profiles.errors import InputError
 from profiles.limits import Limits
 from profiles.machines import CrankSlider, Machine
 from profiles.polynomial import CamProfile
@@ -28,10 +29,11 @@ Objective = Literal[
 ]
 OBJECTIVES: tuple[Objective, ...] = get_args(Objective)
 TORQUE_OBJECTIVES: tuple[TorqueObjective, ...] = get_args(TorqueObjective)
+MOTION_OBJECTIVES: tuple[MotionObjective, ...] = get_args(MotionObjective)
 
 
-# Share of a peak that its smoothest motion may give away: the accuracy to which peaks are found.
-KEPT_PEAK = 1e-8
+# Share of a peak that its smoothest motion may give away.
+KEPT_PEAK = 1e-6
 
 
 @dataclass(frozen=True)
@@ -128,8 +130,7 @@ def solve(machine: Machine, cut: Cut, limits: Limits, objective: Objective) -> S
     problem = return_problem(machine, cut, limits, decisive)
     back, status, iterations = solve_return(problem)
     if decisive in PEAKS and not _unique(problem):
-        back, used = _smoothest(problem, back)
-        iterations += used
+        back = _smoothest(problem, back)
     order = 2 if decisive.endswith("acceleration") else 3
     value = objective_value(back, decisive) * cut.line_speed**order
     return Solution(machine, assemble(back, machine, cut), back, status, objective, value, iterations)
@@ -140,16 +141,12 @@ def _unique(problem: ReturnProblem) -> bool:
     return problem.start_ratio == problem.end_ratio and problem.start_slope == problem.end_slope == 0.0
 
 
-def _smoothest(problem: ReturnProblem, back: CamProfile) -> tuple[CamProfile, int]:
+def _smoothest(problem: ReturnProblem, back: CamProfile) -> CamProfile:
     """Of all returns with the least peak take the one of least RMS jerk (lexicographic choice); the given one if that fails."""
     peak = objective_value(back, problem.objective) * (1 + KEPT_PEAK)
     limit = "greatest_slope" if problem.objective == "peak_acceleration" else "greatest_jerk"
-    second = replace(problem, objective="rms_jerk", **{limit: min(peak, getattr(problem, limit))})
-    try:
-        smooth, _, iterations = solve_return(second)
-    except SolverError:
-        return back, 0
-    return (smooth if objective_value(smooth, problem.objective) <= peak * (1 + KEPT_PEAK) else back), iterations
+    smooth = smoothest(replace(problem, **{limit: min(peak, getattr(problem, limit))}))
+    return back if smooth is None else smooth
 
 
 def _motion_objective(machine: Machine, objective: Objective) -> MotionObjective | None:
@@ -158,8 +155,8 @@ def _motion_objective(machine: Machine, objective: Objective) -> MotionObjective
     With constant inertia ``I`` and friction ``F`` that never changes its sign the mean square of the force is ``I² a_rms² + F²`` (the mean
     acceleration of a cycle is zero); without friction its peak is ``I a_max``.
     """
-    if objective not in TORQUE_OBJECTIVES:
-        return objective
+    if objective in MOTION_OBJECTIVES:
+        return cast("MotionObjective", objective)
     if isinstance(machine, CrankSlider) or objective == "energy":
         return None
     if objective == "rms_torque" and not (machine.turns_back and machine.friction):
@@ -187,11 +184,11 @@ def _solve_free_crank(machine: CrankSlider, cut: Cut, limits: Limits, objective:
     def cost(placed: CrankSlider) -> float:
         if objective in TORQUE_OBJECTIVES:
             return _torque_cost(placed, cut, limits)
-        return grid_objective(return_problem(placed, cut, limits, objective))
+        return grid_objective(return_problem(placed, cut, limits, cast("MotionObjective", objective)))
 
     placement = place_sync(machine, cut, cost)
     if placement is None:
-        raise infeasible(_easiest_place(machine, cut), cut, limits)
+        raise infeasible(roomiest(machine, cut, limits), cut, limits)
     solution = solve(placement.machine, cut, limits, objective)
     if solution.starts is None:
         return replace(solution, starts=Starts(1, 1, 0.0, 0.0, placement.valleys))
@@ -210,12 +207,3 @@ def _torque_cost(machine: CrankSlider, cut: Cut, limits: Limits) -> float:
     y = slave_at_start(machine, replace(cut, origin="return")) + cycle(x)
     torque = machine.inertia(y) * cycle(x, 2) + machine.inertia_slope(y) * cycle(x, 1) ** 2 / 2
     return float(np.mean(torque**2))
-
-
-def _easiest_place(machine: CrankSlider, cut: Cut) -> CrankSlider:
-    """Mid-range: where the crank needs least speed for the sync zone."""
-    least, greatest = machine.sync_range(cut)
-    return replace(machine, sync_at=0.5 * (least + greatest))
-
-
-__all__ = ["OBJECTIVES", "TORQUE_OBJECTIVES", "Objective", "Placement", "Solution", "Starts", "TorqueObjective", "solve"]

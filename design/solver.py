@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -16,8 +17,9 @@ from profiles.errors import SolverError
 from profiles.polynomial import CamProfile, FloatArray
 from profiles.reach import DoubleS, greatest_reach
 
+FREE: tuple[Arc, ...] = ("free",)
 # Intervals of the first look and of the fallback, by the degree of the acceleration. The structure, not the grid, decides the answer:
-# 40 intervals tell apart arcs of 1/40 of the return; 160 are 0.1 % from the optimum.
+# 40 intervals tell apart arcs of 1/40 of the return; 160 are 0.2 % from the optimum.
 COARSE = {1: 40, 3: 40}
 FINE = {1: 160, 3: 80}
 # Limits widened on the grid where a job leaves so little room that no motion on the grid keeps them.
@@ -77,6 +79,10 @@ def _solve_scaled(problem: ScaledProblem) -> tuple[CamProfile, SolveStatus, int]
     From rest to rest the extreme motion (a closed form) is feasible too. It is the answer where the limits leave no room, and
     where the solver ends with something worse, at the edge of what double precision resolves.
     """
+    if problem.objective == "rms_jerk":
+        free = _quintic(problem)
+        if excess(free, problem) <= ALLOWED_EXCESS:
+            return free, SolveStatus.OPTIMAL, 0
     extreme = extreme_motion(problem)
     safe: CamProfile | None = None
     if extreme is not None:
@@ -112,6 +118,14 @@ def _solve_scaled(problem: ScaledProblem) -> tuple[CamProfile, SolveStatus, int]
             f"infeasible; loosen the limit that is nearest to binding by 1 % and report this job"
         )
     return safe, SolveStatus.OPTIMAL if _extreme_is_optimal(problem) else SolveStatus.ON_GRID, iterations
+
+
+def _quintic(problem: ScaledProblem) -> CamProfile:
+    """Return the quintic through the boundary values: of all motions the one with the least RMS jerk, if the limits allow it."""
+    v, a, b = problem.end_ratio, problem.start_slope, problem.end_slope
+    d, e, f = problem.height - a / 2, v - a, b - a  # what the cubic and higher powers make up for at the end
+    row = [0.0, 0.0, a / 2, 10 * d - 4 * e + f / 2, -15 * d + 7 * e - f, 6 * d - 3 * e + f / 2]
+    return CamProfile.from_arrays([0.0, 1.0], [row])
 
 
 def _read_again(problem: ScaledProblem, polished: Motion) -> tuple[Motion, float, int]:
@@ -183,6 +197,21 @@ def _room(problem: ScaledProblem) -> float:
     return far / problem.height - 1.0
 
 
+def smoothest(problem: ReturnProblem) -> CamProfile | None:
+    """Return of least RMS jerk among those that keep the problem's limits; None if one look at it finds none."""
+    scale = motion_scale(problem)
+    scaled = replace(scale_problem(problem, scale), objective="rms_jerk")
+    grid, success, _ = _on_grid(scaled, np.full(COARSE[3], 1.0 / COARSE[3]), 0.0)
+    if not success:
+        return None
+    polished, success, _ = _polish(scaled, grid)
+    for motion in (polished, grid) if success else (grid,):
+        profile = tidy(motion, scaled).profile()
+        if excess(profile, scaled) <= ALLOWED_EXCESS:
+            return unscale_profile(profile, problem, scale)
+    return None
+
+
 def limit_margin(problem: ReturnProblem) -> float:
     """Least common factor on the limits of speed, acceleration and jerk with which some motion returns the slave.
 
@@ -200,7 +229,7 @@ def limit_margin(problem: ReturnProblem) -> float:
     lengths = np.full(COARSE[1], 1.0 / COARSE[1])
     nodes = np.concatenate([[0.0], np.cumsum(lengths)])
     bend = scaled.height * (60 * nodes - 180 * nodes**2 + 120 * nodes**3)
-    shape = Shape(("free",) * len(lengths), 1, False, "margin", scaled.confined)
+    shape = Shape(FREE * len(lengths), 1, False, "margin", scaled.confined)
     grid, statistics = programme(shape).solve(scaled, Motion(lengths, bend, 2.0))
     if not statistics["success"]:
         raise SolverError(f"IPOPT did not find how far the limits are from enough: {statistics['return_status']}")
@@ -245,7 +274,7 @@ def _degree(problem: ScaledProblem) -> int:
 def _on_grid(problem: ScaledProblem, lengths: FloatArray, relax: float) -> tuple[Motion, bool, int]:
     """Solve with given lengths of the pieces, starting from the quintic through the boundary values."""
     degree = _degree(problem)
-    shape = Shape(("free",) * len(lengths), degree, False, problem.objective, problem.confined)
+    shape = Shape(FREE * len(lengths), degree, False, problem.objective, problem.confined)
     nodes = np.concatenate([[0.0], np.cumsum(lengths)])
     x = np.interp(np.arange(len(lengths) * degree + 1) / degree, np.arange(len(lengths) + 1), nodes)
     bend = 60 * x - 180 * x**2 + 120 * x**3

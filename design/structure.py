@@ -44,9 +44,27 @@ def read_cubic(grid: Motion, problem: ScaledProblem) -> tuple[Motion, tuple[Arc,
     cruise_start, cruise_end = _cruise(x, a, ratio, problem)
     rise, hold, fall, level = _phase(x, a, cruise_start, step, problem.greatest_jerk)
     back = _phase(1.0 - x[::-1], a[::-1], 1.0 - cruise_end, step, problem.greatest_jerk)
-    lengths = np.array([rise, hold, fall, cruise_end - cruise_start, back[2], back[1], back[0]])
-    levels = np.array([a[0], level, level, 0.0, 0.0, back[3], back[3], a[-1]])
-    return Motion(lengths, levels, grid.objective), SEVEN_ARCS
+    lengths = [rise, hold, fall, cruise_end - cruise_start, back[2], back[1], back[0]]
+    levels = [float(a[0]), level, level, 0.0, 0.0, back[3], back[3], float(a[-1])]
+    arcs = list(SEVEN_ARCS)
+    # where the sync zone hands over an acceleration, its change of sign is a turn of the ratio and needs a node of its own
+    for end in (-1, 0):
+        if levels[end] != 0.0:
+            _split_at_zero(lengths, levels, arcs, end)
+    return Motion(np.array(lengths), np.array(levels), grid.objective), tuple(arcs)
+
+
+def _split_at_zero(lengths: list[float], levels: list[float], arcs: list[Arc], end: int) -> None:
+    """Split the ramp at one end where its acceleration changes sign, else in the middle."""
+    outer, inner = (levels[0], levels[1]) if end == 0 else (levels[-1], levels[-2])
+    share = outer / (outer - inner) if outer * inner < 0 else 0.5
+    middle = outer + share * (inner - outer)
+    whole = lengths[end]
+    parts = [whole * share, whole * (1 - share)]
+    if end == 0:
+        lengths[:1], levels[1:1], arcs[:1] = parts, [middle], ["free", "free"]
+    else:
+        lengths[-1:], levels[-1:-1], arcs[-1:] = parts[::-1], [middle], ["free", "free"]
 
 
 def _cruise(x: FloatArray, a: FloatArray, ratio: FloatArray, problem: ScaledProblem) -> tuple[float, float]:

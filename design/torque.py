@@ -40,7 +40,7 @@ KEPT = 1e-8
 AGREEMENT = 1e-4
 """Starts whose objectives differ by less than this share have found the same optimum."""
 
-_OPTIONS = QUIET | {"ipopt.tol": 1e-8, "ipopt.max_iter": 500, "ipopt.mu_strategy": "adaptive"}
+_OPTIONS: dict[str, Any] = QUIET | {"ipopt.tol": 1e-8, "ipopt.max_iter": 500, "ipopt.mu_strategy": "adaptive"}
 
 
 @dataclass(frozen=True, eq=False)

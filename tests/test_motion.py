@@ -39,13 +39,13 @@ RMS_ACCELERATION = {
 
 @pytest.mark.parametrize("name", [name for name in PEAK_ACCELERATION if name not in ("cubic", "parabolic")])
 def test_peak_acceleration_is_the_law_s(name: str) -> None:
-    motion = measure_motion(baseline(name, KNIFE, CUT), CUT)
+    motion = measure_motion(baseline(name, KNIFE, CUT), KNIFE, CUT)
     assert motion.peak_acceleration == pytest.approx(PEAK_ACCELERATION[name] * abs(D) / T**2, rel=1e-10)
 
 
 @pytest.mark.parametrize("name", ["cubic", "parabolic"])
 def test_a_jump_of_the_ratio_slope_leaves_acceleration_bounded_and_jerk_not(name: str) -> None:
-    motion = measure_motion(baseline(name, KNIFE, CUT), CUT)
+    motion = measure_motion(baseline(name, KNIFE, CUT), KNIFE, CUT)
     assert motion.peak_acceleration == pytest.approx(PEAK_ACCELERATION[name] * abs(D) / T**2, rel=1e-12)
     assert (motion.peak_jerk, motion.rms_jerk) == (None, None)
 
@@ -54,12 +54,12 @@ def test_a_jump_of_the_ratio_slope_leaves_acceleration_bounded_and_jerk_not(name
 @pytest.mark.parametrize("origin", ["return", "cut"])
 def test_rms_acceleration_is_the_law_s_over_the_return_zone(name: str, origin: str) -> None:
     cut = replace(CUT, origin=origin)
-    motion = measure_motion(baseline(name, KNIFE, cut), cut)
+    motion = measure_motion(baseline(name, KNIFE, cut), KNIFE, cut)
     assert motion.rms_acceleration == pytest.approx(RMS_ACCELERATION[name] * abs(D) / T**2, rel=1e-9)
 
 
 def test_jerk_of_the_quintic() -> None:
-    motion = measure_motion(baseline("poly_3_4_5", KNIFE, CUT), CUT)
+    motion = measure_motion(baseline("poly_3_4_5", KNIFE, CUT), KNIFE, CUT)
     assert motion.peak_jerk == pytest.approx(60 * abs(D) / T**3, rel=1e-12)
     assert motion.rms_jerk == pytest.approx(math.sqrt(720) * abs(D) / T**3, rel=1e-12)
     assert motion.min_speed == pytest.approx(CUT.line_speed + 15 / 8 * D / T, rel=1e-12)
@@ -69,7 +69,7 @@ def test_jerk_of_the_quintic() -> None:
 @pytest.mark.parametrize("origin", ["return", "cut"])
 def test_linear_return_has_no_bounded_acceleration(origin: str) -> None:
     cut = replace(CUT, origin=origin)
-    motion = measure_motion(baseline("linear_return", KNIFE, cut), cut)
+    motion = measure_motion(baseline("linear_return", KNIFE, cut), KNIFE, cut)
     assert motion == Motion(
         pytest.approx(80 / 60), pytest.approx(40 / 60), None, None, None, None, pytest.approx(0.0, abs=1e-15)
     )
@@ -81,7 +81,7 @@ def test_linear_return_has_no_bounded_acceleration(origin: str) -> None:
 def test_every_baseline_is_in_sync_and_no_grid_point_exceeds_its_peaks(name: str, origin: str, length: float) -> None:
     cut = replace(CUT, length=length, sync_zone=0.1301, shear_zone_at=0.09, origin=origin)
     profile = baseline(name, KNIFE, cut)
-    motion = measure_motion(profile, cut)
+    motion = measure_motion(profile, KNIFE, cut)
     assert motion.sync_ratio_error <= 1e-12
     x = np.linspace(0.0, profile.end, 2001)
     velocity = cut.line_speed * profile(x, 1)
@@ -99,7 +99,7 @@ def test_sync_ratio_error_sees_both_halves_of_a_split_sync_zone() -> None:
     for piece, at in ((0, 0.0), (profile.pieces - 1, 0.5)):
         coefficients = profile.coefficients.copy()
         coefficients[piece, 2] += 0.5e-3 / 0.1  # ratio off by 1e-3 at the end of a piece of 0.1 m
-        found = sync_ratio_error(CamProfile(profile.breaks.copy(), coefficients), cut)
+        found = sync_ratio_error(CamProfile(profile.breaks.copy(), coefficients), KNIFE, cut)
         assert found.value == pytest.approx(1e-3, rel=1e-9)
         assert found.at == pytest.approx(at + 0.1, abs=1e-9)
 
@@ -108,7 +108,7 @@ def test_sync_ratio_error_ignores_a_break_that_rounding_has_moved_into_the_zone(
     profile = baseline("linear_return", KNIFE, CUT)
     breaks = profile.breaks.copy()
     breaks[1] = np.nextafter(breaks[1], 1.0)
-    assert sync_ratio_error(CamProfile(breaks, profile.coefficients.copy()), CUT).value <= 1e-12
+    assert sync_ratio_error(CamProfile(breaks, profile.coefficients.copy()), KNIFE, CUT).value <= 1e-12
 
 
 def test_jumps_and_scale_of_a_parabolic_return() -> None:
@@ -124,7 +124,7 @@ def test_a_position_jump_makes_the_acceleration_unbounded() -> None:
     profile = baseline("poly_3_4_5", KNIFE, CUT)
     coefficients = profile.coefficients.copy()
     coefficients[0, 0] -= 1e-9
-    motion = measure_motion(CamProfile(profile.breaks.copy(), coefficients), CUT)
+    motion = measure_motion(CamProfile(profile.breaks.copy(), coefficients), KNIFE, CUT)
     assert motion.peak_acceleration is None
     assert motion.peak_jerk is None
 
@@ -132,6 +132,6 @@ def test_a_position_jump_makes_the_acceleration_unbounded() -> None:
 def test_a_profile_of_another_cut_is_refused_with_both_lengths() -> None:
     profile = baseline("poly_3_4_5", KNIFE, CUT)
     with pytest.raises(InputError, match=r"from 0\.0 m to 0\.6 m, but one cycle of this cut runs from 0 m .* 0\.61 m"):
-        measure_motion(profile, replace(CUT, length=0.61))
+        measure_motion(profile, KNIFE, replace(CUT, length=0.61))
     with pytest.raises(InputError, match=r"from 0\.1 m to 0\.7 m"):
-        measure_motion(profile.shift(0.1), CUT)
+        measure_motion(profile.shift(0.1), KNIFE, CUT)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import bisect
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -171,9 +172,9 @@ def test_many_pieces_shorter_than_the_grid_change_nothing() -> None:
     # the same curve cut into 5000 pieces: many between two points, none of some pieces among the points
     profile = baseline("poly_3_4_5", KNIFE, CUT)
     edges = np.union1d(np.linspace(0.0, CUT.length, 5001), profile.breaks)
-    pieces = [profile.restrict(a, b).coefficients[0] for a, b in zip(edges, edges[1:], strict=False) if b - a > 1e-9]
-    starts = [a for a, b in zip(edges, edges[1:], strict=False) if b - a > 1e-9]
-    fine = CamProfile.from_arrays([*starts, CUT.length], pieces)
+    edges = np.append(edges[:-1][np.diff(edges) > 1e-9], CUT.length)
+    pieces = [profile.restrict(a, b).coefficients[0] for a, b in pairwise(edges)]
+    fine = CamProfile.from_arrays(edges, pieces)
     here, there = simulate(profile, CUT, PAPER), simulate(fine, CUT, PAPER)
     assert np.abs(here.axis - there.axis).max() <= 1e-14
     assert np.abs(here.command - there.command).max() <= 1e-14

@@ -10,7 +10,8 @@ from validation.minimum_length import (
     physical,
     required_sync_zone,
 )
-from validation.motion import Motion, measure_motion
+from validation.motion import Motion, measure_motion, measure_tool
+from validation.motor import MotorMeasures, measure_motor, motor_torque
 from validation.report import ValidationReport, validate
 from validation.response import ServoResponse, measure_response, servo_response
 from validation.simulation import ServoRun, simulate, steady_following_error
@@ -20,6 +21,7 @@ __all__ = [
     "Check",
     "MinimumCutLength",
     "Motion",
+    "MotorMeasures",
     "ServoResponse",
     "ServoRun",
     "Sweep",
@@ -29,7 +31,10 @@ __all__ = [
     "cut_length_eq10",
     "linear_return_to_tolerance",
     "measure_motion",
+    "measure_motor",
     "measure_response",
+    "measure_tool",
+    "motor_torque",
     "optimised_to_tolerance",
     "physical",
     "required_sync_zone",

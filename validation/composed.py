@@ -1,23 +1,28 @@
 """Quantities along a cycle as polynomials: a formula of the slave's position and its derivatives, piece by piece.
 
-A torque or a tool's speed is a smooth function of the slave's polynomials. Interpolated at Chebyshev points it becomes polynomials itself, so that
-peaks, mean squares and zeros come from the same exact roads as those of the motion.
+A torque or a tool's speed is a smooth function of the slave's polynomials. Interpolated at Chebyshev points it becomes polynomials itself,
+so that peaks, mean squares and zeros come from the same exact roads as those of the motion.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from profiles.errors import InputError
-from profiles.polynomial import CamProfile, FloatArray, join
+from profiles.polynomial import CamProfile, FloatArray
 
 TOLERANCE = 1e-13
 """Error of a composed quantity, relative to its largest magnitude."""
 
 DEGREE = 9
 """Degree of the pieces."""
+
+_SLIVER = 1e-12
+"""Pieces shorter than this, relative to the domain, are left behind by rounding: a quantity is constant on them."""
 
 _MOST_HALVINGS = 14
 """How often a piece may be halved; a smooth quantity needs few."""
@@ -52,20 +57,25 @@ def compose(formula: Callable[[FloatArray, FloatArray, FloatArray], FloatArray],
     lower, piece = profile.breaks[:-1], np.arange(profile.pieces)
     width = np.diff(profile.breaks)
     origin = lower.copy()  # where the polynomial of each part is counted from
+    sliver = _SLIVER * profile.length
     done: list[tuple[FloatArray, FloatArray]] = []
     size = 0.0
-    to_powers = _to_powers()
+    to_series, to_powers = _conversions()
     for halving in range(_MOST_HALVINGS + 1):
         values = formula(*_states(profile, piece, lower - origin, width, _POINTS))
         size = max(size, float(np.abs(values).max(initial=0.0)))
-        rows = values @ to_powers.T
+        rows = (values @ to_series) @ to_powers  # in one step, large numbers of both signs would spoil the powers
         truth = formula(*_states(profile, piece, lower - origin, width, _BETWEEN))
         found = np.polynomial.polynomial.polyval(_BETWEEN, rows.T, tensor=True)
         error = np.abs(found - truth).max(axis=1)
         if not np.isfinite(error).all():
-            raise InputError("a quantity along the cycle has no finite value: the machine cannot take all positions of this profile")
-        good = error <= TOLERANCE * size
-        done.append((lower[good], rows[good] / width[good, None] ** np.arange(DEGREE + 1)))
+            raise InputError(
+                "a quantity along the cycle has no finite value: the machine cannot take all positions of this profile; "
+                "check the machine's lengths"
+            )
+        good = (error <= TOLERANCE * size) | (width < sliver)
+        rows[width < sliver, 1:] = 0.0
+        done.append((lower[good], rows[good] / np.maximum(width[good, None], sliver) ** np.arange(DEGREE + 1)))
         if good.all():
             break
         if halving == _MOST_HALVINGS:
@@ -83,7 +93,7 @@ def compose(formula: Callable[[FloatArray, FloatArray, FloatArray], FloatArray],
 
 
 def _states(
-    profile: CamProfile, piece: FloatArray, start: FloatArray, width: FloatArray, points: FloatArray
+    profile: CamProfile, piece: NDArray[np.intp], start: FloatArray, width: FloatArray, points: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Position, ratio and ratio slope at points of parts of pieces, by each part's own piece; shapes ``(parts, points)``."""
     local = start[:, None] + width[:, None] * points
@@ -98,16 +108,16 @@ def _states(
     return states[0], states[1], states[2]
 
 
-def _to_powers() -> FloatArray:
-    """Matrix from values at the points to coefficients over the unit interval, ascending powers, by way of Chebyshev's polynomials."""
-    chebyshev = np.linalg.inv(np.polynomial.chebyshev.chebvander(2 * _POINTS - 1, DEGREE))
+@lru_cache(maxsize=1)
+def _conversions() -> tuple[FloatArray, FloatArray]:
+    """Matrices from values at the points to Chebyshev coefficients, and from these to ascending powers over the unit interval."""
+    to_series = np.linalg.inv(np.polynomial.chebyshev.chebvander(2 * _POINTS - 1, DEGREE)).T
     unit = np.polynomial.Polynomial([-1.0, 2.0])
-    columns = []
+    to_powers = np.zeros((DEGREE + 1, DEGREE + 1))
     for k in range(DEGREE + 1):
-        powers = np.polynomial.chebyshev.cheb2poly(np.eye(DEGREE + 1)[k])
-        composed = np.polynomial.Polynomial(powers)(unit).coef
-        columns.append(np.pad(composed, (0, DEGREE + 1 - len(composed))))
-    return np.array(columns).T @ chebyshev
+        powers = np.polynomial.Polynomial(np.polynomial.chebyshev.cheb2poly(np.eye(DEGREE + 1)[k, : k + 1]))(unit).coef
+        to_powers[k, : len(powers)] = powers
+    return np.asarray(to_series), to_powers
 
 
 def integral(profile: CamProfile) -> CamProfile:
@@ -143,5 +153,16 @@ def split(profile: CamProfile, places: FloatArray) -> CamProfile:
     least = 1e-12 * profile.length
     apart = [float(x) for x in places if np.abs(profile.breaks - x).min() > least]
     kept = [x for i, x in enumerate(apart) if i == 0 or x - apart[i - 1] > least]
-    edges = [profile.start, *kept, profile.end]
-    return join(*(profile.restrict(a, b) for a, b in zip(edges[:-1], edges[1:], strict=True))) if kept else profile
+    return recut(profile, np.union1d(profile.breaks, kept)) if kept else profile
+
+
+def recut(profile: CamProfile, breaks: FloatArray) -> CamProfile:
+    """Cut a profile at other breaks: each new piece is counted from its own start and belongs to the old piece that holds its middle."""
+    middle = 0.5 * (breaks[:-1] + breaks[1:])
+    piece = np.searchsorted(profile.breaks[1:-1], middle, side="right")
+    by = breaks[:-1] - profile.breaks[piece]
+    table = profile.coefficients[piece].copy()
+    for k in range(profile.degree):  # synthetic division, once for each power
+        for power in range(profile.degree - 1, k - 1, -1):
+            table[:, power] += by * table[:, power + 1]
+    return CamProfile(breaks.copy(), table)

@@ -1,16 +1,24 @@
-"""Motion of a profile over time at the cut's line speed: peaks, root mean squares, error of the ratio in sync."""
+"""Motion of a profile over time at the cut's line speed: peaks, root mean squares, error of the speed in sync.
+
+The slave's measures are in its own unit (m or rad), the tool's in m.
+"""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from profiles.cycle import Cut
 from profiles.errors import InputError
-from profiles.polynomial import CamProfile, Extremum
+from profiles.machines import Machine
+from profiles.polynomial import CamProfile, Extremum, FloatArray
+from profiles.returns import is_straight, slave_at_start
+from validation.composed import compose, integral
 
 RATIO_JUMP = 1e-9
-"""Jump of the ratio (pure number) above which acceleration and jerk count as unbounded."""
+"""Jump of the ratio above which acceleration and jerk count as unbounded, relative to `ratio_scale`."""
 
 SLOPE_JUMP = 1e-9
 """Jump of the ratio slope above which the jerk counts as unbounded, relative to `slope_scale`. Rounding of the
@@ -18,7 +26,7 @@ standard laws leaves jumps of up to about 3e-12 of that scale, a table of 1e-7 r
 1e-7."""
 
 POSITION_JUMP = 1e-12
-"""Jump of the position, relative to the cut length, above which speed, acceleration and jerk count as unbounded."""
+"""Jump of the position, relative to `position_scale`, above which speed, acceleration and jerk count as unbounded."""
 
 _DOMAIN = 1e-12
 """Rounding, relative to the cut length, that a profile's domain may be off the period ``[0, x_c]``."""
@@ -29,7 +37,7 @@ _EDGE = 1e-12
 
 @dataclass(frozen=True)
 class Motion:
-    """Measures of one cycle over time, SI units.
+    """Measures of one cycle over time, of the slave or of the tool (``u`` is m or rad).
 
     ``None`` stands for unbounded. The peaks are of the whole cycle, the root mean squares of the return zone alone,
     so that they do not depend on how long the slave runs in sync. The least velocity is signed.
@@ -37,15 +45,15 @@ class Motion:
     Parameters
     ----------
     peak_speed
-        Greatest speed (m/s).
+        Greatest speed (u/s).
     min_speed
-        Least velocity, negative where the slave runs backwards (m/s).
+        Least velocity, negative where it runs backwards (u/s).
     peak_acceleration, rms_acceleration
-        Greatest magnitude and root mean square over the return zone (m/s²).
+        Greatest magnitude and root mean square over the return zone (u/s²).
     peak_jerk, rms_jerk
-        Greatest magnitude and root mean square over the return zone (m/s³).
+        Greatest magnitude and root mean square over the return zone (u/s³).
     sync_ratio_error
-        Greatest ``|k - 1|`` inside the sync zone.
+        Greatest ``|tool speed / (s × line speed) - 1|`` inside the sync zone, ``s`` the cut's sync ratio.
     """
 
     peak_speed: float
@@ -89,49 +97,112 @@ def greatest_jump(profile: CamProfile, order: int) -> Extremum:
     return Extremum(float(jumps[worst]), float(profile.breaks[worst + 1]))
 
 
+def position_scale(profile: CamProfile, machine: Machine) -> float:
+    """Size of the slave's travel that rounding is measured against (slave unit): the cut length for m, one turn for rad."""
+    return profile.length if machine.slave_unit == "m" else machine.pitch
+
+
+def ratio_scale(profile: CamProfile, machine: Machine) -> float:
+    """Size of the ratio that rounding is measured against: 1 for m, the greatest ratio for rad (rad/m)."""
+    return 1.0 if machine.slave_unit == "m" else greatest_magnitude(profile, 1).value
+
+
 def slope_scale(profile: CamProfile) -> float:
-    """Size of the ratio slope (1/m): its greatest magnitude, at least a ratio of one per cycle."""
+    """Size of the ratio slope (slave unit/m²): its greatest magnitude, at least a ratio of one per cycle."""
     return max(greatest_magnitude(profile, 2).value, 1.0 / profile.length)
 
 
-def sync_ratio_error(profile: CamProfile, cut: Cut) -> Extremum:
-    """Greatest ``|k - 1|`` inside the sync zone, and where it is reached.
+def is_steady(profile: CamProfile, machine: Machine) -> bool:
+    """Whether neither position nor ratio jumps, so that the acceleration is bounded."""
+    if greatest_jump(profile, 0).value > POSITION_JUMP * position_scale(profile, machine):
+        return False
+    return greatest_jump(profile, 1).value <= RATIO_JUMP * ratio_scale(profile, machine)
 
-    The ends of the zone count with their one-sided values inside the zone.
+
+def is_smooth(profile: CamProfile) -> bool:
+    """Whether the ratio slope does not jump, so that the jerk of a steady profile is bounded."""
+    return greatest_jump(profile, 2).value <= SLOPE_JUMP * slope_scale(profile)
+
+
+def tool_profile(profile: CamProfile, machine: Machine, cut: Cut) -> CamProfile:
+    """Tool over the master (m): the profile itself where the slave is counted in m, else the carriage ``X(y)`` from zero.
+
+    The carriage's ratio ``X'(y) y'`` is made polynomials (`validation.composed.compose`, to 1e-13) and integrated.
+    """
+    if machine.slave_unit == "m":
+        return profile
+    start = slave_at_start(machine, cut) - float(profile(profile.start))
+    return integral(compose(lambda y, ratio, _: np.asarray(machine.tool_ratio(start + y) * ratio), profile))
+
+
+def sync_ratio_error(profile: CamProfile, machine: Machine, cut: Cut) -> Extremum:
+    """Greatest ``|tool speed / (s × line speed) - 1|`` inside the sync zone, and where it is reached.
+
+    The ends of the zone count with their one-sided values inside the zone. Exact where the slave's ratio is constant in sync, else to
+    1e-13 (`validation.composed.compose`).
     """
     edge = _EDGE * cut.length
     worst = Extremum(0.0, cut.sync_parts[0][0])
     for start, end in cut.sync_parts:
-        for found in profile.extrema(1, start + edge, end - edge):
-            if abs(found.value - 1.0) > worst.value:
-                worst = Extremum(abs(found.value - 1.0), found.at)
+        part = profile.restrict(start + edge, min(end, profile.end) - edge)
+        for found in _tool_in_sync(part, profile, machine, cut).extrema(0):
+            error = abs(found.value / cut.sync_ratio - 1.0)
+            if error > worst.value:
+                worst = Extremum(error, found.at)
     return worst
 
 
-def measure_motion(profile: CamProfile, cut: Cut) -> Motion:
-    """Measure a profile at the line speed of the cut, by roots of its polynomials and exact integration.
+def _tool_in_sync(part: CamProfile, profile: CamProfile, machine: Machine, cut: Cut) -> CamProfile:
+    """Ratio of the tool over the master in a part of the sync zone."""
+    if is_straight(machine, cut):  # so the tool's ratio to the slave is constant too: what the sync zone says
+        per_slave = cut.sync_ratio / float(machine.sync_profile(cut)(0.0, 1))
+        ratios = part.coefficients[:, 1:] * np.arange(1, part.degree + 1) * per_slave
+        return CamProfile(part.breaks.copy(), ratios)
+    start = slave_at_start(machine, cut) - float(profile(profile.start))
+    if part.end > 0.5 * cut.length:  # the next pitch is the next blade, and the formulas speak of the blade that cuts
+        start -= machine.pitch
+
+    def ratio(y: FloatArray, slope: FloatArray, _: FloatArray) -> FloatArray:
+        return np.asarray(machine.tool_ratio(start + y) * slope)
+
+    return compose(ratio, part)
+
+
+def measure_motion(profile: CamProfile, machine: Machine, cut: Cut) -> Motion:
+    """Measure the slave at the line speed of the cut, by roots of its polynomials and exact integration.
 
     Over time ``velocity = v y'``, ``acceleration = v² y''``, ``jerk = v³ y'''``.
 
     Parameters
     ----------
     profile
-        One cycle over the master period ``[0, x_c]`` (m).
+        One cycle over the master period ``[0, x_c]`` (slave unit).
+    machine
+        The machine, its sync zone placed.
     cut
         The cut it is judged for.
 
     Raises
     ------
     InputError
-        The profile does not run over ``[0, x_c]``.
+        The profile does not run over ``[0, x_c]``, or the machine's sync zone is not placed.
     """
     require_period(profile, cut)
-    v = cut.line_speed
-    steady = (
-        greatest_jump(profile, 0).value <= POSITION_JUMP * cut.length and greatest_jump(profile, 1).value <= RATIO_JUMP
-    )
-    smooth = steady and greatest_jump(profile, 2).value <= SLOPE_JUMP * slope_scale(profile)
+    steady = is_steady(profile, machine)
+    return _measure(profile, cut, steady, steady and is_smooth(profile), sync_ratio_error(profile, machine, cut).value)
 
+
+def measure_tool(profile: CamProfile, machine: Machine, cut: Cut) -> Motion:
+    """Measure the tool (m) like `measure_motion` the slave; where the slave is counted in m both are the same."""
+    slave = measure_motion(profile, machine, cut)
+    if machine.slave_unit == "m":
+        return slave
+    steady, smooth = slave.peak_acceleration is not None, slave.peak_jerk is not None
+    return _measure(tool_profile(profile, machine, cut), cut, steady, smooth, slave.sync_ratio_error)
+
+
+def _measure(profile: CamProfile, cut: Cut, steady: bool, smooth: bool, in_sync: float) -> Motion:
+    v = cut.line_speed
     start, end = cut.return_start, cut.return_start + cut.return_zone
 
     def rms(order: int) -> float:
@@ -144,5 +215,5 @@ def measure_motion(profile: CamProfile, cut: Cut) -> Motion:
         rms_acceleration=rms(2) if steady else None,
         peak_jerk=v**3 * greatest_magnitude(profile, 3).value if smooth else None,
         rms_jerk=rms(3) if smooth else None,
-        sync_ratio_error=sync_ratio_error(profile, cut).value,
+        sync_ratio_error=in_sync,
     )

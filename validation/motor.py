@@ -11,7 +11,7 @@ from profiles.cycle import Cut
 from profiles.machines import Machine
 from profiles.polynomial import CamProfile, FloatArray
 from profiles.returns import slave_at_start
-from validation.composed import compose, integral, split, zeros
+from validation.composed import compose, integral, recut, split, zeros
 from validation.motion import greatest_magnitude, is_steady, require_period
 
 _STANDING = 1e-9
@@ -73,7 +73,7 @@ def measure_motor(profile: CamProfile, machine: Machine, cut: Cut) -> MotorMeasu
     pace = cut.line_speed * machine.motor_ratio
     peak_speed = pace * greatest_magnitude(profile, 1).value
     min_velocity = pace * profile.extrema(1)[0].value
-    if not (is_steady(profile, machine, cut) and moves_something(machine)):
+    if not (is_steady(profile, machine) and moves_something(machine)):
         return MotorMeasures(None, None, peak_speed, min_velocity, None, None)
     torque = motor_torque(profile, machine, cut)
     drawn, regenerated = _energies(torque, profile, machine)
@@ -126,17 +126,10 @@ def _direction(one_way: CamProfile) -> FloatArray:
 def _energies(torque: CamProfile, profile: CamProfile, machine: Machine) -> tuple[float, float]:
     """Energy drawn and energy fed back in one cycle (J): the work over the slave's travel, split where it changes its sign."""
     parts = split(torque, zeros(torque))
-    travel = machine.motor_ratio * _on(profile, parts.breaks)
-    count = parts.degree + travel.shape[1]
-    product = np.zeros((parts.pieces, count))
+    travel = recut(profile, parts.breaks)
+    turn = machine.motor_ratio * travel.coefficients[:, 1:] * np.arange(1, travel.degree + 1)
+    product = np.zeros((parts.pieces, parts.degree + travel.degree))
     for power in range(parts.degree + 1):
-        product[:, power : power + travel.shape[1]] += parts.coefficients[:, power, None] * travel
+        product[:, power : power + travel.degree] += parts.coefficients[:, power, None] * turn
     work = np.diff(integral(CamProfile(parts.breaks.copy(), product))(parts.breaks))
     return float(work[work > 0].sum()), float(-work[work < 0].sum())
-
-
-def _on(profile: CamProfile, breaks: FloatArray) -> FloatArray:
-    """Coefficients of the ratio on pieces between breaks, those of the profile among them."""
-    table = split(profile, breaks[1:-1])
-    ratio = table.coefficients[:, 1:] * np.arange(1, table.degree + 1)
-    return np.asarray(ratio[np.clip(np.searchsorted(table.breaks[:-1], breaks[:-1], side="right") - 1, 0, table.pieces - 1)])

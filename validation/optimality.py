@@ -16,19 +16,23 @@ import numpy as np
 from profiles.cycle import Cut
 from profiles.errors import InputError
 from profiles.limits import Limits
-from profiles.machines import RotaryKnife
+from profiles.machines import Machine
 from profiles.polynomial import CamProfile, FloatArray
 from profiles.reach import least_acceleration, least_jerk
+from profiles.returns import is_straight
+from validation.motor import moves_something
 
+OBJECTIVES = ("peak_acceleration", "rms_acceleration", "peak_jerk", "rms_jerk", "rms_torque", "peak_torque", "energy")
 INTERVALS = 400
 CLOSED_FORM = "closed form, double-S"
 QUINTIC = "closed form, quintic"
 DUAL = "weak duality, multipliers by HiGHS on 400 intervals"
+NONE = "none"
 
 
 @dataclass(frozen=True)
 class Bound:
-    """A lower bound of an objective over time (m/s² or m/s³), and how it was found."""
+    """A lower bound of an objective over time (m/s², m/s³ or N·m at the motor), and how it was found; not a number with method "none"."""
 
     value: float
     method: str
@@ -44,8 +48,11 @@ class _Return:
     jerk: float
 
 
-def lower_bound(profile: CamProfile, machine: RotaryKnife, cut: Cut, limits: Limits, objective: str) -> Bound:
+def lower_bound(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits, objective: str) -> Bound:
     """Lower bound of what any return of this job can reach.
+
+    Bounds are known where the slave's ratio is constant in sync: then the return is a straight line plus a motion from rest to rest. The
+    stroke of a carriage is left out, which can only lower them. Elsewhere there is none.
 
     Parameters
     ----------
@@ -54,29 +61,37 @@ def lower_bound(profile: CamProfile, machine: RotaryKnife, cut: Cut, limits: Lim
     machine, cut, limits
         The job.
     objective
-        ``"peak_acceleration"``, ``"rms_acceleration"``, ``"peak_jerk"`` or ``"rms_jerk"``; root mean squares over the return zone.
+        ``"peak_acceleration"``, ``"rms_acceleration"``, ``"peak_jerk"`` or ``"rms_jerk"``; root mean squares over the return zone. Or
+        ``"rms_torque"`` (over the whole cycle), ``"peak_torque"`` or ``"energy"`` at the motor, as `validation.motor` measures them.
 
     Raises
     ------
     InputError
         The objective is not one of these.
     """
+    if objective not in OBJECTIVES:
+        raise InputError(f"there is no objective {objective!r}; the objectives are {', '.join(OBJECTIVES)}")
+    if not is_straight(machine, cut) or objective == "energy":
+        return Bound(math.nan, NONE)
+    if objective in ("rms_torque", "peak_torque"):
+        return _torque_bound(profile, machine, cut, limits, objective)
     length, v = cut.return_zone, cut.line_speed
-    height = machine.pitch - cut.length  # of the motion over the line y = x, which sync zone and return zone share
+    ratio = float(machine.sync_profile(cut)(0.0, 1))
+    height = machine.pitch - ratio * cut.length  # of the motion over the line that sync zone and return zone share
     time = length / v
     if abs(height) <= 1e-13 * length:
         return Bound(0.0, CLOSED_FORM)
-    speed = limits.speed - v if height > 0 else v - limits.least_velocity
+    least = -limits.speed if machine.turns_back else limits.least_velocity
+    up, down = limits.speed - ratio * v, ratio * v - least
+    speed = up if height > 0 else down
     if objective == "peak_acceleration":
         return Bound(least_acceleration(abs(height), time, speed, limits.jerk), CLOSED_FORM)
     if objective == "peak_jerk":
         return Bound(least_jerk(abs(height), time, speed, limits.acceleration), CLOSED_FORM)
-    if objective not in ("rms_acceleration", "rms_jerk"):
-        raise InputError(f"there is no objective {objective!r}; a bound is known for peak_ and rms_acceleration, peak_ and rms_jerk")
     order = 2 if objective == "rms_acceleration" else 3
     unit = abs(height) / time**order
     job = _Return(
-        low=-(v - limits.least_velocity if height > 0 else limits.speed - v) * time / abs(height),
+        low=-(down if height > 0 else up) * time / abs(height),
         high=speed * time / abs(height),
         slope=limits.acceleration * time**2 / abs(height),
         jerk=limits.jerk * time**3 / abs(height),
@@ -85,9 +100,29 @@ def lower_bound(profile: CamProfile, machine: RotaryKnife, cut: Cut, limits: Lim
         return Bound(math.sqrt(720) * unit, QUINTIC)
     start = cut.return_start
     back = profile.restrict(start, start + length).shift(-start, -float(profile(start)))
-    scaled = back.add_line(-1.0).scale(master=1.0 / length, slave=1.0 / height)
+    scaled = back.add_line(-ratio).scale(master=1.0 / length, slave=1.0 / height)
     scaled = CamProfile(np.append(scaled.breaks[:-1], 1.0), scaled.coefficients.copy())
     return Bound(math.sqrt(max(0.0, _dual_bound(scaled, job, order))) * unit, DUAL)
+
+
+def _torque_bound(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits, objective: str) -> Bound:
+    """Bound of a torque at the motor where the inertia ``I`` is constant, as it is where the slave's ratio in sync is.
+
+    The mean of ``ÿ sign(ẏ)`` over a closed cycle is zero, so the mean square of the force is ``I²`` times that of the acceleration, plus
+    ``F²`` times the share of the cycle in which the slave moves: at least the sync zone and the way back at the speed limit.
+    """
+    if not moves_something(machine) or (objective == "peak_torque" and machine.friction > 0):
+        return Bound(math.nan, NONE)
+    motion = lower_bound(profile, machine, cut, limits, objective.replace("torque", "acceleration"))
+    inertial = float(machine.inertia(0.0)) * motion.value / machine.motor_ratio
+    if objective == "peak_torque":
+        return Bound(inertial, motion.method)
+    way = abs(machine.pitch - machine.sync_profile(cut).advance)
+    moving = min(1.0, (cut.sync_zone + cut.line_speed * way / limits.speed) / cut.length)
+    friction = machine.friction / machine.motor_ratio
+    return Bound(
+        math.hypot(inertial * math.sqrt(cut.return_zone / cut.length), friction * math.sqrt(moving)), motion.method
+    )
 
 
 def _dual_bound(motion: CamProfile, job: _Return, order: int) -> float:
@@ -104,7 +139,7 @@ def _dual_bound(motion: CamProfile, job: _Return, order: int) -> float:
     def price(s: FloatArray) -> FloatArray:
         """Price of the jerk at s: what it adds to the tangent, less what it uses of the constraints that lie ahead."""
         ahead = np.append(np.cumsum(atoms[::-1])[::-1], 0.0)[cell + 1] + _spread_ahead(spread, x, cell, s)
-        return weight(s) - ahead - (later[1] - s * later[0]) - speed_price[1] * (1.0 - s) ** 2 / 2
+        return np.asarray(weight(s) - ahead - (later[1] - s * later[0]) - speed_price[1] * (1.0 - s) ** 2 / 2)
 
     # three values on each part make the quadratic that the price is there
     h = np.diff(breaks)
@@ -155,9 +190,7 @@ def _weight(motion: CamProfile, order: int) -> CamProfile:
     return CamProfile(motion.breaks.copy(), -(table[:, 1:] * np.arange(1, table.shape[1])))
 
 
-def _multipliers(
-    x: FloatArray, weight: CamProfile, job: _Return
-) -> tuple[FloatArray, tuple[FloatArray, float], float]:
+def _multipliers(x: FloatArray, weight: CamProfile, job: _Return) -> tuple[FloatArray, tuple[FloatArray, float], float]:
     """Solve the tangent's linear programme on a grid with the jerk constant on each interval.
 
     Returns
@@ -194,9 +227,17 @@ def _multipliers(
         bounds[index] = 0.0
     bounds[place[-1]] = 1.0
     objective = np.concatenate([cost * scale, np.zeros(3 * n + 3)])
-    for wider in (0.0, 1e-4, 1e-2):  # a tight job may have no motion on the grid; wider limits change the multipliers little
+    for wider in (
+        0.0,
+        1e-4,
+        1e-2,
+    ):  # a tight job may have no motion on the grid; wider limits change the multipliers little
         answer = linprog(
-            objective, A_eq=matrix, b_eq=np.zeros(3 * n), bounds=bounds * (1 + wider * (bounds[:, :1] != bounds[:, 1:])), method="highs"
+            objective,
+            A_eq=matrix,
+            b_eq=np.zeros(3 * n),
+            bounds=bounds * (1 + wider * (bounds[:, :1] != bounds[:, 1:])),
+            method="highs",
         )
         if answer.status == 0:
             break
@@ -210,7 +251,9 @@ def _multipliers(
     finite = np.isfinite(bounds[:, 0])
     constant = np.zeros(len(bounds))
     constant[finite] = np.where(
-        fixed[finite], price[finite] * bounds[finite, 0], upper[finite] * bounds[finite, 1] - lower[finite] * bounds[finite, 0]
+        fixed[finite],
+        price[finite] * bounds[finite, 0],
+        upper[finite] * bounds[finite, 1] - lower[finite] * bounds[finite, 0],
     )
     states = np.concatenate([slope, speed, place[-1:]])
     return price[slope], (price[speed], float(price[place[-1]])), float(constant[states].sum())
@@ -226,7 +269,9 @@ def _absolute_integral(first: FloatArray, centre: FloatArray, last: FloatArray, 
     q = -0.5 * (b + np.where(b >= 0, root, -root))
     with np.errstate(divide="ignore", invalid="ignore"):
         one, two = q / a, c / q
-    roots = np.stack([np.where((square > 0) & (r > 0) & (r < 1), r, 0.0) for r in (np.nan_to_num(one), np.nan_to_num(two))])
+    roots = np.stack(
+        [np.where((square > 0) & (r > 0) & (r < 1), r, 0.0) for r in (np.nan_to_num(one), np.nan_to_num(two))]
+    )
     edges = np.sort(np.concatenate([np.zeros((1, len(h))), roots, np.ones((1, len(h)))]), axis=0)
     primitive = edges * (c + edges * (b / 2 + edges * a / 3))
     return np.asarray(np.abs(np.diff(primitive, axis=0)).sum(axis=0) * h)

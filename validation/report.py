@@ -1,16 +1,17 @@
-"""The validation of a profile: every check that concerns the rotary knife, on one list.
+"""The validation of a profile: every check that concerns its machine, on one list.
 
 Each check compares a value with a limit that it must not exceed, within the allowances named here.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from profiles.cycle import Cut
 from profiles.limits import Limits
-from profiles.machines import RotaryKnife
+from profiles.machines import LinearCarriage, Machine, RotaryKnife
 from profiles.polynomial import CamProfile, Extremum
+from profiles.returns import slave_at_start
 from profiles.servo import Servo, spectral_radius
 from validation.checks import Check
 from validation.minimum_length import cut_length_eq10, physical, required_sync_zone
@@ -22,20 +23,24 @@ from validation.motion import (
     greatest_jump,
     greatest_magnitude,
     measure_motion,
+    measure_tool,
+    position_scale,
+    ratio_scale,
     slope_scale,
     sync_ratio_error,
 )
+from validation.motor import MotorMeasures, measure_motor
 from validation.response import ServoResponse, servo_response
 from validation.sweep import Sweep, servo_sweep
 
 CLOSURE = 1e-12
-"""What the slave's advance may be off the pitch, relative to the pitch: rounding."""
+"""What the slave's advance may be off the pitch, relative to the pitch, or to the way out of a slave that comes back: rounding."""
 
 SYNC_RATIO = 1e-9
-"""What the ratio may be off 1 in the sync zone: a nanometre per metre, below the resolution of any drive."""
+"""What the tool's speed may be off in the sync zone: a nanometre per metre, below the resolution of any drive."""
 
 ALLOWANCE = 1e-9
-"""What a limit may be exceeded by, relative to the limit (for the reversal: to the line speed): rounding."""
+"""What a limit may be exceeded by, relative to the limit (for the reversal: to the speed in sync): rounding."""
 
 
 @dataclass(frozen=True)
@@ -46,8 +51,13 @@ class ValidationReport:
     ----------
     checks
         All checks, in a fixed order.
-    motion
-        Measures of the motion.
+    motion, tool
+        Measures of the slave, and of the tool; the same where the slave is counted in m.
+    motor
+        What the profile asks of the motor: information, judged by no check.
+    tangential_mismatch
+        For a rotary knife, the share of the line speed by which a blade in tangential sync falls short of it along the material at the ends
+        of the sync zone; horizontal sync has none. None for other machines. Information, judged by no check.
     servo
         Response of the job's servo, ``None`` if it is unstable.
     sweep
@@ -56,6 +66,9 @@ class ValidationReport:
 
     checks: tuple[Check, ...]
     motion: Motion
+    tool: Motion
+    motor: MotorMeasures
+    tangential_mismatch: float | None
     servo: ServoResponse | None
     sweep: Sweep
 
@@ -65,15 +78,15 @@ class ValidationReport:
         return all(check.passed for check in self.checks)
 
 
-def validate(profile: CamProfile, machine: RotaryKnife, cut: Cut, limits: Limits, servo: Servo) -> ValidationReport:
+def validate(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits, servo: Servo) -> ValidationReport:
     """Judge a profile, whoever made it.
 
     Parameters
     ----------
     profile
-        One cycle over the master period ``[0, x_c]``, slave in m.
+        One cycle over the master period ``[0, x_c]`` (slave unit).
     machine
-        The machine.
+        The machine, its sync zone placed.
     cut
         The cut it is judged for.
     limits
@@ -84,53 +97,65 @@ def validate(profile: CamProfile, machine: RotaryKnife, cut: Cut, limits: Limits
     Raises
     ------
     InputError
-        The profile does not run over ``[0, x_c]``, or the servo's memory is too long to simulate.
+        The profile does not run over ``[0, x_c]``, the machine cannot be in sync over the zone, or the servo's memory is too long to
+        simulate.
     """
-    motion = measure_motion(profile, cut)
+    motion = measure_motion(profile, machine, cut)
     radius = spectral_radius(servo)
     response = servo_response(profile, machine, cut, servo) if radius < 1.0 else None
     checks = (
         *_closure(profile, machine),
-        *_motion(profile, cut, limits, motion),
+        *_motion(profile, machine, cut, limits, motion),
+        *_stroke(profile, machine, cut),
         Check("servo_stability", radius < 1.0, radius, 1.0, "1", None, "largest closed-loop pole in the z-plane (S1)"),
-        *_servo(response, machine, cut, limits),
-        _physical_bound(machine, cut, limits),
+        *_servo(response, cut),
+        *_minimum_lengths(response, machine, cut, limits),
     )
-    return ValidationReport(checks, motion, response, servo_sweep(profile, machine, cut, servo))
+    return ValidationReport(
+        checks=checks,
+        motion=motion,
+        tool=measure_tool(profile, machine, cut),
+        motor=measure_motor(profile, machine, cut),
+        tangential_mismatch=machine.tangential_mismatch(cut) if isinstance(machine, RotaryKnife) else None,
+        servo=response,
+        sweep=servo_sweep(profile, machine, cut, servo),
+    )
 
 
 def _at_most(name: str, value: float, limit: float, allowed: float, unit: str, at: float | None, source: str) -> Check:
     return Check(name, value <= limit + allowed, value, limit, unit, at, source)
 
 
-def _closure(profile: CamProfile, machine: RotaryKnife) -> list[Check]:
+def _closure(profile: CamProfile, machine: Machine) -> list[Check]:
     """Closure of the cycle and continuity at every join, the seam included."""
     step, ratio, slope = (greatest_jump(profile, order) for order in (0, 1, 2))
+    unit = machine.slave_unit
+    least, greatest = profile.extrema(0)
     return [
         _at_most(
             "position_closure",
             abs(profile.advance - machine.pitch),
-            CLOSURE * machine.pitch,
+            CLOSURE * (machine.pitch or greatest.value - least.value),
             0.0,
-            "m",
+            unit,
             profile.end,
-            "the slave advances by the pitch in one cycle",
+            "the slave advances by the pitch in one cycle" if machine.pitch else "the slave comes back in one cycle",
         ),
         _at_most(
             "position_joins",
             step.value,
-            POSITION_JUMP * profile.length,
+            POSITION_JUMP * position_scale(profile, machine),
             0.0,
-            "m",
+            unit,
             step.at,
             "no jump of the position at any join",
         ),
         _at_most(
             "ratio_joins",
             ratio.value,
-            RATIO_JUMP,
+            RATIO_JUMP * ratio_scale(profile, machine),
             0.0,
-            "1",
+            "1" if unit == "m" else "rad/m",
             ratio.at,
             "no jump of the ratio at any join or the seam (acceleration bounded)",
         ),
@@ -139,56 +164,86 @@ def _closure(profile: CamProfile, machine: RotaryKnife) -> list[Check]:
             slope.value,
             SLOPE_JUMP * slope_scale(profile),
             0.0,
-            "1/m",
+            "1/m" if unit == "m" else "rad/m^2",
             slope.at,
             "no jump of the ratio slope at any join or the seam (jerk bounded)",
         ),
     ]
 
 
-def _motion(profile: CamProfile, cut: Cut, limits: Limits, motion: Motion) -> list[Check]:
+def _motion(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits, motion: Motion) -> list[Check]:
     """Sync zone, speed, acceleration, jerk and reversal, exact."""
-    v = cut.line_speed
-    in_sync = sync_ratio_error(profile, cut)
+    v, unit = cut.line_speed, machine.slave_unit
+    in_sync = sync_ratio_error(profile, machine, cut)
     least = profile.extrema(1)[0]
     backward = max(0.0, -v * least.value)
-    allowed_backward = limits.speed if limits.reversal else 0.0
+    reverses = limits.reversal or machine.turns_back
 
-    def bounded(name: str, value: float | None, limit: float, unit: str, order: int, unbounded: Extremum) -> Check:
+    def bounded(name: str, value: float | None, limit: float, per: str, order: int, unbounded: Extremum) -> Check:
         source = f"peak of the {name}, exact, at every master position"
         if value is None:
-            return Check(name, False, None, limit, unit, unbounded.at, source)
-        return _at_most(name, value, limit, ALLOWANCE * limit, unit, greatest_magnitude(profile, order).at, source)
+            return Check(name, False, None, limit, unit + per, unbounded.at, source)
+        return _at_most(
+            name, value, limit, ALLOWANCE * limit, unit + per, greatest_magnitude(profile, order).at, source
+        )
 
     ratio_jump = greatest_jump(profile, 1)
     jump = greatest_jump(profile, 2) if motion.peak_acceleration is not None else ratio_jump
     return [
-        _at_most("sync_ratio", in_sync.value, SYNC_RATIO, 0.0, "1", in_sync.at, "k = 1 in the whole sync zone (S1)"),
-        bounded("speed", motion.peak_speed, limits.speed, "m/s", 1, ratio_jump),
-        bounded("acceleration", motion.peak_acceleration, limits.acceleration, "m/s^2", 2, ratio_jump),
-        bounded("jerk", motion.peak_jerk, limits.jerk, "m/s^3", 3, jump),
+        _at_most(
+            "sync_ratio",
+            in_sync.value,
+            SYNC_RATIO,
+            0.0,
+            "1",
+            in_sync.at,
+            "k = 1 in the whole sync zone (S1)"
+            if cut.sync_ratio == 1.0
+            else f"tool at {cut.sync_ratio:g} times the line speed in the whole sync zone",
+        ),
+        bounded("speed", motion.peak_speed, limits.speed, "/s", 1, ratio_jump),
+        bounded("acceleration", motion.peak_acceleration, limits.acceleration, "/s^2", 2, ratio_jump),
+        bounded("jerk", motion.peak_jerk, limits.jerk, "/s^3", 3, jump),
         _at_most(
             "reversal",
             backward,
-            allowed_backward,
-            ALLOWANCE * v,
-            "m/s",
+            limits.speed if reverses else 0.0,
+            ALLOWANCE * (limits.speed if reverses else v * ratio_scale(profile, machine)),
+            f"{unit}/s",
             least.at,
-            "greatest backward speed; 0 unless reversal is allowed",
+            "greatest backward speed; 0 unless reversal is allowed or the machine comes back",
         ),
     ]
 
 
-def _servo(response: ServoResponse | None, machine: RotaryKnife, cut: Cut, limits: Limits) -> list[Check]:
+def _stroke(profile: CamProfile, machine: Machine, cut: Cut) -> list[Check]:
+    """Whether a carriage stays on its guide."""
+    if not isinstance(machine, LinearCarriage):
+        return []
+    start = slave_at_start(machine, cut) - float(profile(profile.start))
+    middle = machine.home + 0.5 * machine.stroke
+    least, greatest = profile.extrema(0)
+    behind, ahead = middle - (start + least.value), start + greatest.value - middle
+    return [
+        _at_most(
+            "stroke",
+            max(behind, ahead),
+            0.5 * machine.stroke,
+            ALLOWANCE * machine.stroke,
+            "m",
+            least.at if behind > ahead else greatest.at,
+            "greatest distance of the carriage from the middle of its stroke",
+        )
+    ]
+
+
+def _servo(response: ServoResponse | None, cut: Cut) -> list[Check]:
     """Check what the axis makes of the profile, at the worst phase; without a response all fail."""
     shear = cut.shear_zone
     settling = response.settling if response else None
     crossing = response.crossing if response else None
     needed = required_sync_zone(settling, shear) if settling is not None else None
     crossed = required_sync_zone(crossing, shear) if crossing is not None else None
-    shortest = (
-        cut_length_eq10(settling, shear, machine.pitch, cut.line_speed, limits.speed) if settling is not None else None
-    )
     settled = needed is not None and needed <= cut.sync_zone
     equation = "eq. 6" if shear > 0 else "eq. 5"
     error = response.shear_zone_error if response else None
@@ -227,8 +282,34 @@ def _servo(response: ServoResponse | None, machine: RotaryKnife, cut: Cut, limit
             cut.sync_tolerance,
             "m",
             None,
-            "axis against material in the shear zone, at every sampling phase",
+            "tool against material in the shear zone, at every sampling phase",
         ),
+    ]
+
+
+def _minimum_lengths(response: ServoResponse | None, machine: Machine, cut: Cut, limits: Limits) -> list[Check]:
+    """Minimum cut lengths of S1, which are those of a rotary knife in tangential sync.
+
+    With a sync ratio ``s`` the knife moves as with a line ``s`` times as fast whose lengths are ``s`` times as long.
+    """
+    if not (isinstance(machine, RotaryKnife) and machine.sync == "tangential"):
+        return []
+    s, v = cut.sync_ratio, cut.sync_ratio * cut.line_speed
+    settling = response.settling if response else None
+    shortest = (
+        cut_length_eq10(s * settling, s * cut.shear_zone, machine.pitch, v, limits.speed) / s
+        if settling is not None
+        else None
+    )
+    as_one = replace(
+        cut,
+        length=s * cut.length,
+        line_speed=v,
+        sync_zone=s * cut.sync_zone,
+        shear_zone=s * cut.shear_zone,
+        sync_ratio=1.0,
+    )
+    return [
         Check(
             "minimum_cut_length",
             shortest is not None and shortest <= cut.length * (1 + ALLOWANCE),
@@ -238,16 +319,13 @@ def _servo(response: ServoResponse | None, machine: RotaryKnife, cut: Cut, limit
             None,
             "minimum cut length (eq. 10) with l_t the settling length to the sync tolerance",
         ),
+        _at_most(
+            "physical_cut_length",
+            physical(machine, as_one, limits).length / s,
+            cut.length,
+            ALLOWANCE * cut.length,
+            "m",
+            None,
+            "shortest cut length of a perfect axis under limits of speed, acceleration and jerk",
+        ),
     ]
-
-
-def _physical_bound(machine: RotaryKnife, cut: Cut, limits: Limits) -> Check:
-    return _at_most(
-        "physical_cut_length",
-        physical(machine, cut, limits).length,
-        cut.length,
-        ALLOWANCE * cut.length,
-        "m",
-        None,
-        "shortest cut length of a perfect axis under limits of speed, acceleration and jerk",
-    )

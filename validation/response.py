@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from profiles.cycle import Cut
-from profiles.machines import RotaryKnife
+from profiles.machines import Machine
 from profiles.polynomial import CamProfile, FloatArray
+from profiles.returns import slave_at_start
 from profiles.servo import Servo
 from validation.simulation import ServoRun, hermite, simulate
 
@@ -25,8 +26,8 @@ _ZERO = 1e-12
 class ServoResponse:
     """Response of the servo over all sampling phases, SI units (m).
 
-    Distances are master travel from the start of the sync zone. The sync error is the axis minus the ideal sync line,
-    the slave position at which it moves with the material.
+    Distances are master travel from the start of the sync zone. The sync error is that of the tool, along the material: where the axis
+    puts it, minus where it would move with the material.
 
     Parameters
     ----------
@@ -40,7 +41,7 @@ class ServoResponse:
     overshoot
         Greatest sync error of the other sign after the crossing, at the worst phase; 0 without a crossing.
     peak_following_error
-        Greatest magnitude of command minus axis over the whole cycle.
+        Greatest magnitude of command minus axis over the whole cycle, at the tool where the slave is an angle.
     shear_zone_error
         Greatest magnitude of the sync error in the shear zone; at its place if its length is zero.
     phases
@@ -56,7 +57,7 @@ class ServoResponse:
 
 
 def servo_response(
-    profile: CamProfile, machine: RotaryKnife, cut: Cut, servo: Servo, tolerance: float | None = None
+    profile: CamProfile, machine: Machine, cut: Cut, servo: Servo, tolerance: float | None = None
 ) -> ServoResponse:
     """Simulate the servo on a profile and measure its response.
 
@@ -82,7 +83,7 @@ def servo_response(
 
 
 def measure_response(
-    run: ServoRun, profile: CamProfile, machine: RotaryKnife, cut: Cut, tolerance: float | None = None
+    run: ServoRun, profile: CamProfile, machine: Machine, cut: Cut, tolerance: float | None = None
 ) -> ServoResponse:
     """Measure a simulated response; arguments as in `servo_response`."""
     start = cut.return_start + cut.return_zone  # counted on like ServoRun.master
@@ -95,19 +96,20 @@ def measure_response(
         crossing=crossing,
         settling=settling,
         overshoot=overshoot,
-        peak_following_error=float(np.abs(run.command - run.axis).max()),
+        peak_following_error=float(np.abs(_following_error(run, profile, machine, cut)).max()),
         shear_zone_error=float(np.abs(in_shear).max()),
         phases=run.phases,
     )
 
 
 def sync_error(
-    run: ServoRun, profile: CamProfile, machine: RotaryKnife, cut: Cut, start: float, end: float
+    run: ServoRun, profile: CamProfile, machine: Machine, cut: Cut, start: float, end: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Axis minus ideal sync line in a part of the sync zone, for every sampling phase.
+    """Tool minus ideal sync line in a part of the sync zone, for every sampling phase.
 
     The ideal line passes through the profile's position at the cut length ``x_c``, which lies in the sync zone with
-    either origin (S1: ``Y = X - x_c + y_c`` in the first cycle).
+    either origin (S1: ``Y = X - x_c + y_c`` in the first cycle). With the machine's map ``X`` and the slave coordinate ``c`` of that
+    line the error is ``X(c + e) - X(c)`` for an axis that is off by ``e``.
 
     Parameters
     ----------
@@ -124,7 +126,19 @@ def sync_error(
     master, axis, ratio = run.window(start, end)
     inside = np.clip(master - zone, sync.start, sync.end)
     line = sync(inside) + (float(profile(profile.end)) - float(sync(np.clip(cut.length - zone, sync.start, sync.end))))
-    return master, axis - line, ratio - sync(inside, 1)
+    ideal = machine.sync_start(cut) + sync(inside)
+    actual = ideal + (axis - line)
+    error = np.asarray(machine.tool(actual) - machine.tool(ideal))
+    slope = np.asarray(machine.tool_ratio(actual) * ratio - machine.tool_ratio(ideal) * sync(inside, 1))
+    return master, error, slope
+
+
+def _following_error(run: ServoRun, profile: CamProfile, machine: Machine, cut: Cut) -> FloatArray:
+    """Command minus axis; for a slave in rad at the tool (m)."""
+    if machine.slave_unit == "m":
+        return run.command - run.axis
+    start = slave_at_start(machine, cut) - float(profile(profile.start))
+    return np.asarray(machine.tool(start + run.command) - machine.tool(start + run.axis))
 
 
 def _crossing(distance: FloatArray, error: FloatArray, slope: FloatArray, floor: float) -> tuple[float | None, float]:

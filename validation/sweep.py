@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from itertools import product
 
 from profiles.cycle import Cut
-from profiles.machines import RotaryKnife
+from profiles.machines import Machine
 from profiles.polynomial import CamProfile
 from profiles.servo import PAPER_RANGES, Servo, spectral_radius
 from validation.response import ServoResponse, servo_response
@@ -62,7 +62,7 @@ def sweep_servos(velocity_feedforward: float) -> tuple[Servo, ...]:
     )
 
 
-def servo_sweep(profile: CamProfile, machine: RotaryKnife, cut: Cut, servo: Servo) -> Sweep:
+def servo_sweep(profile: CamProfile, machine: Machine, cut: Cut, servo: Servo) -> Sweep:
     """Simulate the profile on every servo of the published ranges.
 
     Parameters

@@ -74,7 +74,10 @@ def _proof_figure(outline: BentOutline) -> Figure:
     near.ticklabel_format(useOffset=False)
     near.set_title("at the largest deviation")
     whole.set_ylabel("y (mm)")
-    whole.margins(0.08)
+    middle = 0.5 * (drawn.min(axis=0) + drawn.max(axis=0))
+    half = 0.56 * np.maximum(size, 0.35 * size.max())  # a straight line gets some room beside it
+    whole.set_xlim(middle[0] - half[0], middle[0] + half[0])
+    whole.set_ylim(middle[1] - half[1], middle[1] + half[1])
     closing = outline.proof.closing_error
     ends = "open" if closing is None else f"closing error {1e3 * closing:.4f} mm"
     whole.set_title(
@@ -107,11 +110,11 @@ def _times_figure(outline: BentOutline) -> Figure:
     figure = Figure(figsize=(9.0, 5.4), layout="constrained")
     top, bottom = figure.subplots(2, 1, sharex=True)
     rows = (
-        ("paper: sequential trapezoids", outline.paper_times, outline.paper_dwell.mould, "#8d99a6", "--"),
-        ("jerk-limited, overlapped", outline.times, outline.dwell.mould, _BENT, "-"),
+        ("paper: sequential trapezoids", outline.paper_times, "#8d99a6", "--"),
+        ("jerk-limited, overlapped", outline.times, _BENT, "-"),
     )
     signs = np.sign(outline.moulds)
-    for label, table, _, colour, dash in rows:
+    for label, table, colour, dash in rows:
         _plot(top, *_feed_track(table), f"{label}: {table.total:.2f} s in all", colour, dash)
         _plot(bottom, *_mould_track(table, signs), label, colour, dash)
     shown = min(_BENDS_SHOWN, outline.plan.bends)

@@ -49,7 +49,10 @@ def drawing_view(result: BentDrawing, files: Sequence[Path]) -> RenderableType:
     more = len(result.outlines) - _MOST_ROWS
     notes = [Text(f"{more} more programs are not shown")] if more > 0 else []
     notes += [
-        Text(f"{outline.program.name}: {check.name} {check.value:.3g} {check.unit}, allowed {check.limit:.3g}", "bold red")
+        Text(
+            f"{outline.program.name}: {check.name} {check.value:.3g} {check.unit}, allowed {check.limit:.3g}",
+            "bold red",
+        )
         for outline in result.outlines
         for check in outline.checks
         if not check.passed

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from profiles.errors import InputError
+from profiles.machines.machine import SlaveUnit
 from profiles.polynomial import CamProfile, FloatArray
 
 _LENGTHS: dict[str, tuple[float, float]] = {
@@ -17,14 +19,17 @@ _LENGTHS: dict[str, tuple[float, float]] = {
 }  # fmt: skip
 _COLUMNS: dict[str, dict[str, tuple[float, float]]] = {
     "x": _LENGTHS,
-    "y": _LENGTHS,
-    "dy/dx": {"1": (1, 1), "m/m": (1, 1), "mm/mm": (1, 1)},
-    "d2y/dx2": {"1/m": (1, 1), "1/mm": (1000, 1)},
-    "d3y/dx3": {"1/m^2": (1, 1), "1/mm^2": (1e6, 1)},
+    "y": {**_LENGTHS, "rad": (1, 1), "deg": (math.pi, 180)},
+    "dy/dx": {"1": (1, 1), "m/m": (1, 1), "mm/mm": (1, 1), "rad/m": (1, 1)},
+    "d2y/dx2": {"1/m": (1, 1), "1/mm": (1000, 1), "rad/m^2": (1, 1)},
+    "d3y/dx3": {"1/m^2": (1, 1), "1/mm^2": (1e6, 1), "rad/m^3": (1, 1)},
 }
 # Columns, their units, and how a number in that unit becomes SI: multiplied by the first, divided by the second.
 
-_HEADER = ("x [mm]", "y [mm]", "dy/dx [1]", "d2y/dx2 [1/m]", "d3y/dx3 [1/m^2]")
+_HEADERS: dict[SlaveUnit, tuple[str, ...]] = {
+    "m": ("x [mm]", "y [mm]", "dy/dx [1]", "d2y/dx2 [1/m]", "d3y/dx3 [1/m^2]"),
+    "rad": ("x [mm]", "y [rad]", "dy/dx [rad/m]", "d2y/dx2 [rad/m^2]", "d3y/dx3 [rad/m^3]"),
+}
 _CELL = re.compile(r"\s*([^\s\[\](){}_]+)(?:\s*\[([^\[\]]+)\]|\s*\(([^()]+)\)|_(\S+))?\s*")
 _NUMBER = re.compile(r"\s*[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,4})?\s*")
 _GREATEST = 1e12
@@ -46,17 +51,20 @@ class CamRows:
     x
         Master positions (m), shape ``(n,)``, increasing.
     y
-        Slave positions (m), shape ``(n,)``.
+        Slave positions (slave unit), shape ``(n,)``.
     dy
         Ratio, shape ``(n,)``, if the table has it.
     d2y
-        Ratio slope (1/m), shape ``(n,)``, if the table has it.
+        Ratio slope (slave unit per m²), shape ``(n,)``, if the table has it.
+    slave_unit
+        Whether the slave is counted in m or in rad.
     """
 
     x: FloatArray
     y: FloatArray
     dy: FloatArray | None = None
     d2y: FloatArray | None = None
+    slave_unit: SlaveUnit = "m"
 
 
 def table_positions(profile: CamProfile, points: int) -> FloatArray:
@@ -99,7 +107,7 @@ def table_positions(profile: CamProfile, points: int) -> FloatArray:
     return x
 
 
-def write_cam_csv(profile: CamProfile, points: int, comments: Sequence[str]) -> str:
+def write_cam_csv(profile: CamProfile, points: int, comments: Sequence[str], slave_unit: SlaveUnit = "m") -> str:
     """Write a profile as a table: comment lines, a header with units, one row a position.
 
     Parameters
@@ -110,6 +118,8 @@ def write_cam_csv(profile: CamProfile, points: int, comments: Sequence[str]) -> 
         Number of rows.
     comments
         Texts that are put before the header, one a line.
+    slave_unit
+        Unit of the profile's slave: m is written in mm, rad as it is.
 
     Returns
     -------
@@ -123,9 +133,10 @@ def write_cam_csv(profile: CamProfile, points: int, comments: Sequence[str]) -> 
         There are more breaks than points.
     """
     x = table_positions(profile, points)
-    columns = [x * 1e3, profile(x) * 1e3, profile(x, 1), profile(x, 2), profile(x, 3)]
+    scale = 1e3 if slave_unit == "m" else 1.0
+    columns = [x * 1e3, profile(x) * scale, profile(x, 1), profile(x, 2), profile(x, 3)]
     lines = ["# " + " ".join(comment.splitlines()) for comment in comments]
-    lines.append(",".join(_HEADER))
+    lines.append(",".join(_HEADERS[slave_unit]))
     lines.extend(",".join(map(repr, row)) for row in zip(*((column + 0.0).tolist() for column in columns), strict=True))
     return "\n".join(lines) + "\n"
 
@@ -153,7 +164,7 @@ def read_cam_csv(text: str, place: str) -> CamRows:
     ]
     if not numbered:
         raise InputError(f"{place}: there is no table in it; write a header like x [mm],y [mm] and rows below")
-    columns = _header(numbered[0][1], f"{place}, line {numbered[0][0]}")
+    columns, slave_unit = _header(numbered[0][1], f"{place}, line {numbered[0][0]}")
     if len(numbered) - 1 < _FEWEST_ROWS:
         raise InputError(
             f"{place}: {len(numbered) - 1} rows; a cam table needs {_FEWEST_ROWS} at least, "
@@ -170,12 +181,13 @@ def read_cam_csv(text: str, place: str) -> CamRows:
         raise InputError(
             f"{place}, line {line}: x does not increase from the row before; rows must be sorted by x, each x once"
         )
-    return CamRows(data["x"], data["y"], data.get("dy/dx"), data.get("d2y/dx2"))
+    return CamRows(data["x"], data["y"], data.get("dy/dx"), data.get("d2y/dx2"), slave_unit)
 
 
-def _header(line: str, place: str) -> list[tuple[str, tuple[float, float]]]:
-    """Read the header: for each column its name and what makes its numbers SI."""
+def _header(line: str, place: str) -> tuple[list[tuple[str, tuple[float, float]]], SlaveUnit]:
+    """Read the header: for each column its name and what makes its numbers SI, and the unit of the slave."""
     columns: list[tuple[str, tuple[float, float]]] = []
+    turning: dict[str, bool] = {}
     for cell in line.split(","):
         found = _CELL.fullmatch(cell)
         name = found.group(1) if found else cell.strip()
@@ -188,7 +200,7 @@ def _header(line: str, place: str) -> list[tuple[str, tuple[float, float]]]:
         units = _COLUMNS[name]
         unit = next((group for group in found.groups()[1:] if group is not None), None)
         if unit is None:
-            example = "mm" if units is _LENGTHS else next(iter(units))
+            example = "mm" if "mm" in units else next(iter(units))
             raise InputError(f"{place}: column {name} has no unit; write it in brackets, e.g. {name} [{example}]")
         if unit.strip() not in units:
             raise InputError(
@@ -197,13 +209,20 @@ def _header(line: str, place: str) -> list[tuple[str, tuple[float, float]]]:
         if name in (earlier for earlier, _ in columns):
             raise InputError(f"{place}: column {name} stands there twice; leave one out")
         columns.append((name, units[unit.strip()]))
+        turning[name] = unit.strip().startswith(("rad", "deg"))
     names = {name for name, _ in columns}
     missing = [name for name in ("x", "y") if name not in names]
     if missing:
         raise InputError(f"{place}: column {' and '.join(missing)} is missing; write a header like x [mm],y [mm]")
     if ("dy/dx" in names) != ("d2y/dx2" in names):
         raise InputError(f"{place}: dy/dx and d2y/dx2 go together; give both or neither")
-    return columns
+    for name in turning.keys() - {"x"}:
+        if turning[name] != turning["y"]:
+            slave = "an angle" if turning["y"] else "a length"
+            raise InputError(
+                f"{place}: column {name} does not go with y, which is {slave}; write both in units of {slave}"
+            )
+    return columns, "rad" if turning["y"] else "m"
 
 
 def _row(line: str, count: int, place: str) -> list[float]:

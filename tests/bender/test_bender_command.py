@@ -86,6 +86,17 @@ def test_example_drawing_with_everything(tmp_path: Path, capsys: pytest.CaptureF
     assert (tmp_path / "sheet.pdf").read_bytes().startswith(b"%PDF")
 
 
+def test_examples_of_job_and_measurements(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    folder = EXAMPLE.parent
+    code, answer, _ = run(capsys, EXAMPLE, "--job", folder / "paper-arcs.toml", "--out", tmp_path / "a", "--no-figures")
+    assert code == 0
+    assert Path(answer["program"]).read_text().startswith("%\n(CARTON-1)\nN001 G21\n")
+    code, answer, _ = run(capsys, "--calibrate", folder / "measurements.csv", "--out", tmp_path / "b")
+    assert code == 0
+    assert answer["warnings"] == []
+    assert 0 < answer["largest_residual_deg"] <= 0.1 + 1e-9
+
+
 def test_same_input_same_bytes(drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     path = drawing(lambda m, _: m.add_lwpolyline(STEP))
     for name in ("a", "b"):
@@ -97,16 +108,20 @@ def test_same_input_same_bytes(drawing: Make, tmp_path: Path, capsys: pytest.Cap
 def test_without_the_typesetting_libraries_there_is_no_sheet(
     drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ):
-    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    monkeypatch.setattr("importlib.util.find_spec", lambda _: None)
     path = drawing(lambda m, _: m.add_line((0, 0), (9, 0)))
     code, answer, _ = run(capsys, path, "--out", tmp_path / "out")
     assert code == 0
     assert answer["bends"] == 0
-    assert any("no sheet: typst is not installed" in text and "camwright[recipe]" in text for text in answer["warnings"])
+    assert any(
+        "no sheet: typst is not installed" in text and "camwright[recipe]" in text for text in answer["warnings"]
+    )
     assert not [file for file in answer["files"] if "sheet" in file]
 
 
-def test_without_the_drawing_library(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch):
+def test_without_the_drawing_library(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+):
     monkeypatch.setitem(sys.modules, "ezdxf", None)
     code, _, err = run(capsys, EXAMPLE, "--out", tmp_path / "out")
     assert code == 2
