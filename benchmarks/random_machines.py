@@ -1,7 +1,8 @@
 """What becomes of many random jobs of every machine: a profile that passes its checks, or a way out that then works.
 
 A job is drawn around what the quintic return needs: limits from below that to far above. An infeasible job is followed up: its first
-suggestion is applied and must give a profile. Writes one CSV row for each job and prints the ends; the exit code is 0 if there are no others:
+suggestion is applied and must give a profile. Writes one CSV row for each job and prints the ends; the exit code is 0 if none is
+another one:
 
     python benchmarks/random_machines.py [--jobs 300] [--seed 1] [--machine crank_slider]
 """
@@ -133,9 +134,14 @@ def apply(job: Job, suggestion: Suggestion) -> Job:
     value = suggestion.value * TO_SI.get(suggestion.unit, 1.0)
     if suggestion.change == "reversal":
         return machine, cut, replace(limits, reversal=True), objective
-    if suggestion.change in ("line_speed", "length"):
-        return machine, replace(cut, **{suggestion.change: value}), limits, objective
-    return machine, cut, replace(limits, **{suggestion.change: value}), objective
+    if suggestion.change == "line_speed":
+        return machine, replace(cut, line_speed=value), limits, objective
+    if suggestion.change == "length":
+        return machine, replace(cut, length=value), limits, objective
+    eased = {"speed": limits.speed, "acceleration": limits.acceleration, "jerk": limits.jerk} | {
+        suggestion.change: value
+    }
+    return machine, cut, Limits(**eased, reversal=limits.reversal), objective
 
 
 def judge(job: Job) -> tuple[str, str]:

@@ -119,7 +119,7 @@ def _measures(
     slave: Motion, tool: Motion, motor: MotorMeasures, response: ServoResponse | None, unit: SlaveUnit
 ) -> dict[str, Any]:
     """Measures of a profile; null where a value is unbounded or does not exist. A slave that turns has its own measures."""
-    measures = {
+    measures: dict[str, Any] = {
         "peak_speed_m_per_s": tool.peak_speed,
         "min_speed_m_per_s": tool.min_speed,
         "peak_acceleration_m_per_s2": tool.peak_acceleration,

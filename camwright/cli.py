@@ -1,4 +1,4 @@
-"""The command line: ``camwright design | compare | limits | validate | check``."""
+"""The command line: the commands about one job, and the others from their modules."""
 
 from __future__ import annotations
 
@@ -10,6 +10,9 @@ from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
+from camwright.bending.commands import bend
+from camwright.commands.quick import quick
+from camwright.commands.tables import register
 from camwright.output import BROKEN_PIPE, Voice, complain, prepare_streams, silence_stdout
 from profiles.errors import CamwrightError
 
@@ -211,6 +214,11 @@ def _check(job: _GivenJob, as_json: _Json = False, quiet: _Quiet = False) -> int
 
     Voice(as_json, quiet).answer(lambda: check_answer(asked), view)
     return 0
+
+
+app.command("quick")(quick)
+register(app)
+app.command("bend")(bend)
 
 
 def _directory(out: Path | None, job: Job) -> Path:

@@ -14,7 +14,7 @@ from profiles.cycle import Cut
 from profiles.errors import InputError
 from profiles.machines import CrankSlider, Machine
 from profiles.polynomial import CamProfile
-from profiles.returns import assemble, baseline, baseline_names, is_straight
+from profiles.returns import BASELINES, assemble, baseline, baseline_names, is_straight
 
 if TYPE_CHECKING:
     from validation.motion import Motion
@@ -110,9 +110,10 @@ def require_laws(names: Sequence[str], machine: Machine, cut: Cut) -> None:
     faults = []
     for name in names:
         if name not in known:
-            near = difflib.get_close_matches(name[:50], known, n=1)
+            near = [] if name in BASELINES else difflib.get_close_matches(name[:50], known, n=1)
             advice = f"did you mean {near[0]}?" if near else f"the laws are {', '.join(known)}"
-            faults.append(f"--with {name[:50]!r}: there is no such law for this machine; {advice}")
+            here = " for this machine" if name in BASELINES else ""
+            faults.append(f"--with {name[:50]!r}: there is no such law{here}; {advice}")
     if faults:
         raise InputError(*faults)
 

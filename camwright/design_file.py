@@ -79,7 +79,7 @@ def job_numbers(job: Job) -> dict[str, Any]:
 
 
 def objective_unit(design: Design) -> str:
-    """Unit of a design's objective."""
+    """Name the unit of a design's objective."""
     return _UNITS.get(design.solution.objective_name, design.job.machine.slave_unit) + _OVER_TIME.get(
         design.solution.objective_name.rpartition("_")[2], ""
     )

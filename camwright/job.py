@@ -9,7 +9,6 @@ from pathlib import Path
 
 from camwright.files import read_text
 from camwright.job_checks import conflicts
-from camwright.job_fields import Known
 from camwright.job_file import JobFile, Objective, read_structure
 from camwright.machine_checks import moved_by_nothing, sync_zone_of
 from camwright.machine_tables import machine_of
@@ -124,17 +123,17 @@ def parse_job(text: str, place: str) -> Job:
     file, known, faults = read_structure(data)
     faults += conflicts(known)
     machine = machine_of(known)
+    zone = sync_zone_of(known, machine)
     if file is not None and machine is not None:
         faults += filter(None, [moved_by_nothing(machine, file.objective.minimise)])
-    if file is None or machine is None or faults:
+    if file is None or machine is None or zone is None or faults:
         raise InputError(*(f"{place}: {fault}" for fault in faults))
-    return _job(file, machine, known, text)
+    return _job(file, machine, zone, text)
 
 
-def _job(file: JobFile, machine: Machine, known: Known, text: str) -> Job:
+def _job(file: JobFile, machine: Machine, zone: float, text: str) -> Job:
     """Make the job of a file without faults; fill in what it leaves out."""
     cut, servo = file.cut, file.servo
-    zone = sync_zone_of(known, machine) or cut.sync_zone
     at = zone - cut.shear_zone if cut.shear_zone_at is None else cut.shear_zone_at
     return Job(
         name=file.name,

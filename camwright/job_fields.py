@@ -97,17 +97,17 @@ def slave_field(straight: str, turning: str, example: str) -> tuple[BeforeValida
 def zone_field(kind: str, angle_key: str, machine: str) -> tuple[BeforeValidator, WithJsonSchema]:
     """Make the parts of a length that may be written as an angle for one kind of machine.
 
-    The angle is kept under a key of its own and the field is not a number: what length it is the machine says.
+    The angle is kept under a key of its own and the field is nothing: what length it is the machine says.
     """
 
-    def read(value: object, info: ValidationInfo) -> float:
+    def read(value: object, info: ValidationInfo) -> float | None:
         if not _is(value, "angle"):
             return keep(_read(value, kind), info)
         named = cast(Known, info.context).kind
         if named not in (machine, None):
             raise refusal(f'{shown(value)}: an angle, which only a {machine} knows; write e.g. "{KINDS[kind].example}"')
         keep(_read(value, "angle"), info, angle_key)
-        return math.nan
+        return None
 
     words = f"{KINDS[kind].name}, of a {machine} also {KINDS['angle'].name}, greater than zero"
     return BeforeValidator(read), _schema(words, [KINDS[kind].example, "60 deg"], signed=False)

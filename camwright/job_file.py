@@ -51,7 +51,7 @@ class CutTable(Table):
 
     length: Annotated[float, *quantity_field("length")]
     line_speed: Annotated[float, *quantity_field("speed")]
-    sync_zone: Annotated[float, *zone_field("length", "sync_angle", "rotary_knife")]
+    sync_zone: Annotated[float | None, *zone_field("length", "sync_angle", "rotary_knife")]
     shear_zone: Annotated[float, *quantity_field("length", zero=True), Field(json_schema_extra={"default": "0 mm"})] = (
         0.0
     )

@@ -149,8 +149,8 @@ def _knife_room(machine: RotaryKnife, cut: Cut, where: str, angle: float | None)
         room = f"[machine] circumference = {_mm(machine.circumference)}, so the knife would turn a whole turn in sync"
     else:
         room = (
-            f"{_mm(longest)} (what [machine] circumference = {_mm(machine.circumference)}, blades = {machine.blades} and [cut] sync_ratio = "
-            f"{cut.sync_ratio:.6g} leave to one blade), so no return zone is left"
+            f"the {_mm(longest)} that [machine] circumference = {_mm(machine.circumference)}, blades = {machine.blades} and [cut] "
+            f"sync_ratio = {cut.sync_ratio:.6g} leave to one blade, so no return zone is left"
         )
     yield f"{where}: not below {room}; shorten the sync zone to {_below(longest)} at most"
 

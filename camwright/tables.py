@@ -45,10 +45,8 @@ def _head(design: Design) -> list[str]:
         if design.gap is None
         else f"lower bound {_number(design.bound.value)} {unit} ({design.bound.method}), gap {design.gap:.1e}"
     )
-    lines = [
-        f"{design.job.name}: {solution.status.value}, {solution.objective_name} {_number(design.objective)} {unit} "
-        f"in {design.profile.pieces} pieces; {bound}"
-    ]
+    ending = f"{design.job.name}: {solution.status.value}, {solution.objective_name} {_number(design.objective)} {unit}"
+    lines = [f"{ending} in {design.profile.pieces} pieces; {bound}"]
     if isinstance(solution.machine, CrankSlider):
         lines.append(f"sync zone on the crank: its middle at {math.degrees(solution.machine.sync_at):.5g}°")
     starts = solution.starts
@@ -58,7 +56,7 @@ def _head(design: Design) -> list[str]:
             f"{starts.residual:.1e}; {starts.valleys} local minima over the place of the sync zone"
         )
     mismatch = design.report.tangential_mismatch
-    if mismatch is not None:
+    if isinstance(solution.machine, RotaryKnife) and solution.machine.sync == "horizontal" and mismatch is not None:
         lines.append(
             f"along the material a blade in tangential sync falls short of the line speed by {100 * mismatch:.3g} % at the ends of the "
             "sync zone"
@@ -72,7 +70,7 @@ def compare_view(comparison: Comparison) -> RenderableType:
     table.add_column("profile")
     unit = comparison.job.machine.slave_unit
     moved = comparison["optimised"].motor.rms_torque is not None
-    for name, unit in (
+    for name, shown in (
         ("peak speed", f"{unit}/s"),
         ("peak acc.", f"{unit}/s²"),
         ("RMS acc.", f"{unit}/s²"),
@@ -83,7 +81,7 @@ def compare_view(comparison: Comparison) -> RenderableType:
         ("following", "mm"),
         ("shear zone", "mm"),
     ):
-        table.add_column(f"{name}\n{unit}", justify="right")
+        table.add_column(f"{name}\n{shown}", justify="right")
     for row in comparison.rows:
         motion, motor, servo = row.motion, row.motor, row.response
         torques = (_number(value, "unbounded") for value in (motor.peak_torque, motor.rms_torque, motor.energy))
@@ -171,7 +169,7 @@ def check_view(job: Job) -> RenderableType:
         f"{job.name}: cut {_mm(cut.length)} mm at {_number(cut.line_speed * 60)} m/min, "
         f"{_machine(job.machine)}, sync zone {_mm(cut.sync_zone)} mm, "
         f"shear zone {_mm(cut.shear_zone)} mm; at most {speed}, "
-        f"{_number(limits.acceleration)} {unit}/s², {_number(limits.jerk)} {unit}/s³. The job file has no faults."
+        f"{_number(limits.acceleration)} {unit}/s², {_number(limits.jerk)} {unit}/s³.\nThe job file has no faults."
     )
 
 
@@ -183,7 +181,8 @@ def _machine(machine: Machine) -> str:
         return f"stroke {_mm(machine.stroke)} mm"
     if isinstance(machine, RotaryKnife):
         blades = "" if machine.blades == 1 else f", {machine.blades} blades"
-        return f"circumference {_mm(machine.circumference)} mm{blades}, {machine.sync} sync"
+        sync = "" if machine.sync == "tangential" else f", {machine.sync} sync"
+        return f"circumference {_mm(machine.circumference)} mm{blades}{sync}"
     raise TypeError(f"{type(machine).__name__} has no words")
 
 

@@ -13,6 +13,7 @@ from dataclasses import replace
 from functools import lru_cache, partial
 
 from design.problem import ReturnProblem, return_problem
+from design.scaling import resolved
 from design.solver import limit_margin
 from profiles.cycle import Cut
 from profiles.errors import InfeasibleError, InputError, SolverError, Suggestion
@@ -71,7 +72,7 @@ def infeasible(machine: Machine, cut: Cut, limits: Limits) -> InfeasibleError:
 def is_feasible(machine: Machine, cut: Cut, limits: Limits) -> bool:
     """Tell whether some motion keeps the limits. A zone that the machine cannot be in sync over counts as infeasible."""
     try:
-        problem = return_problem(machine, cut, limits, "peak_acceleration")
+        problem = resolved(return_problem(machine, cut, limits, "peak_acceleration"))
     except InputError:
         return False
     if max(_sync_shares(machine, cut, problem).values()) > 1 + SOLVED:
@@ -161,7 +162,7 @@ def needed_limits(machine: Machine, cut: Cut, limits: Limits) -> dict[str, float
     """Least value of each limit that would do, the others as they are (over time, slave unit); infinite where none does."""
     none = {"speed": math.inf, "acceleration": math.inf, "jerk": math.inf}
     try:
-        problem = return_problem(machine, cut, limits, "peak_acceleration")
+        problem = resolved(return_problem(machine, cut, limits, "peak_acceleration"))
     except InputError:
         return none
     v = cut.line_speed

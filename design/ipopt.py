@@ -12,7 +12,13 @@ from design.transcription import Programme, Shape
 QUIET: dict[str, Any] = {"print_time": False, "ipopt.print_level": 0, "ipopt.sb": "yes", "ipopt.acceptable_iter": 0}
 
 # A first look on the grid: convex, so any start will do; it need not be more exact than the grid.
-_GRID = {"ipopt.mu_strategy": "adaptive", "ipopt.tol": 1e-8, "ipopt.max_iter": 200}
+_GRID = {
+    "ipopt.mu_strategy": "adaptive",
+    "ipopt.tol": 1e-8,
+    "ipopt.constr_viol_tol": 1e-10,
+    "ipopt.bound_relax_factor": 1e-12,
+    "ipopt.max_iter": 200,
+}
 
 # The polish starts close to the answer, so it must not be pushed away from active limits; limits are hard.
 _POLISH = {

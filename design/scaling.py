@@ -122,6 +122,15 @@ def scale_problem(problem: ReturnProblem, scale: float) -> ScaledProblem:
     )
 
 
+def resolved(problem: ReturnProblem) -> ReturnProblem:
+    """Return the problem with the jerk limit that the design goes by: no higher than what `SHORTEST_RAMP` allows."""
+    scale = motion_scale(problem)
+    if scale == 0.0:
+        return problem
+    sharpest = scale_problem(problem, scale).greatest_jerk * abs(scale) / problem.length**3
+    return replace(problem, greatest_jerk=min(problem.greatest_jerk, sharpest))
+
+
 def unscale_profile(profile: CamProfile, problem: ReturnProblem, scale: float) -> CamProfile:
     """Bring a solution of the scaled problem back to the master and the slave."""
     back = profile.scale(master=problem.length, slave=scale).add_line(problem.start_ratio)

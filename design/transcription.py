@@ -206,7 +206,7 @@ class Programme:
                 cut = ca.DM(subdivision(p - 1, self._split))
                 steps = [ca.vertsplit(cut @ unknown["j"][i * p : (i + 1) * p] / jerk_limit) for i in range(m)]
                 positive += [1 - step for row in steps for step in row] + [1 + step for row in steps for step in row]
-        places = _places(unknown, lengths, p, drift) if shape.confined else []
+        places = _places(unknown, lengths, p, drift, SPLIT if shape.free_lengths else 1) if shape.confined else []
         self._counts = (len(equal), len(positive), len(between), len(bent), len(places))
         parameters = ca.vertcat(jerk_limit, drift, slope_limit, ratio_limit)
         if not shape.free_lengths:
@@ -299,18 +299,21 @@ def dynamics(unknown: dict[str, Any], lengths: Any, p: int) -> tuple[list[Any], 
     return equations, between
 
 
-def _places(unknown: dict[str, Any], lengths: Any, p: int, drift: Any) -> list[Any]:
-    """Bernstein coefficients of the slave's position: those of ``q`` and of the line, whose coefficients lie evenly on it."""
+def _places(unknown: dict[str, Any], lengths: Any, p: int, drift: Any, split: int) -> list[Any]:
+    """Bernstein coefficients of the slave's position on each piece cut into equal parts: those of ``q`` and of the line."""
     places: list[Any] = []
     start = ca.SX(0)
+    cut = ca.DM(subdivision(p + 2, split))
     for i in range(unknown["v"].numel() - 1):
         h = lengths[i]
         ratio, position = unknown["v"][i], unknown["q"][i]
-        for k in range(p + 2):
-            places.append(position + drift * (start + h * k / (p + 2)))
+        row = []
+        for k in range(p + 3):
+            row.append(position + drift * (start + h * k / (p + 2)))
             position = position + h * ratio / (p + 2)
             if k <= p:
                 ratio = ratio + h * unknown["a"][i * p + k] / (p + 1)
+        places += ca.vertsplit(cut @ ca.vertcat(*row))
         start = start + h
     return places
 

@@ -122,9 +122,7 @@ class CamProfile:
 
     # -- evaluation -------------------------------------------------------------------------------------------------
 
-    def __call__(
-        self, x: ArrayLike, order: int = 0, *, side: Side = "right", outside: Outside = "raise"
-    ) -> FloatArray:
+    def __call__(self, x: ArrayLike, order: int = 0, *, side: Side = "right", outside: Outside = "raise") -> FloatArray:
         """Evaluate the profile or a derivative over the master.
 
         Parameters
@@ -192,7 +190,9 @@ class CamProfile:
         last = 0.0 if order == 0 else float(self(self.start, order)) - float(self(self.end, order))
         return np.append(value, last)
 
-    def extrema(self, order: int = 0, start: float | None = None, end: float | None = None) -> tuple[Extremum, Extremum]:
+    def extrema(
+        self, order: int = 0, start: float | None = None, end: float | None = None
+    ) -> tuple[Extremum, Extremum]:
         """Least and greatest value of a derivative, exactly: from the roots of the next derivative on each piece.
 
         Parameters
@@ -281,7 +281,12 @@ class CamProfile:
     def roll(self, start: float) -> CamProfile:
         """Begin the repeated cycle at another master position of the domain; the new profile starts at (0, 0)."""
         if not (self.start <= start < self.end):
-            raise InputError(f"the new start {start!r} m does not lie inside the profile, {self.start!r} to {self.end!r} m")
+            raise InputError(
+                f"the new start {start!r} m does not lie inside the profile, {self.start!r} to {self.end!r} m"
+            )
+        nearest = float(self.breaks[np.abs(self.breaks - start).argmin()])
+        if abs(nearest - start) <= 1e-12 * self.length and nearest < self.end:
+            start = nearest  # a break but for rounding: no sliver of a piece is left between
         tail = self.restrict(start, self.end)
         if start > self.start:
             head = self.restrict(self.start, start).shift(self.length, self.advance)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import re
 import resource
@@ -28,9 +29,12 @@ COMMAND = [sys.executable, "-c", "import sys; from camwright.cli import main; sy
 
 MEASURES = {
     "peak_speed_m_per_s", "min_speed_m_per_s", "peak_acceleration_m_per_s2", "rms_acceleration_m_per_s2",
-    "peak_jerk_m_per_s3", "rms_jerk_m_per_s3", "sync_ratio_error", "servo",
+    "peak_jerk_m_per_s3", "rms_jerk_m_per_s3", "sync_ratio_error", "motor", "servo",
 }  # fmt: skip
 SERVO = {"crossing_mm", "settling_mm", "overshoot_mm", "peak_following_error_mm", "shear_zone_error_mm"}
+MOTOR = {
+    "peak_torque_N_m", "rms_torque_N_m", "peak_speed_rad_per_s", "min_velocity_rad_per_s", "energy_J", "regenerated_J"
+}  # fmt: skip
 LENGTHS = {"eq9", "eq10", "physical", "linear_return_to_tolerance", "optimised_to_tolerance"}
 
 
@@ -59,17 +63,25 @@ def designed(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, 
 def test_design_prints_the_promised_object(designed: tuple[Path, dict[str, Any]]) -> None:
     place, answer = designed
     assert answer.keys() == {
-        "job", "status", "objective", "pieces", "profiles", "checks", "passed", "minimum_cut_length_mm", "files"
+        "job", "status", "objective", "lower_bound_method", "starts", "pieces", "profiles", "checks", "passed",
+        "minimum_cut_length_mm", "tangential_mismatch", "files",
     }  # fmt: skip
     assert (answer["job"], answer["status"], answer["passed"]) == ("paper-600", "optimal", True)
     objective = answer["objective"]
     assert objective.keys() == {"name", "value", "unit", "lower_bound", "gap"}
     assert (objective["name"], objective["unit"]) == ("peak_acceleration", "m/s^2")
     assert 0 <= objective["gap"] < 1e-6
+    assert answer["lower_bound_method"].startswith("closed form")
+    assert answer["starts"] is None
     assert answer["profiles"].keys() == {"optimised", *BASELINES}
     for measures in answer["profiles"].values():
         assert measures.keys() == MEASURES
         assert measures["servo"].keys() == SERVO
+        assert measures["motor"].keys() == MOTOR
+        assert measures["motor"]["rms_torque_N_m"] is None
+        assert measures["motor"]["peak_speed_rad_per_s"] == pytest.approx(
+            measures["peak_speed_m_per_s"] * 2 * math.pi / 0.4, rel=1e-12
+        )
     assert answer["profiles"]["linear_return"]["peak_acceleration_m_per_s2"] is None
     assert answer["profiles"]["optimised"]["peak_acceleration_m_per_s2"] == pytest.approx(objective["value"], rel=1e-9)
     for check in answer["checks"]:
@@ -197,10 +209,15 @@ def test_limits(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["limits", JOB, "--json"]) == 0
     answer = strict(capsys.readouterr().out)
     assert answer["minimum_cut_length_mm"].keys() == LENGTHS
-    assert answer["binding"] in {"speed", "acceleration", "jerk"}
+    assert answer["binding"] == {"line_speed": "acceleration", "cut_length": "acceleration"}
+    assert answer["max_line_speed_m_per_min"] > 80
+    assert answer["min_cut_length_mm"] < 400
+    assert answer["physical_bound_binding"] in {"speed", "acceleration", "jerk"}
     assert answer["transition_length_mm"]["crossing"] == pytest.approx(81.5, abs=1.5)
     assert main(["limits", JOB]) == 0
-    assert "physical bound" in capsys.readouterr().out
+    shown = capsys.readouterr().out
+    assert "physical bound" in shown
+    assert "highest line speed at a cut length of 600 mm" in shown
 
 
 def test_limits_where_the_servo_does_not_settle_has_nulls(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -225,7 +242,9 @@ def test_version_and_help(capsys: pytest.CaptureFixture[str]) -> None:
     assert capsys.readouterr().out == f"camwright {version('camwright')}\n"
     assert main(["--help"]) == 0
     shown = capsys.readouterr().out
-    for command in ("design", "compare", "limits", "validate", "check"):
+    for command in (
+        "design", "compare", "limits", "validate", "check", "quick", "export", "audit", "targets", "bend"
+    ):  # fmt: skip
         assert command in shown
 
 
@@ -347,7 +366,12 @@ def test_a_job_that_physics_forbids_ends_with_3(tmp_path: Path, capsys: pytest.C
     shown = capsys.readouterr()
     answer = strict(shown.out)
     assert (answer["status"], answer["exit_code"]) == ("infeasible", 3)
+    assert answer.keys() == {"status", "exit_code", "message", "binding", "excess", "suggestions"}
     assert answer["binding"] == "acceleration"
+    assert answer["excess"].keys() == {"value", "unit"}
+    assert answer["excess"]["unit"] == "m/s^2"
+    assert answer["excess"]["value"] > 0
+    assert all(suggestion.keys() == {"change", "value", "unit"} for suggestion in answer["suggestions"])
     assert {suggestion["change"] for suggestion in answer["suggestions"]} >= {"line_speed", "length"}
     assert answer["message"].splitlines()[0] in shown.err
     assert [entry.name for entry in tmp_path.iterdir()] == ["job.toml"]

@@ -193,7 +193,7 @@ def by_highs(
 
 
 # speed, acceleration and jerk in units of D/T, D/T² and D/T³: which limits are active differs
-CASES = [(1.3, 30.0, 120.0), (1.6, 8.0, 100.0), (1.15, 60.0, 900.0), (1.9, 5.0, 300.0), (5.0, 4.6, 400.0)]
+CASES = [(1.3, 30.0, 120.0), (1.6, 8.0, 100.0), (1.15, 60.0, 2000.0), (1.9, 5.0, 300.0), (5.0, 4.6, 400.0)]
 
 
 @pytest.mark.parametrize(("speed", "acceleration", "jerk"), CASES)
@@ -201,7 +201,7 @@ CASES = [(1.3, 30.0, 120.0), (1.6, 8.0, 100.0), (1.15, 60.0, 900.0), (1.9, 5.0, 
 def test_peaks_are_those_of_highs(objective: Objective, speed: float, acceleration: float, jerk: float) -> None:
     found = correction(objective, jerk, speed, acceleration)
     grid = by_highs(objective, speed, acceleration, jerk, -T / D)
-    assert found <= grid * (1 + 1e-7)  # a motion on the grid is one of many
+    assert found <= grid * (1 + 1e-7)  # a motion on the grid is one of many, so a little above the best
     assert found == pytest.approx(grid, rel=1e-3)
 
 

@@ -91,10 +91,12 @@ class CrankSlider(Machine):
     def dead_centres(self) -> tuple[float, float]:
         """Crank angles between which the carriage moves forwards: crank and rod in one line, folded and stretched.
 
-        Folded, the crank's pin lies on the far side of its centre: ``sin(alpha) = E / (L - R)``, ``alpha`` near 0. Stretched:
-        ``sin(alpha) = E / (L + R)`` seen from the other side, ``alpha`` near pi.
+        Folded, ``X = L - R`` measured along the rod: ``sin(alpha) = -E / (L - R)``, ``alpha`` near 0. Stretched, ``X = L + R`` alike:
+        ``sin(alpha) = E / (L + R)``, ``alpha`` near pi.
         """
-        return math.asin(self.offset / (self.crank - self.rod)), math.pi + math.asin(-self.offset / (self.rod + self.crank))
+        return math.asin(self.offset / (self.crank - self.rod)), math.pi + math.asin(
+            -self.offset / (self.rod + self.crank)
+        )
 
     @property
     def stroke(self) -> float:
@@ -105,7 +107,9 @@ class CrankSlider(Machine):
     def sync_start(self, cut: Cut) -> float:
         """Crank angle at the start of the sync zone (rad)."""
         if math.isnan(self.sync_at):
-            raise InputError("the place of the sync zone on the crank is not chosen yet; design the job first, or give machine.sync_at")
+            raise InputError(
+                "the place of the sync zone on the crank is not chosen yet; design the job first, or give machine.sync_at"
+            )
         travel = cut.sync_ratio * cut.sync_zone
         if travel >= self.stroke:
             raise InputError(
@@ -157,7 +161,7 @@ def _in_sync(machine: CrankSlider, start: float, zone: float, ratio: float) -> C
     """Crank angle in sync; kept, because line speed and cut length do not change it."""
     from_here = float(machine.tool(start))
 
-    def angle(x: FloatArray) -> FloatArray:
-        return machine.angle_at(from_here + ratio * x) - start
+    def per_material(x: FloatArray) -> FloatArray:
+        return np.asarray(ratio / machine.tool_ratio(machine.angle_at(from_here + ratio * x)))
 
-    return fit_profile(angle, 0.0, zone)
+    return fit_profile(per_material, 0.0, zone)

@@ -90,7 +90,7 @@ class RotaryKnife(Machine):
         """Slave in the sync zone: ``y = s x``, or ``r sin(y / r) = s (x - l_s / 2)``, with the sync ratio ``s``."""
         if self.sync == "tangential":
             return CamProfile.from_arrays([0.0, cut.sync_zone], [[0.0, cut.sync_ratio]])
-        return _horizontal(self.radius, self.sync_start(cut), cut.sync_zone, cut.sync_ratio)
+        return _horizontal(self.radius, cut.sync_zone, cut.sync_ratio)
 
     def tool(self, y: Any) -> Any:
         """Position of the edge along the material; along its circle in tangential sync."""
@@ -114,18 +114,19 @@ class RotaryKnife(Machine):
         return self.drum_friction / self.radius
 
     def tangential_mismatch(self, cut: Cut) -> float:
-        """Share of the line speed by which the edge's speed along the material falls short of it at the ends of a tangential sync zone.
+        """Share by which the edge's speed along the material falls short of its speed in sync at the ends of a tangential sync zone.
 
-        The edge moves at line speed on its circle, so along the material it moves at ``cos(y / r)`` of it: ``1 - cos(l_s / 2 r)``.
+        With a sync ratio ``s`` the edge moves at ``s`` times the line speed on its circle, so along the material it moves at ``cos(y / r)`` of
+        that: ``1 - cos(s l_s / 2 r)``.
         """
-        return 1.0 - math.cos(min(0.5 * cut.sync_zone / self.radius, math.pi))
+        return 1.0 - math.cos(min(0.5 * cut.sync_ratio * cut.sync_zone / self.radius, math.pi))
 
 
 @lru_cache(maxsize=256)
-def _horizontal(radius: float, start: float, zone: float, ratio: float) -> CamProfile:
+def _horizontal(radius: float, zone: float, ratio: float) -> CamProfile:
     """Edge travel in horizontal sync; kept, because line speed and cut length do not change it."""
 
-    def travel(x: FloatArray) -> FloatArray:
-        return np.asarray(radius * np.arcsin(ratio * (x - 0.5 * zone) / radius) - start)
+    def per_material(x: FloatArray) -> FloatArray:
+        return np.asarray(ratio / np.sqrt(1.0 - (ratio * (x - 0.5 * zone) / radius) ** 2))
 
-    return fit_profile(travel, 0.0, zone)
+    return fit_profile(per_material, 0.0, zone)
