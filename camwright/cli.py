@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, cast
 import typer
 
 from camwright.bending.commands import bend
+from camwright.commands.envelope import envelope
 from camwright.commands.quick import quick
 from camwright.commands.tables import register
 from camwright.output import BROKEN_PIPE, Voice, complain, prepare_streams, silence_stdout
@@ -217,6 +218,7 @@ def _check(job: _GivenJob, as_json: _Json = False, quiet: _Quiet = False) -> int
 
 
 app.command("quick")(quick)
+app.command("envelope")(envelope)
 register(app)
 app.command("bend")(bend)
 

@@ -189,6 +189,8 @@ def design_schema() -> dict[str, Any]:
     def table(**entries: Any) -> dict[str, Any]:
         return {"type": "object", "properties": entries, "required": list(entries), "additionalProperties": False}
 
+    pairs = {"type": "array", "items": {"type": "array", "items": number, "minItems": 2, "maxItems": 2}}
+    curve = {"oneOf": [{"type": "null"}, table(points=pairs)], "description": "motor speed (rad/s) and torque (N m)"}
     machines = [
         table(
             kind={"const": "rotary_knife"},
@@ -253,7 +255,7 @@ def design_schema() -> dict[str, Any]:
                     origin={"enum": ["return", "cut"]},
                     sync_ratio=number,
                 ),
-                limits=table(speed=number, acceleration=number, jerk=number, reversal={"type": "boolean"}),
+                limits=table(speed=number, acceleration=number, jerk=number, reversal={"type": "boolean"}, motor=curve),
                 servo=table(
                     bandwidth=number,
                     damping=number,

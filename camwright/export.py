@@ -11,9 +11,12 @@ import numpy as np
 from camwright.job import Job
 from camwright.progress import Step, ignore
 from camwright.provenance import camwright_version, provenance
+from camwright.table_options import default_units
 from profiles.errors import InputError
+from profiles.machines import CrankSlider
 from profiles.polynomial import CamProfile
-from profiles.tables.cam_table import CamTable, Unit, Units
+from profiles.returns import slave_at_start
+from profiles.tables.cam_table import CamTable, Units
 from profiles.tables.deviation import Deviation, deviation
 from profiles.tables.knots import Accuracy, Choice, choose, table_units
 from profiles.tables.target import Header, Target
@@ -23,7 +26,7 @@ from profiles.tables.text import decode
 if TYPE_CHECKING:
     from validation.tables import TableJudgement
 
-_MOST_NAMES = 50
+_PLACES = 20_001
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +41,10 @@ class Exported:
         The table as it was read back from the file.
     deviation
         How far the rebuilt motion is off the profile.
+    position_error
+        How far the tool of a slave in rad is off, along the material, else the slave (m).
+    accurate
+        Whether the motion is as near to the profile as was asked for.
     judgement
         The checks on the rebuilt motion.
     files
@@ -47,6 +54,8 @@ class Exported:
     target: Target
     table: CamTable
     deviation: Deviation
+    position_error: float
+    accurate: bool
     judgement: TableJudgement
     files: dict[str, str]
 
@@ -77,13 +86,14 @@ def export(
     profile
         One cycle over the master period ``[0, x_c]``.
     job
-        The job that it belongs to.
+        The job that it belongs to, its machine with everything that the design chose.
     names
         Names of targets.
     units
-        Units of the tables; millimetres if not given.
+        Units of the tables; millimetres if not given, degrees for a slave in rad.
     accuracy
-        What the rebuilt motion may be off.
+        What the rebuilt motion may be off: the tool's position (m), the ratio as a part of the ratio in sync, the
+        acceleration as a part of its peak.
     points
         Number of points, for targets that leave a choice.
     force
@@ -96,37 +106,75 @@ def export(
     InputError
         An unknown target, or one that cannot take the cam; all faults at once.
     """
+    results, refused = export_possible(
+        profile, job, names, units=units, accuracy=accuracy, points=points, force=force, step=step
+    )
+    if refused:
+        raise InputError(*(f"{name}: {fault}" for name, faults in refused.items() for fault in faults))
+    return results
+
+
+def export_possible(
+    profile: CamProfile,
+    job: Job,
+    names: Sequence[str],
+    *,
+    units: Units | None = None,
+    accuracy: Accuracy | None = None,
+    points: int | None = None,
+    force: bool = False,
+    step: Step = ignore,
+) -> tuple[list[Exported], dict[str, tuple[str, ...]]]:
+    """Write a cycle for drives like `export`, and say of those that cannot take it why not."""
     targets = [target_of(name) for name in dict.fromkeys(names)]
-    wanted = units or Units(Unit("mm", 1e-3), Unit("mm", 1e-3))
-    results, faults = [], []
+    wanted = units or default_units(job.machine)
+    asked = _in_slave_units(accuracy or Accuracy(), profile, job)
+    results, refused = [], {}
     for target in targets:
         step(f"writing for {target.name}")
         try:
-            results.append(_export(profile, job, target, wanted, accuracy or Accuracy(), points, force))
+            results.append(_export(profile, job, target, wanted, asked, points, force))
         except InputError as error:
-            faults += [f"{target.name}: {fault}" for fault in error.faults]
-    if faults:
-        raise InputError(*faults)
-    return results
+            refused[target.name] = tuple(error.faults)
+    return results, refused
+
+
+def _in_slave_units(accuracy: Accuracy, profile: CamProfile, job: Job) -> Accuracy:
+    """Turn what the tool may be off into what the slave may be off; nothing changes for a slave in m."""
+    if job.machine.slave_unit == "m":
+        return accuracy
+    y = slave_at_start(job.machine, job.cut) + profile(np.linspace(profile.start, profile.end, 721))
+    lever = float(np.abs(job.machine.tool_ratio(y)).max())
+    in_sync = abs(float(job.machine.sync_profile(job.cut)(0.0, 1)))
+    return replace(accuracy, position=accuracy.position / lever, ratio=accuracy.ratio * in_sync)
 
 
 def _export(
     profile: CamProfile, job: Job, target: Target, wanted: Units, accuracy: Accuracy, points: int | None, force: bool
 ) -> Exported:
-    choice = choose(profile, target, table_units(target, profile, wanted), accuracy, points)
+    cut = job.cut
+    zones = (cut.return_zone,) if cut.origin == "return" else (0.5 * cut.sync_zone, cut.length - 0.5 * cut.sync_zone)
+    choice = choose(profile, target, table_units(target, profile, wanted), accuracy, points, zones)
     expected = _judged(choice.rebuilt, job)
-    head = Header(job.name, camwright_version(), job.sha256, _facts(expected, job, choice.deviation))
-    result = _written(profile, job, choice, target, head, expected)
+    facts = _facts(expected, job, position_error(profile, choice.rebuilt, choice.deviation, job))
+    head = Header(job.name, camwright_version(), job.sha256, facts)
+    result = _written(profile, job, choice, target, head, expected, accuracy)
     if result.passed:
         return result
     if not force:
         return replace(result, files={})
     failed = tuple(f"check {check.name} failed" for check in result.judgement.checks if not check.passed)
-    return _written(profile, job, choice, target, replace(head, warnings=failed), expected)
+    return _written(profile, job, choice, target, replace(head, warnings=failed), expected, accuracy)
 
 
 def _written(
-    profile: CamProfile, job: Job, choice: Choice, target: Target, head: Header, expected: TableJudgement
+    profile: CamProfile,
+    job: Job,
+    choice: Choice,
+    target: Target,
+    head: Header,
+    expected: TableJudgement,
+    accuracy: Accuracy,
 ) -> Exported:
     """Write the table, read it back, and judge what the drive makes of it."""
     units = choice.table.units
@@ -138,7 +186,21 @@ def _written(
         rebuilt.coefficients, choice.rebuilt.coefficients
     )
     judgement = expected if same else _judged(rebuilt, job)  # the same numbers bit by bit are the same motion
-    return Exported(target, table, deviation(profile, rebuilt), judgement, files)
+    off = deviation(profile, rebuilt)
+    return Exported(
+        target, table, off, position_error(profile, rebuilt, off, job), accuracy.kept_by(off), judgement, files
+    )
+
+
+def position_error(profile: CamProfile, rebuilt: CamProfile, off: Deviation, job: Job) -> float:
+    """Greatest error of the slave (m); of a slave in rad the tool's, along the material (m)."""
+    if job.machine.slave_unit == "m":
+        return off.position
+    inner = np.union1d(profile.breaks, rebuilt.breaks)
+    x = np.linspace(max(profile.start, rebuilt.start), min(profile.end, rebuilt.end), _PLACES)
+    x = np.union1d(x, inner[(inner > x[0]) & (inner < x[-1])])
+    begin = slave_at_start(job.machine, job.cut)
+    return float(np.abs(job.machine.tool(begin + rebuilt(x)) - job.machine.tool(begin + profile(x))).max())
 
 
 def _read_back(target: Target, files: dict[str, str], units: Units) -> tuple[CamTable, CamProfile]:
@@ -154,13 +216,16 @@ def _judged(rebuilt: CamProfile, job: Job) -> TableJudgement:
     return judge_table(rebuilt, job.machine, job.cut, job.limits, job.servo)
 
 
-def _facts(judgement: TableJudgement, job: Job, off: Deviation) -> tuple[tuple[str, str], ...]:
+def _facts(judgement: TableJudgement, job: Job, off: float) -> tuple[tuple[str, str], ...]:
     """Give what the head says of the motion."""
     found = {check.name: check.value for check in judgement.checks}
     facts = [("line speed", f"{job.cut.line_speed:.9g} m/s")]
-    for name, unit in (("speed", "m/s"), ("acceleration", "m/s^2"), ("jerk", "m/s^3")):
-        facts.append((f"peak {name}", f"{found[name]:.6g} {unit}"))
-    facts.append(("greatest error of the rebuilt position", f"{off.position * 1e6:.3g} um"))
+    unit = job.machine.slave_unit
+    for name, power in (("speed", "/s"), ("acceleration", "/s^2"), ("jerk", "/s^3")):
+        facts.append((f"peak {name}", f"{found[name]:.6g} {unit}{power}"))
+    if isinstance(job.machine, CrankSlider):
+        facts.append(("sync_at", f"{job.machine.sync_at!r} rad"))
+    facts.append(("greatest error of the rebuilt position", f"{off * 1e6:.3g} um"))
     facts.append(("wraps judged", str(judgement.wraps)))
     return tuple(facts)
 
@@ -171,7 +236,7 @@ def export_answer(results: Sequence[Exported]) -> dict[str, Any]:
         "targets": {
             result.target.name: {
                 "knots": result.table.points,
-                "position_error_m": result.deviation.position,
+                "position_error_m": result.position_error,
                 "acceleration_error_rel": result.deviation.acceleration,
                 "passed": result.passed,
                 "files": list(result.files),
@@ -181,21 +246,25 @@ def export_answer(results: Sequence[Exported]) -> dict[str, Any]:
     }
 
 
-def export_report(results: Sequence[Exported], job: Job) -> dict[str, Any]:
-    """Contents of ``report.json``: the answer, with ratio errors, checks, reader's notes and provenance."""
+def export_report(
+    results: Sequence[Exported], job: Job, refused: dict[str, tuple[str, ...]] | None = None
+) -> dict[str, Any]:
+    """Contents of ``report.json``: the answer, with ratio errors, checks, reader's notes and provenance, and who cannot take the cam."""
     from dataclasses import asdict
 
     answer = export_answer(results)
     for result in results:
         entry = answer["targets"][result.target.name]
         entry["ratio_error"] = result.deviation.ratio
+        entry["within_asked_error"] = result.accurate
         entry["wraps"] = result.judgement.wraps
         entry["number_format"] = result.target.number_format
         entry["interpolation"] = result.target.interpolation
         entry["tested_on_controller"] = result.target.tested_on_controller
         entry["notes"] = list(result.table.notes)
         entry["checks"] = [asdict(check) for check in result.judgement.checks]
-    return {**answer, "job": job.name, "provenance": provenance(job.sha256)}
+    reasons = {name: list(faults) for name, faults in (refused or {}).items()}
+    return {**answer, "refused": reasons, "job": job.name, "provenance": provenance(job.sha256)}
 
 
 def targets_answer() -> list[dict[str, Any]]:
@@ -212,53 +281,3 @@ def targets_answer() -> list[dict[str, Any]]:
         }
         for target in TARGETS.values()
     ]
-
-
-def parse_targets(text: str) -> list[str]:
-    """Read ``codesys,logix`` or ``all`` into names of targets.
-
-    Raises
-    ------
-    InputError
-        An unknown name, or none.
-    """
-    if text.strip() == "all":
-        return list(TARGETS)
-    names = [name.strip() for name in text.split(",") if name.strip()]
-    if not names or len(names) > _MOST_NAMES:
-        raise InputError(
-            f"--to names one or more targets, separated by commas, or all; the targets are {', '.join(TARGETS)}"
-        )
-    return [target_of(name).name for name in names]
-
-
-def parse_units(text: str, pitch: float, period: float) -> Units:
-    """Read ``mm,deg`` into the units of master and slave.
-
-    A degree or a turn is the part of the cycle: on the slave 360 deg are the pitch, on the master the cut length.
-
-    Parameters
-    ----------
-    text
-        Two units, separated by a comma.
-    pitch
-        Slave travel per cycle (m).
-    period
-        Master travel per cycle (m).
-
-    Raises
-    ------
-    InputError
-        Not two units, or one that is not known.
-    """
-    names = [name.strip() for name in text.split(",")]
-    lengths = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "in": 0.0254}
-    units = []
-    for name, turn in zip(names, (period, pitch), strict=False):
-        size = {**lengths, "deg": turn / 360.0, "rev": turn}.get(name)
-        if size is None:
-            raise InputError(f"--units: there is no unit {name[:20]!r}; the units are {', '.join(lengths)}, deg, rev")
-        units.append(Unit(name, size))
-    if len(names) != 2:
-        raise InputError(f"--units takes the master's unit and the slave's, for example mm,deg; got {text[:40]!r}")
-    return Units(units[0], units[1])

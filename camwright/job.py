@@ -16,6 +16,7 @@ from profiles.cycle import Cut
 from profiles.errors import InputError
 from profiles.limits import Limits
 from profiles.machines import Machine
+from profiles.motor import MotorCurve
 from profiles.servo import Servo
 
 BUNDLED_JOB = Path(__file__).parent / "jobs" / "paper-600.toml"
@@ -125,7 +126,7 @@ def parse_job(text: str, place: str) -> Job:
     machine = machine_of(known)
     zone = sync_zone_of(known, machine)
     if file is not None and machine is not None:
-        faults += filter(None, [moved_by_nothing(machine, file.objective.minimise)])
+        faults += moved_by_nothing(machine, file.objective.minimise, with_curve=file.limits.motor is not None)
     if file is None or machine is None or zone is None or faults:
         raise InputError(*(f"{place}: {fault}" for fault in faults))
     return _job(file, machine, zone, text)
@@ -148,7 +149,13 @@ def _job(file: JobFile, machine: Machine, zone: float, text: str) -> Job:
             origin=file.output.origin,
             sync_ratio=cut.sync_ratio,
         ),
-        limits=Limits(file.limits.speed, file.limits.acceleration, file.limits.jerk, file.limits.reversal),
+        limits=Limits(
+            file.limits.speed,
+            file.limits.acceleration,
+            file.limits.jerk,
+            file.limits.reversal,
+            None if file.limits.motor is None else MotorCurve(file.limits.motor),
+        ),
         servo=Servo(servo.bandwidth, servo.damping, servo.position_gain, servo.sample_time, servo.velocity_feedforward),
         objective=file.objective.minimise,
         output=Output(file.output.points),

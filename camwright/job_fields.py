@@ -17,6 +17,9 @@ TURNING = frozenset({"crank_slider"})
 """Kinds of machines whose slave is an angle."""
 
 
+_CURVE = '[["0 rpm", "12 N m"], ["3000 rpm", "8 N m"]]'
+
+
 @dataclass
 class Known:
     """What is right in itself in a job file, whatever else is wrong.
@@ -150,6 +153,51 @@ def whole_field(least: int, greatest: int, example: int) -> BeforeValidator:
         return value
 
     return BeforeValidator(read)
+
+
+def curve_field() -> tuple[BeforeValidator, WithJsonSchema]:
+    """Make the parts of a motor's torque-speed curve: points of speed and torque, the speeds increasing from zero, the torques falling."""
+
+    def read(value: object) -> tuple[tuple[float, float], ...]:
+        if not isinstance(value, list) or len(value) < 2:
+            raise refusal(f"{shown(value)}: not two points or more of speed and torque; write e.g. {_CURVE}")
+        points: list[tuple[float, float]] = []
+        for number, point in enumerate(value, start=1):
+            if not isinstance(point, list) or len(point) != 2:
+                raise refusal(
+                    f"{shown(value)}: point {number}: {shown(point)} is not a pair of speed and torque; write e.g. {_CURVE}"
+                )
+            try:
+                pair = _read(point[0], "angular rate", zero=True, example="3000 rpm"), _read(point[1], "torque")
+            except PydanticCustomError as error:
+                raise refusal(f"{shown(value)}: point {number}: {error.message()}") from error
+            before = value[number - 2]
+            if number == 1 and pair[0] > 0:
+                raise refusal(
+                    f'{shown(value)}: point 1: the curve begins at standstill; write "0 rpm" for {shown(point[0])}'
+                )
+            if points and not pair[0] > points[-1][0]:
+                raise refusal(
+                    f"{shown(value)}: point {number}: {shown(point[0])} is not above {shown(before[0])}, the speed of the point before; "
+                    "give the points by increasing speed"
+                )
+            if points and pair[1] > points[-1][1]:
+                raise refusal(
+                    f"{shown(value)}: point {number}: {shown(point[1])} is above {shown(before[1])}, the torque at a lower speed; a motor's "
+                    f"torque does not grow with its speed, give {shown(before[1])} at most"
+                )
+            points.append(pair)
+        return tuple(points)
+
+    text = {"type": "string", "maxLength": 100}
+    schema = {
+        "type": "array",
+        "minItems": 2,
+        "items": {"type": "array", "prefixItems": [text, text], "minItems": 2, "maxItems": 2},
+        "description": "torque that the motor gives over its speed: points of speed, increasing from zero, and torque, never increasing",
+        "examples": [[["0 rpm", "12 N m"], ["3000 rpm", "8 N m"]]],
+    }
+    return BeforeValidator(read), WithJsonSchema(schema)
 
 
 def checked(check: Callable[[object], str | None]) -> BeforeValidator:

@@ -14,6 +14,7 @@ from camwright.job_fields import (
     Known,
     Table,
     checked,
+    curve_field,
     number_field,
     quantity_field,
     slave_field,
@@ -72,6 +73,7 @@ class LimitsTable(Table):
     acceleration: Annotated[float, *slave_field("acceleration", "angular acceleration", "2000 rad/s^2")]
     jerk: Annotated[float, *slave_field("jerk", "angular jerk", "50000 rad/s^3")]
     reversal: Annotated[bool, Field(description="whether the slave may run backwards")] = False
+    motor: Annotated[tuple[tuple[float, float], ...] | None, *curve_field()] = None
 
 
 class ServoTable(Table):

@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 
+import numpy as np
+
 from camwright.job_fields import TURNING, Known
 from profiles.cycle import Cut
 from profiles.machines import CrankSlider, LinearCarriage, Machine, RotaryKnife
@@ -50,10 +52,8 @@ def machine_conflicts(known: Known, machine: Machine | None) -> list[str]:
     return faults
 
 
-def moved_by_nothing(machine: Machine, objective: str) -> str | None:
-    """Say what is missing where an objective asks for torque and the machine gives nothing to move."""
-    if objective not in TORQUE_OBJECTIVES:
-        return None
+def moved_by_nothing(machine: Machine, objective: str, *, with_curve: bool) -> list[str]:
+    """Say what is missing where the objective or the motor's curve asks for torque and the machine gives nothing to move."""
     if isinstance(machine, CrankSlider):
         missing = machine.crank_inertia == machine.carriage_mass == 0.0
         keys = 'crank_inertia = "0.5 kg m^2" or carriage_mass = "20 kg"'
@@ -62,12 +62,13 @@ def moved_by_nothing(machine: Machine, objective: str) -> str | None:
     else:
         missing = float(machine.inertia(0.0)) == machine.friction == 0.0
         keys = 'inertia = "0.05 kg m^2" or friction = "2 N m"'
-    if not missing:
-        return None
-    return (
-        f"[objective] minimise = {objective!r}: the motor's torque depends on what it moves, which [machine] does not say; add e.g. "
-        f'{keys}, or minimise "rms_acceleration"'
-    )
+    reason = f"the motor's torque depends on what it moves, which [machine] does not say; add e.g. {keys}"
+    faults = []
+    if missing and objective in TORQUE_OBJECTIVES:
+        faults.append(f'[objective] minimise = {objective!r}: {reason}, or minimise "rms_acceleration"')
+    if missing and with_curve:
+        faults.append(f"[limits] motor: {reason}, or leave the motor's curve out")
+    return faults
 
 
 def _mm(value: float) -> str:
@@ -78,13 +79,13 @@ def _mm(value: float) -> str:
 def _below(value: float) -> str:
     """Write a length that must not be reached, rounded so that it works as it is printed."""
     step = 10.0 ** (math.floor(math.log10(value)) - 5)
-    return _mm((math.ceil(value / step) - 1) * step)
+    return _mm((math.ceil(value / step - 1e-6) - 1) * step)
 
 
 def _above(value: float) -> str:
     """Write a length that must be exceeded, rounded so that it works as it is printed."""
     step = 10.0 ** (math.floor(math.log10(value)) - 5)
-    return _mm((math.floor(value / step) + 1) * step)
+    return _mm((math.floor(value / step + 1e-6) + 1) * step)
 
 
 def _short_rod(machine: CrankSlider) -> str:
@@ -184,20 +185,27 @@ def _down(value: float) -> str:
 def sync_pace(machine: Machine, cut: Cut) -> float:
     """Greatest slave speed over line speed in the sync zone; of a crank whose sync zone is free the least such, over its places.
 
-    A crank needs least where the tool ratio is the same at both ends of the zone: it has one maximum between the dead centres.
+    The tool ratio has one maximum in the forward stroke, so it is least at one of the zone's ends; and a crank needs least speed where
+    it is the same at both.
     """
     if not isinstance(machine, CrankSlider):
-        return (
-            cut.sync_ratio if machine.sync_profile(cut).degree == 1 else machine.sync_profile(cut).extrema(1)[1].value
-        )
+        return cut.sync_ratio / float(machine.tool_ratio(machine.sync_start(cut)))
     if not math.isnan(machine.sync_at):
-        return machine.sync_profile(cut).extrema(1)[1].value
+        return cut.sync_ratio / min(_end_ratios(machine, cut))
     low, high = machine.sync_range(cut)
     for _ in range(_BISECTIONS):
         middle = 0.5 * (low + high)
-        sync = replace(machine, sync_at=middle).sync_profile(cut)
-        if sync(sync.start, 1) > sync(sync.end, 1):  # slower at the start of the forward stroke: move on
+        first, last = _end_ratios(replace(machine, sync_at=middle), cut)
+        if first < last:  # slower at the start: move on
             low = middle
         else:
             high = middle
-    return sync.extrema(1)[1].value
+    return cut.sync_ratio / min(first, last)
+
+
+def _end_ratios(machine: CrankSlider, cut: Cut) -> tuple[float, float]:
+    """Tool ratio at both ends of the sync zone (m/rad)."""
+    half = 0.5 * cut.sync_ratio * cut.sync_zone
+    middle = float(machine.tool(machine.sync_at))
+    first, last = machine.tool_ratio(machine.angle_at(np.array([middle - half, middle + half])))
+    return float(first), float(last)

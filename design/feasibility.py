@@ -12,6 +12,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache, partial
 
+from design.motor import motor_limits
 from design.problem import ReturnProblem, return_problem
 from design.scaling import resolved
 from design.solver import limit_margin
@@ -71,6 +72,8 @@ def infeasible(machine: Machine, cut: Cut, limits: Limits) -> InfeasibleError:
 
 def is_feasible(machine: Machine, cut: Cut, limits: Limits) -> bool:
     """Tell whether some motion keeps the limits. A zone that the machine cannot be in sync over counts as infeasible."""
+    if limits.motor is not None:
+        return any(is_feasible(machine, cut, each) for each in motor_limits(machine, limits))
     try:
         problem = resolved(return_problem(machine, cut, limits, "peak_acceleration"))
     except InputError:
@@ -95,6 +98,8 @@ def margin(machine: Machine, cut: Cut, limits: Limits) -> float:
 
     Infinite where the machine cannot be in sync over the zone at all.
     """
+    if limits.motor is not None:
+        return min((margin(machine, cut, each) for each in motor_limits(machine, limits)), default=math.inf)
     try:
         problem = return_problem(machine, cut, limits, "peak_acceleration")
     except InputError:
@@ -161,6 +166,7 @@ def _correction(problem: ReturnProblem) -> tuple[float, float]:
 def needed_limits(machine: Machine, cut: Cut, limits: Limits) -> dict[str, float]:
     """Least value of each limit that would do, the others as they are (over time, slave unit); infinite where none does."""
     none = {"speed": math.inf, "acceleration": math.inf, "jerk": math.inf}
+    limits = replace(limits, motor=None)
     try:
         problem = resolved(return_problem(machine, cut, limits, "peak_acceleration"))
     except InputError:
@@ -210,8 +216,14 @@ def binding_limit(machine: Machine, cut: Cut, limits: Limits, need: dict[str, fl
     """Name the limit that binds: the one that would have to give least, were it the only one to give.
 
     Where no single limit would be enough it is the one whose release carries the slave furthest; ``"reversal"`` where a
-    slave at its speed limit would have to run backwards; ``"sync_zone"`` where the machine cannot be in sync over the zone.
+    slave at its speed limit would have to run backwards; ``"sync_zone"`` where the machine cannot be in sync over the zone; ``"motor"``
+    where the slave's own limits would do.
     """
+    if limits.motor is not None:
+        alone = replace(limits, motor=None)
+        if is_feasible(machine, cut, alone):
+            return "motor"
+        limits = alone
     have = {"speed": limits.speed, "acceleration": limits.acceleration, "jerk": limits.jerk}
     share = {name: value / have[name] for name, value in need.items()}
     try:
@@ -247,6 +259,8 @@ def _words(
 ) -> tuple[float | None, str, str]:
     if binding == "reversal":
         return None, "", f"limits.reversal = false binds, the slave would have to run backwards from {cut.line_speed * 60:g} m/min"
+    if binding == "motor":
+        return None, "", "motor.torque_speed binds, the motor gives too little torque at the speeds that are needed"
     if binding == "sync_zone":
         return None, "", "cut.sync_zone binds, the machine cannot be in sync over it"
     if binding == "stroke":
@@ -306,7 +320,7 @@ def _works_with(machine: Machine, cut: Cut, limits: Limits, name: str, value: fl
 def with_limit(limits: Limits, name: str, value: float) -> Limits:
     """Change one limit: ``"speed"``, ``"acceleration"`` or ``"jerk"``."""
     changed = {"speed": limits.speed, "acceleration": limits.acceleration, "jerk": limits.jerk, name: value}
-    return Limits(changed["speed"], changed["acceleration"], changed["jerk"], limits.reversal)
+    return Limits(changed["speed"], changed["acceleration"], changed["jerk"], limits.reversal, limits.motor)
 
 
 def _exact(machine: Machine, cut: Cut) -> bool:

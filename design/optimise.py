@@ -9,8 +9,9 @@ from typing import Literal, cast, get_args
 import numpy as np
 
 from design.extremes import roomiest
-from design.feasibility import infeasible, require_feasible
+from design.feasibility import infeasible, is_feasible, require_feasible
 from design.ipopt import SolveStatus
+from design.motor import motor_limits
 from design.placement import place_sync
 from design.problem import Objective as MotionObjective
 from design.problem import ReturnProblem, return_problem
@@ -119,6 +120,8 @@ def solve(machine: Machine, cut: Cut, limits: Limits, objective: Objective) -> S
         return _solve_free_crank(machine, cut, limits, objective)
     machine.sync_start(cut)
     require_feasible(machine, cut, limits)
+    if limits.motor is not None:
+        return _solve_for_motor(machine, cut, limits, objective)
     if objective in TORQUE_OBJECTIVES and float(machine.inertia(0.0)) + machine.friction == 0.0:
         raise InputError(
             f"[objective] minimise = {objective!r} needs to know what the motor moves: give the machine's inertia or mass, or minimise "
@@ -134,6 +137,12 @@ def solve(machine: Machine, cut: Cut, limits: Limits, objective: Objective) -> S
     order = 2 if decisive.endswith("acceleration") else 3
     value = objective_value(back, decisive) * cut.line_speed**order
     return Solution(machine, assemble(back, machine, cut), back, status, objective, value, iterations)
+
+
+def _solve_for_motor(machine: Machine, cut: Cut, limits: Limits, objective: Objective) -> Solution:
+    """Solve within each rectangle of the motor's curve that allows it, and take the best."""
+    found = [solve(machine, cut, each, objective) for each in motor_limits(machine, limits) if is_feasible(machine, cut, each)]
+    return min(found, key=lambda solution: (math.isnan(solution.objective), solution.objective))
 
 
 def _unique(problem: ReturnProblem) -> bool:

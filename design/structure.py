@@ -7,7 +7,6 @@ module turns that into a first guess with one piece for each arc, for the progra
 from __future__ import annotations
 
 import math
-from itertools import groupby
 
 import numpy as np
 
@@ -103,7 +102,8 @@ def read_quintic(grid: Motion, problem: ScaledProblem, touched: bool) -> tuple[M
     """Runs of intervals with the same active limit (speed, acceleration, jerk, none), one piece each (degree 3).
 
     An optimum may touch a limit in a single point, or keep to it for less than an interval; there too the piece ends. With
-    ``touched`` such an interval counts as active, without only one that keeps to the limit all along.
+    ``touched`` such an interval counts as active, and a short free piece is put between different limits; without, only an
+    interval that keeps to the limit all along is active.
     """
     p = grid.degree
     rows = piece_coefficients(grid.accelerations, p)
@@ -116,12 +116,19 @@ def read_quintic(grid: Motion, problem: ScaledProblem, touched: bool) -> tuple[M
     x = np.concatenate([[0.0], np.cumsum(grid.lengths)])
     a = grid.accelerations
     breaks = [0.0]
-    first = 0
     arcs: list[Arc] = []
-    for kind, run in groupby(kinds):
-        first += len(list(run))
-        breaks.append(float(x[first]))
-        arcs.append(_ARC_OF_LIMIT[kind])
+    for i, kind in enumerate(kinds):
+        if i > 0 and kind != kinds[i - 1]:
+            if touched and "none" not in (kind, kinds[i - 1]):  # a free arc between them may be too short for this grid
+                breaks.append(float(x[i] - grid.lengths[i - 1] / 3))
+                arcs.append("free")
+                breaks.append(float(x[i] + grid.lengths[i] / 3))
+            else:
+                breaks.append(float(x[i]))
+            arcs.append(_ARC_OF_LIMIT[kind])
+        elif i == 0:
+            arcs.append(_ARC_OF_LIMIT[kind])
+    breaks.append(1.0)
     coefficients = [float(a[0])]
     for left, right in zip(breaks, breaks[1:], strict=False):
         # Bernstein coefficients that interpolate the grid's acceleration at the piece's ends and thirds

@@ -114,7 +114,7 @@ class Motion:
         q, v = self.nodes()
         breaks, rows = [0.0], []
         for i, (h, row) in enumerate(zip(self.lengths, piece_coefficients(self.accelerations, p), strict=True)):
-            if h <= 0:
+            if breaks[-1] + h <= breaks[-1]:
                 continue
             power = _power_basis(p) @ row / h ** np.arange(p + 1)
             k = np.arange(p + 1)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
 
 import numpy as np
 
@@ -44,8 +45,8 @@ def fit_profile(ratio: Callable[[FloatArray], FloatArray], start: float, end: fl
             return _integrated(breaks, rows)
         count *= 2
     raise InputError(
-        f"a motion between master {start!r} and {end!r} m is too abrupt to be carried as polynomials: {MOST_PIECES} pieces of degree {DEGREE} "
-        f"are not enough; shorten the sync zone"
+        f"a motion between master {start!r} and {end!r} m is too abrupt to be carried as polynomials: {MOST_PIECES} pieces of degree "
+        f"{DEGREE} are not enough; shorten the sync zone"
     )
 
 
@@ -60,19 +61,28 @@ def _integrated(breaks: FloatArray, rows: FloatArray) -> CamProfile:
 
 def _interpolate(ratio: Callable[[FloatArray], FloatArray], breaks: FloatArray) -> FloatArray:
     """Coefficients of the pieces, ascending powers from each piece's start."""
-    node = np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
-    half = 0.5 * np.diff(breaks)
-    middle = 0.5 * (breaks[:-1] + breaks[1:])
-    values = ratio((middle[:, None] + half[:, None] * node).ravel()).reshape(len(half), -1)
-    series = np.polynomial.chebyshev.chebvander(node, DEGREE)
-    chebyshev = np.linalg.solve(series, values.T)
-    rows = []
-    for i, h in enumerate(half):
-        centred = np.polynomial.chebyshev.cheb2poly(chebyshev[:, i])
-        # from (x - middle) / half to (x - start): t = u / half - 1
-        moved = np.zeros(DEGREE + 1)
-        for value in centred[::-1]:
-            moved = np.concatenate([[0.0], moved[:-1]]) / h - moved
-            moved[0] += value
-        rows.append(moved)
-    return np.array(rows)
+    width = np.diff(breaks)
+    points, to_series, to_powers = interpolation(DEGREE)
+    values = ratio((breaks[:-1, None] + width[:, None] * points).ravel()).reshape(len(width), -1)
+    return np.asarray((values @ to_series) @ to_powers / width[:, None] ** np.arange(DEGREE + 1))
+
+
+@lru_cache(maxsize=4)
+def interpolation(degree: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Chebyshev points on the unit interval, and the two steps from values there to ascending powers.
+
+    Returns
+    -------
+    (points, to_series, to_powers)
+        ``(values @ to_series) @ to_powers`` are the powers; multiplied in this order, because the product of the matrices has large numbers
+        of both signs, which would spoil them.
+    """
+    node = np.cos(np.pi * (np.arange(degree + 1) + 0.5) / (degree + 1))
+    to_series = np.linalg.inv(np.polynomial.chebyshev.chebvander(node, degree)).T
+    to_powers = np.zeros((degree + 1, degree + 1))
+    to_powers[0, 0] = 1.0
+    to_powers[1, :2] = [-1.0, 2.0]
+    for k in range(2, degree + 1):  # T_k(2 t - 1) = 2 (2 t - 1) T_(k-1) - T_(k-2)
+        to_powers[k] = -2 * to_powers[k - 1] - to_powers[k - 2]
+        to_powers[k, 1:] += 4 * to_powers[k - 1, :-1]
+    return 0.5 + 0.5 * node, np.asarray(to_series), to_powers

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from profiles.motor import MotorCurve
+
 
 @dataclass(frozen=True)
 class Limits:
@@ -19,12 +21,15 @@ class Limits:
         Greatest jerk (m/s³).
     reversal
         Whether the slave may run backwards.
+    motor
+        What the motor can give, if that is to be kept too.
     """
 
     speed: float
     acceleration: float
     jerk: float
     reversal: bool = False
+    motor: MotorCurve | None = None
 
     @property
     def least_velocity(self) -> float:

@@ -193,7 +193,7 @@ def by_highs(
 
 
 # speed, acceleration and jerk in units of D/T, D/T² and D/T³: which limits are active differs
-CASES = [(1.3, 30.0, 120.0), (1.6, 8.0, 100.0), (1.15, 60.0, 2000.0), (1.9, 5.0, 300.0), (5.0, 4.6, 400.0)]
+CASES = [(1.3, 30.0, 120.0), (1.6, 8.0, 100.0), (1.25, 20.0, 400.0), (1.9, 5.0, 300.0), (5.0, 4.6, 400.0)]
 
 
 @pytest.mark.parametrize(("speed", "acceleration", "jerk"), CASES)
@@ -276,25 +276,23 @@ def changed(cut: Cut, limits: Limits, change: str, value: float) -> tuple[Cut, L
     return cut, replace(limits, **{change: value / 60 if change == "speed" else value})
 
 
-def check_job(job: Job, tightened: str, factor: float) -> None:
-    """Design a job and judge it; tighten a limit, and the objective must not improve; take every suggestion at its word."""
+def check_suggestions(error: InfeasibleError, job: Job) -> None:
+    """Take every suggestion at its word."""
     machine, cut, limits, objective = job
-    try:
-        result = solve(*job)
-    except InfeasibleError as error:
-        assert error.suggestions
-        for suggestion in error.suggestions:
-            other_cut, other_limits = changed(cut, limits, suggestion.change, suggestion.value)
-            check_cycle(solve(machine, other_cut, other_limits, objective), machine, other_cut, other_limits)
-        return
-    assert result.status is SolveStatus.OPTIMAL
-    check_cycle(result, machine, cut, limits)
+    assert error.suggestions
+    for suggestion in error.suggestions:
+        other_cut, other_limits = changed(cut, limits, suggestion.change, suggestion.value)
+        check_cycle(solve(machine, other_cut, other_limits, objective), machine, other_cut, other_limits)
+
+
+def check_against_baselines(result: Solution, job: Job) -> None:
+    """No law that keeps the limits too is better."""
+    machine, cut, limits, objective = job
     order = order_of(objective)
     for name in BASELINES:
         profile = baseline(name, machine, cut)
-        if np.abs(profile.jumps(1)).max() > 1e-6 or (order == 3 and np.abs(profile.jumps(2)).max() > 1e-6):
-            continue
-        if worst_excess(profile, cut, limits) > 0 or np.abs(profile.jumps(2)).max() > 1e-6:
+        smooth = np.abs(profile.jumps(1)).max() <= 1e-9 and np.abs(profile.jumps(2)).max() <= 1e-9
+        if not smooth or worst_excess(profile, cut, limits) > 0:
             continue
         back = profile.restrict(cut.return_start, cut.return_start + cut.return_zone)
         if objective.startswith("rms"):
@@ -302,6 +300,11 @@ def check_job(job: Job, tightened: str, factor: float) -> None:
         else:
             value = max(abs(extremum.value) for extremum in profile.extrema(order))
         assert result.objective <= value * cut.line_speed**order * (1 + 1e-7)
+
+
+def check_tightening(result: Solution, job: Job, tightened: str, factor: float) -> None:
+    """A tighter limit never improves the objective."""
+    machine, cut, limits, objective = job
     harder = replace(limits, **{tightened: factor * getattr(limits, tightened)})
     try:
         tighter = solve(machine, cut, harder, objective)
@@ -315,8 +318,35 @@ limit_names = st.sampled_from(["speed", "acceleration", "jerk"])
 
 
 @settings(max_examples=60)
+@given(jobs())
+def test_random_jobs(job: Job) -> None:
+    machine, cut, limits, _ = job
+    try:
+        result = solve(*job)
+    except InfeasibleError as error:
+        assert error.suggestions
+        return
+    assert result.status is SolveStatus.OPTIMAL
+    check_cycle(result, machine, cut, limits)
+    check_against_baselines(result, job)
+
+
+def check_job(job: Job, tightened: str, factor: float) -> None:
+    machine, cut, limits, _ = job
+    try:
+        result = solve(*job)
+    except InfeasibleError as error:
+        check_suggestions(error, job)
+        return
+    assert result.status is SolveStatus.OPTIMAL
+    check_cycle(result, machine, cut, limits)
+    check_against_baselines(result, job)
+    check_tightening(result, job, tightened, factor)
+
+
+@settings(max_examples=12)
 @given(jobs(), limit_names, st.floats(0.7, 1.0))
-def test_random_jobs(job: Job, tightened: str, factor: float) -> None:
+def test_tightening_and_suggestions(job: Job, tightened: str, factor: float) -> None:
     check_job(job, tightened, factor)
 
 
@@ -336,6 +366,7 @@ TOUCHING = [
     ((1.0, 1.742218, 287.7, 67.537688), 27.8280),
     ((2.3, 12.26, 5.903551, 45.355781), 27.0118),
     ((0.33, 1.119894, 390.6, 401.601019), 165.7274),
+    ((3.0, 2.0, 4.32, 121.5), 40.2064),
     ((3.6, 1.869163, 11.893454, 40.132580), 27.8951),
     ((0.21, 1.321135, 40.353079, 136.069985), 49.0997),
 ]
@@ -373,8 +404,17 @@ def test_cut_just_off_the_circumference(objective: Objective, off: float) -> Non
     assert result.objective == pytest.approx(least[objective] * unit, rel=2e-3)
 
 
-@pytest.mark.parametrize("objective", OBJECTIVES)
-@pytest.mark.parametrize("share", [1.0, 1.0 + 1e-12, 1.0 + 1e-10, 1.0 + 1e-8, 1.0 + 1e-6, 1.0 + 1e-4])
+SHARES = [1.0, 1.0 + 1e-12, 1.0 + 1e-10, 1.0 + 1e-8, 1.0 + 1e-6, 1.0 + 1e-4]
+
+
+@pytest.mark.parametrize(
+    ("objective", "share"),
+    [
+        pytest.param(name, share, marks=pytest.mark.slow if name == "rms_jerk" and share > 1 + 1e-9 else ())
+        for name in OBJECTIVES
+        for share in SHARES
+    ],
+)
 def test_shortest_possible_return(objective: Objective, share: float) -> None:
     """The return zone as short as the limits allow, then a little longer; found by Ruckig to the last digits in test_reach."""
     machine, limits, v, sync = RotaryKnife(0.4), Limits(3.0, 80.0, 4e3), 1.2, 0.1

@@ -137,7 +137,7 @@ def test_signs_are_read_where_they_are_allowed() -> None:
 
 
 def test_the_example_in_messages_can_be_chosen() -> None:
-    with pytest.raises(InputError, match='300: a number without a unit; write e.g. "300 rpm"'):
+    with pytest.raises(InputError, match=r'300: a number without a unit; write e\.g\. "300 rpm"'):
         quantity(300, "angular rate", example="120 rpm")
 
 

@@ -7,28 +7,25 @@ so that peaks, mean squares and zeros come from the same exact roads as those of
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from profiles.errors import InputError
+from profiles.fitting import interpolation
 from profiles.polynomial import CamProfile, FloatArray
 
 TOLERANCE = 1e-13
 """Error of a composed quantity, relative to its largest magnitude."""
 
 DEGREE = 9
-"""Degree of the pieces."""
+"""Degree of the pieces. Chebyshev points lie inside a piece, so at a jump each piece answers for itself alone."""
 
 _SLIVER = 1e-12
 """Pieces shorter than this, relative to the domain, are left behind by rounding: a quantity is constant on them."""
 
 _MOST_HALVINGS = 14
 """How often a piece may be halved; a smooth quantity needs few."""
-
-_POINTS = 0.5 - 0.5 * np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
-"""Chebyshev points on the unit interval; none of them is an end, so a piece answers for itself alone."""
 
 _BETWEEN = 0.5 - 0.5 * np.cos(np.pi * np.arange(DEGREE + 2) / (DEGREE + 1))
 """Points where the interpolation is farthest from its own points: there its error is judged."""
@@ -60,11 +57,11 @@ def compose(formula: Callable[[FloatArray, FloatArray, FloatArray], FloatArray],
     sliver = _SLIVER * profile.length
     done: list[tuple[FloatArray, FloatArray]] = []
     size = 0.0
-    to_series, to_powers = _conversions()
+    points, to_series, to_powers = interpolation(DEGREE)
     for halving in range(_MOST_HALVINGS + 1):
-        values = formula(*_states(profile, piece, lower - origin, width, _POINTS))
+        values = formula(*_states(profile, piece, lower - origin, width, points))
         size = max(size, float(np.abs(values).max(initial=0.0)))
-        rows = (values @ to_series) @ to_powers  # in one step, large numbers of both signs would spoil the powers
+        rows = (values @ to_series) @ to_powers
         truth = formula(*_states(profile, piece, lower - origin, width, _BETWEEN))
         found = np.polynomial.polynomial.polyval(_BETWEEN, rows.T, tensor=True)
         error = np.abs(found - truth).max(axis=1)
@@ -106,18 +103,6 @@ def _states(
         states.append(value)
         table = table[:, 1:] * np.arange(1, table.shape[1]) if table.shape[1] > 1 else np.zeros((profile.pieces, 1))
     return states[0], states[1], states[2]
-
-
-@lru_cache(maxsize=1)
-def _conversions() -> tuple[FloatArray, FloatArray]:
-    """Matrices from values at the points to Chebyshev coefficients, and from these to ascending powers over the unit interval."""
-    to_series = np.linalg.inv(np.polynomial.chebyshev.chebvander(2 * _POINTS - 1, DEGREE)).T
-    unit = np.polynomial.Polynomial([-1.0, 2.0])
-    to_powers = np.zeros((DEGREE + 1, DEGREE + 1))
-    for k in range(DEGREE + 1):
-        powers = np.polynomial.Polynomial(np.polynomial.chebyshev.cheb2poly(np.eye(DEGREE + 1)[k, : k + 1]))(unit).coef
-        to_powers[k, : len(powers)] = powers
-    return np.asarray(to_series), to_powers
 
 
 def integral(profile: CamProfile) -> CamProfile:

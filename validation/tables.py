@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
 from profiles.cycle import Cut
 from profiles.errors import InputError
 from profiles.limits import Limits
-from profiles.machines import RotaryKnife
+from profiles.machines import LinearCarriage, Machine
 from profiles.polynomial import CamProfile, Extremum, FloatArray
+from profiles.returns import slave_at_start
 from profiles.servo import Servo, spectral_radius
 from validation.checks import Check
-from validation.motion import RATIO_JUMP, greatest_jump, greatest_magnitude
+from validation.motion import RATIO_JUMP, greatest_jump, greatest_magnitude, position_scale, ratio_scale
 from validation.response import ServoResponse, servo_response
 
 LEAST_WRAPS = 3
@@ -25,7 +27,11 @@ _SAME_PERIOD = 1e-3
 """How far a table's period may be off the cut length, relative to it, to be the table of this cut at all."""
 
 _STEP = 1e-9
-"""Step of the position at a join, relative to the cut length, that is rounding."""
+"""Step of the position at a join, relative to the cut length (a turn, for a slave in rad), that is rounding."""
+
+_EDGE = 1e-6
+"""Part of the cut length next to the ends of the sync zone in which the ratio is not judged: a point that stands for an
+end is rounded to the number format, and what lies on its other side is the return."""
 
 _NODES = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, 17))
 _PHASES = 4096
@@ -79,7 +85,7 @@ def one_cycle(rebuilt: CamProfile, cut: Cut) -> CamProfile:
 
 def judge_table(
     rebuilt: CamProfile,
-    machine: RotaryKnife,
+    machine: Machine,
     cut: Cut,
     limits: Limits,
     servo: Servo,
@@ -90,12 +96,14 @@ def judge_table(
     The cycle is repeated with the table's own period and advance, as the drive repeats it, and compared with the
     material over all wraps: what the number format loses in one cycle adds up. Limits may be exceeded by `ALLOWANCE`;
     a jerk, and an acceleration where the drive puts straight lines, is judged as the drive's own differences of its
-    positions at the servo's sample time, at every sampling phase.
+    positions at the servo's sample time, at every sampling phase. Errors in sync are those of the tool along the
+    material, for every machine.
 
     Parameters
     ----------
     rebuilt
-        One cycle as the drive interpolates it, in SI units. At the start of the master's period the slave is at zero.
+        One cycle as the drive interpolates it, in SI units (slave unit). At the start of the master's period the slave
+        is at zero.
     machine, cut, limits, servo
         What it is judged by.
     wraps
@@ -114,7 +122,8 @@ def judge_table(
     checks = (
         *_closing(rebuilt, machine, cut, wraps),
         *_sync(run, machine, cut, wraps),
-        *_limits(cycle, run, cut, limits, servo),
+        *_limits(cycle, run, machine, cut, limits, servo),
+        *_stroke(cycle, machine, cut),
         Check(
             "shear_zone_error",
             response is not None and response.shear_zone_error <= cut.sync_tolerance,
@@ -122,7 +131,7 @@ def judge_table(
             cut.sync_tolerance,
             "m",
             None,
-            "axis against material in the shear zone, at every sampling phase (S1's servo)",
+            "tool against material in the shear zone, at every sampling phase",
         ),
     )
     return TableJudgement(checks, cycle, response, wraps)
@@ -132,10 +141,12 @@ def _at_most(name: str, value: float, limit: float, unit: str, at: float | None,
     return Check(name, value <= limit, value, limit, unit, at, source)
 
 
-def _closing(rebuilt: CamProfile, machine: RotaryKnife, cut: Cut, wraps: int) -> list[Check]:
+def _closing(rebuilt: CamProfile, machine: Machine, cut: Cut, wraps: int) -> list[Check]:
     """Give what period and advance are off, added up over the wraps, and steps at the joins."""
     step = greatest_jump(rebuilt, 0)
     over = f"over {wraps} wraps, in the target's number format"
+    zone = machine.sync_start(cut) + machine.sync_profile(cut)(np.linspace(0.0, cut.sync_zone, 33))
+    lever = float(np.abs(machine.tool_ratio(zone)).max())
     return [
         _at_most(
             "period",
@@ -147,44 +158,63 @@ def _closing(rebuilt: CamProfile, machine: RotaryKnife, cut: Cut, wraps: int) ->
         ),
         _at_most(
             "closure",
-            wraps * abs(rebuilt.advance - machine.pitch),
+            wraps * abs(rebuilt.advance - machine.pitch) * lever,
             cut.sync_tolerance,
             "m",
             None,
-            f"advance against pitch {over}",
+            f"advance against pitch, at the tool in sync, {over}",
         ),
-        _at_most("position_joins", step.value, _STEP * cut.length, "m", step.at, "no jump of the position at any join"),
+        _at_most(
+            "position_joins",
+            step.value,
+            _STEP * position_scale(rebuilt, machine),
+            machine.slave_unit,
+            step.at,
+            "no jump of the position at any join",
+        ),
     ]
 
 
-def _sync(run: CamProfile, machine: RotaryKnife, cut: Cut, wraps: int) -> list[Check]:
-    """Slave against material in the sync zones of all wraps: position, and ratio."""
+def _sync(run: CamProfile, machine: Machine, cut: Cut, wraps: int) -> list[Check]:
+    """Tool against material in the sync zones of all wraps: position, and speed.
+
+    Where the slave is off by ``e`` from its coordinate ``c`` in sync, the tool is off by ``X(c + e) - X(c)``.
+    """
     sync = machine.sync_profile(cut)
+    began = machine.sync_start(cut) - slave_at_start(machine, cut)  # of the zone, from the start of the cycle
     worst, at, ratio, ratio_at = 0.0, None, 0.0, None
     zone = cut.return_start + cut.return_zone
+    edge = _EDGE * cut.length
     for wrap in range(wraps):
         for start, end in cut.sync_parts:
+            later = end == cut.length  # the zone that begins in this cycle
+            origin = wrap * cut.length + zone - (0.0 if later else cut.length)
+            turns = (wrap + (1 if later else 0)) * machine.pitch
+
+            def off(x: FloatArray, origin: float = origin, turns: float = turns) -> tuple[FloatArray, FloatArray]:
+                inside = np.clip(x - origin, sync.start, sync.end)
+                meant = machine.sync_start(cut) + sync(inside)
+                return meant, meant + run(x) - (began + sync(inside) + turns)
+
             x = _places(run, wrap * cut.length + start, min(wrap * cut.length + end, run.end))
-            inside = np.clip(
-                x - wrap * cut.length - (zone if end == cut.length else zone - cut.length), sync.start, sync.end
-            )
-            last = float(sync(np.clip(cut.length - zone, sync.start, sync.end)))
-            turns = wrap + 1 if end == cut.length else wrap
-            error = run(x) - (sync(inside) - last + turns * machine.pitch)
-            slip = _middle(run, x) - sync(inside[:-1], 1)
-            if np.abs(error).max() > worst:
-                worst, at = float(np.abs(error).max()), float(x[np.abs(error).argmax()] - wrap * cut.length)
-            if np.abs(slip).max() > ratio:
-                ratio, ratio_at = float(np.abs(slip).max()), float(x[np.abs(slip).argmax()] - wrap * cut.length)
+            meant, found = off(x)
+            error = np.abs(machine.tool(found) - machine.tool(meant))
+            middle = 0.5 * (x[1:] + x[:-1])
+            middle = middle[(middle > x[0] + edge) & (middle < x[-1] - edge)]
+            slip = np.abs(machine.tool_ratio(off(middle)[1]) * run(middle, 1) / cut.sync_ratio - 1.0)
+            if error.max() > worst:
+                worst, at = float(error.max()), float(x[error.argmax()] - wrap * cut.length)
+            if slip.max(initial=0.0) > ratio:
+                ratio, ratio_at = float(slip.max()), float(middle[slip.argmax()] - wrap * cut.length)
     return [
-        _at_most("sync_position", worst, cut.sync_tolerance, "m", at, f"slave against material, {wraps} wraps"),
+        _at_most("sync_position", worst, cut.sync_tolerance, "m", at, f"tool against material, {wraps} wraps"),
         _at_most(
             "sync_ratio",
             ratio,
             cut.sync_tolerance / cut.sync_zone,
             "1",
             ratio_at,
-            "k = 1 in the sync zone (S1), against the sync tolerance over the sync zone",
+            "speed of the tool in the sync zone (S1), against the sync tolerance over the sync zone",
         ),
     ]
 
@@ -196,17 +226,15 @@ def _places(run: CamProfile, start: float, end: float) -> FloatArray:
     return np.unique(np.concatenate([(breaks[:-1, None] + np.diff(breaks)[:, None] * _NODES).ravel(), [end]]))
 
 
-def _middle(run: CamProfile, x: FloatArray) -> FloatArray:
-    """Give the ratio inside each interval between neighbouring positions, clear of joins."""
-    return run(0.5 * (x[1:] + x[:-1]), 1)
-
-
-def _limits(cycle: CamProfile, run: CamProfile, cut: Cut, limits: Limits, servo: Servo) -> list[Check]:
+def _limits(
+    cycle: CamProfile, run: CamProfile, machine: Machine, cut: Cut, limits: Limits, servo: Servo
+) -> list[Check]:
     """Speed, acceleration and reversal of the cycle; differences over all wraps."""
     v = cut.line_speed
     speed, least = _extremes(cycle, 1)
-    sampled = _sampled(run, cut, servo)
-    if greatest_jump(run, 1).value <= RATIO_JUMP:
+    sampled = sampled_peaks(run, cut, servo)
+    scale, unit = ratio_scale(cycle, machine), machine.slave_unit
+    if greatest_jump(run, 1).value <= RATIO_JUMP * scale:
         found, _ = _extremes(cycle, 2)
         acceleration, at = v * v * found.value, found.at
         how = "exact"
@@ -215,12 +243,12 @@ def _limits(cycle: CamProfile, run: CamProfile, cut: Cut, limits: Limits, servo:
         how = "differences at the servo's sample time"
     jerk, jerk_at = sampled[1]
     allowed = 1.0 + ALLOWANCE
-    backward = limits.speed if limits.reversal else ALLOWANCE * v
+    backward = limits.speed if limits.reversal or machine.turns_back else ALLOWANCE * v * scale
     return [
-        _at_most("speed", v * speed.value, allowed * limits.speed, "m/s", speed.at, "exact"),
-        _at_most("acceleration", acceleration, allowed * limits.acceleration, "m/s^2", at, how),
-        _at_most("jerk", jerk, allowed * limits.jerk, "m/s^3", jerk_at, "differences at the servo's sample time"),
-        _at_most("reversal", max(0.0, -v * least.value), backward, "m/s", least.at, "greatest backward speed"),
+        _at_most("speed", v * speed.value, allowed * limits.speed, f"{unit}/s", speed.at, "exact"),
+        _at_most("acceleration", acceleration, allowed * limits.acceleration, f"{unit}/s^2", at, how),
+        _at_most("jerk", jerk, allowed * limits.jerk, f"{unit}/s^3", jerk_at, "differences at the servo's sample time"),
+        _at_most("reversal", max(0.0, -v * least.value), backward, f"{unit}/s", least.at, "greatest backward speed"),
     ]
 
 
@@ -236,15 +264,57 @@ def _extremes(cycle: CamProfile, order: int) -> tuple[Extremum, Extremum]:
     )
 
 
-def _sampled(run: CamProfile, cut: Cut, servo: Servo) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Greatest second and third difference of positions at the sample time, and where they begin, over all phases."""
-    time = servo.sample_time
-    step = cut.line_speed * time
+def _stroke(cycle: CamProfile, machine: Machine, cut: Cut) -> list[Check]:
+    """Whether a carriage stays on its guide; the rounding of a table may take it a sync tolerance beyond."""
+    if not isinstance(machine, LinearCarriage):
+        return []
+    start = slave_at_start(machine, cut) - machine.home
+    least, greatest = cycle.extrema(0)
+    beyond = max(-(start + least.value), start + greatest.value - machine.stroke)
+    return [
+        _at_most(
+            "stroke",
+            beyond,
+            cut.sync_tolerance,
+            "m",
+            least.at if start + least.value < 0.0 else greatest.at,
+            "how far the carriage goes beyond its stroke, negative inside",
+        )
+    ]
+
+
+def sampled_peaks(run: CamProfile, cut: Cut, servo: Servo) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Greatest second and third difference of the positions at the servo's sample time, over all sampling phases.
+
+    That is what the drive is commanded: it knows the cam at its samples only. Where the cam is smooth over some samples
+    the differences approach the derivatives; where straight lines meet they stay finite.
+
+    Parameters
+    ----------
+    run
+        One or more cycles, SI units.
+    cut, servo
+        Line speed, and sample time.
+
+    Returns
+    -------
+    tuple
+        Acceleration and where its samples begin on the master (m), jerk and where.
+    """
+    step = cut.line_speed * servo.sample_time
     joins = (run.breaks[:, None] - step * np.arange(4)).ravel()  # differences peak where a sample falls on a join
     x = np.concatenate([np.linspace(0.0, cut.length, _PHASES, endpoint=False), joins[joins >= 0.0]])
-    y = [run(x + k * step, outside="repeat") for k in range(4)]
     found = []
-    for order, difference in ((2, y[2] - 2 * y[1] + y[0]), (3, y[3] - 3 * y[2] + 3 * y[1] - y[0])):
-        size = np.abs(difference) / time**order
+    for order in (2, 3):
+        size = np.abs(differences(run, x, order, cut, servo))
         found.append((float(size.max()), float(x[size.argmax()]) % cut.length))
     return found[0], found[1]
+
+
+def differences(run: CamProfile, x: FloatArray, order: int, cut: Cut, servo: Servo) -> FloatArray:
+    """Second (acceleration) or third difference (jerk) of samples that begin at master positions ``x``, over time."""
+    step = cut.line_speed * servo.sample_time
+    y = [run(x + k * step, outside="repeat") for k in range(order + 1)]
+    for _ in range(order):
+        y = [after - before for before, after in pairwise(y)]
+    return y[0] / servo.sample_time**order

@@ -12,7 +12,6 @@ import numpy as np
 
 from camwright.bending.springback_file import EXAMPLE, find_table, load_springback
 from camwright.bending.toml_table import TomlTable, read_toml
-from camwright.units import KINDS, Kind
 from design.moves import BenderDrive
 from profiles.bender.division import DivisionRule, EqualSides, EqualSteps, FewestBends
 from profiles.bender.nc_code import Flavour, Numbering
@@ -194,12 +193,3 @@ def _servo(table: TomlTable) -> Servo:
     ahead = table.number("velocity_feedforward", 0.0, 1.0)
     table.close()
     return Servo(bandwidth, damping, gain, sample, ahead)
-
-
-_ANGULAR = {
-    "angular acceleration": Kind(
-        "an angular acceleration", {"[angle]": 1, "[time]": -2}, "20000 deg/s^2", "rad/s^2", 1e-6, 1e12
-    ),
-    "angular jerk": Kind("an angular jerk", {"[angle]": 1, "[time]": -3}, "4000000 deg/s^3", "rad/s^3", 1e-6, 1e15),
-}
-KINDS.update(_ANGULAR)

@@ -159,7 +159,7 @@ def _planned(outline: Outline, job: BenderJob) -> tuple[BendPlan, list[str]]:
         faults += job.springback.faults(plan)
     places = crossings(plan.vertices, plan.chord_error + job.gap)[2]
     faults += [
-        f"{outline.name}: the outline crosses itself at ({1e3 * x:.3f}, {1e3 * y:.3f}) mm; a rule cannot pass through "
+        f"{outline.name}: the outline crosses or touches itself at ({1e3 * x:.3f}, {1e3 * y:.3f}) mm; a rule cannot pass through "
         "itself: split it into several outlines"
         for x, y in places[:3]
     ]

@@ -116,7 +116,7 @@ def write_sheet(result: BentDrawing, directory: Path, figures: list[Path]) -> No
     """
     for library in ("typst", "jinja2"):
         if importlib.util.find_spec(library) is None:
-            raise MissingExtraError(library, "recipe")
+            raise MissingExtraError(library, "bend")
     data = sheet_data(result)
     _write_pdf(data, directory / "sheet.pdf", figures)
     _write_html(data, directory / "sheet.html", figures)

@@ -18,6 +18,9 @@ Indices = NDArray[np.int64]
 _CHUNK = 400_000
 """Candidate pairs looked at in one step, which bounds the memory."""
 
+_SLACK = 1e-9
+"""Part of a side by which it is drawn out, so that a line through a vertex of another is not missed by rounding."""
+
 
 @dataclass(frozen=True, eq=False)
 class BoxTree:
@@ -112,7 +115,7 @@ class BoxTree:
 
 
 def crossings(points: FloatArray, tolerance: float) -> tuple[Indices, Indices, FloatArray]:
-    """Find where a polyline crosses itself.
+    """Find where a polyline crosses or touches itself.
 
     A crossing within the tolerance of either end of the polyline is a contact: a rule may end on its own flank, and a
     closed one does.
@@ -130,7 +133,7 @@ def crossings(points: FloatArray, tolerance: float) -> tuple[Indices, Indices, F
     with np.errstate(divide="ignore", invalid="ignore"):
         t = (gap[:, 0] * s[:, 1] - gap[:, 1] * s[:, 0]) / cross
         u = (gap[:, 0] * r[:, 1] - gap[:, 1] * r[:, 0]) / cross
-        found = (t > 0) & (t < 1) & (u > 0) & (u < 1)
+        found = (t >= -_SLACK) & (t <= 1 + _SLACK) & (u >= -_SLACK) & (u <= 1 + _SLACK)
     i, j, place = i[found], j[found], (p + t[:, None] * r)[found]
     ends = np.minimum(np.hypot(*(place - points[0]).T), np.hypot(*(place - points[-1]).T))
     away = ends > tolerance

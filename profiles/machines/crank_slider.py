@@ -15,6 +15,11 @@ from profiles.fitting import fit_profile
 from profiles.machines.machine import Machine, SlaveUnit
 from profiles.polynomial import CamProfile, FloatArray
 
+_SETTLED = 1e-15
+"""Step of the inverse map (rad) that is rounding."""
+_MOST_STEPS = 64
+"""Steps of the inverse map: bisection alone needs no more."""
+
 
 @dataclass(frozen=True)
 class CrankSlider(Machine):
@@ -144,15 +149,16 @@ class CrankSlider(Machine):
         back, front = self.dead_centres
         low, high = np.full(position.shape, back), np.full(position.shape, front)
         angle = 0.5 * (low + high)
-        for _ in range(200):
+        for _ in range(_MOST_STEPS):
             gap = np.asarray(self.tool(angle)) - position
             low, high = np.where(gap <= 0, angle, low), np.where(gap >= 0, angle, high)
             with np.errstate(divide="ignore", invalid="ignore"):
                 step = angle - gap / np.asarray(self.tool_ratio(angle))
             new = np.where((step > low) & (step < high), step, 0.5 * (low + high))
-            if np.all(np.abs(new - angle) <= 1e-16 * math.pi):
-                break
+            settled = np.all(np.abs(new - angle) <= _SETTLED)
             angle = new
+            if settled:
+                break
         return np.asarray(angle)
 
 

@@ -116,8 +116,8 @@ class RotaryKnife(Machine):
     def tangential_mismatch(self, cut: Cut) -> float:
         """Share by which the edge's speed along the material falls short of its speed in sync at the ends of a tangential sync zone.
 
-        With a sync ratio ``s`` the edge moves at ``s`` times the line speed on its circle, so along the material it moves at ``cos(y / r)`` of
-        that: ``1 - cos(s l_s / 2 r)``.
+        The edge moves at ``s`` times the line speed on its circle, ``s`` the sync ratio, so along the material it moves at ``cos(y / r)``
+        of that: ``1 - cos(s l_s / 2 r)``.
         """
         return 1.0 - math.cos(min(0.5 * cut.sync_ratio * cut.sync_zone / self.radius, math.pi))
 

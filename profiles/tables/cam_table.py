@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 
 from profiles.errors import InputError
+from profiles.machines.machine import SlaveUnit
 from profiles.polynomial import CamProfile, FloatArray
 
 PieceLaw = Literal["line", "quintic", "spline"]
@@ -32,11 +33,14 @@ class Unit:
     symbol
         How it is written: ``mm``, ``deg``, ``count``.
     size
-        Metres (or radians) per unit, positive.
+        Metres per unit, positive; radians per unit where the machine's slave is counted in radians.
+    si
+        Which of both.
     """
 
     symbol: str
     size: float
+    si: SlaveUnit = "m"
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.size) and self.size > 0):

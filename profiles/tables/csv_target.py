@@ -10,15 +10,17 @@ from profiles.errors import InputError
 from profiles.polynomial import CamProfile
 from profiles.tables.cam_csv import read_cam_csv
 from profiles.tables.cam_csv import rebuild as rebuild_rows
-from profiles.tables.cam_table import CamTable, Unit, Units, make_table
+from profiles.tables.cam_table import CamTable, PieceLaw, Unit, Units, make_table
 from profiles.tables.splines import cyclic_spline
 from profiles.tables.target import Header, Target
 from profiles.tables.text import check_ascending, check_count, lines_of, real, refuse
 
 MOST_POINTS = 32_767
 
+_NAMES = re.compile(r"[^\[\](),;\t]{1,60}[,;\t][^\[\](),;\t]{1,60}")  # columns named without units
 _PLAIN = re.compile(r"\s*[-+.0-9][-+.,0-9eE]{0,40}\s*[,;\t]\s*[-+.0-9][-+.,0-9eE]{0,40}\s*")
-_METRES = Units(Unit("m", 1.0), Unit("m", 1.0))
+_METRIC = "x [mm],y [mm],dy/dx [1],d2y/dx2 [1/m]"
+_TURNED = "x [mm],y [rad],dy/dx [rad/m],d2y/dx2 [rad/m^2]"
 
 
 def write(table: CamTable, header: Header) -> dict[str, str]:
@@ -32,40 +34,48 @@ def write(table: CamTable, header: Header) -> dict[str, str]:
     if table.units is None:
         raise InputError("a CSV table states millimetres: say what the units of this table are")
     master, slave = table.units.master.size, table.units.slave.size
+    turned = table.units.slave.si == "rad"
     columns = (
         table.x * (master * 1e3),
-        table.y * (slave * 1e3),
+        table.y * (slave if turned else slave * 1e3),
         table.ratio * (slave / master),
         table.ratio_slope * (slave / master**2),
     )
     rows = [",".join(map(repr, row)) for row in zip(*((column + 0.0).tolist() for column in columns), strict=True)]
-    metric = CamTable(
-        columns[0], columns[1], columns[2], columns[3], table.laws, Units(Unit("mm", 1e-3), Unit("mm", 1e-3))
-    )
+    unit = Unit("rad", 1.0, "rad") if turned else Unit("mm", 1e-3)
+    metric = CamTable(columns[0], columns[1], columns[2], columns[3], table.laws, Units(Unit("mm", 1e-3), unit))
     head = [f"# {line}" for line in header.lines(TARGET.title, metric)]
-    lines = [*head, "x [mm],y [mm],dy/dx [1],d2y/dx2 [1/m]", *rows]
+    lines = [*head, _TURNED if turned else _METRIC, *rows]
     return {f"{header.identifier}_cam.csv": "\n".join(lines) + "\n"}
 
 
 def read(text: str, place: str) -> CamTable:
     """Rows with or without derivatives, in metres; or two columns of plain numbers without header and units."""
     lines = lines_of(text, place)
-    first = next((line for line in lines if line.strip() and not line.lstrip().startswith("#")), "")
-    if _PLAIN.fullmatch(first):
-        return _plain(lines, place)
+    rows_of = (line for line in lines if line.strip() and not line.lstrip().startswith("#"))
+    first, second = next(rows_of, ""), next(rows_of, "")
+    if _PLAIN.fullmatch(first) or (_NAMES.fullmatch(first) and _PLAIN.fullmatch(second)):
+        return _plain(lines, place, heading=not _PLAIN.fullmatch(first))
     rows = read_cam_csv(text, place)
     check_count(len(rows.x), 2, MOST_POINTS, place)
-    law = "spline" if rows.dy is None else "quintic"
-    return make_table(rows.x, rows.y, rows.dy, rows.d2y, law=law, units=_METRES)  # type: ignore[arg-type]
+    law: PieceLaw = "spline" if rows.dy is None else "quintic"
+    units = Units(Unit("m", 1.0), Unit(rows.slave_unit, 1.0, rows.slave_unit))
+    return make_table(rows.x, rows.y, rows.dy, rows.d2y, law=law, units=units)
 
 
-def _plain(lines: list[str], place: str) -> CamTable:
-    """Two columns with ``;`` or a tab between, decimal point or comma; or with a comma between and a decimal point."""
+def _plain(lines: list[str], place: str, *, heading: bool) -> CamTable:
+    """Two columns with ``;`` or a tab between, decimal point or comma; or with a comma between and a decimal point.
+
+    A heading is the first row that is no comment; what it calls the columns is passed over.
+    """
     x: list[float] = []
     y: list[float] = []
     numbers: list[int] = []
     for number, line in enumerate(lines, start=1):
         if not line.strip() or line.lstrip().startswith("#"):
+            continue
+        if heading:
+            heading = False
             continue
         separator = next((sign for sign in ";\t" if sign in line), ",")
         cells = line.strip().split(separator)

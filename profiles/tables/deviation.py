@@ -12,7 +12,7 @@ _NODES = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, 17))
 """Where each common piece is looked at, as parts of it: dense at its ends, where polynomials have their extremes."""
 
 _JUMP = 1e-9
-"""A jump of the ratio above this makes the acceleration unbounded."""
+"""A jump of the ratio above this part of the greatest ratio, at least of 1, makes the acceleration unbounded."""
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class Deviation:
     Parameters
     ----------
     position
-        Of the slave position (m).
+        Of the slave position (slave unit).
     ratio
         Of the ratio.
     acceleration
@@ -57,7 +57,8 @@ def deviation(profile: CamProfile, rebuilt: CamProfile) -> Deviation:
         wanted, found = _on_pieces(profile, middle, x, order), _on_pieces(rebuilt, middle, x, order)
         worst.append(float(np.abs(found - wanted).max()))
         peak = float(np.abs(wanted).max())
-    bounded = float(np.abs(rebuilt.jumps(1)).max()) <= _JUMP
+    scale = max(1.0, float(np.abs(profile(profile.breaks[:-1], 1)).max()))
+    bounded = float(np.abs(rebuilt.jumps(1)).max()) <= _JUMP * scale
     return Deviation(worst[0], worst[1], worst[2] / max(peak, 1e-300) if bounded else None)
 
 

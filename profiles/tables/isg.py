@@ -180,4 +180,5 @@ TARGET = Target(
     write=write,
     read=read,
     rebuild=rebuild,
+    least_step=(LEAST_STEP + 1) / TURN,  # both points are rounded
 )

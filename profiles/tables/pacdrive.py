@@ -8,7 +8,8 @@ from profiles.polynomial import CamProfile
 from profiles.tables.cam_table import CamTable, make_table
 from profiles.tables.interpolation import quintics
 from profiles.tables.number_formats import literal
-from profiles.tables.structured_text import Value, Word, number_of, parse
+from profiles.tables.st_program import Value, Word, number_of
+from profiles.tables.structured_text import parse
 from profiles.tables.target import Header, Target, slash_comments, units_in
 from profiles.tables.text import check_ascending, check_count, refuse, shown
 

@@ -2,146 +2,14 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import NamedTuple
-
+from profiles.tables.st_program import Assignment, Call, Declaration, Other, Program, Struct, Value, Word
+from profiles.tables.st_words import MOST_TOKENS, Token, tokens_of
 from profiles.tables.text import real, refuse, shown
 
-MOST_TOKENS = 250_000
 DEEPEST = 8
-
-_WORD = re.compile(
-    r"(?P<blank>(?:[\s\ufeff]+|//[^\n]*|\{[^{}\n]{0,2000}\})*)"
-    r"(?:(?P<comment>\(\*|/\*)"
-    r"|(?P<based>(?:2|8|16)\#[0-9A-Fa-f][0-9A-Fa-f_]{0,31})"
-    r"|(?P<number>[0-9][0-9_]{0,40}(?:\.[0-9][0-9_]{0,40})?(?:[eE][+-]?[0-9]{1,4})?)"
-    r"|(?P<name>[A-Za-z_][A-Za-z0-9_]{0,200})"
-    r"|(?P<string>'[^'\n]{0,400}'|\"[^\"\n]{0,400}\")"
-    r"|(?P<op>:=|=>|\.\.|[()\[\],;:.#+*/<>=&^%@$|?!`~\\-]))?",
-    re.ASCII,
-)
 _TYPED = frozenset(
     ("LREAL", "REAL", "INT", "UINT", "DINT", "UDINT", "LINT", "ULINT", "SINT", "USINT", "BYTE", "WORD", "DWORD", "BOOL")
 )
-
-
-class Token(NamedTuple):
-    """A word of the text: what kind, as written, in which line."""
-
-    kind: str
-    text: str
-    line: int
-
-
-@dataclass(frozen=True, slots=True)
-class Struct:
-    """A structured initial value ``(a := 1, b := 2)``; member names in lower case."""
-
-    members: dict[str, Value]
-    line: int
-
-
-@dataclass(frozen=True, slots=True)
-class Call:
-    """A call ``a.b(x, y := z)``; its name in lower case without what stands before the last point."""
-
-    name: str
-    arguments: tuple[Value, ...]
-    line: int
-
-
-@dataclass(frozen=True, slots=True)
-class Word:
-    """An enumeration value or a variable, as written: ``MC_X.Y``."""
-
-    text: str
-
-    @property
-    def last(self) -> str:
-        """What stands behind the last point, in lower case."""
-        return self.text.rpartition(".")[2].lower()
-
-
-@dataclass(frozen=True, slots=True)
-class Other:
-    """An expression that is not a plain value."""
-
-    line: int
-
-
-Value = float | Word | Struct | Call | Other | list["Value"]
-
-
-@dataclass(frozen=True, slots=True)
-class Declaration:
-    """A variable: its name, its type (of the elements, if an array), the array's bounds, and its initial value."""
-
-    name: str
-    type: str
-    bounds: tuple[tuple[int, int], ...]
-    value: Value | None
-    line: int
-
-
-@dataclass(frozen=True, slots=True)
-class Assignment:
-    """``path := value``: the path as lower-case names and indices."""
-
-    path: tuple[str | int, ...]
-    value: Value
-    line: int
-
-
-@dataclass(frozen=True)
-class Program:
-    """What was found in a text."""
-
-    declarations: tuple[Declaration, ...]
-    assignments: tuple[Assignment, ...]
-    calls: tuple[Call, ...]
-
-    def arrays_of(self, type_name: str) -> list[Declaration]:
-        """List the arrays of a type that have an initial value."""
-        wanted = type_name.lower()
-        return [d for d in self.declarations if d.bounds and d.type == wanted and d.value is not None]
-
-
-def tokens_of(text: str, place: str) -> Iterator[Token]:
-    """Cut the text into words; comments, pragmas and blanks are passed over.
-
-    Raises
-    ------
-    InputError
-        A character that no word begins with, a comment without an end, more than `MOST_TOKENS` words.
-    """
-    at, line, count = 0, 1, 0
-    match = _WORD.match
-    while True:
-        found = match(text, at)
-        if found is None:  # the pattern matches even the empty text
-            return
-        kind, word = found.lastgroup, found.end("blank")
-        if word > at:
-            line += text.count("\n", at, word)
-        at = found.end()
-        if kind == "comment":
-            close = text.find("*)" if text[word] == "(" else "*/", at)
-            if close < 0:
-                raise refuse(place, line, "a comment begins here and never ends")
-            line += text.count("\n", at, close)
-            at = close + 2
-        elif kind is None or kind == "blank":
-            if at == len(text):
-                return
-            raise refuse(place, line, f"the character {shown(text[at])} begins nothing that is known here")
-        else:
-            count += 1
-            if count > MOST_TOKENS:
-                raise refuse(place, line, f"the text goes on beyond {MOST_TOKENS} words; no cam table needs as many")
-            yield Token(kind, text[word:at], line)
-
 
 _END = Token("end", "", 0)
 
@@ -445,39 +313,3 @@ def parse(text: str, place: str) -> Program:
         The text breaks off, nests too deeply, or holds what is no structured text, with file and line.
     """
     return Reader(text, place).program()
-
-
-def number_of(value: Value | None, what: str, place: str, line: int) -> float:
-    """Take a member that must be a number; a member that was left out is 0."""
-    if value is None:
-        return 0.0
-    if not isinstance(value, float):
-        raise refuse(place, line, f"{what} must be a number")
-    return value
-
-
-def structs_of(declaration: Declaration, place: str) -> list[Struct]:
-    """Take an array's initial value as structures, as many as its bounds say."""
-    value = declaration.value
-    if not isinstance(value, list) or not all(isinstance(item, Struct) for item in value):
-        raise refuse(
-            place, declaration.line, f"the array {shown(declaration.name)} must be a list of ( member := value )"
-        )
-    low, high = declaration.bounds[0]
-    if len(value) != high - low + 1:
-        raise refuse(
-            place,
-            declaration.line,
-            f"the array {shown(declaration.name)} has {high - low + 1} places but {len(value)} values",
-        )
-    return [item for item in value if isinstance(item, Struct)]
-
-
-def only(declarations: list[Declaration], what: str, place: str) -> Declaration:
-    """Take the one declaration that there must be."""
-    if not declarations:
-        raise refuse(place, None, f"there is no {what} with an initial value")
-    if len(declarations) > 1:
-        names = ", ".join(shown(d.name) for d in declarations[:5])
-        raise refuse(place, declarations[1].line, f"there is more than one {what}: {names}; leave one in the file")
-    return declarations[0]

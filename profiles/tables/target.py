@@ -23,7 +23,7 @@ _POINTS = re.compile(r"(?m)^[-+0-9., \t]{0,80}[/#(*<!-]{0,4} ?points: ([0-9]{1,7
 _CONTROL = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029]+")
 _FACTS = re.compile(  # at the start of a comment only, so that no name of a user's can pass for it
     r"(?m)^[-+0-9., \t]{0,80}[/#(*<!-]{0,4} ?camwright units: "
-    r"master (\S{1,20}) (\S{1,30}), slave (\S{1,20}) (\S{1,30}); advance (\S{1,30})(?!\S)"
+    r"master (\S{1,20}) (\S{1,30}), slave (\S{1,20}) (\S{1,30}?)( rad)?; advance (\S{1,30})(?!\S)"
 )
 
 
@@ -61,8 +61,9 @@ class Header:
         lines += [f"NOT RELEASED: {warning}" for warning in self.warnings]
         lines.append(f"points: {table.points}; period: {table.period!r} {master}; cam: {table.kind}")
         if units:
+            turned = " rad" if units.slave.si == "rad" else ""
             lines.append(
-                f"camwright units: master {master} {units.master.size!r}, slave {slave} {units.slave.size!r}; "
+                f"camwright units: master {master} {units.master.size!r}, slave {slave} {units.slave.size!r}{turned}; "
                 f"advance {table.advance!r}"
             )
         lines += [f"{what}: {value}" for what, value in self.facts]
@@ -99,12 +100,12 @@ def _stated(text: str) -> tuple[Units, float] | None:
     if not found:
         return None
     try:
-        master, slave, advance = (float(found[group]) for group in (2, 4, 5))
+        master, slave, advance = (float(found[group]) for group in (2, 4, 6))
     except ValueError:
         return None
     if not (0 < master < 1e12 and 0 < slave < 1e12 and abs(advance) < 1e12):
         return None
-    return Units(Unit(found[1], master), Unit(found[3], slave)), advance
+    return Units(Unit(found[1], master), Unit(found[3], slave, "rad" if found[5] else "m")), advance
 
 
 def slash_comments(lines: list[str]) -> str:
@@ -154,6 +155,8 @@ class Target:
         Whether a file written here has run on the controller.
     min_points
         Fewest points of a table.
+    least_step
+        Least distance of two points as a part of the master period.
     """
 
     name: str
@@ -170,3 +173,4 @@ class Target:
     rebuild: Callable[[CamTable], CamProfile]
     tested_on_controller: bool = False
     min_points: int = 2
+    least_step: float = 0.0

@@ -114,7 +114,7 @@ def test_without_the_typesetting_libraries_there_is_no_sheet(
     assert code == 0
     assert answer["bends"] == 0
     assert any(
-        "no sheet: typst is not installed" in text and "camwright[recipe]" in text for text in answer["warnings"]
+        "no sheet: typst is not installed" in text and "camwright[bend]" in text for text in answer["warnings"]
     )
     assert not [file for file in answer["files"] if "sheet" in file]
 
@@ -170,7 +170,7 @@ def test_collisions_are_reported_by_line(drawing: Make, tmp_path: Path, capsys: 
     [
         (
             lambda m: m.add_lwpolyline([(0, 0), (20, 0), (20, 20), (10, -20)]),
-            r"LWPOLYLINE #2F on layer 0: the outline crosses itself at \(15.000, 0.000\) mm",
+            r"LWPOLYLINE #2F on layer 0: the outline crosses or touches itself at \(15.000, 0.000\) mm",
         ),
         (
             lambda m: m.add_lwpolyline([(0, 0), (20, 0), (0, 0.01)]),

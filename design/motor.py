@@ -1,0 +1,40 @@
+"""A motor's torque-speed curve as limits of the slave.
+
+A motion keeps a falling curve if it stays within one of its rectangles, some speed and the torque that the motor still gives there. A rectangle is a
+limit of speed and one of acceleration, so the machinery for these serves; the best rectangle is taken. What a motion could gain by
+using different torques at different speeds is left.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from profiles.limits import Limits
+from profiles.machines import Machine
+
+# Places around a crank at which its inertia is looked at.
+PLACES = 3600
+
+
+def motor_limits(machine: Machine, limits: Limits) -> list[Limits]:
+    """Limits of the slave, one for each rectangle of the motor's curve that leaves any acceleration; those given if there is no curve.
+
+    The force at the slave is at most ``I A + I' V² / 2 + F`` with the largest inertia ``I`` and inertia slope ``I'``: exact for constant
+    inertia, on the safe side for a crank.
+    """
+    if limits.motor is None:
+        return [limits]
+    around = np.linspace(0.0, 2 * np.pi, PLACES + 1) if machine.slave_unit == "rad" else np.zeros(1)
+    inertia = float(np.max(machine.inertia(around)))
+    slope = float(np.max(np.abs(machine.inertia_slope(around))))
+    found = []
+    for motor_speed, torque in limits.motor.rectangles():
+        speed = min(limits.speed, motor_speed / machine.motor_ratio)
+        force = torque * machine.motor_ratio - machine.friction - 0.5 * slope * speed**2
+        if force <= 0:
+            continue
+        acceleration = min(limits.acceleration, force / inertia) if inertia > 0 else limits.acceleration
+        found.append(replace(limits, speed=speed, acceleration=acceleration, motor=None))
+    return found

@@ -1,0 +1,220 @@
+"""Where the points of a table may go: candidates for `profiles.tables.knots.choose`, few points first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from profiles.polynomial import CamProfile, FloatArray
+from profiles.tables.cam_table import Unit, Units, sample_profile
+from profiles.tables.interpolation import quintics
+from profiles.tables.target import Target
+
+MOST_SPLINE = 1000
+"""Points beyond which splines are not refined: the file grows, the motion does not improve."""
+MOST_LINE = 4097
+MOST_PIECES = 400
+"""Points beyond which quintics are not refined."""
+
+_GROWTH = 1.2
+_MOST_DIVISIONS = 720
+_EXACT_DEGREE = 5
+_GAPS = (0.0, 1e-4, 1e-3, 4e-3, 0.02, 0.08)
+"""Breaks nearer to each other than this part of the cycle share a point, tried in turn: rounding in float32, and limits
+of points, are worse than a corner of the acceleration cut off."""
+_SAME = 1e-9
+"""A break within this part of the cycle of a zone's end is that end."""
+
+_NODES = np.linspace(0.02, 0.98, 13)
+_METRES = Units(Unit("m", 1.0), Unit("m", 1.0))
+
+
+def zone_ends(profile: CamProfile) -> FloatArray:
+    """Where straight pieces begin or end inside the cycle: the ends of the sync zone of most machines."""
+    straight = straight_pieces(profile)
+    return np.asarray(profile.breaks[1:-1][straight[1:] != straight[:-1]])
+
+
+def straight_pieces(profile: CamProfile) -> NDArray[np.bool_]:
+    """Say of each piece whether the ratio is constant on it; shape ``(pieces,)``."""
+    return np.array([not np.any(row[2:]) for row in profile.coefficients])
+
+
+def required_points(profile: CamProfile, zones: Sequence[float] | FloatArray) -> FloatArray:
+    """Points that every table has: both ends of the cycle and the zones' ends, at breaks where breaks are meant."""
+    found = [profile.start, profile.end]
+    for at in zones:
+        nearest = float(profile.breaks[np.abs(profile.breaks - at).argmin()])
+        found.append(nearest if abs(nearest - at) <= _SAME * profile.length else float(at))
+    return np.unique(found)
+
+
+def candidates(
+    profile: CamProfile, target: Target, required: FloatArray, allowed: FloatArray, points: int | None
+) -> Iterator[FloatArray]:
+    """Positions of the points, few first.
+
+    Parameters
+    ----------
+    profile
+        One cycle, in SI units.
+    target
+        What the table is for.
+    required
+        Points that must be among them, shape ``(k,)``, from the start to the end of the cycle.
+    allowed
+        What position, ratio and ratio slope may be off; shape ``(3,)``.
+    points
+        Number of points, if the user insists.
+    """
+    limit = target.max_points or (MOST_LINE if target.law == "line" else MOST_SPLINE)
+    most = points or min(limit, MOST_LINE if target.law == "line" else MOST_SPLINE)
+    if target.placing == "equidistant":
+        yield from _even(profile, required, most, points)
+    elif target.placing == "pieces":
+        yield from _pieces(profile, target, required, allowed, points)
+    else:
+        before = -1
+        for gap in _GAPS:
+            breaks = _thinned(profile, required, max(gap, target.least_step) * profile.length)
+            if len(breaks) != before and len(breaks) <= most:
+                for x in _subdivided(profile, breaks, most, points, spline=target.law == "spline"):
+                    if len(x) >= target.min_points:
+                        yield x
+                if points is not None:
+                    return
+            before = len(breaks)
+
+
+def _thinned(profile: CamProfile, required: FloatArray, gap: float) -> FloatArray:
+    """Give the breaks and the required points, without breaks that lie nearer to another point than the gap."""
+    kept = required.tolist()
+    for at in profile.breaks:
+        if np.abs(np.array(kept) - at).min() > gap:
+            kept.append(float(at))
+    return np.unique(kept)
+
+
+def _pieces(
+    profile: CamProfile, target: Target, required: FloatArray, allowed: FloatArray, points: int | None
+) -> Iterator[FloatArray]:
+    """Give the breaks if quintics carry the pieces; else points from the zones' ends on, each where it is missed most."""
+    most = points or min(target.max_points or MOST_PIECES, MOST_PIECES)
+    x = np.union1d(profile.breaks, required)
+    if profile.degree <= _EXACT_DEGREE and len(x) <= most:
+        while len(x) < (points or target.min_points):
+            x = _inserted(profile, x, int(np.argmax(np.diff(x))))
+        yield x
+        if points is not None:
+            return
+    x = required
+    if len(x) > most:
+        return
+    missed = [_missed(profile, *span, allowed) for span in pairwise(x)]
+    shown = 0
+    while True:
+        done = max(missed) <= 1.0 and points is None
+        if len(x) >= target.min_points and (len(x) >= _GROWTH * shown or done or len(x) == most):
+            shown = len(x)
+            yield x
+        if len(x) >= most:
+            return
+        worst = int(np.argmax(missed))
+        x = _inserted(profile, x, worst)
+        missed[worst : worst + 1] = [_missed(profile, x[k], x[k + 1], allowed) for k in (worst, worst + 1)]
+
+
+def _inserted(profile: CamProfile, x: FloatArray, piece: int) -> FloatArray:
+    """Put a point into a span: on the break nearest to its middle, or at the middle if it holds none."""
+    middle = 0.5 * (x[piece] + x[piece + 1])
+    inner = profile.breaks[(profile.breaks > x[piece]) & (profile.breaks < x[piece + 1])]
+    at = inner[np.abs(inner - middle).argmin()] if len(inner) else middle
+    return np.insert(x, piece + 1, at)
+
+
+def _missed(profile: CamProfile, left: float, right: float, allowed: FloatArray) -> float:
+    """By how many times the quintic between two points misses the profile more than it may."""
+    rebuilt = quintics(sample_profile(profile, np.array([left, right]), _METRES))
+    inside = profile.breaks[(profile.breaks > left) & (profile.breaks < right)]
+    x = np.concatenate([left + (right - left) * _NODES, inside])
+    off = [np.abs(rebuilt(x, order) - profile(x, order)).max() / allowed[order] for order in range(3)]
+    return float(max(off))
+
+
+def _subdivided(
+    profile: CamProfile, breaks: FloatArray, most: int, points: int | None, *, spline: bool
+) -> Iterator[FloatArray]:
+    """Give the breaks and points between, closer and closer, or as many as are asked for.
+
+    Pieces that the drive's law carries are not divided: straight ones by lines, cubics by a spline. A spline that must
+    bend elsewhere needs points in the straight pieces too, for it rings on; they stand wider and wider apart.
+    """
+    piece = np.searchsorted(profile.breaks[1:-1], 0.5 * (breaks[1:] + breaks[:-1]), side="right")
+    near = _SAME * profile.length
+    whole = (profile.breaks[piece] <= breaks[:-1] + near) & (profile.breaks[piece + 1] >= breaks[1:] - near)
+    straight = straight_pieces(profile)[piece] & whole
+    carried = np.array([not np.any(row[4 if spline else 2 :]) for row in profile.coefficients])[piece] & whole
+    width = np.diff(breaks)
+    reach = float(width[~straight].sum()) or profile.length
+
+    def divided(divisions: float) -> FloatArray:
+        parts = [np.array([profile.start])]
+        step = reach / divisions
+        for left, right, flat in zip(breaks, breaks[1:], straight, strict=False):
+            parts.append(_graded(left, right, step) if flat and spline else _divided(left, right, step, flat))
+        return np.concatenate(parts)
+
+    if points is not None:
+        few, many = 1.0, 2.0 * points
+        while many - few > 0.25:
+            middle = 0.5 * (few + many)
+            few, many = (middle, many) if len(divided(middle)) <= points else (few, middle)
+        if len(divided(few)) <= points:
+            yield divided(few)
+        return
+    if carried.all():
+        yield breaks
+    divisions, before = 4.0, 0
+    while len(x := divided(divisions)) <= most:
+        if len(x) > before:
+            yield x
+        before = len(x)
+        divisions *= _GROWTH
+
+
+def _divided(left: float, right: float, step: float, flat: bool) -> FloatArray:
+    """Even points of a piece without its left end; of a straight one its right end only."""
+    count = 1 if flat else max(1, round((right - left) / step))
+    return np.linspace(left, right, count + 1)[1:]
+
+
+def _graded(left: float, right: float, step: float) -> FloatArray:
+    """Points of a straight piece without its left end, each twice as far from the nearer end as the one before."""
+    half = 0.5 * (right - left)
+    distances = []
+    distance = step
+    while distance < half - 0.25 * step:
+        distances.append(distance)
+        distance = 2.0 * distance if len(distances) > 3 else distance + step
+    near = np.array(distances)
+    return np.concatenate([left + near, right - near[::-1], [right]])
+
+
+def _even(profile: CamProfile, required: FloatArray, most: int, points: int | None) -> Iterator[FloatArray]:
+    """Evenly spaced points, the zones' ends among them where a spacing of a reasonable number of parts has them."""
+    parts = (required - profile.start) / profile.length
+    base = 1
+    for count in range(1, _MOST_DIVISIONS + 1):
+        if np.abs(parts * count - np.rint(parts * count)).max(initial=0.0) < 1e-9:
+            base = count
+            break
+    if points is not None:
+        yield np.linspace(profile.start, profile.end, points)
+        return
+    factor = max(1.0, 16 / base)
+    while base * round(factor) + 1 <= most:
+        yield np.linspace(profile.start, profile.end, base * round(factor) + 1)
+        factor = max(round(factor) + 1.0, factor * _GROWTH)

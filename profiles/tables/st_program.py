@@ -1,0 +1,116 @@
+"""What a structured text holds: declarations, assignments, calls and their values, and what table readers ask of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from profiles.tables.text import refuse, shown
+
+
+@dataclass(frozen=True, slots=True)
+class Struct:
+    """A structured initial value ``(a := 1, b := 2)``; member names in lower case."""
+
+    members: dict[str, Value]
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """A call ``a.b(x, y := z)``; its name in lower case without what stands before the last point."""
+
+    name: str
+    arguments: tuple[Value, ...]
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class Word:
+    """An enumeration value or a variable, as written: ``MC_X.Y``."""
+
+    text: str
+
+    @property
+    def last(self) -> str:
+        """What stands behind the last point, in lower case."""
+        return self.text.rpartition(".")[2].lower()
+
+
+@dataclass(frozen=True, slots=True)
+class Other:
+    """An expression that is not a plain value."""
+
+    line: int
+
+
+Value = float | Word | Struct | Call | Other | list["Value"]
+
+
+@dataclass(frozen=True, slots=True)
+class Declaration:
+    """A variable: its name, its type (of the elements, if an array), the array's bounds, and its initial value."""
+
+    name: str
+    type: str
+    bounds: tuple[tuple[int, int], ...]
+    value: Value | None
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class Assignment:
+    """``path := value``: the path as lower-case names and indices."""
+
+    path: tuple[str | int, ...]
+    value: Value
+    line: int
+
+
+@dataclass(frozen=True)
+class Program:
+    """What was found in a text."""
+
+    declarations: tuple[Declaration, ...]
+    assignments: tuple[Assignment, ...]
+    calls: tuple[Call, ...]
+
+    def arrays_of(self, type_name: str) -> list[Declaration]:
+        """List the arrays of a type that have an initial value."""
+        wanted = type_name.lower()
+        return [d for d in self.declarations if d.bounds and d.type == wanted and d.value is not None]
+
+
+def number_of(value: Value | None, what: str, place: str, line: int) -> float:
+    """Take a member that must be a number; a member that was left out is 0."""
+    if value is None:
+        return 0.0
+    if not isinstance(value, float):
+        raise refuse(place, line, f"{what} must be a number")
+    return value
+
+
+def structs_of(declaration: Declaration, place: str) -> list[Struct]:
+    """Take an array's initial value as structures, as many as its bounds say."""
+    value = declaration.value
+    if not isinstance(value, list) or not all(isinstance(item, Struct) for item in value):
+        raise refuse(
+            place, declaration.line, f"the array {shown(declaration.name)} must be a list of ( member := value )"
+        )
+    low, high = declaration.bounds[0]
+    if len(value) != high - low + 1:
+        raise refuse(
+            place,
+            declaration.line,
+            f"the array {shown(declaration.name)} has {high - low + 1} places but {len(value)} values",
+        )
+    return [item for item in value if isinstance(item, Struct)]
+
+
+def only(declarations: list[Declaration], what: str, place: str) -> Declaration:
+    """Take the one declaration that there must be."""
+    if not declarations:
+        raise refuse(place, None, f"there is no {what} with an initial value")
+    if len(declarations) > 1:
+        names = ", ".join(shown(d.name) for d in declarations[:5])
+        raise refuse(place, declarations[1].line, f"there is more than one {what}: {names}; leave one in the file")
+    return declarations[0]
