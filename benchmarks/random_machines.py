@@ -203,11 +203,13 @@ def main() -> int:
     print("machine,end,jobs")
     for kind in options.machine or MACHINES:
         rng = np.random.default_rng(options.seed)
-        rows = [measure(number, kind, random_job(rng, kind)) for number in range(options.jobs)]
+        rows = []
         with (RESULTS / f"random_{kind}.csv").open("w", newline="", encoding="utf-8") as file:
-            table = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
-            table.writeheader()
-            table.writerows(rows)
+            table = csv.writer(file, lineterminator="\n")
+            for number in range(options.jobs):
+                rows.append(measure(number, kind, random_job(rng, kind)))
+                table.writerows([list(rows[0])] * (number == 0) + [list(rows[-1].values())])
+                file.flush()
         for end, count in sorted(Counter(str(row["end"]) for row in rows).items()):
             print(f"{kind},{end},{count}", flush=True)
         for row in rows:

@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from camwright.answers import validate_answer
 from camwright.job import Job
 from camwright.progress import Step, ignore
+from camwright.table_options import parse_units
 from profiles.errors import InputError
-from profiles.polynomial import CamProfile
+from profiles.machines import CrankSlider, Machine
+from profiles.polynomial import CamProfile, FloatArray
 from profiles.tables.cam_table import CamTable, Unit, Units
 from profiles.tables.target import Target
 from profiles.tables.targets import detect, read_table, target_of
@@ -19,6 +27,32 @@ from profiles.tables.text import read_text
 if TYPE_CHECKING:
     from validation.report import ValidationReport
     from validation.tables import TableJudgement
+
+_SYNC_AT = re.compile(r"sync_at: ([0-9.eE+-]{1,30}) rad\b")
+"""Where on the crank the sync zone lies, as the head of a table written here states it."""
+
+MEASURES: dict[str, str] = {
+    "peak_speed": "peak speed",
+    "peak_acceleration": "peak acceleration",
+    "rms_acceleration": "RMS acceleration",
+    "peak_jerk": "peak jerk",
+    "rms_jerk": "RMS jerk",
+}
+"""Measures of the slave that the audit sets side by side."""
+
+
+@dataclass(frozen=True)
+class Sampled:
+    """What a drive is commanded: second and third differences of the positions at the servo's sample time.
+
+    Greatest magnitudes over all sampling phases and the whole cycle, root mean squares over the return zone and all
+    phases, like those of `validation.motion.Motion` (slave unit over s², over s³).
+    """
+
+    peak_acceleration: float
+    rms_acceleration: float
+    peak_jerk: float
+    rms_jerk: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,32 +65,57 @@ class Audit:
         The layout that the file has.
     table
         The points of the file.
+    notes
+        What the reader and the alignment found worth telling.
+    job
+        The job, its machine placed as the cam has it.
     cycle
         One cycle as the drive runs it, SI units.
     judgement
         The checks on it over several wraps.
     report
         Its motion and servo response.
-    optimum
-        The optimal cycle of the job, and its report.
+    sampled
+        What the drive is commanded.
+    optimum_job, optimum, optimum_report, optimum_sampled
+        The optimal cycle of the job, alike.
     """
 
     target: Target
     table: CamTable
+    notes: tuple[str, ...]
+    job: Job
     cycle: CamProfile
     judgement: TableJudgement
     report: ValidationReport
+    sampled: Sampled
+    optimum_job: Job
     optimum: CamProfile
     optimum_report: ValidationReport
+    optimum_sampled: Sampled
+
+    def is_sampled(self, measure: str) -> bool:
+        """Whether a measure is compared by differences: where straight lines or steps leave the exact one unbounded."""
+        return hasattr(self.sampled, measure) and any(
+            getattr(report.motion, measure) is None for report in (self.report, self.optimum_report)
+        )
+
+    def pair(self, measure: str) -> tuple[float, float]:
+        """Give a measure of the cam and of the optimum, both exact or both by differences."""
+        sources = (
+            (self.sampled, self.optimum_sampled)
+            if self.is_sampled(measure)
+            else (self.report.motion, self.optimum_report.motion)
+        )
+        return float(getattr(sources[0], measure)), float(getattr(sources[1], measure))
 
     def saving(self, measure: str) -> float | None:
-        """Part of a measure that the optimum saves; ``None`` where the cam's own is unbounded or zero."""
-        own = getattr(self.report.motion, measure)
-        best = getattr(self.optimum_report.motion, measure)
-        return None if own is None or best is None or own == 0.0 else float(1.0 - best / own)
+        """Part of a measure that the optimum saves, negative where it takes more; ``None`` if the cam's own is zero."""
+        own, best = self.pair(measure)
+        return None if own == 0.0 else 1.0 - best / own
 
 
-def audit(path: Path, job: Job, target: str | None = None, units: Units | None = None, step: Step = ignore) -> Audit:
+def audit(path: Path, job: Job, target: str | None = None, units: str | None = None, step: Step = ignore) -> Audit:
     """Read a cam that runs today, rebuild it as its drive does, and compare it with the optimum of the job.
 
     Parameters
@@ -68,8 +127,13 @@ def audit(path: Path, job: Job, target: str | None = None, units: Units | None =
     target
         Name of the layout; found by its words if not given.
     units
-        Units of the file, for layouts that hold none. Where master positions are mere steps, or nothing is known, the
-        table's period is taken for the cut length and its advance for the pitch.
+        Units of the file, for layouts that hold none, as `camwright.table_options.parse_units` reads them. Where nothing
+        is known, the table's period is taken for the cut length and its advance for the pitch.
+
+    Notes
+    -----
+    The zeros of master and slave are the user's affair: if the cam is not in sync where the job's cycle is, it is begun
+    where it fits the sync zone best, and a note says where.
 
     Raises
     ------
@@ -84,46 +148,180 @@ def audit(path: Path, job: Job, target: str | None = None, units: Units | None =
     text = read_text(path)
     layout = detect(text, str(path)) if target is None else target_of(target)
     table = read_table(layout, text, str(path))
-    found = table.units or units or _by_the_cycle(table, job, str(path))
-    rebuilt = found.to_si(layout.rebuild(table))
+    placed = replace(job, machine=_placed(job.machine, text, str(path)))
+    rebuilt = _units(table, units, placed, str(path)).to_si(layout.rebuild(table))
+    one_cycle(rebuilt, job.cut)  # refuses another period
+    rebuilt, notes = _aligned(rebuilt.shift(-rebuilt.start), placed)
     cycle = one_cycle(rebuilt, job.cut)
-    offset = job.machine.pitch - float(cycle(cycle.end))  # the slave's zero is the user's affair
-    cycle, rebuilt = cycle.shift(0.0, offset), rebuilt.shift(0.0, offset)
     step("judging")
-    judgement = judge_table(rebuilt, job.machine, job.cut, job.limits, job.servo)
-    report = validate(cycle, job.machine, job.cut, job.limits, job.servo)
+    judgement = judge_table(rebuilt, placed.machine, job.cut, job.limits, job.servo)
+    report = validate(cycle, placed.machine, job.cut, job.limits, job.servo)
     step("solving")
-    optimum = solve(job.machine, job.cut, job.limits, job.objective).profile
-    best = validate(optimum, job.machine, job.cut, job.limits, job.servo)
-    return Audit(layout, table, cycle, judgement, report, optimum, best)
-
-
-def _by_the_cycle(table: CamTable, job: Job, place: str) -> Units:
-    """Give the units in which the table's cycle is the job's."""
-    if not table.advance > 0:
-        raise InputError(
-            f"{place}: the slave advances by {table.advance!r} in a cycle, so its unit cannot be told from the pitch; "
-            "say it with --units"
-        )
-    return Units(
-        Unit("master unit", job.cut.length / table.period), Unit("slave unit", job.machine.pitch / table.advance)
+    solution = solve(job.machine, job.cut, job.limits, job.objective)
+    best = replace(job, machine=solution.machine)
+    best_report = validate(solution.profile, best.machine, job.cut, job.limits, job.servo)
+    return Audit(
+        layout,
+        table,
+        (*table.notes, *notes),
+        placed,
+        cycle,
+        judgement,
+        report,
+        _sampled(cycle, job),
+        best,
+        solution.profile,
+        best_report,
+        _sampled(solution.profile, job),
     )
 
 
-def audit_answer(result: Audit, job: Job, path: Path) -> dict[str, Any]:
+def _placed(machine: Machine, text: str, place: str) -> Machine:
+    """Give the job's machine; where the job leaves the place of a crank's sync zone free, it is that of the file."""
+    if not isinstance(machine, CrankSlider) or not math.isnan(machine.sync_at):
+        return machine
+    found = _SYNC_AT.search(text)
+    if not found:
+        raise InputError(
+            f"{place}: does not say where on the crank its sync zone lies, and neither does the job; give [machine] sync_at"
+        )
+    try:
+        return replace(machine, sync_at=float(found[1]))
+    except ValueError as error:
+        raise InputError(f"{place}: sync_at {found[1]!r} is not a number") from error
+
+
+def _units(table: CamTable, asked: str | None, job: Job, place: str) -> Units:
+    """Give the units that the file states, else those that the user states, else those in which the cycle is the job's."""
+    unit = job.machine.slave_unit
+    if table.units is not None:
+        if asked is not None:
+            stated = f"{table.units.master.symbol},{table.units.slave.symbol}"
+            raise InputError(f"{place}: the file states its units ({stated}); leave --units out")
+        if table.units.slave.si != unit:
+            raise InputError(
+                f"{place}: the slave is counted in {table.units.slave.si}, but that of the job's machine in {unit}; name "
+                "the job that the file was made for"
+            )
+        return table.units
+    if asked is not None:
+        return parse_units(asked, job.machine, job.cut, table.period)
+    if not (table.advance > 0 and job.machine.pitch > 0):
+        raise InputError(
+            f"{place}: the slave advances by {table.advance!r} in a cycle, so its unit cannot be told from the pitch; "
+            "say it with --units, for example --units cycle,mm (cycle: the master's unit is that in which the cut length "
+            "is the table's period)"
+        )
+    return Units(
+        Unit("master unit", job.cut.length / table.period),
+        Unit("slave unit", job.machine.pitch / table.advance, unit),
+    )
+
+
+def _aligned(rebuilt: CamProfile, job: Job) -> tuple[CamProfile, tuple[str, ...]]:
+    """Begin the cycle where it fits the job's sync zone best, and put the slave's zero where the job has it.
+
+    Parameters
+    ----------
+    rebuilt
+        One cycle from master 0 on, in SI units.
+
+    Returns
+    -------
+    (profile, notes)
+        The cycle, and where it begins in the file if that is not at the file's first point.
+    """
+    cut, machine = job.cut, job.machine
+    sync = machine.sync_profile(cut)
+    in_zone = np.linspace(0.0, cut.sync_zone, _IN_ZONE)
+    meant = sync(in_zone)
+    zone = (cut.return_start + cut.return_zone) % cut.length
+
+    def misfit(begin: FloatArray) -> FloatArray:
+        """Half the range of the slave's error in the zone, for cycles that begin at these places."""
+        x = (begin[:, None] + zone + in_zone) * (rebuilt.length / cut.length)
+        off = rebuilt(x, outside="repeat") - meant
+        return np.asarray(0.5 * np.ptp(off, axis=1))
+
+    lever = float(np.abs(machine.tool_ratio(machine.sync_start(cut) + meant)).max())
+    notes: tuple[str, ...] = ()
+    as_it_is = float(misfit(np.zeros(1))[0]) * lever
+    if as_it_is > cut.sync_tolerance:
+        begins = np.linspace(0.0, cut.length, _BEGINS, endpoint=False)
+        found = misfit(begins) * lever
+        good = found <= max(2.0 * float(found.min()), _PLATEAU * cut.sync_tolerance)
+        begin = float(begins[_middle_of_run(good)])
+        if float(misfit(np.array([begin]))[0]) * lever < 0.5 * as_it_is and begin > 0.0:
+            rebuilt = rebuilt.roll(begin * rebuilt.length / cut.length)
+            note = (
+                f"the file's master zero is not the job's: the job's cycle begins {begin * 1e3:.4g} mm into the file's, "
+                "where the cam fits the sync zone best ([output] origin says which zero is meant)"
+            )
+            notes = (note,)
+    x = (zone + in_zone) * (rebuilt.length / cut.length)
+    off = rebuilt(x, outside="repeat") - meant
+    wanted = (
+        machine.pitch - sync.advance if cut.origin == "return" else machine.pitch - float(sync(0.5 * cut.sync_zone))
+    )
+    return rebuilt.shift(0.0, wanted - 0.5 * float(off.max() + off.min())), notes
+
+
+_BEGINS = 3600
+_IN_ZONE = 65
+_PLATEAU = 0.1
+"""Beginnings that miss by less than this part of the sync tolerance are as good as each other."""
+
+
+def _middle_of_run(good: NDArray[np.bool_]) -> int:
+    """Find the middle of the longest run of true entries of a ring."""
+    if good.all():
+        return 0
+    turned = int(np.argmin(good))
+    ring = np.roll(good, -turned)
+    edges = np.diff(np.concatenate([[0], ring.astype(np.int8), [0]]))
+    starts, ends = np.nonzero(edges == 1)[0], np.nonzero(edges == -1)[0]
+    longest = int(np.argmax(ends - starts))
+    return int((starts[longest] + ends[longest] - 1) // 2 + turned) % len(good)
+
+
+def _sampled(cycle: CamProfile, job: Job) -> Sampled:
+    """Measure the differences of a cycle at the servo's sample time."""
+    from validation.tables import differences, sampled_peaks
+
+    cut = job.cut
+    (acceleration, _), (jerk, _) = sampled_peaks(cycle, cut, job.servo)
+    x = cut.return_start + cut.return_zone * (np.arange(_RMS_PLACES) + 0.5) / _RMS_PLACES
+    step = cut.line_speed * job.servo.sample_time
+    rms = [
+        float(np.sqrt(np.mean(differences(cycle, x - 0.5 * order * step + cut.length, order, cut, job.servo) ** 2)))
+        for order in (2, 3)
+    ]
+    return Sampled(acceleration, rms[0], jerk, rms[1])
+
+
+_RMS_PLACES = 20_000
+
+
+def audit_answer(result: Audit, path: Path, files: Sequence[Path] = ()) -> dict[str, Any]:
     """Answer of ``camwright audit``."""
+    job = result.job
     return {
         "job": job.name,
         "file": str(path),
         "target": result.target.name,
         "knots": result.table.points,
-        "notes": list(result.table.notes),
+        "notes": list(result.notes),
         "profile": validate_answer(job, path, result.report)["profile"],
-        "optimum": validate_answer(job, path, result.optimum_report)["profile"],
-        "saving": {
-            "peak_acceleration_rel": result.saving("peak_acceleration"),
-            "rms_acceleration_rel": result.saving("rms_acceleration"),
+        "optimum": validate_answer(result.optimum_job, path, result.optimum_report)["profile"],
+        "saving": {f"{name}_rel": result.saving(name) for name in ("peak_acceleration", "rms_acceleration")},
+        "saving_by": "differences at the sample time" if result.is_sampled("peak_acceleration") else "exact",
+        "sampled": {
+            "sample_time_s": job.servo.sample_time,
+            "slave_unit": job.machine.slave_unit,
+            "profile": asdict(result.sampled),
+            "optimum": asdict(result.optimum_sampled),
         },
         "checks": [asdict(check) for check in result.judgement.checks],
         "passed": result.judgement.passed,
+        "files": [str(file) for file in files],
     }

@@ -183,8 +183,8 @@ def curve_field() -> tuple[BeforeValidator, WithJsonSchema]:
                 )
             if points and pair[1] > points[-1][1]:
                 raise refusal(
-                    f"{shown(value)}: point {number}: {shown(point[1])} is above {shown(before[1])}, the torque at a lower speed; a motor's "
-                    f"torque does not grow with its speed, give {shown(before[1])} at most"
+                    f"{shown(value)}: point {number}: {shown(point[1])} is above {shown(before[1])}, the torque at a lower speed; "
+                    f"a motor's torque does not grow with its speed, give {shown(before[1])} at most"
                 )
             points.append(pair)
         return tuple(points)

@@ -160,15 +160,17 @@ def feed_delay(feed: Moves, bend: Moves, turn: FloatArray, drive: BenderDrive) -
     drive
         The axes.
     """
-    angle = bend.distance
-    clear = _reaching(bend, np.maximum(angle - drive.play, 0.0))
     part = np.linspace(0.0, 1.0, _POINTS)
-    t = clear[:, None] * part
-    allowed = clearance(angle[:, None] - bend.position(t), turn[:, None], drive.finger_radius)
+    bends, which = _different(bend)
+    angle = bends.distance
+    t = _reaching(bends, np.maximum(angle - drive.play, 0.0))[:, None] * part
+    finger, t = (angle[:, None] - bends.position(t))[which], t[which]
+    allowed = clearance(finger, turn[:, None], drive.finger_radius)
     # no further than at any later time: the feed never runs back
     allowed = np.minimum.accumulate(allowed[:, ::-1], axis=1)[:, ::-1]
     moment = feed.time[:, None] * part
-    reached = feed.position(moment)
+    feeds, which = _different(feed)
+    reached = feeds.position(feeds.time[:, None] * part)[which]
     index = _last_not_above(reached, allowed)
     free = allowed >= reached[:, -1:]  # the whole feed fits
     # at the end of each interval of time the feed may be where the start of that interval allows
@@ -183,10 +185,16 @@ def clearance(finger: FloatArray, turn: FloatArray, radius: float) -> FloatArray
     return np.asarray(radius * np.maximum(np.minimum(np.cos(finger), flank), 0.0), dtype=np.float64)
 
 
+def _different(moves: Moves) -> tuple[Moves, NDArray[np.int64]]:
+    """The different ones among the moves of an axis, told apart by their durations, and which of them each move is."""
+    _, first, which = np.unique(moves.time, return_index=True, return_inverse=True)
+    return moves.take(first.astype(np.int64)), which.astype(np.int64)
+
+
 def _reaching(moves: Moves, distance: FloatArray) -> FloatArray:
     """Time at which each move has covered a distance (s); its duration if it never does."""
     low, high = np.zeros(len(distance)), moves.time.copy()
-    for _ in range(40):
+    for _ in range(36):
         middle = 0.5 * (low + high)
         short = moves.position(middle[:, None])[:, 0] < distance
         low, high = np.where(short, middle, low), np.where(short, high, middle)

@@ -93,7 +93,7 @@ def test_horizontal_sync_beyond_80_degrees_is_refused_with_the_longest_zone() ->
     longest = 2 * knife.radius * math.sin(math.radians(80))
     knife.sync_start(replace(CUT, sync_zone=longest * (1 - 1e-12)))
     with pytest.raises(InputError, match=rf"beyond ±80° .* the longest possible is {longest * 1e3:.6g} mm"):
-        knife.sync_start(replace(CUT, sync_zone=longest * 1.001))
+        knife.sync_profile(replace(CUT, sync_zone=longest * 1.001))
 
 
 def test_the_carriage_s_zone_lies_in_the_middle_of_the_stroke() -> None:

@@ -10,10 +10,18 @@ import pytest
 
 from profiles.cycle import Cut
 from profiles.errors import InputError
-from profiles.machines import RotaryKnife
+from profiles.machines import CrankSlider, LinearCarriage, RotaryKnife
 from profiles.polynomial import CamProfile
-from profiles.returns import BASELINES, baseline
-from validation.motion import Motion, greatest_jump, greatest_magnitude, measure_motion, slope_scale, sync_ratio_error
+from profiles.returns import BASELINES, baseline, slave_at_start
+from validation.motion import (
+    Motion,
+    greatest_jump,
+    greatest_magnitude,
+    measure_motion,
+    measure_tool,
+    slope_scale,
+    sync_ratio_error,
+)
 
 KNIFE = RotaryKnife(0.4)
 CUT = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4)
@@ -135,3 +143,44 @@ def test_a_profile_of_another_cut_is_refused_with_both_lengths() -> None:
         measure_motion(profile, KNIFE, replace(CUT, length=0.61))
     with pytest.raises(InputError, match=r"from 0\.1 m to 0\.7 m"):
         measure_motion(profile.shift(0.1), KNIFE, CUT)
+
+
+CRANK = CrankSlider(0.15, 0.6, 0.02, sync_at=1.5)
+
+
+@pytest.mark.parametrize("origin", ["return", "cut"])
+def test_the_carriage_of_a_crank_against_differences(origin: str) -> None:
+    cut = replace(CUT, length=0.9, sync_zone=0.1, origin=origin)
+    cycle = baseline("poly_3_4_5", CRANK, cut)
+    tool, slave = measure_tool(cycle, CRANK, cut), measure_motion(cycle, CRANK, cut)
+    h = 1e-5
+    x = np.linspace(2 * h, cut.length - 2 * h, 20_001)
+    start = slave_at_start(CRANK, cut)
+    at = [CRANK.tool(start + cycle(x + k * h)) for k in (-1, 0, 1)]
+    velocity = cut.line_speed * (at[2] - at[0]) / (2 * h)
+    acceleration = cut.line_speed**2 * (at[2] - 2 * at[1] + at[0]) / h**2
+    assert tool.peak_speed == pytest.approx(np.abs(velocity).max(), rel=1e-6)
+    assert tool.min_speed == pytest.approx(velocity.min(), rel=1e-6)
+    assert tool.peak_acceleration == pytest.approx(np.abs(acceleration).max(), rel=1e-3)
+    assert slave.min_speed > 0 > tool.min_speed
+    assert tool.sync_ratio_error == slave.sync_ratio_error
+    assert tool.sync_ratio_error <= 1e-12
+    # the jerk by the chain rule
+    y, step = start + cycle(x), 1e-6
+    third = (CRANK.tool_curvature(y + step) - CRANK.tool_curvature(y - step)) / (2 * step)
+    ratio, slope = cycle(x, 1), cycle(x, 2)
+    jerk = CRANK.tool_ratio(y) * cycle(x, 3) + 3 * CRANK.tool_curvature(y) * ratio * slope + third * ratio**3
+    assert tool.peak_jerk == pytest.approx(cut.line_speed**3 * np.abs(jerk).max(), rel=2e-3)
+
+
+def test_a_slave_in_metres_is_its_own_tool() -> None:
+    cycle = baseline("cycloid", KNIFE, CUT)
+    assert measure_tool(cycle, KNIFE, CUT) == measure_motion(cycle, KNIFE, CUT)
+
+
+def test_sync_ratio_is_judged_against_what_is_asked() -> None:
+    carriage = LinearCarriage(0.6)
+    fast = replace(CUT, sync_ratio=1.05)
+    assert measure_motion(baseline("cycloid", carriage, fast), carriage, fast).sync_ratio_error <= 1e-12
+    found = measure_motion(baseline("cycloid", carriage, CUT), carriage, fast)
+    assert found.sync_ratio_error == pytest.approx(1 - 1 / 1.05, rel=1e-9)

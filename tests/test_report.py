@@ -10,7 +10,8 @@ import pytest
 from profiles.cycle import Cut
 from profiles.errors import InputError
 from profiles.limits import Limits
-from profiles.machines import RotaryKnife
+from profiles.machines import CrankSlider, LinearCarriage, Machine, RotaryKnife
+from profiles.motor import MotorCurve
 from profiles.polynomial import CamProfile
 from profiles.returns import baseline
 from profiles.servo import Servo
@@ -159,3 +160,82 @@ def test_a_cut_shorter_than_the_physical_bound_fails_it() -> None:
 def test_another_cut_s_profile_is_refused() -> None:
     with pytest.raises(InputError, match=r"runs over the master from 0\.0 m to 0\.6 m"):
         validate(baseline("double_s", KNIFE, CUT), KNIFE, replace(CUT, length=0.7), LIMITS, PAPER)
+
+
+CARRIAGE = LinearCarriage(0.7, home=0.1, mass=30.0, travel_per_turn=0.04)
+CRANK = CrankSlider(0.15, 0.6, 0.02, 0.5, 20.0, 10.0, 1.5)
+QUICK = Servo(1000.0, 0.8, 120.0, 0.0005, 1.0)
+OPEN = Limits(100.0, 1e4, 1e6)
+SHORT = replace(CUT, sync_zone=0.1, shear_zone_at=0.05)
+
+
+@pytest.mark.parametrize(
+    "machine",
+    [CARRIAGE, CRANK, replace(KNIFE, sync="horizontal"), RotaryKnife(0.8, blades=2, sync="horizontal")],
+    ids=["carriage", "crank", "horizontal", "two blades"],
+)
+@pytest.mark.parametrize("origin", ["return", "cut"])
+def test_a_quintic_passes_every_check_of_its_machine(machine: Machine, origin: str) -> None:
+    cut = replace(SHORT, origin=origin, sync_ratio=1.03, sync_tolerance=1e-3)
+    limits = replace(OPEN, reversal=isinstance(machine, RotaryKnife))
+    report = validate(baseline("poly_3_4_5", machine, cut), machine, cut, limits, QUICK)
+    assert failed(report) == {}
+    names = {check.name for check in report.checks}
+    assert ("stroke" in names) == isinstance(machine, LinearCarriage)
+    assert not names & {"minimum_cut_length", "physical_cut_length"}  # closed forms of tangential knives
+    units = {check.name: check.unit for check in report.checks}
+    assert units["speed"] == ("rad/s" if isinstance(machine, CrankSlider) else "m/s")
+    assert units["ratio_slope_joins"] == ("rad/m^2" if isinstance(machine, CrankSlider) else "1/m")
+    assert (report.tool == report.motion) == (machine.slave_unit == "m")
+    assert (report.tangential_mismatch is None) == (not isinstance(machine, RotaryKnife))
+
+
+def test_a_carriage_that_leaves_its_stroke_fails_at_the_place() -> None:
+    cycle = baseline("poly_3_4_5", CARRIAGE, SHORT)
+    way = cycle.extrema(0)[1].value - cycle.extrema(0)[0].value
+    check = failed(validate(cycle, replace(CARRIAGE, stroke=0.99 * way), SHORT, OPEN, QUICK))["stroke"]
+    assert check.limit == pytest.approx(0.99 * way / 2)
+    assert check.value == pytest.approx(way / 2, rel=1e-9)
+    assert float(cycle(check.at, 1)) == pytest.approx(0.0, abs=1e-6)
+    assert "stroke" not in failed(validate(cycle, replace(CARRIAGE, stroke=1.001 * way), SHORT, OPEN, QUICK))
+
+
+def test_a_carriage_may_run_back_whatever_the_limits_say() -> None:
+    cycle = baseline("poly_3_4_5", CARRIAGE, SHORT)
+    assert "reversal" not in failed(validate(cycle, CARRIAGE, SHORT, OPEN, QUICK))
+    slow = -0.9 * SHORT.line_speed * cycle.extrema(1)[0].value
+    assert {"speed", "reversal"} <= set(failed(validate(cycle, CARRIAGE, SHORT, replace(OPEN, speed=slow), QUICK)))
+
+
+def test_minimum_lengths_with_over_speed_are_those_of_a_faster_line() -> None:
+    fast = replace(CUT, sync_ratio=1.1)
+    report = validate(baseline("cycloid", KNIFE, fast), KNIFE, fast, LIMITS, PAPER)
+    check = {check.name: check for check in report.checks}["minimum_cut_length"]
+    zone = report.servo.settling + fast.shear_zone
+    # eq. 8 with the slave's travel of 1.1 l_s in the sync zone
+    assert check.value == pytest.approx(zone + fast.line_speed * (KNIFE.pitch - 1.1 * zone) / LIMITS.speed, rel=1e-12)
+
+
+def test_a_motor_s_curve_is_judged_where_it_is_given() -> None:
+    cycle = baseline("poly_3_4_5", CRANK, SHORT)
+    motor = validate(cycle, CRANK, SHORT, OPEN, QUICK).motor
+    torque, speed = motor.peak_torque, motor.peak_speed
+
+    def faults(points: tuple[tuple[float, float], ...]) -> dict[str, Check]:
+        return failed(validate(cycle, CRANK, SHORT, replace(OPEN, motor=MotorCurve(points)), QUICK))
+
+    assert faults(((0.0, torque), (speed, torque))) == {}
+    weak = faults(((0.0, 0.9 * torque), (speed, 0.9 * torque)))
+    assert set(weak) == {"motor_torque"}
+    assert weak["motor_torque"].value == pytest.approx(torque, rel=1e-9)
+    assert weak["motor_torque"].limit == pytest.approx(0.9 * torque, rel=1e-12)
+    assert set(faults(((0.0, torque), (0.9 * speed, torque)))) == {"motor_speed", "motor_torque"}
+
+
+def test_a_motor_s_curve_and_a_jump_of_the_speed() -> None:
+    limits = replace(OPEN, motor=MotorCurve(((0.0, 1.0), (1e4, 1.0))))
+    linear = baseline("linear_return", CARRIAGE, SHORT)
+    assert failed(validate(linear, CARRIAGE, SHORT, limits, QUICK))["motor_torque"].value is None
+    names = {check.name for check in validate(linear, replace(CARRIAGE, mass=0.0), SHORT, limits, QUICK).checks}
+    assert "motor_speed" in names
+    assert "motor_torque" not in names  # the job does not say what the motor moves

@@ -10,9 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from profiles.cycle import Cut
-from profiles.machines import RotaryKnife
+from profiles.machines import CrankSlider, RotaryKnife
 from profiles.polynomial import CamProfile
-from profiles.returns import baseline
+from profiles.returns import baseline, slave_at_start
 from profiles.servo import Servo
 from validation.response import measure_response, servo_response, sync_error
 from validation.simulation import ServoRun, simulate
@@ -162,3 +162,36 @@ def test_sweep_tells_unstable_servos_apart(monkeypatch: pytest.MonkeyPatch) -> N
     assert found.unstable == (wild,)
     assert [case.response is None for case in found.cases] == [True, False]
     assert found.settling[0] == found.settling[1] == found.responses[0].settling
+
+
+def test_errors_of_a_crank_are_those_of_its_carriage() -> None:
+    crank = CrankSlider(0.15, 0.6, 0.02, sync_at=1.2)
+    cut = replace(CUT, length=0.9, sync_zone=0.1, shear_zone_at=0.05)
+    off = 1e-3  # an axis that is ahead by a milliradian throughout
+    cycle = baseline("poly_3_4_5", crank, cut)
+    run = simulate(cycle, cut, PAPER)
+    position, ratio = (cycle(run.master, order, outside="repeat") for order in (0, 1))
+    ahead = replace(run, command=position, axis=position + off, axis_ratio=ratio)
+    zone = cut.return_zone
+    master, error, slope = sync_error(ahead, cycle, crank, cut, zone + 0.01, zone + 0.09)
+    alpha = crank.sync_start(cut) + crank.sync_profile(cut)(master - zone)
+    assert error == pytest.approx(crank.tool(alpha + off) - crank.tool(alpha), abs=1e-9)
+    per_material = crank.sync_profile(cut)(master - zone, 1)
+    assert slope == pytest.approx((crank.tool_ratio(alpha + off) - crank.tool_ratio(alpha)) * per_material, abs=1e-6)
+    response = measure_response(ahead, cycle, crank, cut)
+    angle = slave_at_start(crank, cut) + position
+    assert response.peak_following_error == pytest.approx(
+        np.abs(crank.tool(angle + off) - crank.tool(angle)).max(), rel=1e-9
+    )
+
+
+def test_response_of_two_blades_in_horizontal_sync_does_not_depend_on_the_origin() -> None:
+    knife = RotaryKnife(0.8, blades=2, sync="horizontal")
+    cut = replace(CUT, length=0.5)
+    other = replace(cut, origin="cut")
+    quick = Servo(1000.0, 0.8, 120.0, 0.0005, 1.0)
+    here = servo_response(baseline("poly_3_4_5", knife, cut), knife, cut, quick)
+    there = servo_response(baseline("poly_3_4_5", knife, other), knife, other, quick)
+    assert here.crossing is not None
+    for name in ("crossing", "overshoot", "peak_following_error", "shear_zone_error"):
+        assert getattr(there, name) == pytest.approx(getattr(here, name), rel=1e-7)

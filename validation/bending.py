@@ -23,7 +23,7 @@ class BendingProof:
     points
         Shape ``(m + 2, 2)``: the bent rule: start, bends, end (m), laid with its start on the start of the outline.
     deviation
-        Largest distance between the bent rule and the outline (m).
+        Largest distance between the bent rule and the drawing (m).
     worst
         Where on the bent rule that is (m), shape ``(2,)``.
     closing_error
@@ -80,7 +80,8 @@ def compare(points: FloatArray, plan: BendPlan) -> tuple[float, FloatArray]:
 
     Corners and ends are compared point with point; that bounds the distance of the straight lines between them. Arcs
     are compared by radius: at their bends, and where a side of the rule comes nearest to the arc's centre. Joints
-    that are not bent are compared with the side that passes them.
+    that are not bent are compared with the side that passes them. Where the outline's lines stand for curves, their
+    distance from these is added to that of corners, ends and joints.
 
     Parameters
     ----------
@@ -96,9 +97,9 @@ def compare(points: FloatArray, plan: BendPlan) -> tuple[float, FloatArray]:
     """
     outline = plan.outline
     corner = np.isinf(plan.radii)
-    parts = [(np.hypot(*(points[-1:] - outline.points[-1:]).T), points[-1:])]
+    parts = [(np.hypot(*(points[-1:] - outline.points[-1:]).T) + outline.flattening, points[-1:])]
     at = points[1:-1][corner]
-    parts.append((np.hypot(*(at - outline.points[plan.segments[corner]]).T), at))
+    parts.append((np.hypot(*(at - outline.points[plan.segments[corner]]).T) + outline.flattening, at))
     arc = np.flatnonzero(~corner)
     if len(arc):
         centre, radius = outline.centres[plan.segments[arc]], plan.radii[arc]
@@ -111,7 +112,7 @@ def compare(points: FloatArray, plan: BendPlan) -> tuple[float, FloatArray]:
     if len(joint):
         side = np.searchsorted(plan.segments, joint, side="left")
         foot = _nearest(outline.points[joint], points[side], points[side + 1])
-        parts.append((np.hypot(*(foot - outline.points[joint]).T), foot))
+        parts.append((np.hypot(*(foot - outline.points[joint]).T) + outline.flattening, foot))
     distance = np.concatenate([part[0] for part in parts])
     place = np.vstack([part[1] for part in parts])
     i = int(np.argmax(distance))

@@ -9,7 +9,8 @@ import numpy as np
 
 from profiles.cycle import Cut
 from profiles.machines import Machine
-from profiles.polynomial import CamProfile, FloatArray
+from profiles.motor import MotorCurve
+from profiles.polynomial import CamProfile, Extremum, FloatArray
 from profiles.returns import slave_at_start
 from validation.composed import compose, integral, recut, split, zeros
 from validation.motion import greatest_magnitude, is_steady, require_period
@@ -114,6 +115,38 @@ def motor_torque(profile: CamProfile, machine: Machine, cut: Cut) -> CamProfile:
     table = torque.coefficients.copy()
     table[:, 0] += machine.friction / ratio * direction
     return CamProfile(torque.breaks.copy(), table)
+
+
+def greatest_load(profile: CamProfile, machine: Machine, cut: Cut, curve: MotorCurve) -> tuple[Extremum, float]:
+    """Torque where it exceeds what the motor gives at its speed by most, or comes nearest to it, and what the motor gives there.
+
+    Between the curve's points, and where neither torque nor velocity changes its sign, torque less available torque is a polynomial: its
+    greatest value is exact.
+
+    Returns
+    -------
+    (torque, available)
+        Magnitude of the torque (N·m) and its master position (m); torque available there (N·m).
+    """
+    torque = motor_torque(profile, machine, cut)
+    pace = cut.line_speed * machine.motor_ratio
+    velocity = CamProfile(profile.breaks.copy(), pace * profile.coefficients[:, 1:] * np.arange(1, profile.degree + 1))
+    places = [zeros(torque), zeros(velocity)]
+    places += [zeros(velocity.shift(slave=-way * speed)) for speed, _ in curve.points[1:] for way in (1, -1)]
+    parts = split(torque, np.unique(np.concatenate(places)))
+    pull, run = parts.coefficients, recut(velocity, parts.breaks).coefficients
+    middle = 0.5 * (parts.breaks[:-1] + parts.breaks[1:])
+    speeds, torques = np.array(curve.points).T
+    segment = np.searchsorted(speeds, np.abs(velocity(middle)), side="right") - 1
+    fall = np.append(np.diff(torques) / np.diff(speeds), 0.0)[segment]
+    base = np.where(segment < len(speeds) - 1, torques[segment] - fall * speeds[segment], 0.0)
+    over = np.zeros((parts.pieces, max(pull.shape[1], run.shape[1])))
+    over[:, : pull.shape[1]] = np.sign(parts(middle))[:, None] * pull
+    over[:, : run.shape[1]] -= (fall * np.sign(velocity(middle)))[:, None] * run
+    over[:, 0] -= base
+    worst = CamProfile(parts.breaks.copy(), over).extrema(0)[1]
+    available = float(curve.torque(float(velocity(worst.at))))
+    return Extremum(worst.value + available, worst.at), available
 
 
 def _direction(one_way: CamProfile) -> FloatArray:

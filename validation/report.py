@@ -29,7 +29,7 @@ from validation.motion import (
     slope_scale,
     sync_ratio_error,
 )
-from validation.motor import MotorMeasures, measure_motor
+from validation.motor import MotorMeasures, greatest_load, measure_motor, moves_something
 from validation.response import ServoResponse, servo_response
 from validation.sweep import Sweep, servo_sweep
 
@@ -54,7 +54,7 @@ class ValidationReport:
     motion, tool
         Measures of the slave, and of the tool; the same where the slave is counted in m.
     motor
-        What the profile asks of the motor: information, judged by no check.
+        What the profile asks of the motor; judged where the limits know the motor's torque-speed curve.
     tangential_mismatch
         For a rotary knife, the share of the line speed by which a blade in tangential sync falls short of it along the material at the ends
         of the sync zone; horizontal sync has none. None for other machines. Information, judged by no check.
@@ -100,13 +100,14 @@ def validate(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits, se
         The profile does not run over ``[0, x_c]``, the machine cannot be in sync over the zone, or the servo's memory is too long to
         simulate.
     """
-    motion = measure_motion(profile, machine, cut)
+    motion, motor = measure_motion(profile, machine, cut), measure_motor(profile, machine, cut)
     radius = spectral_radius(servo)
     response = servo_response(profile, machine, cut, servo) if radius < 1.0 else None
     checks = (
         *_closure(profile, machine),
         *_motion(profile, machine, cut, limits, motion),
         *_stroke(profile, machine, cut),
+        *_motor(profile, machine, cut, limits, motor),
         Check("servo_stability", radius < 1.0, radius, 1.0, "1", None, "largest closed-loop pole in the z-plane (S1)"),
         *_servo(response, cut),
         *_minimum_lengths(response, machine, cut, limits),
@@ -115,7 +116,7 @@ def validate(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits, se
         checks=checks,
         motion=motion,
         tool=measure_tool(profile, machine, cut),
-        motor=measure_motor(profile, machine, cut),
+        motor=motor,
         tangential_mismatch=machine.tangential_mismatch(cut) if isinstance(machine, RotaryKnife) else None,
         servo=response,
         sweep=servo_sweep(profile, machine, cut, servo),
@@ -235,6 +236,38 @@ def _stroke(profile: CamProfile, machine: Machine, cut: Cut) -> list[Check]:
             "greatest distance of the carriage from the middle of its stroke",
         )
     ]
+
+
+def _motor(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits, motor: MotorMeasures) -> list[Check]:
+    """Whether the motor can do it, where its torque-speed curve is given; its torque where the job says what it moves."""
+    curve = limits.motor
+    if curve is None:
+        return []
+    top, source = (
+        curve.top_speed,
+        "torque against what the motor gives at its speed, where that is nearest or exceeded most",
+    )
+    checks = [
+        _at_most(
+            "motor_speed",
+            motor.peak_speed,
+            top,
+            ALLOWANCE * top,
+            "rad/s",
+            greatest_magnitude(profile, 1).at,
+            "peak speed of the motor, exact, against the end of its torque-speed curve",
+        )
+    ]
+    if motor.peak_torque is not None:
+        torque, available = greatest_load(profile, machine, cut, curve)
+        checks.append(
+            _at_most("motor_torque", torque.value, available, ALLOWANCE * curve.points[0][1], "N m", torque.at, source)
+        )
+    elif moves_something(machine):
+        checks.append(
+            Check("motor_torque", False, None, curve.points[0][1], "N m", greatest_jump(profile, 1).at, source)
+        )
+    return checks
 
 
 def _servo(response: ServoResponse | None, cut: Cut) -> list[Check]:

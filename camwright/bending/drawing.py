@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from camwright.bending.dxf_entities import MOST_SEGMENTS, Piece, piece_of, require_bounded, walk
+from camwright.bending.dxf_curves import MOST_SEGMENTS
+from camwright.bending.dxf_entities import Piece, piece_of, require_bounded, walk
 from camwright.bending.dxf_guard import MOST_ENTITIES, look_at
 from camwright.bending.job import UNITS
 from profiles.bender.outline import Outline
@@ -105,7 +106,10 @@ def read_drawing(
         )
     if sum(len(piece.bulges) for piece in pieces) > MOST_SEGMENTS:
         raise InputError(f"{path}: more than {MOST_SEGMENTS} segments; split the drawing or allow more flattening")
-    outlines = [Outline(unit * p.points, p.bulges, f"{path.name}: {p.name}") for p in join(pieces, gap / unit)]
+    outlines = []
+    for piece in join(pieces, gap / unit):
+        name = f"{path.name}: {piece.name}"
+        outlines.append(Outline(unit * piece.points, piece.bulges, name, unit * piece.flattening))
     return Drawing(tuple(outlines), warnings)
 
 
@@ -193,7 +197,8 @@ def _chained(chain: list[Piece], names: list[str], gap: float) -> Piece:
     if len(empty):
         x, y = points[empty[0]]
         raise InputError(f"{name}: an entity at ({x:g}, {y:g}) is not longer than the gap that is closed; remove it")
-    return Piece(points, np.concatenate([piece.bulges for piece in chain]), name)
+    flattening = max(piece.flattening for piece in chain)
+    return Piece(points, np.concatenate([piece.bulges for piece in chain]), name, flattening)
 
 
 def _cell(place: np.ndarray[Any, Any], size: float) -> tuple[int, int]:

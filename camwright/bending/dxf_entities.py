@@ -10,10 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from camwright.bending.dxf_curves import polyline_of
 from profiles.errors import InputError
 from profiles.polynomial import FloatArray
 
-MOST_SEGMENTS = 200_000
+_FRAME = 16
+"""Flag of a vertex that frames a fitted spline and is no part of the line."""
+
 _PLANE = 1e-9
 """Difference of height, in drawing units, up to which an entity lies in a plane."""
 
@@ -28,11 +31,14 @@ class Piece:
         As in `profiles.bender.outline.Outline`, in drawing units.
     name
         Kind, handle and layer of the entity.
+    flattening
+        Largest distance of the piece from the curve that it stands for, in drawing units; 0 for lines and arcs.
     """
 
     points: FloatArray
     bulges: FloatArray
     name: str
+    flattening: float = 0.0
 
     @property
     def closed(self) -> bool:
@@ -41,7 +47,7 @@ class Piece:
 
     def reverse(self) -> Piece:
         """Return the same stretch from its other end."""
-        return Piece(self.points[::-1], -self.bulges[::-1], self.name)
+        return Piece(self.points[::-1], -self.bulges[::-1], self.name, self.flattening)
 
 
 def describe(entity: Any) -> str:
@@ -71,10 +77,10 @@ def piece_of(entity: Any, flattening: float) -> Piece | None:
         return None
     name = describe(entity)
     try:
-        points, bulges = _READERS[kind](entity, flattening)
-    except (ArithmeticError, ValueError) as error:  # what the library makes of NaN, infinite or missing numbers
+        points, bulges, distance = _READERS[kind](entity, flattening)
+    except (ArithmeticError, ValueError, LookupError) as error:  # what the library makes of NaN or missing numbers
         raise InputError(f"{name}: its geometry cannot be used: {error}") from error
-    piece = Piece(points, bulges, name)
+    piece = Piece(points, bulges, name, distance)
     if not (np.isfinite(points).all() and np.isfinite(bulges).all()):
         raise InputError(f"{name}: a coordinate or bulge is NaN or infinite; draw the entity again")
     if len(bulges) == 0:
@@ -106,7 +112,9 @@ def _sense(entity: Any) -> float:
     return math.copysign(1.0, direction.z)
 
 
-def _polyline(points: list[tuple[float, float]], bulges: list[float], closed: bool, sense: float) -> tuple[Any, Any]:
+def _polyline(
+    points: list[tuple[float, float]], bulges: list[float], closed: bool, sense: float
+) -> tuple[Any, Any, float]:
     if closed and len(points) > 1:
         if points[-1] == points[0]:
             bulges = bulges[:-1]
@@ -114,42 +122,44 @@ def _polyline(points: list[tuple[float, float]], bulges: list[float], closed: bo
             points = [*points, points[0]]
     else:
         bulges = bulges[:-1]
-    return np.array(points, dtype=np.float64).reshape(-1, 2) * [sense, 1.0], np.array(bulges, dtype=np.float64) * sense
+    places = np.array(points, dtype=np.float64).reshape(-1, 2) * [sense, 1.0]
+    return places, np.array(bulges, dtype=np.float64) * sense, 0.0
 
 
-def _lwpolyline(entity: Any, _: float) -> tuple[Any, Any]:
+def _lwpolyline(entity: Any, _: float) -> tuple[Any, Any, float]:
     rows = entity.get_points("xyb")
     return _polyline([(x, y) for x, y, _ in rows], [b for _, _, b in rows], bool(entity.closed), _sense(entity))
 
 
-def _old_polyline(entity: Any, _: float) -> tuple[Any, Any]:
+def _old_polyline(entity: Any, _: float) -> tuple[Any, Any, float]:
     if entity.is_polygon_mesh or entity.is_poly_face_mesh:
         raise InputError(f"{describe(entity)}: it is a mesh, not a line; remove it")
-    places = [vertex.dxf.location for vertex in entity.vertices]
+    vertices = [vertex for vertex in entity.vertices if not vertex.dxf.flags & _FRAME]
+    places = [vertex.dxf.location for vertex in vertices]
     _flat(describe(entity), [place.z for place in places])
     sense = 1.0 if entity.is_3d_polyline else _sense(entity)
-    bulges = [vertex.dxf.get("bulge", 0.0) for vertex in entity.vertices]
+    bulges = [vertex.dxf.get("bulge", 0.0) for vertex in vertices]
     return _polyline([(place.x, place.y) for place in places], bulges, bool(entity.is_closed), sense)
 
 
-def _line(entity: Any, _: float) -> tuple[Any, Any]:
+def _line(entity: Any, _: float) -> tuple[Any, Any, float]:
     start, end = entity.dxf.start, entity.dxf.end
     _flat(describe(entity), [start.z, end.z])
-    return np.array([[start.x, start.y], [end.x, end.y]]), np.zeros(1)
+    return np.array([[start.x, start.y], [end.x, end.y]]), np.zeros(1), 0.0
 
 
-def _arc(entity: Any, _: float) -> tuple[Any, Any]:
+def _arc(entity: Any, _: float) -> tuple[Any, Any, float]:
     if not (math.isfinite(entity.dxf.start_angle) and math.isfinite(entity.dxf.end_angle)):
         raise InputError(f"{describe(entity)}: an angle is NaN or infinite; draw the entity again")
     sweep = (entity.dxf.end_angle - entity.dxf.start_angle) % 360.0 or 360.0
     return _round(entity, math.radians(entity.dxf.start_angle), math.radians(sweep))
 
 
-def _circle(entity: Any, _: float) -> tuple[Any, Any]:
+def _circle(entity: Any, _: float) -> tuple[Any, Any, float]:
     return _round(entity, 0.0, 2 * math.pi)
 
 
-def _round(entity: Any, start: float, sweep: float) -> tuple[Any, Any]:
+def _round(entity: Any, start: float, sweep: float) -> tuple[Any, Any, float]:
     sense, centre, radius = _sense(entity), entity.dxf.center, entity.dxf.radius
     if not radius > 0:
         raise InputError(f"{describe(entity)}: radius {radius:g}; it must be positive")
@@ -158,28 +168,18 @@ def _round(entity: Any, start: float, sweep: float) -> tuple[Any, Any]:
     points = np.stack([centre.x + radius * np.cos(angle), centre.y + radius * np.sin(angle)], axis=1)
     if sweep == 2 * math.pi:
         points[-1] = points[0]
-    return points * [sense, 1.0], np.full(parts, sense * math.tan(sweep / parts / 4))
+    return points * [sense, 1.0], np.full(parts, sense * math.tan(sweep / parts / 4)), 0.0
 
 
-def _curve(entity: Any, flattening: float) -> tuple[Any, Any]:
-    places = []
-    for place in entity.flattening(flattening):
-        places.append(place)
-        if len(places) > MOST_SEGMENTS:
-            raise InputError(
-                f"{describe(entity)}: it needs more than {MOST_SEGMENTS} segments; draw it again or allow more "
-                "flattening"
-            )
-    _flat(describe(entity), [place.z for place in places])
-    points = np.array([(place.x, place.y) for place in places], dtype=np.float64).reshape(-1, 2)
-    keep = (
-        np.concatenate([[True], (np.diff(points, axis=0) != 0).any(axis=1)]) if len(points) else np.zeros(0, dtype=bool)
-    )
-    points = points[keep]
-    return points, np.zeros(max(0, len(points) - 1))
+def _curve(entity: Any, flattening: float) -> tuple[Any, Any, float]:
+    places, distance = polyline_of(entity, flattening)
+    _flat(describe(entity), places[:, 2])
+    points = places[:, :2]
+    points = points[np.concatenate([[True], (np.diff(points, axis=0) != 0).any(axis=1)])]
+    return points, np.zeros(len(points) - 1), distance
 
 
-_READERS: dict[str, Callable[[Any, float], tuple[Any, Any]]] = {
+_READERS: dict[str, Callable[[Any, float], tuple[Any, Any, float]]] = {
     "LWPOLYLINE": _lwpolyline,
     "POLYLINE": _old_polyline,
     "LINE": _line,
@@ -188,6 +188,11 @@ _READERS: dict[str, Callable[[Any, float], tuple[Any, Any]]] = {
     "ELLIPSE": _curve,
     "SPLINE": _curve,
 }
+
+
+def _not_placed(entity: Any, reason: str) -> None:
+    if entity.dxftype() in _READERS:
+        raise InputError(f"{describe(entity)}: it cannot be put in the place of its block reference: {reason}")
 
 
 def require_bounded(document: Any, most: int, depth: int) -> None:
@@ -235,4 +240,4 @@ def walk(layout: Any, layer: str | None = None) -> Iterator[tuple[Any, str]]:
             yield entity, own
             continue
         for cell in entity.multi_insert() if entity.mcount > 1 else (entity,):
-            yield from walk(cell.virtual_entities(), own)
+            yield from walk(cell.virtual_entities(skipped_entity_callback=_not_placed), own)

@@ -34,6 +34,7 @@ def sheet_data(result: BentDrawing) -> dict[str, Any]:
         "facts": [
             ["Rule", f"{1e3 * job.height:g} mm × {1e3 * job.thickness:g} mm"],
             ["Arcs", _division_words(job)],
+            ["Ellipses and splines", f"lines within {1e3 * job.flattening:g} mm, counted in the deviation"],
             ["Springback table", f"{table.name}, {table.interpolation}"],
             ["Programs", f"{len(result.outlines)}, {job.flavour} style"],
         ],
@@ -132,7 +133,8 @@ def _write_pdf(data: dict[str, Any], target: Path, figures: list[Path]) -> None:
             shutil.copy(figure, place / f"figure-{i}.svg")
         data = {**data, "figures": min(len(figures), _MOST_OUTLINES)}
         (place / "data.json").write_text(json.dumps(data), encoding="utf-8")
-        typst.compile(str(place / "sheet.typ"), output=str(target), root=folder, timestamp=0)
+        source = str(place / "sheet.typ")
+        typst.compile(source, output=str(target), root=folder, ignore_system_fonts=True, timestamp=0)
 
 
 def _write_html(data: dict[str, Any], target: Path, figures: list[Path]) -> None:

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
     from camwright.audit import Audit
+    from camwright.design_file import StoredDesign
     from camwright.export import Exported
 
 _Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")]
@@ -32,7 +33,10 @@ def export_command(
     points: Annotated[
         int | None, typer.Option("--points", metavar="N", help="Number of points; chosen if left out.")
     ] = None,
-    units: Annotated[str, typer.Option("--units", metavar="M,S", help="Units of master and slave.")] = "mm,mm",
+    units: Annotated[
+        str | None,
+        typer.Option("--units", metavar="M,S", help="Units of master and slave, for example mm,deg; mm if left out."),
+    ] = None,
     max_error: Annotated[str, typer.Option("--max-error", metavar="LENGTH", help="Greatest position error.")] = "1 um",
     out: Annotated[
         Path | None, typer.Option("--out", metavar="DIR", help="Output directory; tables beside DESIGN.")
@@ -45,30 +49,49 @@ def export_command(
 ) -> int:
     """Write a design for drives; every file is read back and judged as the drive will run it."""
     from camwright.answers import to_json
-    from camwright.design_file import read_design
-    from camwright.export import export, export_answer, export_report, parse_targets, parse_units
+    from camwright.export import export_answer, export_possible, export_report
     from camwright.files import staged
+    from camwright.table_options import parse_targets, parse_units
     from camwright.units import quantity
+    from profiles.errors import InputError
     from profiles.tables.knots import Accuracy
 
     names = parse_targets(to)
     accuracy = Accuracy(position=quantity(max_error, "length"))
-    stored = read_design(design)
-    wanted = parse_units(units, stored.job.machine.pitch, stored.job.cut.length)
+    stored = _design(design)
+    job = stored.job
+    wanted = None if units is None else parse_units(units, job.machine, job.cut)
     directory = design.parent / "tables" if out is None else out
     voice = Voice(as_json, quiet)
     with voice.progress(len(names) + 1) as step:
-        results = export(
-            stored.profile, stored.job, names, units=wanted, accuracy=accuracy, points=points, force=force, step=step
+        results, refused = export_possible(
+            stored.profile, job, names, units=wanted, accuracy=accuracy, points=points, force=force, step=step
         )
+        if refused and (to.strip() != "all" or not results):
+            raise InputError(*(f"{name}: {fault}" for name, faults in refused.items() for fault in faults))
         step("writing files")
         with staged(directory) as aside:
             for result in results:
                 for name, text in result.files.items():
                     (aside / name).write_bytes(text.encode())
-            (aside / "report.json").write_bytes(to_json(export_report(results, stored.job)).encode())
-    voice.answer(lambda: export_answer(results), lambda: _export_view(results, directory))
+            (aside / "report.json").write_bytes(to_json(export_report(results, job, refused)).encode())
+    voice.answer(lambda: export_answer(results), lambda: _export_view(results, refused, directory))
     return 0 if all(result.passed for result in results) else 1
+
+
+def _design(path: Path) -> StoredDesign:
+    """Read a design; of a job say how to make one."""
+    from camwright.design_file import MOST_BYTES, parse_design
+    from camwright.files import read_text
+    from profiles.errors import InputError
+
+    text = read_text(path, "design file", MOST_BYTES)
+    if not text.removeprefix("\ufeff").lstrip().startswith("{"):
+        raise InputError(
+            f"{path}: not a design.json; if it is a job, design it first: camwright design {path} --out DIR, then "
+            "camwright export DIR/design.json"
+        )
+    return parse_design(text, str(path))
 
 
 def audit_command(
@@ -77,21 +100,35 @@ def audit_command(
     target: Annotated[
         str | None, typer.Option("--target", metavar="NAME", help="Layout; recognised if left out.")
     ] = None,
-    units: Annotated[str | None, typer.Option("--units", metavar="M,S", help="Units of master and slave.")] = None,
+    units: Annotated[
+        str | None,
+        typer.Option("--units", metavar="M,S", help="Units of master and slave, for files that state none: mm,deg."),
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Output directory; out/<name> if left out.")
+    ] = None,
+    no_figures: Annotated[bool, typer.Option("--no-figures", help="Write no figures.")] = False,
     as_json: _Json = False,
     quiet: _Quiet = False,
 ) -> int:
     """Judge a cam that runs today as its drive runs it, and set it beside the optimum of the same job."""
     from camwright.audit import audit, audit_answer
-    from camwright.export import parse_units
+    from camwright.files import staged
     from camwright.job import load_job
 
     asked = load_job(job)
-    given = None if units is None else parse_units(units, asked.machine.pitch, asked.cut.length)
     voice = Voice(as_json, quiet)
-    with voice.progress(3) as step:
-        result = audit(file, asked, target, given, step)
-    voice.answer(lambda: audit_answer(result, asked, file), lambda: _audit_view(result, file))
+    files: list[Path] = []
+    with voice.progress(4) as step:
+        result = audit(file, asked, target, units, step)
+        if not no_figures:
+            from camwright.plots import audit_figures
+
+            step("writing files")
+            directory = Path("out") / asked.name if out is None else out
+            with staged(directory) as aside:
+                files = [directory / figure.name for figure in audit_figures(result, aside)]
+    voice.answer(lambda: audit_answer(result, file, files), lambda: _audit_view(result, file, files))
     return 0 if result.judgement.passed else 1
 
 
@@ -109,7 +146,7 @@ def targets_command(as_json: _Json = False, quiet: _Quiet = False) -> int:
     return 0
 
 
-def _export_view(results: list[Exported], directory: Path) -> RenderableType:
+def _export_view(results: list[Exported], refused: dict[str, tuple[str, ...]], directory: Path) -> RenderableType:
     from rich.console import Group
     from rich.table import Table
     from rich.text import Text
@@ -123,42 +160,54 @@ def _export_view(results: list[Exported], directory: Path) -> RenderableType:
         table.add_row(
             result.target.name,
             str(result.table.points),
-            f"{off.position * 1e6:.3g}",
+            f"{result.position_error * 1e6:.3g}" + ("" if result.accurate else " *"),
             f"{off.ratio * 1e6:.3g}",
             "unbounded" if off.acceleration is None else f"{off.acceleration * 100:.3g}",
             "passed" if result.passed else "failed: " + ", ".join(failed),
             "\n".join(result.files) or "not released",
         )
     note = "No table was tested on a controller. Check the integrity of the data after every import."
-    return Group(table, Text(f"in {directory}"), Text(note))
+    notes = [Text(f"{name} cannot take this cam: {'; '.join(faults)}") for name, faults in refused.items()]
+    if any(not result.accurate for result in results):
+        notes.insert(0, Text("* the nearest that this target can come; the error asked for is exceeded somewhere"))
+    return Group(table, *notes, Text(f"in {directory}"), Text(note))
 
 
-def _audit_view(result: Audit, file: Path) -> RenderableType:
+def _audit_view(result: Audit, file: Path, files: list[Path]) -> RenderableType:
     from rich.console import Group
     from rich.table import Table
     from rich.text import Text
 
-    from camwright.tables import checks_view
+    from camwright.audit import MEASURES
+    from camwright.tables import checks_view, files_view
 
     table = Table(title=f"{file}: {result.target.title}, {result.table.points} points", title_justify="left")
     for name in ("", "this cam", "optimum", "saving"):
         table.add_column(name, justify="left" if not name else "right")
-    for measure, title in (
-        ("peak_speed", "peak speed (m/s)"),
-        ("peak_acceleration", "peak acceleration (m/s²)"),
-        ("rms_acceleration", "RMS acceleration (m/s²)"),
-        ("peak_jerk", "peak jerk (m/s³)"),
-    ):
-        own, best = getattr(result.report.motion, measure), getattr(result.optimum_report.motion, measure)
-        saving = result.saving(measure)
+    unit = result.job.machine.slave_unit
+    for (measure, title), power in zip(MEASURES.items(), ("/s", "/s²", "/s²", "/s³", "/s³"), strict=True):
+        (own, best), saving = result.pair(measure), result.saving(measure)
+        mark = " *" if result.is_sampled(measure) else ""
         table.add_row(
-            title,
-            "unbounded" if own is None else f"{own:.5g}",
-            "unbounded" if best is None else f"{best:.5g}",
+            f"{title} ({unit}{power}){mark}",
+            f"{own:.5g}",
+            f"{best:.5g}",
             "–" if saving is None else f"{saving * 100:.1f} %",
         )
-    notes = [Text(f"Note: {note}") for note in result.table.notes]
-    return Group(table, checks_view(result.judgement.checks), *notes)
+    reports = (result.report, result.optimum_report)
+    slips = [f"{1e6 * report.motion.sync_ratio_error:.4g}" for report in reports]
+    table.add_row("sync error of the tool's speed (1e-6)", *slips, "")
+    servos = [report.servo for report in reports]
+    for title, name in (("following error", "peak_following_error"), ("shear-zone error", "shear_zone_error")):
+        values = ["unstable" if servo is None else f"{1e3 * getattr(servo, name):.4g}" for servo in servos]
+        table.add_row(f"{title} of the servo (mm)", *values, "")
+    notes = [Text(f"Note: {note}") for note in result.notes]
+    if any(result.is_sampled(measure) for measure in MEASURES):
+        time = result.job.servo.sample_time * 1e3
+        notes.insert(
+            0, Text(f"* unbounded; by differences of the positions at the sample time of {time:g} ms, for both")
+        )
+    return Group(table, checks_view(result.judgement.checks), *notes, files_view(files))
 
 
 def _targets_view(answer: list[dict[str, Any]]) -> RenderableType:

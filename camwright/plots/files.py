@@ -11,12 +11,14 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from camwright.comparison import Comparison
+from camwright.plots.audit import audit_figure
 from camwright.plots.comparison import bars_figure
 from camwright.plots.profile import profile_figure
 from camwright.plots.servo import AXES, servo_figure
 from camwright.plots.style import RC
 
 if TYPE_CHECKING:
+    from camwright.audit import Audit
     from camwright.results import Design
 
 
@@ -49,6 +51,11 @@ def design_figures(design: Design, directory: Path) -> list[Path]:
 def comparison_figure(comparison: Comparison, directory: Path) -> list[Path]:
     """Write the bars of a comparison: ``comparison.svg`` and ``comparison.png`` in an existing directory."""
     return _written(lambda: bars_figure(comparison), directory, "comparison")
+
+
+def audit_figures(audit: Audit, directory: Path) -> list[Path]:
+    """Write the figure of an audit: ``audit.svg`` and ``audit.png`` in an existing directory."""
+    return _written(lambda: audit_figure(audit), directory, "audit")
 
 
 def _written(draw: Callable[[], Figure], directory: Path, name: str) -> list[Path]:

@@ -48,10 +48,10 @@ class Moves:
     def position(self, t: FloatArray) -> FloatArray:
         """Distance covered at times ``t`` (s) of shape ``(n, m)``; 0 before the move, the whole of it after."""
         inside = np.minimum(t, self.time[:, None])
-        total = np.zeros(inside.shape)
-        for k in range(self.knots.shape[1]):
-            since = np.maximum(inside - self.knots[:, k, None], 0.0)
-            term = self.weights[:, k, None] * since
+        total, since, term = np.zeros(inside.shape), np.empty(inside.shape), np.empty(inside.shape)
+        for k in range(self.knots.shape[1] - 1):  # nothing follows the last knot
+            np.maximum(np.subtract(inside, self.knots[:, k, None], out=since), 0.0, out=since)
+            np.multiply(self.weights[:, k, None], since, out=term)
             for _ in range(self.power - 1):  # three products take a tenth of the time of one power
                 term *= since
             total += term

@@ -27,11 +27,14 @@ class Outline:
         Shape ``(n,)``: ``tan(included angle / 4)`` of each segment (S4), 0 for a straight line, positive to the left.
     name
         What the outline is called in messages: entity and layer of the drawing.
+    flattening
+        Largest distance of the straight lines from the drawn curves that they stand for (m); 0 if there are none.
     """
 
     points: FloatArray
     bulges: FloatArray
     name: str = "outline"
+    flattening: float = 0.0
 
     def __post_init__(self) -> None:
         if self.points.ndim != 2 or self.points.shape[1:] != (2,) or self.bulges.shape != (len(self.points) - 1,):

@@ -32,7 +32,7 @@ class BendPlan:
     segments
         Shape ``(m,)``: the arc's segment, or the number of the segment that begins at the corner, from 0.
     chord_error
-        Largest distance between the polygon and the outline's arcs (m).
+        Largest distance between the polygon and the drawing's arcs and curves (m).
     """
 
     outline: Outline
@@ -101,7 +101,7 @@ def plan_bends(outline: Outline, divide: DivisionRule, least_turn: float) -> Ben
     radii = np.concatenate([np.full(len(corners), np.inf), outline.radii[arc]])[order]
     segments = np.concatenate([corners, owner])[order].astype(np.int64)
     ends = np.vstack([outline.points[:1], vertices, outline.points[-1:]])
-    return BendPlan(outline, ends, wrapped(turns), radii, segments, error)
+    return BendPlan(outline, ends, wrapped(turns), radii, segments, max(error, outline.flattening))
 
 
 def _runs(outline: Outline, corners: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

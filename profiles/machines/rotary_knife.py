@@ -90,6 +90,7 @@ class RotaryKnife(Machine):
         """Slave in the sync zone: ``y = s x``, or ``r sin(y / r) = s (x - l_s / 2)``, with the sync ratio ``s``."""
         if self.sync == "tangential":
             return CamProfile.from_arrays([0.0, cut.sync_zone], [[0.0, cut.sync_ratio]])
+        self.sync_start(cut)  # refuses a zone beyond the greatest angle
         return _horizontal(self.radius, cut.sync_zone, cut.sync_ratio)
 
     def tool(self, y: Any) -> Any:

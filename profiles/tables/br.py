@@ -15,6 +15,8 @@ from profiles.tables.target import Header, Target, slash_comments, units_in
 from profiles.tables.text import check_ascending, check_count, refuse, shown
 
 MOST_SECTIONS = 130
+LEAST_STEP = 1e-4
+"""Least width of a section as a part of the period: in a narrower one the rounding of REAL is most of the motion."""
 LARGEST_WHOLE = 2**24
 """Above this, REAL does not hold every whole number."""
 
@@ -143,4 +145,5 @@ TARGET = Target(
     write=write,
     read=read,
     rebuild=rebuild,
+    least_step=LEAST_STEP,
 )

@@ -103,8 +103,9 @@ def _pieces(
 ) -> Iterator[FloatArray]:
     """Give the breaks if quintics carry the pieces; else points from the zones' ends on, each where it is missed most."""
     most = points or min(target.max_points or MOST_PIECES, MOST_PIECES)
+    least = target.least_step * profile.length
     x = np.union1d(profile.breaks, required)
-    if profile.degree <= _EXACT_DEGREE and len(x) <= most:
+    if profile.degree <= _EXACT_DEGREE and len(x) <= most and np.diff(x).min() >= least:
         while len(x) < (points or target.min_points):
             x = _inserted(profile, x, int(np.argmax(np.diff(x))))
         yield x
@@ -120,17 +121,17 @@ def _pieces(
         if len(x) >= target.min_points and (len(x) >= _GROWTH * shown or done or len(x) == most):
             shown = len(x)
             yield x
-        if len(x) >= most:
+        worst = int(np.argmax(np.where(np.diff(x) > 4.0 * least, missed, 0.0)))
+        if len(x) >= most or np.diff(x)[worst] <= 4.0 * least:
             return
-        worst = int(np.argmax(missed))
-        x = _inserted(profile, x, worst)
+        x = _inserted(profile, x, worst, least)
         missed[worst : worst + 1] = [_missed(profile, x[k], x[k + 1], allowed) for k in (worst, worst + 1)]
 
 
-def _inserted(profile: CamProfile, x: FloatArray, piece: int) -> FloatArray:
+def _inserted(profile: CamProfile, x: FloatArray, piece: int, least: float = 0.0) -> FloatArray:
     """Put a point into a span: on the break nearest to its middle, or at the middle if it holds none."""
     middle = 0.5 * (x[piece] + x[piece + 1])
-    inner = profile.breaks[(profile.breaks > x[piece]) & (profile.breaks < x[piece + 1])]
+    inner = profile.breaks[(profile.breaks > x[piece] + least) & (profile.breaks < x[piece + 1] - least)]
     at = inner[np.abs(inner - middle).argmin()] if len(inner) else middle
     return np.insert(x, piece + 1, at)
 

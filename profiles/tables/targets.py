@@ -49,6 +49,10 @@ TARGETS: dict[str, Target] = {
 }
 """All targets by name."""
 
+_HEADING = r"(?:#[^\n]*\n){0,50}(?:[^\n\[\](),;\t]{1,60}[,;][^\n\[\](),;\t]{1,60}\n)?"
+_NUMBER = r"[-+.0-9][-+.0-9eE]{0,40}"
+_WITH_COMMA = r"[-+.,0-9][-+.,0-9eE]{0,40}"
+
 _SIGNS: tuple[tuple[str, str], ...] = (
     ("logix", r"<RSLogix5000Content|DataType=\"CAM(?:_PROFILE)?\""),
     ("codesys-cambuilder", r"\.Append\s*\(\s*(?:\w{1,20}\.)?Poly5"),
@@ -64,10 +68,8 @@ _SIGNS: tuple[tuple[str, str], ...] = (
     ("schneider-asc", r"(?m)^CamPoints\s*$"),
     ("trio", r"(?m)^\s*TABLE\s*\("),
     ("csv", r"(?m)^x ?[\[(_]"),
-    (
-        "csv",
-        r"\A(?:#[^\n]*\n){0,50}(?:[^\n\[\](),;\t]{1,60}[,;][^\n\[\](),;\t]{1,60}\n)?\s{0,20}[-+.0-9][-+.0-9eE]{0,40}\s{0,9}[,;]\s{0,9}[-+.0-9][-+.,0-9eE]{0,40}\s{0,9}\n",
-    ),
+    ("csv", rf"\A{_HEADING}\s{{0,9}}{_NUMBER}\s{{0,9}},\s{{0,9}}{_NUMBER}\s{{0,9}}\n"),
+    ("csv", rf"\A{_HEADING}\s{{0,9}}{_WITH_COMMA}\s{{0,9}};\s{{0,9}}{_WITH_COMMA}\s{{0,9}}\n"),
     ("sew", r"\A\s{0,100}[0-9]{1,5};?\s*\n"),
 )
 

@@ -13,7 +13,8 @@ from typer.testing import CliRunner
 from camwright import load_job
 from camwright.audit import audit, audit_answer
 from camwright.commands.tables import register
-from camwright.export import export, export_answer, export_report, parse_targets, parse_units, targets_answer
+from camwright.export import export, export_answer, export_report, targets_answer
+from camwright.table_options import parse_targets, parse_units
 from profiles.errors import InputError
 from profiles.limits import Limits
 from profiles.returns import baseline
@@ -53,7 +54,7 @@ def test_a_table_that_breaks_a_limit_is_not_released_unless_forced() -> None:
 
 
 def test_points_units_and_accuracy() -> None:
-    units = parse_units("deg,rev", JOB.machine.pitch, JOB.cut.length)
+    units = parse_units("deg,rev", JOB.machine, JOB.cut)
     (result,) = export(PROFILE, JOB, ["twincat"], units=units, points=20)
     assert result.table.points == 20
     assert result.table.x[-1] == pytest.approx(360)
@@ -70,8 +71,8 @@ def test_points_units_and_accuracy() -> None:
     [
         (lambda: parse_targets("codesys,omron"), "there is no target 'omron'"),
         (lambda: parse_targets(" ,"), "--to names one or more targets"),
-        (lambda: parse_units("mm", 1, 1), "--units takes the master's unit and the slave's"),
-        (lambda: parse_units("mm,furlong", 1, 1), "there is no unit 'furlong'"),
+        (lambda: parse_units("mm", JOB.machine, JOB.cut), "--units takes the master's unit and the slave's"),
+        (lambda: parse_units("mm,furlong", JOB.machine, JOB.cut), "there is no unit 'furlong'"),
         (lambda: export(PROFILE, JOB, ["s7-1500t", "codesys"], points=60), "s7-1500t: s7-1500t takes 2 to 51 points"),
     ],
 )
@@ -88,10 +89,13 @@ def test_an_audit_finds_what_was_written(target: str, tmp_path: Path) -> None:
     result = audit(tmp_path / name, JOB)
     assert result.target.name == target
     assert result.judgement.passed
-    answer = audit_answer(result, JOB, tmp_path / name)
+    answer = audit_answer(result, tmp_path / name)
     json.dumps(answer, allow_nan=False)
     if target == "trio":
-        assert answer["saving"]["peak_acceleration_rel"] is None  # straight lines: unbounded
+        assert answer["profile"]["peak_acceleration_m_per_s2"] is None  # straight lines: unbounded
+        assert answer["saving_by"] == "differences at the sample time"
+        own, best = (answer["sampled"][key]["peak_acceleration"] for key in ("profile", "optimum"))
+        assert answer["saving"]["peak_acceleration_rel"] == pytest.approx(1 - best / own)
     else:
         own, best = (answer[key]["peak_acceleration_m_per_s2"] for key in ("profile", "optimum"))
         assert own > best

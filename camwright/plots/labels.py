@@ -1,0 +1,115 @@
+"""Labels of points that stay clear of each other: each takes the nearest free place around its point."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.transforms import Bbox
+
+from profiles.polynomial import FloatArray
+
+_DISTANCES = (5.0, 9.0, 14.0, 20.0, 28.0, 38.0, 50.0, 64.0)
+"""Distances of a label from its point that are tried (pt)."""
+
+_DIRECTIONS = 24
+"""Directions that are tried at each distance."""
+
+_POINT = 4.0
+"""Half width of what a point takes up (pt)."""
+
+_GAP = 1.5
+"""Free space around a label (pt)."""
+
+_LEADER = 12.0
+"""Distance from which a line leads from the label to its point (pt)."""
+
+
+def label_points(
+    axes: Axes, points: FloatArray, texts: Sequence[str], *, walls: Sequence[float] = (), size: float = 6.5
+) -> None:
+    """Write labels beside points of a panel; the figure's layout is settled first.
+
+    Places are tried by growing distance from the point; the first at which a label meets neither points nor labels nor the panel's edge is
+    taken, or else the one that meets least of them.
+
+    Parameters
+    ----------
+    axes
+        The panel, its limits and scales set; its figure has a size.
+    points
+        Shape ``(n, 2)``, in data coordinates.
+    texts
+        One label each.
+    walls
+        Abscissas of lines across the panel that no label may cross.
+    size
+        Font size (pt).
+    """
+    figure = axes.get_figure(root=True)
+    assert figure is not None  # noqa: S101 - axes belong to a figure
+    canvas = FigureCanvasAgg(figure)
+    figure.draw_without_rendering()
+    renderer = canvas.get_renderer()
+    pixels = figure.dpi / 72.0
+    panel = axes.get_window_extent(renderer)
+    places = axes.transData.transform(points)
+    taken = [Bbox.from_extents(*(place - _POINT * pixels), *(place + _POINT * pixels)) for place in places]
+    across = axes.transData.transform([(wall, axes.get_ylim()[0]) for wall in walls]).reshape(-1, 2)[:, 0]
+    taken += [Bbox.from_extents(wall - pixels, panel.y0, wall + pixels, panel.y1) for wall in across]
+    # crowded points choose first: they have the fewest free places
+    crowd = np.hypot(*(places[:, None] - places[None]).transpose(2, 0, 1)).copy()
+    for i in np.argsort(np.sort(crowd, axis=1)[:, : min(4, len(places))].sum(axis=1), kind="stable"):
+        label = axes.annotate(
+            texts[i],
+            points[i],
+            xytext=(0, 0),
+            textcoords="offset points",
+            ha="center",
+            va="center",
+            fontsize=size,
+            zorder=8,
+        )
+        label.set_in_layout(False)
+        box = label.get_window_extent(renderer)
+        offset = _free_offset(places[i], 0.5 * np.array([box.width, box.height]) + _GAP * pixels, taken, panel, pixels)
+        label.set_position(tuple(offset / pixels))
+        taken.append(label.get_window_extent(renderer).padded(_GAP * pixels))
+        reach = np.maximum(np.abs(offset) - 0.5 * np.array([box.width, box.height]), 0.0)
+        if np.hypot(*reach) > _LEADER * pixels:
+            tip = places[i] + offset * _edge(offset, 0.5 * np.array([box.width, box.height]))
+            ends = axes.transData.inverted().transform([places[i], tip])
+            axes.plot(*ends.T, color="#8c8c8c", linewidth=0.5, zorder=3.5, scalex=False, scaley=False)
+
+
+def _edge(offset: FloatArray, half: FloatArray) -> float:
+    """Share of the way from a point to its label's middle at which the label begins."""
+    with np.errstate(divide="ignore"):
+        return float(1.0 - np.min(half / np.abs(offset)))
+
+
+def _free_offset(place: FloatArray, half: FloatArray, taken: Sequence[Bbox], panel: Bbox, pixels: float) -> FloatArray:
+    """Offset of a label's middle from its point (px) at the nearest free place."""
+    angles = 2 * np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
+    best, least = np.zeros(2), np.inf
+    for distance in _DISTANCES:
+        for angle in angles:
+            direction = np.array([np.cos(angle), np.sin(angle)])
+            # beside the point to the left and right, above and below it else
+            offset = direction * distance * pixels + half * np.sign(np.round(direction, 6)) * np.abs(direction) ** 0.5
+            box = Bbox.from_extents(*(place + offset - half), *(place + offset + half))
+            inside = _common(box, panel)
+            met = box.width * box.height - inside + sum(_common(box, other) for other in taken)
+            if met <= 0.0:
+                return offset
+            if met < least:
+                best, least = offset, met
+    return best
+
+
+def _common(one: Bbox, other: Bbox) -> float:
+    """Area that two boxes share (px²)."""
+    both = Bbox.intersection(one, other)
+    return 0.0 if both is None else float(both.width * both.height)
