@@ -138,10 +138,10 @@ def apply(job: Job, suggestion: Suggestion) -> Job:
         return machine, replace(cut, line_speed=value), limits, objective
     if suggestion.change == "length":
         return machine, replace(cut, length=value), limits, objective
-    eased = {"speed": limits.speed, "acceleration": limits.acceleration, "jerk": limits.jerk} | {
-        suggestion.change: value
-    }
-    return machine, cut, Limits(**eased, reversal=limits.reversal), objective
+    speed, acceleration, jerk = (
+        value if suggestion.change == name else getattr(limits, name) for name in ("speed", "acceleration", "jerk")
+    )
+    return machine, cut, replace(limits, speed=speed, acceleration=acceleration, jerk=jerk), objective
 
 
 def judge(job: Job) -> tuple[str, str]:

@@ -61,10 +61,10 @@ class ScrewCarriage:
         """What is compared, what is equal, and the outcome."""
         own, crank = self.row.motor, self.crank.motor
         return (
-            f"{SCREW}: the same carriage on a screw of {self.machine.travel_per_turn * 1e3:.4g} mm lead, with the stroke, the greatest motor "
-            f"speed and the limits of carriage speed, acceleration and jerk that the crank's optimum reaches, its screw and motor without "
-            f"inertia: {self.reversals} reversals a cut and {own.rms_torque:.4g} N m RMS against none and {crank.rms_torque:.4g} N m of the "
-            f"crank ({self.heating:.3g} times)"
+            f"{SCREW}: the same carriage on a screw of {self.machine.travel_per_turn * 1e3:.4g} mm lead, with the stroke, the greatest "
+            f"motor speed and the limits of carriage speed, acceleration and jerk that the crank's optimum reaches, screw and motor "
+            f"without inertia: {self.reversals} reversals a cut and {own.rms_torque:.4g} N m RMS against none and "
+            f"{crank.rms_torque:.4g} N m of the crank ({self.heating:.3g} times)"
         )
 
 

@@ -96,13 +96,13 @@ class TradeOff:
         return value / least if value is not None and least else None
 
     def unit(self, measure: str) -> str:
-        """Unit of a measure in ASCII, as JSON has it."""
+        """Give the unit of a measure in ASCII, as JSON has it."""
         slave = self.job.machine.slave_unit
         return _TORQUE_UNITS.get(measure, f"{slave}/s^2" if measure.endswith("acceleration") else f"{slave}/s^3")
 
 
 def step_count(job: Job) -> int:
-    """Steps that `trade_off` tells."""
+    """Count the steps that `trade_off` tells."""
     from camwright.comparison import law_names
 
     return len(_objectives(job)) + len(law_names(job.machine, job.cut))

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from design.extremes import BEYOND, max_line_speed, roomiest
-from design.feasibility import binding_limit, is_feasible, needed_limits
+from design.feasibility import binding_limit, needed_limits
 from design.problem import Objective, return_problem
 from design.solver import objective_value, solve_return
 from profiles.cross_cutter import quintic_return
@@ -33,7 +33,8 @@ class EnvelopePoint:
     objective
         Least objective of the optimised return over time (slave unit per s² or s³); None where no return is possible.
     binding
-        What forbids the point, or what would bind first at this cut length if the line ran faster.
+        What forbids the point, or what would bind first at this cut length if the line ran faster; for machines without a closed
+        form the latter in both cases.
     quintic, linear
         Whether the quintic return keeps all limits, and whether the linear return keeps the speed limit, the only one that S1
         asks of it.
@@ -132,12 +133,15 @@ def _points(
     row: EnvelopeRow,
     step: Callable[[str], None],
 ) -> Iterator[EnvelopePoint]:
+    # where closed forms tell what a point lacks it is asked at the point, elsewhere at the edge of its cut length
+    straight = machine.slave_unit == "m" and is_straight(machine, cut)
     for v in line_speeds:
         step(f"cut length {cut.length * 1e3:.4g} mm at {v * 60:.4g} m/min")
         here = replace(cut, line_speed=v)
-        value = _objective(machine, here, limits, objective)
+        possible = row.optimised is not None and v <= row.optimised
+        value = _objective(machine, here, limits, objective) if possible else None
         binding = row.binding
-        if value is None:
+        if not possible and straight:
             binding = binding_limit(machine, here, limits, needed_limits(machine, here, limits))
         quintic = row.quintic is not None and v <= row.quintic
         linear = row.linear is not None and v <= row.linear
@@ -145,8 +149,6 @@ def _points(
 
 
 def _objective(machine: Machine, cut: Cut, limits: Limits, objective: Objective) -> float | None:
-    if not is_feasible(machine, cut, limits):
-        return None
     try:
         back = solve_return(return_problem(machine, cut, limits, objective))[0]
     except SolverError:

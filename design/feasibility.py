@@ -260,7 +260,7 @@ def _words(
     if binding == "reversal":
         return None, "", f"limits.reversal = false binds, the slave would have to run backwards from {cut.line_speed * 60:g} m/min"
     if binding == "motor":
-        return None, "", "motor.torque_speed binds, the motor gives too little torque at the speeds that are needed"
+        return None, "", "limits.motor binds, the motor gives too little torque at the speeds that are needed"
     if binding == "sync_zone":
         return None, "", "cut.sync_zone binds, the machine cannot be in sync over it"
     if binding == "stroke":

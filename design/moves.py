@@ -186,7 +186,7 @@ def clearance(finger: FloatArray, turn: FloatArray, radius: float) -> FloatArray
 
 
 def _different(moves: Moves) -> tuple[Moves, NDArray[np.int64]]:
-    """The different ones among the moves of an axis, told apart by their durations, and which of them each move is."""
+    """Find the different moves of an axis, told apart by their durations, and which of them each move is."""
     _, first, which = np.unique(moves.time, return_index=True, return_inverse=True)
     return moves.take(first.astype(np.int64)), which.astype(np.int64)
 

@@ -15,7 +15,7 @@ from profiles.polynomial import CamProfile, Extremum, FloatArray
 from profiles.returns import slave_at_start
 from profiles.servo import Servo, spectral_radius
 from validation.checks import Check
-from validation.motion import RATIO_JUMP, greatest_jump, greatest_magnitude, position_scale, ratio_scale
+from validation.motion import RATIO_JUMP, greatest_jump, position_scale, ratio_scale
 from validation.response import ServoResponse, servo_response
 
 LEAST_WRAPS = 3
@@ -255,12 +255,13 @@ def _limits(
 def _extremes(cycle: CamProfile, order: int) -> tuple[Extremum, Extremum]:
     """Find the greatest magnitude and the least value; constants on thousands of pieces need no roots."""
     if cycle.degree > order:
-        return greatest_magnitude(cycle, order), cycle.extrema(order)[0]
+        least, greatest = cycle.extrema(order)
+        return Extremum(-least.value, least.at) if -least.value > greatest.value else greatest, least
     value = cycle(cycle.breaks[:-1], order)
-    largest, least = int(np.abs(value).argmax()), int(value.argmin())
+    most, fewest = int(np.abs(value).argmax()), int(value.argmin())
     return (
-        Extremum(float(abs(value[largest])), float(cycle.breaks[largest])),
-        Extremum(float(value[least]), float(cycle.breaks[least])),
+        Extremum(float(abs(value[most])), float(cycle.breaks[most])),
+        Extremum(float(value[fewest]), float(cycle.breaks[fewest])),
     )
 
 
@@ -268,16 +269,16 @@ def _stroke(cycle: CamProfile, machine: Machine, cut: Cut) -> list[Check]:
     """Whether a carriage stays on its guide; the rounding of a table may take it a sync tolerance beyond."""
     if not isinstance(machine, LinearCarriage):
         return []
-    start = slave_at_start(machine, cut) - machine.home
-    least, greatest = cycle.extrema(0)
-    beyond = max(-(start + least.value), start + greatest.value - machine.stroke)
+    x = _places(cycle, cycle.start, cycle.end)
+    inside = slave_at_start(machine, cut) - machine.home + cycle(x)
+    over = np.maximum(-inside, inside - machine.stroke)
     return [
         _at_most(
             "stroke",
-            beyond,
+            float(over.max()),
             cut.sync_tolerance,
             "m",
-            least.at if start + least.value < 0.0 else greatest.at,
+            float(x[over.argmax()]),
             "how far the carriage goes beyond its stroke, negative inside",
         )
     ]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
@@ -55,24 +56,33 @@ class BentDrawing:
 
 
 def collision_lines(outline: BentOutline, job: BenderJob) -> list[str]:
-    """Collisions in words, with the line of the program at which they happen; the first ones if there are many."""
+    """Collisions in words, with the lines of the program at which they happen; the first ones if there are many.
+
+    Neighbouring collisions with the same side of the part are told together.
+    """
     blocks = outline.program.bend_blocks()
     numbers = job.numbering.numbers(outline.program.blocks)
     name = outline.program.name
-    lines = []
-    for hit in outline.collisions[:_SHOWN]:
-        x, y = 1e3 * outline.proof.points[hit.side]
-        what = "the mould" if hit.what == "mould" else "the rule that is still straight"
-        lines.append(
-            f"{name}, line N{numbers[blocks[hit.bend]]:03d} (bend {hit.bend + 1}): the part bent so far, side "
-            f"{hit.side + 1} from "
+    texts = []
+    groups = [list(hits) for _, hits in groupby(outline.collisions, key=lambda hit: (hit.side, hit.what))]
+    for hits in groups[:_SHOWN]:
+        side = hits[0].side
+        x, y = 1e3 * outline.proof.points[side]
+        what = "the mould" if hits[0].what == "mould" else "the rule that is still straight"
+        bends, lines = [str(hit.bend + 1) for hit in hits], [f"N{numbers[blocks[hit.bend]]:03d}" for hit in hits]
+        texts.append(
+            f"{name}, {_listed('line', lines)} ({_listed('bend', bends)}): the part bent so far, side {side + 1} from "
             f"({x:.3f}, {y:.3f}) mm, meets {what}; start elsewhere, reverse the outline or guide the rule by hand"
         )
-    more = len(outline.collisions) - _SHOWN
-    if more > 0:
+    more = sum(map(len, groups[_SHOWN:]))
+    if more:
         least = "at least " if len(outline.collisions) >= MOST_REPORTED else ""
-        lines.append(f"{name}: {least}{more} more bends at which the part meets the mould or the rule")
-    return lines
+        texts.append(f"{name}: {least}{more} more bends at which the part meets the mould or the rule")
+    return texts
+
+
+def _listed(noun: str, values: list[str]) -> str:
+    return f"{noun} {values[0]}" if len(values) == 1 else f"{noun}s {', '.join(values)}"
 
 
 def answer(result: BentDrawing, programs: Sequence[Path], files: Sequence[Path]) -> dict[str, Any]:

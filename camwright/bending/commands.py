@@ -68,7 +68,9 @@ def bend(
         names = _names(drawing.stem, len(result.outlines))
         programs = [directory / f"{name}.nc" for name in names]
         result, files = _write(result, names, directory, figures=not no_figures, step=step)
-    if port is not None:
+    if port is not None and not result.passed:
+        result = replace(result, notes=(*result.notes, f"nothing is sent to {port}: a check failed"))
+    elif port is not None:
         from camwright.bending.sending import send
 
         for outline in result.outlines:

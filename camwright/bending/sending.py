@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from profiles.errors import InputError, MissingExtraError
+
+if TYPE_CHECKING:
+    import serial
 
 Handshake = Literal["xonxoff", "rtscts"]
 
@@ -54,14 +58,34 @@ def send(text: str, port: str, handshake: Handshake, baud: int, sent: Callable[[
                 line.write(f"{row}\r\n".encode("ascii"))
                 count += 1
                 sent(count)
-            line.flush()
+            _drain(line)
     except serial.SerialTimeoutException as error:
         raise InputError(
-            f"{port}: the machine held the line up for {_WAIT:g} s after line {count} of the program; start the "
-            "reception there "
-            "and send again"
+            f"{port}: the machine held the line up for {_WAIT:g} s; {count} lines of the program were handed over; "
+            "start the reception there and send again"
         ) from error
     except (serial.SerialException, OSError, ValueError) as error:
         raise InputError(
             f"{port}: the serial line cannot be used: {error}; check --port, --baud and the cable"
         ) from error
+
+
+def _drain(line: serial.Serial) -> None:
+    """Wait until what the system still holds back has left, as long as something leaves.
+
+    Raises
+    ------
+    serial.SerialTimeoutException
+        The machine holds the line up; what has not left is discarded.
+    """
+    import serial
+
+    waiting, since = line.out_waiting, time.monotonic()
+    while waiting:
+        if time.monotonic() - since > _WAIT:
+            line.reset_output_buffer()
+            raise serial.SerialTimeoutException("held up")
+        time.sleep(0.02)
+        before, waiting = waiting, line.out_waiting
+        if waiting < before:
+            since = time.monotonic()

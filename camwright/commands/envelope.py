@@ -21,6 +21,7 @@ def envelope(
     out: Annotated[
         Path | None, typer.Option("--out", metavar="DIR", help="Output directory; out/<name> if left out.")
     ] = None,
+    no_figures: Annotated[bool, typer.Option("--no-figures", help="Write no figure.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of a table.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="Print neither table nor progress.")] = False,
 ) -> int:
@@ -38,7 +39,11 @@ def envelope(
     with staged(directory) as aside:
         for name, text in texts.items():
             (aside / name).write_bytes(text.encode())
-    files = [directory / name for name in texts]
+        if not no_figures:
+            from camwright.plots.envelope import envelope_figure
+
+            envelope_figure(answer, aside)
+        files = [directory / name for name in sorted(file.name for file in aside.iterdir())]
 
     def data() -> dict[str, Any]:
         return {**answer.to_dict(), "files": [str(file) for file in files]}

@@ -34,13 +34,13 @@ def bars_figure(comparison: Comparison) -> Figure:
     """
     rows, limits = comparison.rows, comparison.job.limits
     figure = Figure(figsize=(WIDTH, 1.5 + 0.24 * len(rows)), layout="constrained")
-    panels = figure.subplots(1, 5, sharey=True)
+    unit = comparison.job.machine.slave_unit
     names = [row.name for row in rows]
     columns: list[tuple[str, list[float | None], float | None, str]] = [
-        ("peak acc.\n(m/s²)", [row.motion.peak_acceleration for row in rows], limits.acceleration, "unbounded"),
-        ("RMS acc.\n(m/s²)", [row.motion.rms_acceleration for row in rows], None, "unbounded"),
-        ("peak jerk\n(m/s³)", [row.motion.peak_jerk for row in rows], limits.jerk, "unbounded"),
-        ("RMS jerk\n(m/s³)", [row.motion.rms_jerk for row in rows], None, "unbounded"),
+        (f"peak acc.\n({unit}/s²)", [row.motion.peak_acceleration for row in rows], limits.acceleration, "unbounded"),
+        (f"RMS acc.\n({unit}/s²)", [row.motion.rms_acceleration for row in rows], None, "unbounded"),
+        (f"peak jerk\n({unit}/s³)", [row.motion.peak_jerk for row in rows], limits.jerk, "unbounded"),
+        (f"RMS jerk\n({unit}/s³)", [row.motion.rms_jerk for row in rows], None, "unbounded"),
         (
             "settling\n(mm)",
             [None if row.response.settling is None else row.response.settling * 1e3 for row in rows],
@@ -48,6 +48,10 @@ def bars_figure(comparison: Comparison) -> Figure:
             "not in zone",
         ),
     ]
+    torques = [row.motor.rms_torque for row in rows]
+    if any(torque is not None for torque in torques):
+        columns.insert(2, ("RMS torque\n(N·m)", torques, None, "unbounded"))
+    panels = figure.subplots(1, len(columns), sharey=True)
     for axes, (heading, values, limit, without) in zip(panels, columns, strict=True):
         _bars(axes, names, values, limit, without)
         axes.set_title(heading)

@@ -13,17 +13,21 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from camwright.comparison import Comparison
 from camwright.plots.audit import audit_figure
 from camwright.plots.comparison import bars_figure
+from camwright.plots.crank import crank_figure
 from camwright.plots.profile import profile_figure
 from camwright.plots.servo import AXES, servo_figure
 from camwright.plots.style import RC
+from camwright.plots.tradeoff import tradeoff_figure
+from profiles.machines import CrankSlider
 
 if TYPE_CHECKING:
     from camwright.audit import Audit
     from camwright.results import Design
+    from camwright.tradeoff import TradeOff
 
 
 def design_figures(design: Design, directory: Path) -> list[Path]:
-    """Write the figures of a design: ``profile``, ``servo`` and ``comparison``, each as SVG and PNG.
+    """Write the figures of a design: ``profile``, ``servo``, ``comparison`` and for a crank ``crank``, each as SVG and PNG.
 
     Parameters
     ----------
@@ -35,30 +39,40 @@ def design_figures(design: Design, directory: Path) -> list[Path]:
     Returns
     -------
     list
-        The files, six.
+        The files.
     """
     from validation.simulation import simulate
 
     job, comparison = design.job, design.comparison
     runs = {name: simulate(comparison[name].profile, job.cut, job.servo) for name in AXES}
     return [
-        *_written(lambda: profile_figure(comparison), directory, "profile"),
-        *_written(lambda: servo_figure(comparison, runs), directory, "servo"),
+        *written(lambda: profile_figure(comparison), directory, "profile"),
+        *written(lambda: servo_figure(comparison, runs), directory, "servo"),
         *comparison_figure(comparison, directory),
+        *(
+            written(lambda: crank_figure(comparison), directory, "crank")
+            if isinstance(job.machine, CrankSlider)
+            else []
+        ),
     ]
 
 
 def comparison_figure(comparison: Comparison, directory: Path) -> list[Path]:
     """Write the bars of a comparison: ``comparison.svg`` and ``comparison.png`` in an existing directory."""
-    return _written(lambda: bars_figure(comparison), directory, "comparison")
+    return written(lambda: bars_figure(comparison), directory, "comparison")
+
+
+def tradeoff_figures(result: TradeOff, directory: Path) -> list[Path]:
+    """Write the figure of a trade-off: ``tradeoff.svg`` and ``tradeoff.png`` in an existing directory."""
+    return written(lambda: tradeoff_figure(result), directory, "tradeoff")
 
 
 def audit_figures(audit: Audit, directory: Path) -> list[Path]:
     """Write the figure of an audit: ``audit.svg`` and ``audit.png`` in an existing directory."""
-    return _written(lambda: audit_figure(audit), directory, "audit")
+    return written(lambda: audit_figure(audit), directory, "audit")
 
 
-def _written(draw: Callable[[], Figure], directory: Path, name: str) -> list[Path]:
+def written(draw: Callable[[], Figure], directory: Path, name: str) -> list[Path]:
     """Draw a figure in the house's style, whatever the user's settings of matplotlib, and save it twice."""
     vector, pixels = directory / f"{name}.svg", directory / f"{name}.png"
     with matplotlib_style.context(["default", RC]):

@@ -11,17 +11,20 @@ from matplotlib.transforms import Bbox
 
 from profiles.polynomial import FloatArray
 
-_DISTANCES = (5.0, 9.0, 14.0, 20.0, 28.0, 38.0, 50.0, 64.0)
+_DISTANCES = (5.0, 8.0, 11.5, 16.0, 22.0, 29.0, 38.0, 50.0, 64.0)
 """Distances of a label from its point that are tried (pt)."""
 
 _DIRECTIONS = 24
 """Directions that are tried at each distance."""
 
-_POINT = 4.0
+_POINT = 4.5
 """Half width of what a point takes up (pt)."""
 
 _GAP = 1.5
 """Free space around a label (pt)."""
+
+_STEPS = 25
+"""Points of a leading line that are held against what is taken."""
 
 _LEADER = 12.0
 """Distance from which a line leads from the label to its point (pt)."""
@@ -50,18 +53,17 @@ def label_points(
     """
     figure = axes.get_figure(root=True)
     assert figure is not None  # noqa: S101 - axes belong to a figure
-    canvas = FigureCanvasAgg(figure)
+    FigureCanvasAgg(figure)
     figure.draw_without_rendering()
-    renderer = canvas.get_renderer()
     pixels = figure.dpi / 72.0
-    panel = axes.get_window_extent(renderer)
-    places = axes.transData.transform(points)
+    panel = axes.get_window_extent()
+    places: FloatArray = np.asarray(axes.transData.transform(points))
     taken = [Bbox.from_extents(*(place - _POINT * pixels), *(place + _POINT * pixels)) for place in places]
-    across = axes.transData.transform([(wall, axes.get_ylim()[0]) for wall in walls]).reshape(-1, 2)[:, 0]
+    across = np.asarray(axes.transData.transform([(wall, axes.get_ylim()[0]) for wall in walls])).reshape(-1, 2)[:, 0]
     taken += [Bbox.from_extents(wall - pixels, panel.y0, wall + pixels, panel.y1) for wall in across]
     # crowded points choose first: they have the fewest free places
-    crowd = np.hypot(*(places[:, None] - places[None]).transpose(2, 0, 1)).copy()
-    for i in np.argsort(np.sort(crowd, axis=1)[:, : min(4, len(places))].sum(axis=1), kind="stable"):
+    apart = np.sort(np.hypot(*(places[:, None] - places[None]).transpose(2, 0, 1)), axis=1)
+    for i in np.argsort(apart[:, : min(4, len(places))].sum(axis=1), kind="stable"):
         label = axes.annotate(
             texts[i],
             points[i],
@@ -73,13 +75,14 @@ def label_points(
             zorder=8,
         )
         label.set_in_layout(False)
-        box = label.get_window_extent(renderer)
-        offset = _free_offset(places[i], 0.5 * np.array([box.width, box.height]) + _GAP * pixels, taken, panel, pixels)
+        box = label.get_window_extent()
+        half = 0.5 * np.array([box.width, box.height])
+        offset = _free_offset(places, int(i), half + _GAP * pixels, taken, panel, pixels)
         label.set_position(tuple(offset / pixels))
-        taken.append(label.get_window_extent(renderer).padded(_GAP * pixels))
-        reach = np.maximum(np.abs(offset) - 0.5 * np.array([box.width, box.height]), 0.0)
-        if np.hypot(*reach) > _LEADER * pixels:
-            tip = places[i] + offset * _edge(offset, 0.5 * np.array([box.width, box.height]))
+        taken.append(label.get_window_extent().padded(_GAP * pixels))
+        distance = _distances(places, places[i] + offset, half)
+        if distance[i] > _LEADER * pixels or distance.min() < distance[i] - pixels:
+            tip = places[i] + offset * _edge(offset, half)
             ends = axes.transData.inverted().transform([places[i], tip])
             axes.plot(*ends.T, color="#8c8c8c", linewidth=0.5, zorder=3.5, scalex=False, scaley=False)
 
@@ -87,26 +90,45 @@ def label_points(
 def _edge(offset: FloatArray, half: FloatArray) -> float:
     """Share of the way from a point to its label's middle at which the label begins."""
     with np.errstate(divide="ignore"):
-        return float(1.0 - np.min(half / np.abs(offset)))
+        return max(0.0, float(1.0 - np.min(half / np.abs(offset))))
 
 
-def _free_offset(place: FloatArray, half: FloatArray, taken: Sequence[Bbox], panel: Bbox, pixels: float) -> FloatArray:
-    """Offset of a label's middle from its point (px) at the nearest free place."""
+def _distances(places: FloatArray, middle: FloatArray, half: FloatArray) -> FloatArray:
+    """Distance of a label's box from every point (px)."""
+    away = np.maximum(np.abs(places - middle) - half, 0.0)
+    return np.asarray(np.hypot(away[:, 0], away[:, 1]))
+
+
+def _free_offset(
+    places: FloatArray, i: int, half: FloatArray, taken: Sequence[Bbox], panel: Bbox, pixels: float
+) -> FloatArray:
+    """Offset of a label's middle from its point (px): the nearest free place that is nearer to its point than to any other."""
     angles = 2 * np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
-    best, least = np.zeros(2), np.inf
+    best: FloatArray = np.zeros(2)
+    least = np.inf
     for distance in _DISTANCES:
         for angle in angles:
             direction = np.array([np.cos(angle), np.sin(angle)])
-            # beside the point to the left and right, above and below it else
-            offset = direction * distance * pixels + half * np.sign(np.round(direction, 6)) * np.abs(direction) ** 0.5
-            box = Bbox.from_extents(*(place + offset - half), *(place + offset + half))
-            inside = _common(box, panel)
-            met = box.width * box.height - inside + sum(_common(box, other) for other in taken)
+            # beside the point at its left and right, else above and below it
+            offset: FloatArray = direction * distance * pixels + half * np.sign(np.round(direction, 6)) * np.abs(direction) ** 0.5
+            middle = places[i] + offset
+            box = Bbox.from_extents(*(middle - half), *(middle + half))
+            met = box.width * box.height - _common(box, panel) + sum(_common(box, other) for other in taken)
+            away = _distances(places, middle, half)
+            if away.min() < away[i] - pixels or distance > _LEADER:
+                met += _crossed(places[i], offset * _edge(offset, half), taken) if distance > _LEADER else 1.0
             if met <= 0.0:
                 return offset
             if met < least:
                 best, least = offset, met
     return best
+
+
+def _crossed(place: FloatArray, way: FloatArray, taken: Sequence[Bbox]) -> float:
+    """How much of what is taken the line from a point to its label runs over, beyond the point's own surroundings (px)."""
+    steps = place + way * np.linspace(0.0, 1.0, _STEPS)[:, None]
+    over = [box.containsx(x) and box.containsy(y) for box in taken if not box.contains(*place) for x, y in steps]
+    return float(np.count_nonzero(over)) * float(np.hypot(*way)) / _STEPS
 
 
 def _common(one: Bbox, other: Bbox) -> float:

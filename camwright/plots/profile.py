@@ -1,4 +1,4 @@
-"""The profile figure: correction, ratio, acceleration and jerk over the master, zones shaded, limits marked."""
+"""The profile figure: travel, ratio, acceleration and jerk over the master, zones shaded, limits marked."""
 
 from __future__ import annotations
 
@@ -10,7 +10,10 @@ from matplotlib.patches import Patch
 
 from camwright.comparison import Comparison
 from camwright.plots.style import LIMIT, LINES, SHEAR_COLOUR, SYNC_COLOUR, WIDTH, shade_zones, title
+from profiles.cycle import Cut
+from profiles.machines import LinearCarriage, Machine
 from profiles.polynomial import CamProfile, FloatArray
+from profiles.returns import slave_at_start
 from validation.motion import RATIO_JUMP, SLOPE_JUMP, slope_scale
 
 _POINTS = 48
@@ -36,28 +39,33 @@ def profile_figure(comparison: Comparison) -> Figure:
     comparison
         Holds the job and the profiles; those of `camwright.plots.style.LINES` are drawn.
     """
-    cut, limits = comparison.job.cut, comparison.job.limits
+    cut, limits, machine = comparison.job.cut, comparison.job.limits, comparison.job.machine
     v = cut.line_speed
     figure = Figure(figsize=(WIDTH, 8.0), layout="constrained")
-    correction, ratio, acceleration, jerk = figure.subplots(4, 1, sharex=True)
+    travel, ratio, acceleration, jerk = figure.subplots(4, 1, sharex=True)
     shown = {row.name: row.profile for row in comparison.rows if row.name in LINES}
-    for axes in (correction, ratio, acceleration, jerk):
+    for axes in (travel, ratio, acceleration, jerk):
         shade_zones(axes, cut)
     for name, profile in shown.items():
-        x, y = _curve(profile, 0)
-        correction.plot(x * 1e3, (y - x) * 1e3, **LINES[name])
+        x, y = curve(profile, 0)
+        travel.plot(x * 1e3, _travel(x, y, machine, cut), **LINES[name])
         for axes, order, factor in ((ratio, 1, 1.0), (acceleration, 2, v**2), (jerk, 3, v**3)):
-            x, value = _curve(profile, order)
+            x, value = curve(profile, order)
             axes.plot(x * 1e3, value * factor, **LINES[name])
-    _limits(ratio, (limits.least_velocity / v, limits.speed / v))
+    least = -limits.speed if machine.turns_back else limits.least_velocity
+    _limits(ratio, (least / v, limits.speed / v))
     _limits(acceleration, (-limits.acceleration, limits.acceleration))
     _limits(jerk, (-limits.jerk, limits.jerk))
     for name, profile in shown.items():
         _arrows(acceleration, jerk, name, profile)
-    correction.set_ylabel("y − x (mm)")
-    ratio.set_ylabel("ratio k = dy/dx")
-    acceleration.set_ylabel("acceleration (m/s²)")
-    jerk.set_ylabel("jerk (m/s³)")
+    if isinstance(machine, LinearCarriage):
+        for end in (machine.home, machine.home + machine.stroke):
+            travel.axhline(end * 1e3, **LIMIT)
+    travel.set_ylabel(_travel_label(machine))
+    unit = machine.slave_unit
+    ratio.set_ylabel("ratio k = dy/dx" if unit == "m" else "ratio dy/dx (rad/m)")
+    acceleration.set_ylabel(f"acceleration ({unit}/s²)")
+    jerk.set_ylabel(f"jerk ({unit}/s³)")
     jerk.set_xlabel("master position x (mm)")
     jerk.set_xlim(0.0, cut.length * 1e3)
     figure.align_ylabels()
@@ -70,7 +78,23 @@ def profile_figure(comparison: Comparison) -> Figure:
     return figure
 
 
-def _curve(profile: CamProfile, order: int) -> tuple[FloatArray, FloatArray]:
+def _travel(x: FloatArray, y: FloatArray, machine: Machine, cut: Cut) -> FloatArray:
+    """Give what the first panel draws: the correction ``y - x`` (mm), a carriage's place (mm), or an angle minus an even turn (deg)."""
+    if machine.slave_unit == "rad":
+        return np.asarray(np.degrees(y - machine.pitch / cut.length * x))
+    if machine.turns_back:
+        return np.asarray(slave_at_start(machine, cut) + y - y[0]) * 1e3
+    return (y - x) * 1e3
+
+
+def _travel_label(machine: Machine) -> str:
+    """Label of the first panel."""
+    if machine.slave_unit == "rad":
+        return "y − even turn (°)"
+    return "carriage y (mm)" if machine.turns_back else "y − x (mm)"
+
+
+def curve(profile: CamProfile, order: int) -> tuple[FloatArray, FloatArray]:
     """Points of a derivative over the master (m), every piece from its first to its last break."""
     part = np.linspace(0.0, 1.0, _POINTS + 1)
     x = profile.breaks[:-1, None] + np.diff(profile.breaks)[:, None] * part
@@ -95,7 +119,8 @@ def _limits(axes: Axes, bounds: tuple[float, float]) -> None:
         axes.axhline(bound, **LIMIT)
     if bounds[1] > _FAR * reach:
         text = f"limit {bounds[1]:g}: off scale" if drawn else f"limits ±{bounds[1]:g}: off scale"
-        axes.text(0.995, 0.96, text, transform=axes.transAxes, ha="right", va="top", fontsize=7)
+        axes.text(0.995, 0.96, text, transform=axes.transAxes, ha="right", va="top", fontsize=7, zorder=7,
+                  bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1.0})  # fmt: skip
 
 
 def _arrows(acceleration: Axes, jerk: Axes, name: str, profile: CamProfile) -> None:

@@ -14,6 +14,7 @@ from matplotlib.patches import Patch
 from camwright.comparison import Comparison, Measured
 from camwright.plots.style import LIMIT, LINES, SHEAR_COLOUR, WIDTH, shade_shear_zone, title
 from profiles.polynomial import FloatArray
+from profiles.returns import is_straight
 from validation.response import ServoResponse, sync_error
 from validation.simulation import ServoRun
 
@@ -54,7 +55,7 @@ def servo_figure(comparison: Comparison, runs: Mapping[str, ServoRun]) -> Figure
         _meeting(axes, comparison[name], comparison, runs[name])
         axes.set_title(title(name))
         axes.set_xlabel("master from the start of the sync zone (mm)")
-    left.set_ylabel("slave from there (mm)")
+    left.set_ylabel(f"{'slave' if is_straight(job.machine, job.cut) else 'tool'} from there (mm)")
     zone, shear = job.cut.sync_zone, (job.cut.shear_zone_at, job.cut.shear_zone_at + job.cut.shear_zone)
     for axes in (whole, close):
         shade_shear_zone(axes, *shear)
@@ -87,22 +88,28 @@ def _phase(name: str, phase: int) -> dict[str, Any]:
 
 
 def _meeting(axes: Axes, row: Measured, comparison: Comparison, run: ServoRun) -> None:
-    """Draw ideal line, command and axis around the start of the sync zone, from the material's point there."""
-    cut = comparison.job.cut
+    """Draw ideal line, command and axis at the tool around the start of the sync zone, from the material's point there."""
+    cut, machine = comparison.job.cut, comparison.job.machine
     start = cut.return_start + cut.return_zone
     first = max(-_BEFORE * cut.sync_zone, -cut.return_zone)
     last = _AFTER * cut.sync_zone
     origin = float(row.profile(start, outside="repeat"))
+    there = machine.sync_start(cut)
+
+    def tool(slave: FloatArray) -> FloatArray:
+        return np.asarray(machine.tool(there + slave - origin) - machine.tool(there)) * 1e3
+
     shown = (run.master >= start + first) & (run.master <= start + last)
     pieces = [np.nonzero(row_shown)[0] for row_shown in shown]
-    axes.plot([first * 1e3, last * 1e3], [first * 1e3, last * 1e3], color="black", linewidth=0.9, zorder=1)
+    line = cut.sync_ratio * 1e3
+    axes.plot([first * 1e3, last * 1e3], [first * line, last * line], color="black", linewidth=0.9, zorder=1)
     for phase, index in enumerate(pieces):
-        master, axis = (run.master[phase, index] - start) * 1e3, (run.axis[phase, index] - origin) * 1e3
+        master, axis = (run.master[phase, index] - start) * 1e3, tool(run.axis[phase, index])
         axes.plot(_stride(master), _stride(axis), **_phase(row.name, phase))
     index = pieces[0]  # the command is the same at every phase
     axes.plot(
         _stride((run.master[0, index] - start) * 1e3),
-        _stride((run.command[0, index] - origin) * 1e3),
+        _stride(tool(run.command[0, index])),
         color="#6b6b6b",
         linestyle=(0, (1, 1)),
         linewidth=1.3,
@@ -111,8 +118,9 @@ def _meeting(axes: Axes, row: Measured, comparison: Comparison, run: ServoRun) -
     crossing = row.response.crossing
     if crossing is not None and crossing <= last:
         at = crossing * 1e3
-        axes.plot([at], [at], color=LINES[row.name]["color"], linestyle="none", **_CROSSING)
-        axes.annotate(f"{at:.1f} mm", (at, at), xytext=(-6, 6), textcoords="offset points", ha="right", fontsize=8)
+        there_on_line = (at, at * cut.sync_ratio)
+        axes.plot(*there_on_line, color=LINES[row.name]["color"], linestyle="none", **_CROSSING)
+        axes.annotate(f"{at:.1f} mm", there_on_line, xytext=(-6, 6), textcoords="offset points", ha="right", fontsize=8)
     axes.axvline(0.0, color="#8c8c8c", linewidth=0.8, zorder=0.5)
 
 

@@ -40,6 +40,13 @@ LINES: dict[str, dict[str, Any]] = {
 }
 """Colour (Okabe and Ito's palette, told apart by colour-blind readers) and dash of each profile drawn."""
 
+_TITLES = {
+    "linear_return": "linear return",
+    "quintic": "quintic with standstill",
+    "crank_tabulated": "tabulated crank",
+    "screw_carriage": "screw-driven carriage",
+}
+
 SYNC_COLOUR = "#ececec"
 SHEAR_COLOUR = "#cfcfcf"
 LIMIT: dict[str, Any] = {"color": "black", "linestyle": (0, (1, 1.5)), "linewidth": 1.0, "zorder": 1.5}
@@ -47,9 +54,7 @@ LIMIT: dict[str, Any] = {"color": "black", "linestyle": (0, (1, 1.5)), "linewidt
 
 def title(name: str) -> str:
     """Write the name of a profile in words."""
-    if name == "linear_return":
-        return "linear return"
-    return LAWS[name].title if name in LAWS else name
+    return LAWS[name].title if name in LAWS else _TITLES.get(name, name)
 
 
 def zone_parts(cut: Cut, start: float, length: float) -> list[tuple[float, float]]:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from camwright.plots.labels import label_points
 from camwright.plots.style import LINES, SYNC_COLOUR, WIDTH, title
@@ -18,16 +19,16 @@ from camwright.tradeoff import Row, TradeOff, words
 _SAME = 2e-3
 """Share of the panel within which points count as one and share a label."""
 
-_WIDE = 8.0
+_WIDE = 4.0
 """Greatest over least value from which an axis is logarithmic."""
 
 _ROOM = 0.12
 """Room at both ends of an axis, as a part of what it spans."""
 
-_STRIP = 0.18
+_STRIP = 0.27
 """Width of the strip of unbounded values, as a part of the rest."""
 
-_STYLES = {
+_STYLES: dict[str, dict[str, Any]] = {
     "objective": {"marker": "o", "color": LINES["optimised"]["color"], "label": "optimum of an objective"},
     "baseline": {"marker": "s", "color": "#8c8c8c", "markersize": 6.5, "label": "baseline"},
     "beyond": {"marker": "x", "color": "#555555", "label": "baseline that breaks a limit"},
@@ -72,7 +73,7 @@ def _kind(row: Row) -> str:
     return row.kind if row.within_limits or row.kind == "objective" else "beyond"
 
 
-def _marker(kind: str) -> dict[str, object]:
+def _marker(kind: str) -> dict[str, Any]:
     """Look of a point: filled circles, open squares and crosses differ without colour."""
     style = _STYLES[kind]
     filled = style["color"] if kind == "objective" else "none"
@@ -112,7 +113,7 @@ def _plain(axis: Axis, last: float) -> None:
     """Write the numbers of a logarithmic axis plainly, none beyond the last."""
     axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=40))
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}" if value <= last else ""))
-    axis.set_minor_formatter(NullFormatter())
+    axis.set_minor_locator(NullLocator())
 
 
 def _widened(low: float, high: float, logarithmic: bool) -> tuple[float, float]:
@@ -149,7 +150,9 @@ def _draw(axes: Axes, rows: Sequence[Row], measure: str) -> None:
             groups.append((point, place, [_label(row)]))
         else:
             near[2].append(_label(row))
-    walls = [float(line.get_xdata()[0]) for line in axes.lines if list(line.get_ydata()) == [0, 1]]
+    walls = [
+        float(np.asarray(line.get_xdata())[0]) for line in axes.lines if list(np.asarray(line.get_ydata())) == [0, 1]
+    ]
     label_points(
         axes, np.array([point for point, _, _ in groups]), ["\n".join(names) for _, _, names in groups], walls=walls
     )

@@ -55,7 +55,7 @@ _WITH_COMMA = r"[-+.,0-9][-+.,0-9eE]{0,40}"
 
 _SIGNS: tuple[tuple[str, str], ...] = (
     ("logix", r"<RSLogix5000Content|DataType=\"CAM(?:_PROFILE)?\""),
-    ("codesys-cambuilder", r"\.Append\s*\(\s*(?:\w{1,20}\.)?Poly5"),
+    ("codesys-cambuilder", r"\.Append\s{0,99}\(\s{0,99}(?:\w{1,20}\.)?Poly5"),
     ("codesys", r"SMC_CAMXYVA|SMC_CAMTable_"),
     ("br", r"mcCAMSECT|McCamSection"),
     ("pacdrive", r"astCamPoint"),
@@ -63,10 +63,10 @@ _SIGNS: tuple[tuple[str, str], ...] = (
     ("s7-1500t-points", r"TO_Cam_Struct_PointData"),
     ("twincat", r"MC_MotionFunctionPoint|\.MasterPos\b"),
     ("twincat-table", r"MC_TABLETYPE_|, ?0\.\.1\] OF LREAL"),
-    ("twincat-cnc", r"(?m)^\s*Begintable"),
+    ("twincat-cnc", r"(?m)^[ \t]{0,99}Begintable"),
     ("kollmorgen-kas", r"(?m)^TABLE_BEGIN"),
-    ("schneider-asc", r"(?m)^CamPoints\s*$"),
-    ("trio", r"(?m)^\s*TABLE\s*\("),
+    ("schneider-asc", r"(?m)^CamPoints[ \t]{0,99}$"),
+    ("trio", r"(?m)^[ \t]{0,99}TABLE[ \t]{0,99}\("),
     ("csv", r"(?m)^x ?[\[(_]"),
     ("csv", rf"\A{_HEADING}\s{{0,9}}{_NUMBER}\s{{0,9}},\s{{0,9}}{_NUMBER}\s{{0,9}}\n"),
     ("csv", rf"\A{_HEADING}\s{{0,9}}{_WITH_COMMA}\s{{0,9}};\s{{0,9}}{_WITH_COMMA}\s{{0,9}}\n"),

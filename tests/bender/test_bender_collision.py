@@ -64,6 +64,14 @@ def test_candidates_contain_every_box_in_the_region(seed: int, count: int):
     assert sorted(sides.tolist()) == boxes
 
 
+@pytest.mark.parametrize("turn", np.linspace(0, 6, 13).tolist())
+def test_passing_through_a_vertex_or_touching_at_one_counts(turn: float):
+    c, s = math.cos(turn), math.sin(turn)
+    for last in ([10, -20], [14, 20]):
+        points = np.array([[0, 0], [20, 0], [20, 30], [10, 30], [10, 0], last]) @ np.array([[c, s], [-s, c]])
+        assert crossings(points, 1e-6)[2] == pytest.approx(np.array([points[4]] * 2))
+
+
 def test_an_open_angle_meets_nothing():
     points, moulds = bent([50, 50, 50], [60, -60])
     assert collisions(points, moulds, ENVELOPE) == ()

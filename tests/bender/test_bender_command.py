@@ -4,8 +4,11 @@ import json
 import math
 import os
 import re
+import select
 import sys
+import termios
 import threading
+import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -19,6 +22,7 @@ from profiles.errors import InputError
 
 Make = Callable[..., Path]
 STEP = [(0, 0), (22, 0), (22, 22), (34.5, 22)]
+XON, XOFF = b"\x11", b"\x13"
 EXAMPLE = Path(__file__).parents[2] / "examples" / "bender" / "carton.dxf"
 
 
@@ -113,9 +117,7 @@ def test_without_the_typesetting_libraries_there_is_no_sheet(
     code, answer, _ = run(capsys, path, "--out", tmp_path / "out")
     assert code == 0
     assert answer["bends"] == 0
-    assert any(
-        "no sheet: typst is not installed" in text and "camwright[bend]" in text for text in answer["warnings"]
-    )
+    assert any("no sheet: typst is not installed" in text and "camwright[bend]" in text for text in answer["warnings"])
     assert not [file for file in answer["files"] if "sheet" in file]
 
 
@@ -165,37 +167,6 @@ def test_collisions_are_reported_by_line(drawing: Make, tmp_path: Path, capsys: 
                for w in answer["warnings"])  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("draw", "message"),
-    [
-        (
-            lambda m: m.add_lwpolyline([(0, 0), (20, 0), (20, 20), (10, -20)]),
-            r"LWPOLYLINE #2F on layer 0: the outline crosses or touches itself at \(15.000, 0.000\) mm",
-        ),
-        (
-            lambda m: m.add_lwpolyline([(0, 0), (20, 0), (0, 0.01)]),
-            "LWPOLYLINE #2F on layer 0: bend 1 .* lies outside the springback table",
-        ),
-        (
-            lambda m: m.add_line((50, 0), (50, 0.02)),
-            "LINE #2F on layer 0: .* a feed of 0.020 mm is shorter than the machine's least step of 0.050 mm",
-        ),
-        (
-            lambda m: m.add_arc((0, 0), 0.3, 0, 90),
-            "ARC #2F on layer 0: segment 1: radius 0.300 mm is less than the rule's least radius 0.500 mm",
-        ),
-    ],
-)
-def test_what_the_bender_cannot_do(drawing: Make, tmp_path: Path, capsys, draw, message: str):
-    path = drawing(lambda m, _: draw(m))
-    code, answer, err = run(capsys, path, "--out", tmp_path / "out")
-    assert code == 2
-    assert answer["status"] == "error"
-    assert re.search(message, err)
-    assert str(path.name) in err
-    assert not (tmp_path / "out").exists()
-
-
 def test_overshoot_fails_a_check(drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     path = drawing(lambda m, _: m.add_lwpolyline(STEP))
     job = changed(tmp_path, ("velocity_feedforward = 0.0", "velocity_feedforward = 1.0"))
@@ -210,12 +181,39 @@ def test_overshoot_fails_a_check(drawing: Make, tmp_path: Path, capsys: pytest.C
     assert answer["feed_overshoot_mm"] < 1e-6
 
 
-def test_beyond_the_mould_s_range(drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    path = drawing(lambda m, _: m.add_lwpolyline(STEP))
-    job = changed(tmp_path, ('greatest_angle = "175 deg"', 'greatest_angle = "60 deg"'))
-    code, _, err = run(capsys, path, "--job", job, "--out", tmp_path / "out")
-    assert code == 2
-    assert err.count("needs a mould angle of 90.000°, beyond the mould's range of 60.000°") == 2
+def test_no_collision_on_a_plain_drawing_and_all_lines_of_one_that_collides(
+    drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+):
+    _, answer, _ = run(capsys, drawing(lambda m, _: m.add_lwpolyline(STEP)), "--out", tmp_path / "a", "--no-figures")
+    assert answer["collisions"] == 0
+    assert not any("meets" in text for text in answer["warnings"])
+    ring = drawing(lambda m, _: m.add_circle((0, 0), 30))
+    _, answer, _ = run(capsys, ring, "--out", tmp_path / "b", "--no-figures")
+    (told,) = (text for text in answer["warnings"] if "meets the mould" in text)
+    numbers = re.findall(r"N(\d+)", told)
+    lines = Path(answer["program"]).read_text().splitlines()
+    assert len(numbers) == answer["collisions"] > 1
+    bends = [line for line in lines if " G90 Y" in line and not line.endswith("Y0.0")]
+    assert [line.split()[0] for line in bends][-len(numbers) :] == [f"N{number}" for number in numbers]
+
+
+def test_curves_count_in_the_deviation(drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    path = drawing(lambda m, _: m.add_ellipse((0, 0), (40, 0), 0.5))
+    _, answer, _ = run(capsys, path, "--out", tmp_path / "out", "--no-figures")
+    assert 0.002 < answer["chord_error_mm"] <= 0.010
+    assert answer["chord_error_mm"] < answer["deviation_mm"] <= answer["chord_error_mm"] + 0.005
+
+
+def test_long_outlines_are_drawn_as_pixels(
+    drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+):
+    path = drawing(lambda m, _: m.add_lwpolyline([(10 * i, 5 * (i % 2)) for i in range(60)]))
+    run(capsys, path, "--out", tmp_path / "a")
+    monkeypatch.setattr("camwright.bending.figures.MOST_VECTORS", 50)
+    run(capsys, path, "--out", tmp_path / "b")
+    first, second = ((tmp_path / name / "drawing-proof.svg").read_text() for name in "ab")
+    assert "data:image/png" not in first
+    assert "data:image/png" in second
 
 
 @pytest.mark.parametrize(
@@ -336,26 +334,83 @@ def test_tables_for_people(drawing: Make, tmp_path: Path, capsys: pytest.Capture
 def test_serial_line(drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str], handshake: str):
     pytest.importorskip("serial")
     machine, port = os.openpty()
-    received = bytearray()
+    received, quiet, flags = bytearray(), [], []
 
     def listen() -> None:
         while b"M30\r\n" not in received:
-            received.extend(os.read(machine, 4096))
-            if handshake == "xonxoff" and len(received) < 200:
-                os.write(machine, b"\x13")  # hold, then go on
-                os.write(machine, b"\x11")
+            received.extend(os.read(machine, 16))
+            if len(flags) == 0:
+                flags.append(termios.tcgetattr(port))
+                if handshake == "xonxoff":
+                    os.write(machine, XOFF)
+                    time.sleep(0.1)  # what was on its way arrives
+                    while select.select([machine], [], [], 0.1)[0]:
+                        received.extend(os.read(machine, 4096))
+                    quiet.append(b"M30" not in received and not select.select([machine], [], [], 0.3)[0])
+                    os.write(machine, XON)
 
     listener = threading.Thread(target=listen, daemon=True)
     listener.start()
-    path = drawing(lambda m, _: m.add_lwpolyline(STEP))
+    path = drawing(lambda m, _: m.add_lwpolyline([(10 * i, 5 * (i % 2)) for i in range(2000)]))
     code, answer, _ = run(
         capsys, path, "--out", tmp_path / "out", "--no-figures", "--port", os.ttyname(port), "--handshake", handshake
     )
-    listener.join(5)
+    listener.join(20)
     os.close(port)
     os.close(machine)
     assert code == 0
     assert bytes(received).replace(b"\r\n", b"\n").decode() == Path(answer["program"]).read_text()
+    software, hardware = bool(flags[0][0] & termios.IXON), bool(flags[0][2] & termios.CRTSCTS)
+    assert (software, hardware) == (handshake == "xonxoff", handshake == "rtscts")
+    assert quiet == ([True] if handshake == "xonxoff" else [])
+
+
+def test_serial_line_that_stays_held_up(
+    drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+):
+    pytest.importorskip("serial")
+    monkeypatch.setattr("camwright.bending.sending._WAIT", 0.3)
+    machine, port = os.openpty()  # nobody reads: its buffer fills up
+    path = drawing(lambda m, _: m.add_lwpolyline([(10 * i, 5 * (i % 2)) for i in range(2000)]))
+    code, _, err = run(capsys, path, "--out", tmp_path / "out", "--no-figures", "--port", os.ttyname(port))
+    os.close(port)
+    os.close(machine)
+    assert code == 2
+    assert re.search(r"the machine held the line up for 0.3 s; \d+ lines of the program were handed over", err)
+
+
+def test_bytes_that_do_not_leave_are_noticed(monkeypatch: pytest.MonkeyPatch):
+    serial = pytest.importorskip("serial")
+    from camwright.bending import sending
+
+    monkeypatch.setattr(sending, "_WAIT", 0.1)
+
+    class Line:
+        def __init__(self, *waiting: int) -> None:
+            self.left, self.discarded = list(waiting), False
+
+        @property
+        def out_waiting(self) -> int:
+            return self.left.pop(0) if len(self.left) > 1 else self.left[0]
+
+        def reset_output_buffer(self) -> None:
+            self.discarded = True
+
+    sending._drain(Line(*range(12, -1, -1)))
+    held = Line(9, 7, 7)
+    with pytest.raises(serial.SerialTimeoutException):
+        sending._drain(held)
+    assert held.discarded
+
+
+def test_a_program_that_failed_is_not_sent(drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    path = drawing(lambda m, _: m.add_lwpolyline(STEP))
+    job = changed(tmp_path, ("velocity_feedforward = 0.0", "velocity_feedforward = 1.0"))
+    code, answer, _ = run(
+        capsys, path, "--job", job, "--out", tmp_path / "out", "--no-figures", "--port", tmp_path / "none"
+    )
+    assert code == 1
+    assert any("nothing is sent to" in text and "a check failed" in text for text in answer["warnings"])
 
 
 def test_serial_line_that_is_none(drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]):

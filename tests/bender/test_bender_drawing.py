@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from ezdxf.math import closed_uniform_bspline
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -78,6 +79,44 @@ def test_curves_within_the_flattening(drawing: Make):
     assert np.hypot(x, 2 * y) == pytest.approx(np.full(len(x), 40.0), abs=1e-9)
     middle = 0.5 * (ellipse.points[:-1] + ellipse.points[1:]) / MM
     assert (np.abs(np.hypot(middle[:, 0], 2 * middle[:, 1]) - 40) <= 0.02 + 1e-9).all()
+
+
+def distances(points: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Distance of each place from a polyline, every side tried."""
+    start, along = points[:-1], np.diff(points, axis=0)
+    t = ((places[:, None] - start) * along).sum(axis=2) / (along**2).sum(axis=1)
+    return np.hypot(*(places[:, None] - start - np.clip(t, 0, 1)[..., None] * along).transpose(2, 0, 1)).min(axis=1)
+
+
+def test_distance_of_a_polyline_from_its_curve_is_measured(drawing: Make):
+    # an S whose chord it meets in the middle, and a closed spline whose knots do not crowd at its ends
+    wave, corners = [(0, 0), (3, 6), (6, -6), (9, 0)], [(100, 100), (110, 100), (110, 110), (100, 110)]
+
+    def draw(m, _):
+        m.add_open_spline(wave)
+        m.add_spline().apply_construction_tool(closed_uniform_bspline(corners))
+
+    first, second = read(drawing(draw)).outlines
+    t = np.linspace(0, 1, 2001)[:, None]
+    bernstein = [(1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t**2 * (1 - t), t**3]
+    places = sum(b * np.array(p, dtype=float) for b, p in zip(bernstein, wave, strict=True)) * MM
+    away = distances(first.points, places)
+    assert first.flattening <= 1e-5
+    assert away.max() == pytest.approx(first.flattening, rel=0.1)
+    assert second.closed
+    # the mean of four neighbouring control points' basis: a uniform cubic begins at (p0 + 4 p1 + p2) / 6
+    p = np.array(corners, dtype=float)
+    assert second.points[0] == pytest.approx((p[0] + 4 * p[1] + p[2]) / 6 * MM)
+    assert (second.points > 100 * MM).all()
+    assert (second.points < 110 * MM).all()
+
+
+def test_frame_of_an_old_fitted_polyline_is_no_line(drawing: Make):
+    def draw(m, _):
+        line = m.add_polyline2d([(0, 0), (5, 0), (50, 50), (9, 0)])
+        line.vertices[2].dxf.flags |= 16
+
+    assert read(drawing(draw)).outlines[0].points == pytest.approx(np.array([[0, 0], [5, 0], [9, 0]]) * MM)
 
 
 def test_blocks_layers_and_what_is_left_out(drawing: Make):
