@@ -121,7 +121,9 @@ def _row(machine: Machine, cut: Cut, limits: Limits) -> EnvelopeRow:
     fastest = max_line_speed(machine, cut, limits)
     beyond = replace(cut, line_speed=(fastest or cut.line_speed) * (1 + BEYOND))
     binding = binding_limit(machine, beyond, limits, needed_limits(machine, beyond, limits))
-    return EnvelopeRow(cut.length, fastest, quintic_speed(machine, cut, limits), linear_speed(machine, cut, limits), binding)
+    return EnvelopeRow(
+        cut.length, fastest, quintic_speed(machine, cut, limits), linear_speed(machine, cut, limits), binding
+    )
 
 
 def _points(
@@ -165,7 +167,11 @@ def quintic_speed(machine: Machine, cut: Cut, limits: Limits) -> float | None:
     problem = return_problem(machine, replace(cut, line_speed=1.0), limits, "peak_acceleration")
     sync = machine.sync_profile(cut)
     straight = is_straight(machine, cut) and cut.sync_ratio == 1.0
-    back = quintic_return(cut.return_zone, problem.height) if straight else quintic_between(sync, cut.return_zone, problem.height)
+    back = (
+        quintic_return(cut.return_zone, problem.height)
+        if straight
+        else quintic_between(sync, cut.return_zone, problem.height)
+    )
     cycle = assemble(back, machine, replace(cut, origin="return"))
     low, high = cycle.extrema(1)
     if low.value < -ROUNDING * high.value and not (limits.reversal or machine.turns_back):

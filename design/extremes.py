@@ -131,7 +131,9 @@ def min_cut_length(machine: Machine, cut: Cut, limits: Limits) -> float | None:
         if works(start):
             if _closed(machine, cut):
                 return edge(works, start, cut.sync_zone, CLOSED)
-            return margin_edge(lambda x: margin(machine, replace(cut, length=x), limits), start, cut.sync_zone * (1 + BEYOND))
+            return margin_edge(
+                lambda x: margin(machine, replace(cut, length=x), limits), start, cut.sync_zone * (1 + BEYOND)
+            )
     return None
 
 
@@ -146,4 +148,3 @@ def _binding(machine: Machine, cut: Cut, limits: Limits, line_speed: float = 1.0
     if beyond.length <= beyond.sync_zone:
         return "sync_zone"
     return binding_limit(machine, beyond, limits, needed_limits(machine, beyond, limits))
-

@@ -119,7 +119,9 @@ def _keeps_stroke(problem: ReturnProblem) -> bool:
     """Whether the softest motion over the line stays within the stroke, so that the closed form is the whole truth."""
     distance, room = _correction(problem)
     if distance <= ROUNDING * problem.length:
-        return problem.least_position <= min(0.0, problem.height) and problem.greatest_position >= max(0.0, problem.height)
+        return problem.least_position <= min(0.0, problem.height) and problem.greatest_position >= max(
+            0.0, problem.height
+        )
     acceleration = least_acceleration(distance, problem.length, room, problem.greatest_jerk)
     if not math.isfinite(acceleration):
         return False
@@ -187,6 +189,7 @@ def needed_limits(machine: Machine, cut: Cut, limits: Limits) -> dict[str, float
             "acceleration": least_acceleration(distance, problem.length, room, problem.greatest_jerk) * v**2,
             "jerk": least_jerk(distance, problem.length, room, problem.greatest_slope) * v**3,
         }
+
     def eased(name: str) -> float:
         """Value of one limit alone that would do: where the common factor on all limits is 1."""
         low = getattr(limits, name)
@@ -207,9 +210,9 @@ def needed_limits(machine: Machine, cut: Cut, limits: Limits) -> dict[str, float
 def _reaches(problem: ReturnProblem) -> bool:
     """Whether the limits of speed, acceleration and jerk are enough for a straight return, the stroke left aside."""
     distance, room = _correction(problem)
-    return room > 0 and greatest_reach(problem.length, room, problem.greatest_slope, problem.greatest_jerk) >= distance * (
-        1 - ROUNDING
-    )
+    return room > 0 and greatest_reach(
+        problem.length, room, problem.greatest_slope, problem.greatest_jerk
+    ) >= distance * (1 - ROUNDING)
 
 
 def binding_limit(machine: Machine, cut: Cut, limits: Limits, need: dict[str, float]) -> str:
@@ -258,7 +261,11 @@ def _words(
     binding: str, need: dict[str, float], machine: Machine, limits: Limits, cut: Cut
 ) -> tuple[float | None, str, str]:
     if binding == "reversal":
-        return None, "", f"limits.reversal = false binds, the slave would have to run backwards from {cut.line_speed * 60:g} m/min"
+        return (
+            None,
+            "",
+            f"limits.reversal = false binds, the slave would have to run backwards from {cut.line_speed * 60:g} m/min",
+        )
     if binding == "motor":
         return None, "", "limits.motor binds, the motor gives too little torque at the speeds that are needed"
     if binding == "sync_zone":
@@ -272,8 +279,8 @@ def _words(
     return (
         needed - limit,
         unit,
-        f"limits.{binding} binds, {needed:.6g} {unit} is needed, {limit:g} {unit} is the limit "
-        f"({100 * (needed / limit - 1):.3g} % more than allowed)",
+        (f"limits.{binding} binds, {needed:.6g} {unit} is needed, {limit:g} {unit} is the limit "
+        f"({100 * (needed / limit - 1):.3g} % more than allowed)"),
     )
 
 
@@ -376,7 +383,9 @@ def rounded_to(value: float, digits: int, up: bool) -> float:
 
 
 def _offer(suggestion: Suggestion) -> str:
-    place = {"line_speed": "cut.line_speed", "length": "cut.length"}.get(suggestion.change, f"limits.{suggestion.change}")
+    place = {"line_speed": "cut.line_speed", "length": "cut.length"}.get(
+        suggestion.change, f"limits.{suggestion.change}"
+    )
     if suggestion.change == "reversal":
         return f"{place} = true"
     return f'{place} = "{suggestion.value:.15g} {suggestion.unit}"'

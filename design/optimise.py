@@ -141,7 +141,11 @@ def solve(machine: Machine, cut: Cut, limits: Limits, objective: Objective) -> S
 
 def _solve_for_motor(machine: Machine, cut: Cut, limits: Limits, objective: Objective) -> Solution:
     """Solve within each rectangle of the motor's curve that allows it, and take the best."""
-    found = [solve(machine, cut, each, objective) for each in motor_limits(machine, limits) if is_feasible(machine, cut, each)]
+    found = [
+        solve(machine, cut, each, objective)
+        for each in motor_limits(machine, limits)
+        if is_feasible(machine, cut, each)
+    ]
     return min(found, key=lambda solution: (math.isnan(solution.objective), solution.objective))
 
 
@@ -182,9 +186,7 @@ def _solve_torque(machine: Machine, cut: Cut, limits: Limits, objective: Objecti
     found = solve_torque(machine, cut, problem, start, objective)  # type: ignore[arg-type]
     starts = Starts(found.starts, found.agreeing, found.spread, found.residual, valleys)
     profile = assemble(found.back, machine, cut)
-    return Solution(
-        machine, profile, found.back, SolveStatus.ON_GRID, objective, math.nan, found.iterations, starts
-    )
+    return Solution(machine, profile, found.back, SolveStatus.ON_GRID, objective, math.nan, found.iterations, starts)
 
 
 def _solve_free_crank(machine: CrankSlider, cut: Cut, limits: Limits, objective: Objective) -> Solution:

@@ -73,7 +73,12 @@ def place_sync(machine: CrankSlider, cut: Cut, cost: Callable[[CrankSlider], flo
     ]
     best = (math.inf, 0.0)
     for i in valleys:
-        best = min(best, _golden(at, float(angles[max(0, i - 1)]), float(angles[min(PLACES - 1, i + 1)]), (costs[i], float(angles[i]))))
+        best = min(
+            best,
+            _golden(
+                at, float(angles[max(0, i - 1)]), float(angles[min(PLACES - 1, i + 1)]), (costs[i], float(angles[i]))
+            ),
+        )
     return Placement(replace(machine, sync_at=best[1]), best[0], len(valleys))
 
 

@@ -6,6 +6,7 @@ module turns that into a first guess with one piece for each arc, for the progra
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
@@ -83,7 +84,9 @@ def _cruise(x: FloatArray, a: FloatArray, ratio: FloatArray, problem: ScaledProb
     return at, at
 
 
-def _phase(x: FloatArray, a: FloatArray, end: float, step: float, jerk_limit: float) -> tuple[float, float, float, float]:
+def _phase(
+    x: FloatArray, a: FloatArray, end: float, step: float, jerk_limit: float
+) -> tuple[float, float, float, float]:
     """Lengths of rise, hold and fall between an end of the return and the cruise, and the level of the hold."""
     inside = np.nonzero((x > 0.0) & (x < end))[0]
     if len(inside) == 0:
@@ -99,7 +102,7 @@ def _phase(x: FloatArray, a: FloatArray, end: float, step: float, jerk_limit: fl
 
 
 def read_quintic(grid: Motion, problem: ScaledProblem, touched: bool) -> tuple[Motion, tuple[Arc, ...]]:
-    """Runs of intervals with the same active limit (speed, acceleration, jerk, none), one piece each (degree 3).
+    """Read runs of intervals with the same active limit (speed, acceleration, jerk, none), one piece each (degree 3).
 
     An optimum may touch a limit in a single point, or keep to it for less than an interval; there too the piece ends. With
     ``touched`` such an interval counts as active, and a short free piece is put between different limits; without, only an
@@ -130,7 +133,7 @@ def read_quintic(grid: Motion, problem: ScaledProblem, touched: bool) -> tuple[M
             arcs.append(_ARC_OF_LIMIT[kind])
     breaks.append(1.0)
     coefficients = [float(a[0])]
-    for left, right in zip(breaks, breaks[1:], strict=False):
+    for left, right in itertools.pairwise(breaks):
         # Bernstein coefficients that interpolate the grid's acceleration at the piece's ends and thirds
         third = np.array([_value(x, rows, left + (right - left) * s / 3) for s in range(4)])
         inner_1 = (-5 * third[0] + 18 * third[1] - 9 * third[2] + 2 * third[3]) / 6

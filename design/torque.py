@@ -121,7 +121,8 @@ def _starts(machine: Machine, cut: Cut, problem: ReturnProblem, scale: float) ->
     profiles = [solve_return(replace(problem, objective=name))[0] for name in ("peak_acceleration", "rms_acceleration")]
     profiles.append(quintic_between(machine.sync_profile(cut), problem.length, problem.height))
     return [
-        profile.add_line(-problem.start_ratio).scale(master=1.0 / problem.length, slave=1.0 / scale) for profile in profiles
+        profile.add_line(-problem.start_ratio).scale(master=1.0 / problem.length, slave=1.0 / scale)
+        for profile in profiles
     ]
 
 
@@ -182,7 +183,11 @@ class _TorqueProgramme:
         """Objective at the slave: root mean square or peak (N or N·m), or mean power drawn (W), over the return."""
         if self._objective == "rms_torque":
             return math.sqrt(float(self._shares @ torque**2))
-        return float(np.abs(torque).max()) if self._objective == "peak_torque" else float(self._shares @ np.maximum(power, 0.0))
+        return (
+            float(np.abs(torque).max())
+            if self._objective == "peak_torque"
+            else float(self._shares @ np.maximum(power, 0.0))
+        )
 
     def solve(self, problem: ScaledProblem, guess: CamProfile) -> tuple[Motion, float, float, bool, int]:
         """Solve from a guess; returns motion, objective, KKT residual, success, iterations."""
@@ -213,7 +218,9 @@ class _TorqueProgramme:
         statistics = self._solver.stats()
         flat: FloatArray = np.asarray(answer["x"], dtype=np.float64).ravel()
         history = statistics.get("iterations", {})
-        residual = max((float(history[name][-1]) for name in ("inf_pr", "inf_du") if history.get(name)), default=math.nan)
+        residual = max(
+            (float(history[name][-1]) for name in ("inf_pr", "inf_du") if history.get(name)), default=math.nan
+        )
         torque, power = (np.asarray(part).ravel() for part in self._measure(flat))
         value = self._value(torque, power)
         return (

@@ -251,8 +251,16 @@ class Programme:
         pace = jerk if self._split == 1 else np.inf
         lower |= {"j": [-pace] * (m * p), "h": [0.0] * m, "t": [0.0]}
         upper = {"a": [hull] * (m * p + 1), "v": [high] * (m + 1), "q": [np.inf] * (m + 1)}
-        upper |= {"j": [pace] * (m * p), "h": [1.0] * m, "t": [np.inf if margin else jerk if self.shape.objective == "peak_jerk" else slope]}
-        ends = {"a": (problem.start_slope, problem.end_slope), "v": (0.0, problem.end_ratio), "q": (0.0, problem.height)}
+        upper |= {
+            "j": [pace] * (m * p),
+            "h": [1.0] * m,
+            "t": [np.inf if margin else jerk if self.shape.objective == "peak_jerk" else slope],
+        }
+        ends = {
+            "a": (problem.start_slope, problem.end_slope),
+            "v": (0.0, problem.end_ratio),
+            "q": (0.0, problem.height),
+        }
         for name, (first, last) in ends.items():
             lower[name][0] = upper[name][0] = first
             lower[name][-1] = upper[name][-1] = last
@@ -269,7 +277,11 @@ class Programme:
             lbx=self._pack(lower),
             ubx=self._pack(upper),
             lbg=[0.0] * (equal + positive) + [low] * between + [-slope] * bent + [problem.least_position] * places,
-            ubg=[0.0] * equal + [np.inf] * positive + [high] * between + [slope] * bent + [problem.greatest_position] * places,
+            ubg=[0.0] * equal
+            + [np.inf] * positive
+            + [high] * between
+            + [slope] * bent
+            + [problem.greatest_position] * places,
         )
         found = self._unpack(np.asarray(answer["x"], dtype=np.float64).ravel())
         lengths = np.maximum(found["h"], 0.0) if self.shape.free_lengths else start.lengths

@@ -73,7 +73,7 @@ def _sine(frequency: float, phase: float, origin: float) -> FloatArray:
 
 
 def _steps(start: float, end: float, frequency: float) -> FloatArray:
-    """Breaks between ``start`` and ``end`` at most `_TAYLOR_ANGLE` of the sine apart."""
+    """Give breaks between ``start`` and ``end`` at most `_TAYLOR_ANGLE` of the sine apart."""
     count = max(1, math.ceil((end - start) * abs(frequency) / _TAYLOR_ANGLE - 1e-9))
     return np.linspace(start, end, count + 1)
 
@@ -104,9 +104,7 @@ def _acceleration_trapezoid() -> CamProfile:
 
 def _velocity_trapezoid() -> CamProfile:
     # a third each of constant acceleration, constant velocity and constant deceleration; V = 3/2, A = 9/2
-    return CamProfile.from_arrays(
-        [0.0, 1 / 3, 2 / 3, 1.0], [[0.0, 0.0, 2.25], [0.25, 1.5, 0.0], [0.75, 1.5, -2.25]]
-    )
+    return CamProfile.from_arrays([0.0, 1 / 3, 2 / 3, 1.0], [[0.0, 0.0, 2.25], [0.25, 1.5, 0.0], [0.75, 1.5, -2.25]])
 
 
 def _double_s() -> CamProfile:

@@ -28,16 +28,24 @@ class MotorCurve:
         if len(self.points) < 2:
             faults.append("a torque-speed curve needs two points at least")
         elif self.points[0][0] != 0.0:
-            faults.append(f"a torque-speed curve begins at standstill; its first speed is {self.points[0][0]:.6g} rad/s")
+            faults.append(
+                f"a torque-speed curve begins at standstill; its first speed is {self.points[0][0]:.6g} rad/s"
+            )
         for number, ((slow, strong), (fast, weak)) in enumerate(pairwise(self.points), start=2):
             if not fast > slow:
-                faults.append(f"point {number}: speed {fast:.6g} rad/s is not above {slow:.6g} rad/s; give the points by increasing speed")
+                faults.append(
+                    f"point {number}: speed {fast:.6g} rad/s is not above {slow:.6g} rad/s; give the points by increasing speed"
+                )
             if weak > strong:
                 faults.append(
                     f"point {number}: torque {weak:.6g} N·m is above {strong:.6g} N·m at a lower speed; a motor's torque does not grow "
                     f"with its speed, give at most {strong:.6g} N·m"
                 )
-        faults += [f"point {n}: torque {torque:.6g} N·m is not positive" for n, (_, torque) in enumerate(self.points, 1) if not torque > 0]
+        faults += [
+            f"point {n}: torque {torque:.6g} N·m is not positive"
+            for n, (_, torque) in enumerate(self.points, 1)
+            if not torque > 0
+        ]
         if faults:
             raise InputError(*faults)
 
@@ -49,11 +57,11 @@ class MotorCurve:
     def torque(self, speed: FloatArray | float) -> FloatArray:
         """Torque available at a motor speed (N·m), whatever its sign; zero beyond the top speed."""
         speeds, torques = np.array(self.points).T
-        return np.interp(np.abs(speed), speeds, torques, right=0.0)
+        return np.asarray(np.interp(np.abs(speed), speeds, torques, right=0.0))
 
     def rectangles(self, parts: int = 4) -> list[tuple[float, float]]:
         """Pairs of speed and torque such that every lower speed allows that torque: the curve's points and some between them."""
-        pairs = []
+        pairs: list[tuple[float, float]] = []
         for (slow, strong), (fast, weak) in pairwise(self.points):
             for k in range(1, parts + 1):
                 share = k / parts

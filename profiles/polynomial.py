@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -273,7 +274,7 @@ class CamProfile:
         return CamProfile(breaks, _recentred(self.coefficients[index], offset))
 
     def repeat(self, cycles: int) -> CamProfile:
-        """String the cycle together, the slave advancing by `advance` each time."""
+        """Repeat the cycle, the slave advancing by `advance` each time."""
         if cycles < 1:
             raise InputError(f"a profile can be repeated once or more often; got {cycles} cycles")
         return join(*(self.shift(n * self.length, n * self.advance) for n in range(cycles)))
@@ -332,7 +333,7 @@ class CamProfile:
 
 
 def join(*parts: CamProfile) -> CamProfile:
-    """String profiles together where one ends and the next begins.
+    """Join profiles where one ends and the next begins.
 
     Raises
     ------
@@ -344,7 +345,7 @@ def join(*parts: CamProfile) -> CamProfile:
         raise InputError("there is nothing to join: no profile was given")
     length = parts[-1].end - parts[0].start
     breaks = [parts[0].breaks]
-    for left, right in zip(parts, parts[1:], strict=False):
+    for left, right in itertools.pairwise(parts):
         if abs(left.end - right.start) > 1e-12 * abs(length):
             raise InputError(f"profiles do not meet: one ends at {left.end!r} m, the next begins at {right.start!r} m")
         breaks.append(right.breaks[1:])

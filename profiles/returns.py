@@ -107,8 +107,10 @@ def quintic_between(sync: CamProfile, length: float, height: float) -> CamProfil
 
 
 def tabulate_crank(cycle: CamProfile, points: int = 360) -> CamProfile:
-    """Running curve of S3 made from a table: crank angles evenly around the turn, the master positions at which they are passed, and
-    between these the crank's speed by differences, interpolated over the master.
+    """Make the running curve of S3 from a table.
+
+    Crank angles evenly around the turn, the master positions at which they are passed, and between these the crank's speed by
+    differences, interpolated over the master.
 
     Parameters
     ----------

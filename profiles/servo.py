@@ -105,7 +105,7 @@ def sample_plant(servo: Servo, time: float) -> SampledPlant:
 
 
 def closed_loop(servo: Servo) -> tuple[FloatArray, FloatArray]:
-    """Sampled closed loop: ``z[k+1] = A z[k] + B (c[k], c[k-1])`` with the command's samples ``c`` (m).
+    """Close the loop at the samples: ``z[k+1] = A z[k] + B (c[k], c[k-1])`` with the command's samples ``c`` (m).
 
     The controller of S1 holds ``u[k] = K (c[k] - p[k]) + alpha (c[k] - c[k-1]) / dT`` over each sampling period; its input
     is the position ``p`` at the sampling instant, its feed-forward the backward difference of the command.

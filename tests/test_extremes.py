@@ -18,10 +18,21 @@ from profiles.machines import CrankSlider, LinearCarriage, Machine, RotaryKnife
 from profiles.returns import assemble
 
 KNIFE = (RotaryKnife(0.4), Cut(0.35, 80 / 60, 0.1, 0.04, 0.06, 1e-4), Limits(200 / 60, 30.0, 3000.0))
-CARRIAGE = (LinearCarriage(1.2, mass=50.0, travel_per_turn=0.02), Cut(1.5, 1.0, 0.3, 0.1, 0.2, 1e-4), Limits(2.0, 12.0, 300.0))
+CARRIAGE = (
+    LinearCarriage(1.2, mass=50.0, travel_per_turn=0.02),
+    Cut(1.5, 1.0, 0.3, 0.1, 0.2, 1e-4),
+    Limits(2.0, 12.0, 300.0),
+)
 THICK = (RotaryKnife(0.4, sync="horizontal"), Cut(0.6, 1.0, 0.08, 0.04, 0.04, 1e-4), Limits(200 / 60, 200.0, 20000.0))
-CRANK = (CrankSlider(0.15, 0.6, 0.0, 0.5, 20.0, 5.0, 1.75), Cut(0.9, 1.0, 0.1, 0.04, 0.06, 1e-4), Limits(30.0, 200.0, 20000.0))
-ALL = [pytest.param(*case, id=name) for name, case in zip(("knife", "carriage", "thick", "crank"), (KNIFE, CARRIAGE, THICK, CRANK), strict=True)]
+CRANK = (
+    CrankSlider(0.15, 0.6, 0.0, 0.5, 20.0, 5.0, 1.75),
+    Cut(0.9, 1.0, 0.1, 0.04, 0.06, 1e-4),
+    Limits(30.0, 200.0, 20000.0),
+)
+ALL = [
+    pytest.param(*case, id=name)
+    for name, case in zip(("knife", "carriage", "thick", "crank"), (KNIFE, CARRIAGE, THICK, CRANK), strict=True)
+]
 
 
 def ruckig_time(height: float, ratio_start: float, limits: Limits, backwards: bool) -> float:
@@ -63,7 +74,9 @@ def test_shortest_cut_of_a_carriage_against_ruckig(speed: float) -> None:
     machine, cut, limits = CARRIAGE
     length = min_cut_length(machine, replace(cut, line_speed=speed), limits)
     assert length is not None
-    assert length == pytest.approx(cut.sync_zone + speed * ruckig_time(-cut.sync_zone, speed, limits, backwards=True), rel=1e-6)
+    assert length == pytest.approx(
+        cut.sync_zone + speed * ruckig_time(-cut.sync_zone, speed, limits, backwards=True), rel=1e-6
+    )
 
 
 def test_margin_is_one_at_an_edge() -> None:
@@ -109,5 +122,7 @@ def test_the_optimised_region_contains_the_quintic(machine: Machine, cut: Cut, l
 
 def test_an_envelope_that_begins_inside_the_sync_zone_is_refused() -> None:
     machine, cut, limits = KNIFE
-    with pytest.raises(InputError, match=r"cut length of 100 mm: it must be above the sync zone, cut\.sync_zone = 100 mm"):
+    with pytest.raises(
+        InputError, match=r"cut length of 100 mm: it must be above the sync zone, cut\.sync_zone = 100 mm"
+    ):
         envelope(machine, cut, limits, "peak_acceleration", [0.1, 0.2], [1.0])

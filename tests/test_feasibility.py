@@ -29,9 +29,7 @@ def refusal(machine: RotaryKnife, cut: Cut, limits: Limits) -> InfeasibleError:
 
 
 @settings(max_examples=200)
-@given(
-    st.floats(-1, 1), st.floats(0.05, 0.9), st.floats(1.0, 4.0), st.floats(0, 6), st.floats(3, 14), st.booleans()
-)
+@given(st.floats(-1, 1), st.floats(0.05, 0.9), st.floats(1.0, 4.0), st.floats(0, 6), st.floats(3, 14), st.booleans())
 def test_feasible_is_what_the_reach_allows(
     off: float, share: float, speed: float, acceleration: float, jerk: float, reversal: bool
 ) -> None:
@@ -56,9 +54,7 @@ def test_feasible_is_what_the_reach_allows(
         (Limits(4.0, 1e3, 390.0), "jerk", 32 * 0.1 / 0.2**3),
     ],
 )
-def test_the_binding_limit_is_named_with_what_is_missing(
-    limits: Limits, binding: str, needed: float | None
-) -> None:
+def test_the_binding_limit_is_named_with_what_is_missing(limits: Limits, binding: str, needed: float | None) -> None:
     error = refusal(KNIFE, CUT, limits)
     assert error.binding == binding
     assert error.excess is not None

@@ -28,7 +28,11 @@ def used(profile: CamProfile, machine: RotaryKnife | CrankSlider, cut: Cut) -> t
     y = slave_at_start(machine, cut) + profile(x)
     velocity = profile(x, 1) * cut.line_speed
     acceleration = profile(x, 2) * cut.line_speed**2
-    force = machine.inertia(y) * acceleration + 0.5 * machine.inertia_slope(y) * velocity**2 + machine.friction * np.sign(velocity)
+    force = (
+        machine.inertia(y) * acceleration
+        + 0.5 * machine.inertia_slope(y) * velocity**2
+        + machine.friction * np.sign(velocity)
+    )
     return velocity * machine.motor_ratio, force / machine.motor_ratio
 
 
@@ -93,7 +97,9 @@ def test_a_weak_motor_binds_and_the_suggestion_works() -> None:
         solve(KNIFE, CUT, limits, "peak_acceleration")
     assert caught.value.binding == "motor"
     slower = next(s for s in caught.value.suggestions if s.change == "line_speed")
-    assert solve(KNIFE, replace(CUT, line_speed=slower.value / 60), limits, "peak_acceleration").status.value == "optimal"
+    assert (
+        solve(KNIFE, replace(CUT, line_speed=slower.value / 60), limits, "peak_acceleration").status.value == "optimal"
+    )
 
 
 def test_a_motor_that_cannot_overcome_friction_leaves_no_limits() -> None:

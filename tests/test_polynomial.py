@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -183,7 +184,7 @@ def test_mean_square_is_that_of_quadrature(profile: CamProfile, order: int, firs
     nodes = np.concatenate([[start], profile.breaks[(profile.breaks > start) & (profile.breaks < end)], [end]])
     total = sum(
         quad(lambda x: float(profile(x, order)) ** 2, a, b, epsabs=0, epsrel=1e-10)[0]
-        for a, b in zip(nodes, nodes[1:], strict=False)
+        for a, b in pairwise(nodes)
         if b - a > 1e-9
     )
     scale = size(profile, order) ** 2
@@ -214,9 +215,9 @@ def test_shift_moves(profile: CamProfile, master: float, slave: float) -> None:
 def test_scale_stretches(profile: CamProfile, master: float, slave: float) -> None:
     stretched = profile.scale(master, slave)
     x = inside(profile)
-    assert np.abs(stretched(np.clip(x * master, stretched.start, stretched.end)) - slave * profile(x)).max() <= 1e-12 * (
-        abs(slave) * (size(profile) + size(profile, 1)) + 1e-300
-    )
+    assert np.abs(
+        stretched(np.clip(x * master, stretched.start, stretched.end)) - slave * profile(x)
+    ).max() <= 1e-12 * (abs(slave) * (size(profile) + size(profile, 1)) + 1e-300)
     back = stretched.scale(1 / master, 1.0)
     assert np.abs(back.coefficients - slave * profile.coefficients).max() <= 1e-12 * (
         abs(slave) * float(np.abs(profile.coefficients).max()) + 1e-300
@@ -251,7 +252,9 @@ def test_repeat_strings_cycles_together(profile: CamProfile, cycles: int) -> Non
     x = inside(profile)
     for n in range(cycles):
         there = np.clip(x + n * profile.length, many.start, many.end)
-        assert np.abs(many(there) - profile(x) - n * profile.advance).max() <= 1e-11 * (size(profile) + size(profile, 1))
+        assert np.abs(many(there) - profile(x) - n * profile.advance).max() <= 1e-11 * (
+            size(profile) + size(profile, 1)
+        )
 
 
 @given(profiles(continuous=True), st.floats(0.0, 0.999))
@@ -273,7 +276,7 @@ def test_merge_undoes_cuts(profile: CamProfile, cuts: list[float]) -> None:
     ends = [profile.start, *places, profile.end]
     if min(np.diff(ends)) < 1e-6 * profile.length:
         return
-    cut = join(*(profile.restrict(a, b) for a, b in zip(ends, ends[1:], strict=False)))
+    cut = join(*(profile.restrict(a, b) for a, b in pairwise(ends)))
     merged = cut.merge()
     assert merged.pieces <= profile.pieces
     x = inside(profile)
@@ -314,7 +317,11 @@ RAMP = CamProfile.from_arrays([0.0, 1.0], [[0.0, 1.0]])
 @pytest.mark.parametrize(
     ("breaks", "coefficients", "message"),
     [
-        ([0.0, 1.0, 2.0], [[0.0]], r"needs n \+ 1 breaks and n rows of coefficients; got breaks \(3,\) and coefficients \(1, 1\)"),
+        (
+            [0.0, 1.0, 2.0],
+            [[0.0]],
+            r"needs n \+ 1 breaks and n rows of coefficients; got breaks \(3,\) and coefficients \(1, 1\)",
+        ),
         ([0.0], [], "at least one piece with at least one coefficient"),
         ([0.0, 1.0], [[]], "at least one piece with at least one coefficient"),
         ([0.0, math.nan], [[1.0]], "must be finite numbers; one is NaN or infinite"),
@@ -345,7 +352,7 @@ def test_positions_outside_are_refused(x: float) -> None:
         (lambda: RAMP.restrict(0.5, 0.5), r"the part 0\.5 to 0\.5 m does not lie inside"),
         (lambda: RAMP.repeat(0), "repeated once or more often; got 0 cycles"),
         (lambda: RAMP.roll(1.0), r"the new start 1\.0 m does not lie inside the profile, 0\.0 to 1\.0 m"),
-        (lambda: join(), "nothing to join: no profile was given"),
+        (join, "nothing to join: no profile was given"),
         (lambda: join(RAMP, RAMP), r"profiles do not meet: one ends at 1\.0 m, the next begins at 0\.0 m"),
     ],
 )

@@ -174,8 +174,16 @@ def test_impossible_is_infinite(needed: float) -> None:
 
 @pytest.mark.parametrize(
     "numbers",
-    [(-1.0, 1.0, 1.0, 1.0), (1.0, 0.0, 1.0, 1.0), (1.0, 1.0, -1.0, 1.0), (1.0, 1.0, 1.0, 0.0), (1.0, 1.0, 1.0, math.inf)],
+    [
+        (-1.0, 1.0, 1.0, 1.0),
+        (1.0, 0.0, 1.0, 1.0),
+        (1.0, 1.0, -1.0, 1.0),
+        (1.0, 1.0, 1.0, 0.0),
+        (1.0, 1.0, 1.0, math.inf),
+    ],
 )
 def test_senseless_limits_are_refused(numbers: Any) -> None:
-    with pytest.raises(InputError, match=r"needs a distance >= 0 and limits > 0, the jerk finite; got distance .*, speed"):
+    with pytest.raises(
+        InputError, match=r"needs a distance >= 0 and limits > 0, the jerk finite; got distance .*, speed"
+    ):
         fastest(*numbers)

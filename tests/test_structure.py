@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -87,7 +88,9 @@ def test_arcs_are_told_by_the_active_limit() -> None:
     # 0.08 at the jerk limit 50 rises by 4: a ramp, a hold at 4, something, and the same down
     lengths = np.array([0.08, 0.1, 0.32, 0.32, 0.1, 0.08])
     a = np.interp(np.arange(19) / 3, np.arange(7), [0.0, 4.0, 4.0, 0.0, -4.0, -4.0, 0.0])
-    motion, arcs = read_quintic(Motion(lengths, a, 0.0), replace(JERK, greatest_ratio=9.0, least_ratio=-9.0), touched=False)
+    motion, arcs = read_quintic(
+        Motion(lengths, a, 0.0), replace(JERK, greatest_ratio=9.0, least_ratio=-9.0), touched=False
+    )
     assert arcs == ("ramp", "hold", "free", "hold", "ramp")
     assert motion.lengths == pytest.approx([0.08, 0.1, 0.64, 0.1, 0.08])
     assert motion.degree == 3
@@ -117,10 +120,14 @@ def test_a_quintic_is_read_without_loss() -> None:
     s = np.linspace(0, 1, 11)
     exact = 60 * s - 180 * s**2 + 120 * s**3
     thirds = []
-    for left, right in zip(s, s[1:], strict=False):
+    for left, right in pairwise(s):
         x = left + (right - left) * np.arange(4) / 3
         v = 60 * x - 180 * x**2 + 120 * x**3
-        thirds += [v[0], (-5 * v[0] + 18 * v[1] - 9 * v[2] + 2 * v[3]) / 6, (2 * v[0] - 9 * v[1] + 18 * v[2] - 5 * v[3]) / 6]
+        thirds += [
+            v[0],
+            (-5 * v[0] + 18 * v[1] - 9 * v[2] + 2 * v[3]) / 6,
+            (2 * v[0] - 9 * v[1] + 18 * v[2] - 5 * v[3]) / 6,
+        ]
     grid = Motion(np.full(10, 0.1), np.append(thirds, exact[-1]), 720.0)
     problem = replace(JERK, greatest_ratio=9.0, least_ratio=-9.0, greatest_slope=9.0, greatest_jerk=99.0)
     motion, arcs = read_quintic(grid, problem, touched=True)

@@ -86,7 +86,9 @@ def test_profile_is_the_integral_of_the_acceleration(motion: Motion) -> None:
     nodes_q, nodes_v = motion.nodes()
     size = 1e-12 * (1 + np.abs(motion.accelerations).max())
     start = 0.0
-    for i, (h, row) in enumerate(zip(motion.lengths, piece_coefficients(motion.accelerations, motion.degree), strict=True)):
+    for i, (h, row) in enumerate(
+        zip(motion.lengths, piece_coefficients(motion.accelerations, motion.degree), strict=True)
+    ):
         piece = bernstein(row)
         ratio = (piece * h).integ(lbnd=0) + v
         position = (ratio * h).integ(lbnd=0) + q

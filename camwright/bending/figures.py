@@ -41,6 +41,11 @@ def draw(outline: BentOutline, directory: Path, name: str) -> None:
             figure.savefig(directory / f"{name}-{kind}.png", dpi=150, metadata={"Software": None})
 
 
+def drawn_as_pixels(outline: BentOutline) -> bool:
+    """Tell whether the rule has too many sides for lines in the whole view."""
+    return outline.plan.bends >= MOST_VECTORS
+
+
 def outline_path(outline: Outline, coarseness: float) -> FloatArray:
     """Return points along an outline (m), arcs as chords within a distance of them (m)."""
     radius = np.where(outline.arcs, outline.radii, 1.0)
@@ -68,7 +73,7 @@ def _proof_figure(outline: BentOutline) -> Figure:
     reach = _window(outline, worst)
     fine = 1e3 * outline_path(outline.plan.outline, 1e-3 * reach / _FINENESS)
     close = [_inside(points, worst, reach) for points in (fine, bent)]
-    pixels = len(bent) > MOST_VECTORS
+    pixels = drawn_as_pixels(outline)
     for axes, (under, over), width, raster in ((whole, (drawn, bent), 3.5, pixels), (near, close, 6.0, False)):
         axes.plot(*under.T, color=_DRAWN, linewidth=width, label="drawing", solid_joinstyle="round",
                   solid_capstyle="butt", rasterized=raster, in_layout=False)  # fmt: skip

@@ -61,7 +61,13 @@ def draw_envelope(answer: EnvelopeAnswer) -> Figure:
     )
     names = [name for name in BINDING if any(point.binding == name for point in found.points)]
     patches = [
-        Patch(facecolor=BINDING[name][0], hatch=BINDING[name][1], edgecolor="#555555", linewidth=0.4, label=name.replace("_", " "))
+        Patch(
+            facecolor=BINDING[name][0],
+            hatch=BINDING[name][1],
+            edgecolor="#555555",
+            linewidth=0.4,
+            label=name.replace("_", " "),
+        )
         for name in names
     ]
     lines = axes.get_legend_handles_labels()[0]
@@ -74,7 +80,10 @@ def _cells(axes: Axes, found: Envelope) -> None:
     speeds = np.unique([point.line_speed for point in found.points]) * 60
     across, up = _borders(lengths), _borders(speeds)
     for point in found.points:
-        i, j = (int(np.argmin(np.abs(grid - at))) for grid, at in ((lengths, point.length * 1e3), (speeds, point.line_speed * 60)))
+        i, j = (
+            int(np.argmin(np.abs(grid - at)))
+            for grid, at in ((lengths, point.length * 1e3), (speeds, point.line_speed * 60))
+        )
         colour, hatch = BINDING[point.binding]
         axes.fill_between(
             [across[i], across[i + 1]],

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.transforms import Bbox
+from numpy.typing import NDArray
 
 from profiles.polynomial import FloatArray
 
@@ -58,9 +58,9 @@ def label_points(
     pixels = figure.dpi / 72.0
     panel = axes.get_window_extent()
     places: FloatArray = np.asarray(axes.transData.transform(points))
-    taken = [Bbox.from_extents(*(place - _POINT * pixels), *(place + _POINT * pixels)) for place in places]
+    taken = [np.array([*(place - _POINT * pixels), *(place + _POINT * pixels)]) for place in places]
     across = np.asarray(axes.transData.transform([(wall, axes.get_ylim()[0]) for wall in walls])).reshape(-1, 2)[:, 0]
-    taken += [Bbox.from_extents(wall - pixels, panel.y0, wall + pixels, panel.y1) for wall in across]
+    taken += [np.array([wall - pixels, panel.y0, wall + pixels, panel.y1]) for wall in across]
     # crowded points choose first: they have the fewest free places
     apart = np.sort(np.hypot(*(places[:, None] - places[None]).transpose(2, 0, 1)), axis=1)
     for i in np.argsort(apart[:, : min(4, len(places))].sum(axis=1), kind="stable"):
@@ -77,9 +77,9 @@ def label_points(
         label.set_in_layout(False)
         box = label.get_window_extent()
         half = 0.5 * np.array([box.width, box.height])
-        offset = _free_offset(places, int(i), half + _GAP * pixels, taken, panel, pixels)
+        offset = _free_offset(places, int(i), half + _GAP * pixels, np.array(taken), panel.extents, pixels)
         label.set_position(tuple(offset / pixels))
-        taken.append(label.get_window_extent().padded(_GAP * pixels))
+        taken.append(label.get_window_extent().padded(_GAP * pixels).extents)
         distance = _distances(places, places[i] + offset, half)
         if distance[i] > _LEADER * pixels or distance.min() < distance[i] - pixels:
             tip = places[i] + offset * _edge(offset, half)
@@ -100,7 +100,7 @@ def _distances(places: FloatArray, middle: FloatArray, half: FloatArray) -> Floa
 
 
 def _free_offset(
-    places: FloatArray, i: int, half: FloatArray, taken: Sequence[Bbox], panel: Bbox, pixels: float
+    places: FloatArray, i: int, half: FloatArray, taken: FloatArray, panel: FloatArray, pixels: float
 ) -> FloatArray:
     """Offset of a label's middle from its point (px): the nearest free place that is nearer to its point than to any other."""
     angles = 2 * np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
@@ -110,10 +110,12 @@ def _free_offset(
         for angle in angles:
             direction = np.array([np.cos(angle), np.sin(angle)])
             # beside the point at its left and right, else above and below it
-            offset: FloatArray = direction * distance * pixels + half * np.sign(np.round(direction, 6)) * np.abs(direction) ** 0.5
+            offset: FloatArray = (
+                direction * distance * pixels + half * np.sign(np.round(direction, 6)) * np.abs(direction) ** 0.5
+            )
             middle = places[i] + offset
-            box = Bbox.from_extents(*(middle - half), *(middle + half))
-            met = box.width * box.height - _common(box, panel) + sum(_common(box, other) for other in taken)
+            box = np.concatenate([middle - half, middle + half])
+            met = float(4 * half.prod() - _common(box, panel) + _common(box, taken).sum())
             away = _distances(places, middle, half)
             if away.min() < away[i] - pixels or distance > _LEADER:
                 met += _crossed(places[i], offset * _edge(offset, half), taken) if distance > _LEADER else 1.0
@@ -124,14 +126,20 @@ def _free_offset(
     return best
 
 
-def _crossed(place: FloatArray, way: FloatArray, taken: Sequence[Bbox]) -> float:
-    """How much of what is taken the line from a point to its label runs over, beyond the point's own surroundings (px)."""
+def _crossed(place: FloatArray, way: FloatArray, taken: FloatArray) -> float:
+    """How much of the line from a point to its label runs over what is taken, beyond the point's own surroundings (px)."""
+    others = taken[~_inside(place[None], taken)[0]]
     steps = place + way * np.linspace(0.0, 1.0, _STEPS)[:, None]
-    over = [box.containsx(x) and box.containsy(y) for box in taken if not box.contains(*place) for x, y in steps]
-    return float(np.count_nonzero(over)) * float(np.hypot(*way)) / _STEPS
+    return float(np.count_nonzero(_inside(steps, others))) * float(np.hypot(*way)) / _STEPS
 
 
-def _common(one: Bbox, other: Bbox) -> float:
-    """Area that two boxes share (px²)."""
-    both = Bbox.intersection(one, other)
-    return 0.0 if both is None else float(both.width * both.height)
+def _inside(points: FloatArray, boxes: FloatArray) -> NDArray[np.bool_]:
+    """Which points lie in which boxes, shape ``(points, boxes)``."""
+    x, y = points[:, 0, None], points[:, 1, None]
+    return np.asarray((boxes[:, 0] <= x) & (x <= boxes[:, 2]) & (boxes[:, 1] <= y) & (y <= boxes[:, 3]))
+
+
+def _common(box: FloatArray, boxes: FloatArray) -> FloatArray:
+    """Areas that a box shares with others (px²); boxes are ``x0, y0, x1, y1``."""
+    sides = np.minimum(box[2:], boxes[..., 2:]) - np.maximum(box[:2], boxes[..., :2])
+    return np.asarray(np.maximum(sides, 0.0).prod(axis=-1))

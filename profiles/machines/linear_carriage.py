@@ -66,7 +66,7 @@ class LinearCarriage(Machine):
         return CamProfile.from_arrays([0.0, cut.sync_zone], [[0.0, cut.sync_ratio]])
 
     def tool(self, y: Any) -> Any:
-        """The carriage itself."""
+        """Return the carriage itself."""
         return y
 
     def tool_ratio(self, y: Any) -> Any:
@@ -74,7 +74,7 @@ class LinearCarriage(Machine):
         return 1.0 + 0.0 * y
 
     def inertia(self, y: Any) -> Any:
-        """Moved mass (kg)."""
+        """Return the moved mass (kg)."""
         return self.mass + 0.0 * y
 
     def inertia_slope(self, y: Any) -> Any:

@@ -56,7 +56,7 @@ class Machine(ABC):
 
     @abstractmethod
     def tool_ratio(self, y: Any) -> Any:
-        """Derivative of `tool` with respect to the slave coordinate (m per slave unit)."""
+        """Return the derivative of `tool` with respect to the slave coordinate (m per slave unit)."""
 
     @abstractmethod
     def inertia(self, y: Any) -> Any:
@@ -64,7 +64,7 @@ class Machine(ABC):
 
     @abstractmethod
     def inertia_slope(self, y: Any) -> Any:
-        """Derivative of `inertia` with respect to the slave coordinate."""
+        """Return the derivative of `inertia` with respect to the slave coordinate."""
 
     @property
     def friction(self) -> float:

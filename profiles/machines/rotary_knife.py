@@ -98,7 +98,7 @@ class RotaryKnife(Machine):
         return y if self.sync == "tangential" else self.radius * np.sin(y / self.radius)
 
     def tool_ratio(self, y: Any) -> Any:
-        """Derivative of `tool`."""
+        """Return the derivative of `tool`."""
         return 1.0 + 0.0 * y if self.sync == "tangential" else np.cos(y / self.radius)
 
     def inertia(self, y: Any) -> Any:

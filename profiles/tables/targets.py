@@ -65,7 +65,7 @@ _SIGNS: tuple[tuple[str, str], ...] = (
     ("twincat-table", r"MC_TABLETYPE_|, ?0\.\.1\] OF LREAL"),
     ("twincat-cnc", r"(?m)^[ \t]{0,99}Begintable"),
     ("kollmorgen-kas", r"(?m)^TABLE_BEGIN"),
-    ("schneider-asc", r"(?m)^CamPoints[ \t]{0,99}$"),
+    ("schneider-asc", r"(?m)^CamPoints\s{0,99}$"),
     ("trio", r"(?m)^[ \t]{0,99}TABLE[ \t]{0,99}\("),
     ("csv", r"(?m)^x ?[\[(_]"),
     ("csv", rf"\A{_HEADING}\s{{0,9}}{_NUMBER}\s{{0,9}},\s{{0,9}}{_NUMBER}\s{{0,9}}\n"),

@@ -214,6 +214,8 @@ def test_long_outlines_are_drawn_as_pixels(
     first, second = ((tmp_path / name / "drawing-proof.svg").read_text() for name in "ab")
     assert "data:image/png" not in first
     assert "data:image/png" in second
+    assert "pixels, for more than" not in (tmp_path / "a" / "sheet.html").read_text()
+    assert "pixels, for more than" in (tmp_path / "b" / "sheet.html").read_text()
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from knives import chosen, written
 
-from profiles.tables.target import SAFETY_NOTE
+from profiles.tables.target import SAFETY_NOTE, Target
 from profiles.tables.targets import TARGETS
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "targets.md"
@@ -18,12 +18,40 @@ _HEAD = f"""# Targets
 today, `camwright targets` lists what is known. No target was tested on a controller: layouts and interpolations come
 from the sources named below, and what was inferred is said.
 
+## What every export does
+
 Every file is read back by the target's own reader, the motion is rebuilt as the drive interpolates it, in its number
-format, run over three wraps and judged: limits (1 % allowed), sync zone against the sync tolerance, closure, reversal,
-servo. A table that fails is not released unless forced, and then says so in its head. All files state the units; angles
-are parts of the cycle.
+format, run over three wraps and judged: limits (1 % allowed), sync zone against the sync tolerance, closure, stroke,
+reversal, servo. The answer, with all errors and checks, stands in `report.json` beside the tables. A table that fails is
+not released unless `--force` is given, and then says so in its head (`NOT RELEASED: …`); either way the exit code is 1.
+`--to all` leaves out targets that cannot take the cam and says why; a target that was named is an error then (exit
+code 2).
+
+The points are as few as keep the rebuilt motion within the error asked for: `--max-error` for the position (1 um if left
+out; for a crank that of the carriage), a thousandth for the ratio, a hundredth of the peak for the acceleration. The
+ends of the sync zone always are points. Where a target cannot come so near, the nearest table is written and marked with
+`*`. `--points N` asks for a number of points.
+
+`--units M,S` states the units of master and slave: m, mm, um, in, deg, rev, or a quantity like `0.5 um` for a count of
+an encoder. A degree of the master is 1/360 of the cycle; a degree of the slave is one of the drum or the crank (of the
+motor's screw for a carriage). Some targets count in units of their own. All files state their units.
+
+## Auditing a cam
+
+`camwright audit FILE --job JOB` reads a cam in the layout of any target, or two plain columns as CSV, rebuilds it as its
+drive does, judges it, and sets it beside the optimum of the same job: a table, `audit.svg` and `audit.png`. For files
+that state no units `--units` tells them, with `cycle` as the master's unit where it is counted in steps of the table;
+without it the table's period is taken for the cut length and its advance for the pitch. If the cam is not in sync where
+the job has its sync zone, its cycle is begun where it fits best, and a note says where.
+
+Between straight lines the acceleration is unbounded in theory. What the drive is commanded is not: it knows the cam at
+its samples only. Such cams are compared, like the optimum beside them, by second and third differences of the positions
+at the servo's sample time: the greatest over all sampling phases, and the root mean square over the return zone. The
+answer then says `"saving_by": "differences at the sample time"`. A shorter sample time shows more of the corners.
 
 > {SAFETY_NOTE}
+
+## The targets
 
 The samples are files for a rotary knife: circumference 400 mm, cut length 600 mm, sync zone 200 mm, a jerk-limited
 return; master in mm, slave in deg.
@@ -47,11 +75,15 @@ def document() -> str:
         )
         steps = "\n".join(f"{k}. {step}" for k, step in enumerate(target.steps, start=1))
         sections.append(
-            f"## {target.name}\n\n{target.title}. Between the points: {target.interpolation}.\n\n"
-            f"Limits: {most} points, numbers in {target.number_format}.\n\nTo bring it in:\n\n{steps}\n\n"
+            f"### {target.name}\n\n{target.title}. Between the points: {target.interpolation}.\n\n"
+            f"Limits: {most} points, numbers in {target.number_format}{_step(target)}.\n\nTo bring it in:\n\n{steps}\n\n"
             f"Evidence: {target.evidence}\n\n" + "\n".join(_sample(*item) for item in files.items())
         )
     return _HEAD + "\n" + "\n".join(rows) + "\n\n" + "\n".join(sections)
+
+
+def _step(target: Target) -> str:
+    return f", points at least {target.least_step:.2g} of the period apart" if target.least_step else ""
 
 
 def _sample(name: str, text: str) -> str:

@@ -1,0 +1,80 @@
+"""What a whole cold `camwright design --json --no-figures` of the bundled job costs, beside importing the libraries it cannot do without.
+
+The measure is processor time of the whole process, so that other programs on the machine do not count; the runs alternate, after
+one of each that is not counted (compiled files, disk cache). The output of every counted run must be a design whose checks
+passed. Writes the runs as CSV and prints the medians and their ratio:
+
+    python benchmarks/cold_start.py [--runs 9]
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import json
+import resource
+import statistics
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from time import perf_counter
+
+RESULTS = Path(__file__).parent / "results"
+
+MOST = 3.0
+"""Greatest ratio that the project promises."""
+
+IMPORTS = [sys.executable, "-c", "import casadi, scipy.signal"]
+DESIGN = [
+    sys.executable,
+    "-c",
+    "import sys; from camwright.cli import main; sys.exit(main())",
+    "design",
+    "--json",
+    "--no-figures",
+]
+
+
+def run(command: list[str], directory: str) -> tuple[float, float, str]:
+    """Processor and wall time (s) of a process, and what it printed."""
+    before, start = resource.getrusage(resource.RUSAGE_CHILDREN), perf_counter()
+    done = subprocess.run(command, cwd=directory, capture_output=True, text=True, check=True)
+    wall, after = perf_counter() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, wall, done.stdout
+
+
+def main() -> int:
+    """Run, judge, write, print; the exit code tells whether the promise is kept."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--runs", type=int, default=9)
+    options = parser.parse_args()
+    rows = []
+    for number in range(-1, options.runs):
+        row: dict[str, float] = {"run": number}
+        for name, command in (("imports", IMPORTS), ("design", DESIGN)):
+            with tempfile.TemporaryDirectory() as directory:
+                processor, wall, output = run(command, directory)
+            row |= {f"{name}_processor_s": processor, f"{name}_wall_s": wall}
+        answer = json.loads(output)
+        if not answer["passed"] or answer["status"] != "optimal":
+            print("the design of the bundled job did not pass its checks", file=sys.stderr)
+            return 1
+        if number >= 0:
+            rows.append(row)
+    RESULTS.mkdir(exist_ok=True)
+    with (RESULTS / "cold_start.csv").open("w", newline="", encoding="utf-8") as file:
+        table = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
+        table.writeheader()
+        table.writerows(rows)
+    middle = {name: statistics.median(row[name] for row in rows) for name in rows[0]}
+    ratio = middle["design_processor_s"] / middle["imports_processor_s"]
+    print("measure,value")
+    for name in ("imports_processor_s", "design_processor_s", "imports_wall_s", "design_wall_s"):
+        print(f"{name},{middle[name]:.3f}")
+    print(f"ratio,{ratio:.2f} (promised below {MOST:g})")
+    return 0 if ratio < MOST else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
