@@ -1,8 +1,8 @@
 """Whether a job can be done at all, and if not, what binds, by how much, and what would work.
 
-Where the sync zone is a straight line and no stroke confines the slave, the answer is a closed form: the return is that line plus a motion from
-rest to rest, and `profiles.reach` tells how far such a motion can go. Elsewhere the least peaks of speed, acceleration and jerk are
-themselves optimisations.
+Where the sync zone is a straight line and no stroke confines the slave, the answer is a closed form: the return is that line plus a
+motion from rest to rest, and `profiles.reach` tells how far such a motion can go. Elsewhere the least common factor on all limits is
+an optimisation of its own.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from design.solver import limit_margin
 from profiles.cycle import Cut
 from profiles.errors import InfeasibleError, InputError, SolverError, Suggestion
 from profiles.limits import Limits
-from profiles.machines import Machine
+from profiles.machines import LinearCarriage, Machine
 from profiles.polynomial import CamProfile
 from profiles.reach import greatest_reach, in_time, least_acceleration, least_jerk, least_speed
 
@@ -31,6 +31,11 @@ SOLVED = 1e-8
 EDGE = 1e-7
 # Suggested values are rounded to this many digits, towards the safe side.
 SUGGESTED_DIGITS = 4
+# Where an optimisation decides, suggestions keep this share away from the edge, so that every objective has a motion there.
+ASIDE = 1e-3
+# Line speeds down to this share of the job's, and strokes up to this multiple of the machine's, are looked at.
+SLOWEST = 1e-6
+LONGEST_STROKE = 64.0
 # "Unlimited", as a multiple of the limit.
 FREE = 1e6
 
@@ -279,8 +284,10 @@ def _words(
     return (
         needed - limit,
         unit,
-        (f"limits.{binding} binds, {needed:.6g} {unit} is needed, {limit:g} {unit} is the limit "
-        f"({100 * (needed / limit - 1):.3g} % more than allowed)"),
+        (
+            f"limits.{binding} binds, {needed:.6g} {unit} is needed, {limit:g} {unit} is the limit "
+            f"({100 * (needed / limit - 1):.3g} % more than allowed)"
+        ),
     )
 
 
@@ -301,23 +308,41 @@ def _suggest(machine: Machine, cut: Cut, limits: Limits, need: dict[str, float])
     def at_length(length: float) -> bool:
         return length > cut.sync_zone and is_feasible(machine, replace(cut, length=length), limits)
 
-    tolerance = 0.0 if _exact(machine, cut) else EDGE
-    slower = edge(at_speed, cut.line_speed * 1e-3, cut.line_speed, tolerance)
+    exact = _exact(machine, cut)
+    tolerance, aside = (0.0, 0.0) if exact else (EDGE, ASIDE)
+    slow = 0.5 * cut.line_speed
+    while slow > SLOWEST * cut.line_speed and not at_speed(slow):
+        slow *= 0.5
+    slower = edge(at_speed, slow, 2 * slow, tolerance)
     if slower is not None:
-        offer("line_speed", slower, 60.0, "m/min", False, at_speed)
+        offer("line_speed", slower * (1 - aside), 60.0, "m/min", False, at_speed)
     for length, up in _lengths_to_try(machine, cut):
         nearest = edge(at_length, length, cut.length, tolerance)
         if nearest is not None:
-            offer("length", nearest, 1e3, "mm", up, at_length)
+            offer("length", nearest * (1 + aside if up else 1 - aside), 1e3, "mm", up, at_length)
             break
+    if isinstance(machine, LinearCarriage):
+        longer = _stroke_needed(machine, cut, limits)
+        if longer is not None:
+            found.append(Suggestion("stroke", longer, "mm"))
     for name, value in need.items():
         if not math.isfinite(value) or value <= getattr(limits, name):
             continue
         factor, unit = _UNITS[machine.slave_unit][name]
-        offer(name, value, factor, unit, True, partial(_works_with, machine, cut, limits, name))
+        offer(name, value * (1 + aside), factor, unit, True, partial(_works_with, machine, cut, limits, name))
     if not (limits.reversal or machine.turns_back) and is_feasible(machine, cut, replace(limits, reversal=True)):
         found.append(Suggestion("reversal", 1.0, ""))
     return found
+
+
+def _stroke_needed(machine: LinearCarriage, cut: Cut, limits: Limits) -> float | None:
+    """Longer stroke (mm) with which the job works; None if no stroke helps."""
+
+    def works(stroke: float) -> bool:
+        return is_feasible(replace(machine, stroke=stroke), cut, limits)
+
+    enough = edge(works, LONGEST_STROKE * machine.stroke, machine.stroke, EDGE)
+    return None if enough is None else rounded_to(enough * (1 + ASIDE) * 1e3, SUGGESTED_DIGITS, up=True)
 
 
 def _works_with(machine: Machine, cut: Cut, limits: Limits, name: str, value: float) -> bool:
@@ -383,7 +408,7 @@ def rounded_to(value: float, digits: int, up: bool) -> float:
 
 
 def _offer(suggestion: Suggestion) -> str:
-    place = {"line_speed": "cut.line_speed", "length": "cut.length"}.get(
+    place = {"line_speed": "cut.line_speed", "length": "cut.length", "stroke": "machine.stroke"}.get(
         suggestion.change, f"limits.{suggestion.change}"
     )
     if suggestion.change == "reversal":

@@ -1,8 +1,8 @@
 """A motor's torque-speed curve as limits of the slave.
 
-A motion keeps a falling curve if it stays within one of its rectangles, some speed and the torque that the motor still gives there. A rectangle is a
-limit of speed and one of acceleration, so the machinery for these serves; the best rectangle is taken. What a motion could gain by
-using different torques at different speeds is left.
+A motion keeps a falling curve if it stays within one of its rectangles, some speed and the torque that the motor still gives there. A
+rectangle is a limit of speed and one of acceleration, so the machinery for these serves; the best rectangle is taken. What a motion
+could gain by using different torques at different speeds is left.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import numpy as np
 
 from profiles.limits import Limits
 from profiles.machines import Machine
+from profiles.polynomial import FloatArray
 
 # Places around a crank at which its inertia is looked at.
 PLACES = 3600
@@ -26,7 +27,7 @@ def motor_limits(machine: Machine, limits: Limits) -> list[Limits]:
     """
     if limits.motor is None:
         return [limits]
-    around = np.linspace(0.0, 2 * np.pi, PLACES + 1) if machine.slave_unit == "rad" else np.zeros(1)
+    around = _around(machine)
     inertia = float(np.max(machine.inertia(around)))
     slope = float(np.max(np.abs(machine.inertia_slope(around))))
     found = []
@@ -38,3 +39,13 @@ def motor_limits(machine: Machine, limits: Limits) -> list[Limits]:
         acceleration = min(limits.acceleration, force / inertia) if inertia > 0 else limits.acceleration
         found.append(replace(limits, speed=speed, acceleration=acceleration, motor=None))
     return found
+
+
+def moves_something(machine: Machine) -> bool:
+    """Whether the machine says what the motor has to move."""
+    return float(np.max(machine.inertia(_around(machine)))) > 0.0 or machine.friction > 0.0
+
+
+def _around(machine: Machine) -> FloatArray:
+    """Slave coordinates at which the inertia is looked at; one will do where it does not change."""
+    return np.linspace(0.0, 2 * np.pi, PLACES + 1) if machine.slave_unit == "rad" else np.zeros(1)

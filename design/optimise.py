@@ -11,7 +11,7 @@ import numpy as np
 from design.extremes import roomiest
 from design.feasibility import infeasible, is_feasible, require_feasible
 from design.ipopt import SolveStatus
-from design.motor import motor_limits
+from design.motor import motor_limits, moves_something
 from design.placement import place_sync
 from design.problem import Objective as MotionObjective
 from design.problem import ReturnProblem, return_problem
@@ -122,7 +122,7 @@ def solve(machine: Machine, cut: Cut, limits: Limits, objective: Objective) -> S
     require_feasible(machine, cut, limits)
     if limits.motor is not None:
         return _solve_for_motor(machine, cut, limits, objective)
-    if objective in TORQUE_OBJECTIVES and float(machine.inertia(0.0)) + machine.friction == 0.0:
+    if objective in TORQUE_OBJECTIVES and not moves_something(machine):
         raise InputError(
             f"[objective] minimise = {objective!r} needs to know what the motor moves: give the machine's inertia or mass, or minimise "
             f"rms_acceleration"
@@ -169,7 +169,7 @@ def _motion_objective(machine: Machine, objective: Objective) -> MotionObjective
     acceleration of a cycle is zero); without friction its peak is ``I a_max``.
     """
     if objective in MOTION_OBJECTIVES:
-        return cast("MotionObjective", objective)
+        return objective
     if isinstance(machine, CrankSlider) or objective == "energy":
         return None
     if objective == "rms_torque" and not (machine.turns_back and machine.friction):
@@ -198,8 +198,11 @@ def _solve_free_crank(machine: CrankSlider, cut: Cut, limits: Limits, objective:
         return grid_objective(return_problem(placed, cut, limits, cast("MotionObjective", objective)))
 
     placement = place_sync(machine, cut, cost)
-    if placement is None:
-        raise infeasible(roomiest(machine, cut, limits), cut, limits)
+    if placement is None:  # at the edge the grid sees no motion where there still is one
+        easiest = roomiest(machine, cut, limits)
+        if is_feasible(easiest, cut, limits):
+            return solve(easiest, cut, limits, objective)
+        raise infeasible(easiest, cut, limits)
     solution = solve(placement.machine, cut, limits, objective)
     if solution.starts is None:
         return replace(solution, starts=Starts(1, 1, 0.0, 0.0, placement.valleys))

@@ -127,7 +127,7 @@ class Motion:
 def piece_coefficients(accelerations: FloatArray, degree: int) -> FloatArray:
     """Rows of Bernstein coefficients of the single pieces, shape ``(M, p + 1)``."""
     count = (len(accelerations) - 1) // degree
-    return accelerations[np.arange(count)[:, None] * degree + np.arange(degree + 1)]
+    return np.asarray(accelerations[np.arange(count)[:, None] * degree + np.arange(degree + 1)])
 
 
 @lru_cache

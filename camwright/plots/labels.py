@@ -26,6 +26,9 @@ _GAP = 1.5
 _STEPS = 25
 """Points of a leading line that are held against what is taken."""
 
+_NOTHING = 1e-3
+"""Area that two boxes may share by rounding (px²)."""
+
 _LEADER = 12.0
 """Distance from which a line leads from the label to its point (pt)."""
 
@@ -77,9 +80,9 @@ def label_points(
         label.set_in_layout(False)
         box = label.get_window_extent()
         half = 0.5 * np.array([box.width, box.height])
-        offset = _free_offset(places, int(i), half + _GAP * pixels, np.array(taken), panel.extents, pixels)
+        offset = _free_offset(places, int(i), half + _GAP * pixels, np.array(taken), np.array(panel.extents), pixels)
         label.set_position(tuple(offset / pixels))
-        taken.append(label.get_window_extent().padded(_GAP * pixels).extents)
+        taken.append(np.array(label.get_window_extent().padded(_GAP * pixels).extents))
         distance = _distances(places, places[i] + offset, half)
         if distance[i] > _LEADER * pixels or distance.min() < distance[i] - pixels:
             tip = places[i] + offset * _edge(offset, half)
@@ -119,7 +122,7 @@ def _free_offset(
             away = _distances(places, middle, half)
             if away.min() < away[i] - pixels or distance > _LEADER:
                 met += _crossed(places[i], offset * _edge(offset, half), taken) if distance > _LEADER else 1.0
-            if met <= 0.0:
+            if met <= _NOTHING:
                 return offset
             if met < least:
                 best, least = offset, met

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,13 +13,15 @@ import typer
 from typer.testing import CliRunner
 
 from camwright import load_job
-from camwright.audit import audit, audit_answer
+from camwright.cli import main
 from camwright.commands.tables import register
-from camwright.export import export, export_answer, export_report, targets_answer
-from camwright.table_options import parse_targets, parse_units
+from camwright.export import export, export_answer, export_possible, export_report, targets_answer
+from camwright.table_options import default_units, parse_targets, parse_units
 from profiles.errors import InputError
 from profiles.limits import Limits
+from profiles.machines import CrankSlider, LinearCarriage
 from profiles.returns import baseline
+from profiles.tables.cam_table import Unit
 from profiles.tables.knots import Accuracy
 from profiles.tables.targets import TARGETS
 
@@ -43,14 +47,30 @@ def test_all_targets_are_released_for_a_sound_cam() -> None:
         assert fact in text
 
 
-def test_a_table_that_breaks_a_limit_is_not_released_unless_forced() -> None:
-    weak = replace(JOB, limits=Limits(JOB.limits.speed, 1.0, JOB.limits.jerk))
-    (result,) = export(PROFILE, weak, ["codesys"])
+WEAK = replace(JOB, limits=Limits(JOB.limits.speed, 1.0, JOB.limits.jerk))
+
+
+@pytest.mark.parametrize(
+    "target", ["codesys", "s7-1500t-points", "logix", "br", "trio", "kollmorgen-kas", "lenze", "csv"]
+)
+def test_a_table_that_breaks_a_limit_is_not_released_unless_forced(target: str) -> None:
+    (result,) = export(PROFILE, WEAK, [target])
     assert not result.passed
     assert result.files == {}
-    (result,) = export(PROFILE, weak, ["codesys"], force=True)
+    (result,) = export(PROFILE, WEAK, [target], force=True)
     assert not result.passed
-    assert "// NOT RELEASED: check acceleration failed" in next(iter(result.files.values()))
+    assert any("NOT RELEASED: check acceleration failed" in text for text in result.files.values())
+
+
+@pytest.mark.parametrize("target", ["codesys", "logix", "technosoft"])
+def test_a_table_that_leaves_the_sync_tolerance_is_not_released(target: str) -> None:
+    off = PROFILE.add_line(-2e-4 / 0.6)  # 0.2 mm a cycle
+    (result,) = export(off, JOB, [target])
+    failed = {check.name for check in result.judgement.checks if not check.passed}
+    assert failed >= {"closure", "sync_position"}
+    assert result.files == {}
+    (result,) = export(off, JOB, [target], force=True)
+    assert any("NOT RELEASED: check sync_position failed" in text for text in result.files.values())
 
 
 def test_points_units_and_accuracy() -> None:
@@ -79,40 +99,6 @@ def test_points_units_and_accuracy() -> None:
 def test_wrong_options_are_refused(call: object, message: str) -> None:
     with pytest.raises(InputError, match=message):
         call()  # type: ignore[operator]
-
-
-@pytest.mark.parametrize("target", ["logix", "codesys", "kollmorgen-kas", "trio"])
-def test_an_audit_finds_what_was_written(target: str, tmp_path: Path) -> None:
-    (written,) = export(PROFILE, JOB, [target])
-    name, text = next(iter(written.files.items()))
-    (tmp_path / name).write_bytes(text.encode())
-    result = audit(tmp_path / name, JOB)
-    assert result.target.name == target
-    assert result.judgement.passed
-    answer = audit_answer(result, tmp_path / name)
-    json.dumps(answer, allow_nan=False)
-    if target == "trio":
-        assert answer["profile"]["peak_acceleration_m_per_s2"] is None  # straight lines: unbounded
-        assert answer["saving_by"] == "differences at the sample time"
-        own, best = (answer["sampled"][key]["peak_acceleration"] for key in ("profile", "optimum"))
-        assert answer["saving"]["peak_acceleration_rel"] == pytest.approx(1 - best / own)
-    else:
-        own, best = (answer[key]["peak_acceleration_m_per_s2"] for key in ("profile", "optimum"))
-        assert own > best
-        assert answer["saving"]["peak_acceleration_rel"] == pytest.approx(1 - best / own)
-
-
-def test_an_audit_without_units_takes_the_cycle_for_the_jobs(tmp_path: Path) -> None:
-    x = [0.6 * k / 120 for k in range(121)]
-    y = PROFILE(x)
-    (tmp_path / "cam.csv").write_text(
-        "".join(f"{a * 360 / 0.6!r};{b * 25 - 3!r}\n" for a, b in zip(x, y.tolist(), strict=True))
-    )
-    result = audit(tmp_path / "cam.csv", JOB)
-    assert result.judgement.passed
-    (tmp_path / "flat.csv").write_text("0,0\n1,1\n2,0\n")
-    with pytest.raises(InputError, match="its unit cannot be told from the pitch"):
-        audit(tmp_path / "flat.csv", JOB)
 
 
 def test_targets() -> None:
@@ -149,9 +135,84 @@ def test_the_commands(tmp_path: Path) -> None:
     assert {path.name for path in (tmp_path / "tables").iterdir()} == {
         "report.json", *answer["codesys"]["files"], *answer["logix"]["files"]
     }  # fmt: skip
-    (tmp_path / "job.toml").write_text(JOB.text)
-    cam = tmp_path / "tables" / answer["logix"]["files"][0]
-    found = run.invoke(app, ["audit", str(cam), "--job", str(tmp_path / "job.toml"), "--json"])
-    assert json.loads(found.stdout)["target"] == "logix"
-    assert "saving" in run.invoke(app, ["audit", str(cam), "--job", str(tmp_path / "job.toml")]).stdout
     assert "Tables as the drives" in run.invoke(app, ["export", str(tmp_path / "design.json"), "--to", "br"]).stdout
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a design, and the design of the same cycle for a job that it breaks."""
+    from camwright.design_file import design_text
+    from camwright.results import design
+
+    place = tmp_path_factory.mktemp("designs")
+    text = design_text(design(JOB))
+    (place / "design.json").write_text(text)
+    stored = json.loads(text)
+    stored["job"]["toml"] = JOB.text.replace('acceleration = "30 m/s^2"', 'acceleration = "8 m/s^2"')
+    stored["provenance"]["job_sha256"] = hashlib.sha256(stored["job"]["toml"].encode()).hexdigest()
+    (place / "broken.json").write_text(json.dumps(stored))
+    (place / "job.toml").write_text(JOB.text)
+    return place
+
+
+def test_exit_codes(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = ["--out", str(tmp_path / "t"), "--json"]
+    assert main(["export", str(folder / "design.json"), "--to", "codesys", *out]) == 0
+    answer = json.loads(capsys.readouterr().out)["targets"]["codesys"]
+    assert all((tmp_path / "t" / file).is_file() for file in answer["files"])
+    assert main(["export", str(folder / "broken.json"), "--to", "logix", *out]) == 1
+    assert json.loads(capsys.readouterr().out)["targets"]["logix"] == {**answer_of(tmp_path, "logix"), "files": []}
+    assert main(["export", str(folder / "broken.json"), "--to", "logix", "--force", *out]) == 1
+    forced = json.loads(capsys.readouterr().out)["targets"]["logix"]["files"]
+    assert "NOT RELEASED: check acceleration failed" in (tmp_path / "t" / forced[0]).read_text()
+    for arguments, message in (
+        ([str(folder / "design.json"), "--to", "omron"], "there is no target 'omron'"),
+        (
+            [str(folder / "job.toml"), "--to", "csv"],
+            "not a design.json; if it is a job, design it first: camwright design",
+        ),
+        ([str(folder / "none.json"), "--to", "csv"], "there is no such design file"),
+        (
+            [str(folder / "design.json"), "--to", "csv", "--units", "mm"],
+            "--units takes the master's unit and the slave's",
+        ),
+        ([str(folder / "design.json"), "--to", "csv", "--max-error", "1 kg"], "length"),
+        ([str(folder / "design.json"), "--to", "pacdrive", "--points", "34"], "takes 2 to 33 points; 34 are asked for"),
+    ):
+        assert main(["export", *arguments, "--out", str(tmp_path / "none")]) == 2
+        assert message in capsys.readouterr().err
+        assert not (tmp_path / "none").exists()
+
+
+def answer_of(place: Path, target: str) -> dict[str, object]:
+    """What the report beside the tables says of a target, in the words of the answer."""
+    entry = json.loads((place / "t" / "report.json").read_text())["targets"][target]
+    return {key: entry[key] for key in ("knots", "position_error_m", "acceleration_error_rel", "passed", "files")}
+
+
+def test_all_leaves_out_who_cannot_take_the_cam(tmp_path: Path) -> None:
+    negative = PROFILE.shift(0.0, -0.01)
+    results, refused = export_possible(negative, JOB, ["codesys", "kollmorgen-kas"], force=True)
+    assert [result.target.name for result in results] == ["codesys"]
+    assert "begin at 0, stay above 0" in refused["kollmorgen-kas"][0]
+    assert export_report(results, JOB, refused)["refused"]["kollmorgen-kas"]
+    with pytest.raises(InputError, match="kollmorgen-kas: the IDE scales"):
+        export(negative, JOB, ["codesys", "kollmorgen-kas"])
+
+
+def test_units_of_each_machine() -> None:
+    drum = replace(JOB.machine, blades=2)
+    units = parse_units("deg,deg", drum, JOB.cut)
+    assert (units.master.size, units.slave.size) == pytest.approx(
+        (0.6 / 360, 0.4 / 360)
+    )  # of the drum, whatever its blades
+    assert parse_units("mm,0.5 um", drum, JOB.cut).slave == Unit("0.5um", pytest.approx(5e-7))
+    assert parse_units("cycle,mm", drum, JOB.cut, 4096.0).master.size == pytest.approx(0.6 / 4096)
+    with pytest.raises(InputError, match="there is no unit 'cycle' here"):
+        parse_units("cycle,mm", drum, JOB.cut)
+    crank = CrankSlider(0.15, 0.6)
+    assert parse_units("mm,deg", crank, JOB.cut).slave == Unit("deg", pytest.approx(math.pi / 180), "rad")
+    assert default_units(crank).slave.si == "rad"
+    with pytest.raises(InputError, match="there is no unit 'mm' here; the units are rad, deg, rev"):
+        parse_units("mm,mm", crank, JOB.cut)
+    assert parse_units("mm,rev", LinearCarriage(1.2, travel_per_turn=0.04), JOB.cut).slave.size == 0.04

@@ -348,6 +348,26 @@ def test_an_unknown_layout_or_target_is_refused() -> None:
         target_of("omron")
 
 
+@pytest.mark.parametrize("filler", ["\n", " ", "\t", "#\n", ".Append ", "0", "x ", "/", "camwright "])
+def test_the_layout_is_sought_in_no_time(filler: str) -> None:
+    text = filler * (200_000 // len(filler))
+    begin = time.process_time()
+    with pytest.raises(InputError, match="the layout is not recognised"):
+        detect(text + "$", "cam")
+    assert time.process_time() - begin < 0.5
+
+
+def test_columns_with_names_and_decimal_commas_are_recognised() -> None:
+    for text in (
+        "Winkel;Weg\n0,0;0,5\n1,5;2,0\n3,0;3,5\n",
+        "master,slave\n0,0.5\n1.5,2\n3,3.5\n",
+        "# x\nA;B\n0;0.5\n1.5;2\n3;3.5",
+    ):
+        assert detect(text, "t").name == "csv"
+        table = TARGETS["csv"].read(text, "t")
+        assert (table.x.tolist(), table.y.tolist()) == ([0, 1.5, 3], [0.5, 2, 3.5])
+
+
 # -- fuzzing
 
 PIECES = """( ) [ ] := := ; , .. : . # // (* *) { } ' " = < > <Tag </Tag> dX dY a[1].MasterPos p 1 0 -1 2.5 1e3 1e999
