@@ -10,15 +10,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from camwright.alignment import aligned
 from camwright.answers import validate_answer
 from camwright.job import Job
 from camwright.progress import Step, ignore
 from camwright.table_options import parse_units
 from profiles.errors import InputError
 from profiles.machines import CrankSlider, Machine
-from profiles.polynomial import CamProfile, FloatArray
+from profiles.polynomial import CamProfile
 from profiles.tables.cam_table import CamTable, Unit, Units
 from profiles.tables.target import Target
 from profiles.tables.targets import detect, read_table, target_of
@@ -151,7 +151,7 @@ def audit(path: Path, job: Job, target: str | None = None, units: str | None = N
     placed = replace(job, machine=_placed(job.machine, text, str(path)))
     rebuilt = _units(table, units, placed, str(path)).to_si(layout.rebuild(table))
     one_cycle(rebuilt, job.cut)  # refuses another period
-    rebuilt, notes = _aligned(rebuilt.shift(-rebuilt.start), placed)
+    rebuilt, notes = aligned(rebuilt.shift(-rebuilt.start), placed)
     cycle = one_cycle(rebuilt, job.cut)
     step("judging")
     judgement = judge_table(rebuilt, placed.machine, job.cut, job.limits, job.servo)
@@ -216,72 +216,6 @@ def _units(table: CamTable, asked: str | None, job: Job, place: str) -> Units:
         Unit("master unit", job.cut.length / table.period),
         Unit("slave unit", job.machine.pitch / table.advance, unit),
     )
-
-
-def _aligned(rebuilt: CamProfile, job: Job) -> tuple[CamProfile, tuple[str, ...]]:
-    """Begin the cycle where it fits the job's sync zone best, and put the slave's zero where the job has it.
-
-    Parameters
-    ----------
-    rebuilt
-        One cycle from master 0 on, in SI units.
-
-    Returns
-    -------
-    (profile, notes)
-        The cycle, and where it begins in the file if that is not at the file's first point.
-    """
-    cut, machine = job.cut, job.machine
-    sync = machine.sync_profile(cut)
-    in_zone = np.linspace(0.0, cut.sync_zone, _IN_ZONE)
-    meant = sync(in_zone)
-    zone = (cut.return_start + cut.return_zone) % cut.length
-
-    def misfit(begin: FloatArray) -> FloatArray:
-        """Half the range of the slave's error in the zone, for cycles that begin at these places."""
-        x = (begin[:, None] + zone + in_zone) * (rebuilt.length / cut.length)
-        off = rebuilt(x, outside="repeat") - meant
-        return np.asarray(0.5 * np.ptp(off, axis=1))
-
-    lever = float(np.abs(machine.tool_ratio(machine.sync_start(cut) + meant)).max())
-    notes: tuple[str, ...] = ()
-    as_it_is = float(misfit(np.zeros(1))[0]) * lever
-    if as_it_is > cut.sync_tolerance:
-        begins = np.linspace(0.0, cut.length, _BEGINS, endpoint=False)
-        found = misfit(begins) * lever
-        good = found <= max(2.0 * float(found.min()), _PLATEAU * cut.sync_tolerance)
-        begin = float(begins[_middle_of_run(good)])
-        if float(misfit(np.array([begin]))[0]) * lever < 0.5 * as_it_is and begin > 0.0:
-            rebuilt = rebuilt.roll(begin * rebuilt.length / cut.length)
-            note = (
-                f"the file's master zero is not the job's: the job's cycle begins {begin * 1e3:.4g} mm into the file's, "
-                "where the cam fits the sync zone best ([output] origin says which zero is meant)"
-            )
-            notes = (note,)
-    x = (zone + in_zone) * (rebuilt.length / cut.length)
-    off = rebuilt(x, outside="repeat") - meant
-    wanted = (
-        machine.pitch - sync.advance if cut.origin == "return" else machine.pitch - float(sync(0.5 * cut.sync_zone))
-    )
-    return rebuilt.shift(0.0, wanted - 0.5 * float(off.max() + off.min())), notes
-
-
-_BEGINS = 3600
-_IN_ZONE = 65
-_PLATEAU = 0.1
-"""Beginnings that miss by less than this part of the sync tolerance are as good as each other."""
-
-
-def _middle_of_run(good: NDArray[np.bool_]) -> int:
-    """Find the middle of the longest run of true entries of a ring."""
-    if good.all():
-        return 0
-    turned = int(np.argmin(good))
-    ring = np.roll(good, -turned)
-    edges = np.diff(np.concatenate([[0], ring.astype(np.int8), [0]]))
-    starts, ends = np.nonzero(edges == 1)[0], np.nonzero(edges == -1)[0]
-    longest = int(np.argmax(ends - starts))
-    return int((starts[longest] + ends[longest] - 1) // 2 + turned) % len(good)
 
 
 def _sampled(cycle: CamProfile, job: Job) -> Sampled:

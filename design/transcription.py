@@ -40,7 +40,7 @@ LIMIT_MARGIN = 2e-10
 
 
 # Parts into which a piece of unknown length and higher degree is cut for its limits.
-SPLIT = 8
+SPLIT = 16
 
 
 @dataclass(frozen=True)

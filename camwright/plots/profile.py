@@ -119,8 +119,7 @@ def _limits(axes: Axes, bounds: tuple[float, float]) -> None:
         axes.axhline(bound, **LIMIT)
     if bounds[1] > _FAR * reach:
         text = f"limit {bounds[1]:g}: off scale" if drawn else f"limits ±{bounds[1]:g}: off scale"
-        axes.text(0.995, 0.96, text, transform=axes.transAxes, ha="right", va="top", fontsize=7, zorder=7,
-                  bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 1.0})  # fmt: skip
+        axes.text(1.0, 1.015, text, transform=axes.transAxes, ha="right", va="bottom", fontsize=7)
 
 
 def _arrows(acceleration: Axes, jerk: Axes, name: str, profile: CamProfile) -> None:

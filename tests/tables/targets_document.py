@@ -29,8 +29,8 @@ code 2).
 
 The points are as few as keep the rebuilt motion within the error asked for: `--max-error` for the position (1 um if left
 out; for a crank that of the carriage), a thousandth for the ratio, a hundredth of the peak for the acceleration. The
-ends of the sync zone always are points, unless a target's points must be evenly spaced. Where a target cannot come so near, the nearest table is written and marked with
-`*`. `--points N` asks for a number of points.
+ends of the sync zone always are points, unless a target's points must be evenly spaced. Where a target cannot come so
+near, the nearest table is written and marked with `*`. `--points N` asks for a number of points.
 
 `--units M,S` states the units of master and slave: m, mm, um, in, deg, rev, or a quantity like `0.5 um` for a count of
 an encoder. A degree of the master is 1/360 of the cycle; a degree of the slave is one of the drum or the crank (of the

@@ -19,7 +19,7 @@ from camwright.export import export, export_answer, export_possible, export_repo
 from camwright.table_options import default_units, parse_targets, parse_units
 from profiles.errors import InputError
 from profiles.limits import Limits
-from profiles.machines import CrankSlider, LinearCarriage
+from profiles.machines import CrankSlider, LinearCarriage, RotaryKnife
 from profiles.returns import baseline
 from profiles.tables.cam_table import Unit
 from profiles.tables.knots import Accuracy
@@ -140,7 +140,7 @@ def test_the_commands(tmp_path: Path) -> None:
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with a design, and the design of the same cycle for a job that it breaks."""
+    """Make a folder with a design, and the design of the same cycle for a job that it breaks."""
     from camwright.design_file import design_text
     from camwright.results import design
 
@@ -185,7 +185,7 @@ def test_exit_codes(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[
 
 
 def answer_of(place: Path, target: str) -> dict[str, object]:
-    """What the report beside the tables says of a target, in the words of the answer."""
+    """Read what the report beside the tables says of a target, in the words of the answer."""
     entry = json.loads((place / "t" / "report.json").read_text())["targets"][target]
     return {key: entry[key] for key in ("knots", "position_error_m", "acceleration_error_rel", "passed", "files")}
 
@@ -201,17 +201,17 @@ def test_all_leaves_out_who_cannot_take_the_cam(tmp_path: Path) -> None:
 
 
 def test_units_of_each_machine() -> None:
-    drum = replace(JOB.machine, blades=2)
+    drum = RotaryKnife(0.4, blades=2)  # a degree is one of the drum, whatever its blades
     units = parse_units("deg,deg", drum, JOB.cut)
-    assert (units.master.size, units.slave.size) == pytest.approx(
-        (0.6 / 360, 0.4 / 360)
-    )  # of the drum, whatever its blades
-    assert parse_units("mm,0.5 um", drum, JOB.cut).slave == Unit("0.5um", pytest.approx(5e-7))
+    assert (units.master.size, units.slave.size) == pytest.approx((0.6 / 360, 0.4 / 360))
+    count = parse_units("mm,0.5 um", drum, JOB.cut).slave
+    assert count.symbol == "0.5um"
+    assert count.size == pytest.approx(5e-7)
     assert parse_units("cycle,mm", drum, JOB.cut, 4096.0).master.size == pytest.approx(0.6 / 4096)
     with pytest.raises(InputError, match="there is no unit 'cycle' here"):
         parse_units("cycle,mm", drum, JOB.cut)
     crank = CrankSlider(0.15, 0.6)
-    assert parse_units("mm,deg", crank, JOB.cut).slave == Unit("deg", pytest.approx(math.pi / 180), "rad")
+    assert parse_units("mm,deg", crank, JOB.cut).slave == Unit("deg", math.radians(1), "rad")
     assert default_units(crank).slave.si == "rad"
     with pytest.raises(InputError, match="there is no unit 'mm' here; the units are rad, deg, rev"):
         parse_units("mm,mm", crank, JOB.cut)
