@@ -107,7 +107,10 @@ def error_answer(exit_code: int, message: str, failure: CamwrightError | None) -
 
 def _profiles(comparison: Comparison) -> dict[str, Any]:
     """Measures of each profile by name."""
-    return {row.name: _row(row, comparison.job.machine.slave_unit) for row in comparison.rows}
+    profiles = {row.name: _row(row, comparison.job.machine.slave_unit) for row in comparison.rows}
+    if comparison.screw is not None:
+        profiles["screw_carriage"] = _row(comparison.screw.row, "m")
+    return profiles
 
 
 def _row(row: Measured, unit: SlaveUnit) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from camwright.commands.envelope import envelope
 from camwright.commands.quick import quick
 from camwright.commands.tables import register
 from camwright.output import BROKEN_PIPE, Voice, complain, prepare_streams, silence_stdout
-from profiles.errors import CamwrightError
+from profiles.errors import CamwrightError, InputError
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -105,6 +105,9 @@ def _compare(
     laws: Annotated[
         list[str] | None, typer.Option("--with", metavar="LAW", help="Compare with this law only; may be repeated.")
     ] = None,
+    objectives: Annotated[
+        bool, typer.Option("--objectives", help="Compare what every objective costs in the others instead.")
+    ] = False,
     out: _Out = None,
     as_json: _Json = False,
     no_figures: _NoFigures = False,
@@ -115,8 +118,15 @@ def _compare(
     from camwright.comparison import compare, law_names, require_laws
     from camwright.files import staged
     from camwright.job import load_job
+    from camwright.screw import with_screw
 
     asked = load_job(job)
+    if objectives:
+        from camwright.commands.objectives import compare_objectives
+
+        if laws:
+            raise InputError("--objectives compares all laws; leave out --with")
+        return compare_objectives(asked, _directory(out, asked), figures=not no_figures, voice=Voice(as_json, quiet))
     names = tuple(dict.fromkeys(laws)) if laws else law_names(asked.machine, asked.cut)
     require_laws(names, asked.machine, asked.cut)
     voice = Voice(as_json, quiet)
@@ -126,7 +136,7 @@ def _compare(
 
         step("solving")
         solution = solve(asked.machine, asked.cut, asked.limits, asked.objective)
-        result = compare(replace(asked, machine=solution.machine), solution.profile, names, step)
+        result = with_screw(compare(replace(asked, machine=solution.machine), solution.profile, names, step))
         if not no_figures:
             from camwright.plots import comparison_figure
 

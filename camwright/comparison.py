@@ -17,6 +17,7 @@ from profiles.polynomial import CamProfile
 from profiles.returns import BASELINES, assemble, baseline, baseline_names, is_straight
 
 if TYPE_CHECKING:
+    from camwright.screw import ScrewCarriage
     from validation.motion import Motion
     from validation.motor import MotorMeasures
     from validation.response import ServoResponse
@@ -66,10 +67,13 @@ class Comparison:
         The job, its machine with everything that the design chose.
     rows
         The profiles, sorted by peak acceleration, the unbounded ones last.
+    screw
+        For a crank: the same cut by a carriage on a screw, another machine beside the rows.
     """
 
     job: Job
     rows: tuple[Measured, ...]
+    screw: ScrewCarriage | None = None
 
     def __getitem__(self, name: str) -> Measured:
         """Return the profile of that name."""
@@ -139,7 +143,7 @@ def compare(job: Job, optimised: CamProfile, names: Sequence[str] | None = None,
     """
     chosen = law_names(job.machine, job.cut) if names is None else names
     require_laws(chosen, job.machine, job.cut)
-    profiles = {"optimised": optimised, **{name: _law(name, job.machine, job.cut) for name in chosen}}
+    profiles = {"optimised": optimised, **{name: law_profile(name, job.machine, job.cut) for name in chosen}}
     rows = []
     for name, profile in profiles.items():
         step(f"measuring {name}")
@@ -148,7 +152,7 @@ def compare(job: Job, optimised: CamProfile, names: Sequence[str] | None = None,
     return Comparison(job, tuple(rows))
 
 
-def _law(name: str, machine: Machine, cut: Cut) -> CamProfile:
+def law_profile(name: str, machine: Machine, cut: Cut) -> CamProfile:
     """Make one cycle of a baseline."""
     if name != QUINTIC:
         return baseline(name, machine, cut)

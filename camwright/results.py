@@ -100,6 +100,7 @@ def design(job: Job, step: Step = ignore) -> Design:
     >>> result.passed, round(result.solution.objective, 2)
     (True, 9.07)
     """
+    from camwright.screw import with_screw
     from design.optimise import solve
     from validation.optimality import lower_bound
     from validation.report import validate as judge
@@ -111,7 +112,7 @@ def design(job: Job, step: Step = ignore) -> Design:
     bound = lower_bound(solution.profile, placed.machine, job.cut, job.limits, job.objective)
     step("checking")
     report = judge(solution.profile, placed.machine, job.cut, job.limits, job.servo)
-    comparison = compare(placed, solution.profile, step=step)
+    comparison = with_screw(compare(placed, solution.profile, step=step))
     step("finding minimum cut lengths")
     return Design(placed, solution, bound, report, comparison, cut_lengths(placed))
 

@@ -15,7 +15,7 @@ from profiles.machines.screw_equivalent import screw_equivalent
 from profiles.polynomial import CamProfile, FloatArray
 
 if TYPE_CHECKING:
-    from camwright.comparison import Measured
+    from camwright.comparison import Comparison, Measured
 
 SCREW = "screw_carriage"
 """Name of the carriage's profile among the measured profiles."""
@@ -127,7 +127,7 @@ def _greatest_ratio(profile: CamProfile) -> float:
 
 def _measured(job: Job, profile: CamProfile) -> Measured:
     """Measure the carriage's cycle like the profiles of a comparison."""
-    from camwright.comparison import Measured
+    from camwright.comparison import Comparison, Measured
     from validation.motion import measure_motion
     from validation.motor import measure_motor
     from validation.response import servo_response
@@ -141,3 +141,8 @@ def _measured(job: Job, profile: CamProfile) -> Measured:
         measure_motor(profile, job.machine, job.cut),
         servo_response(profile, job.machine, job.cut, job.servo),
     )
+
+
+def with_screw(comparison: Comparison) -> Comparison:
+    """Add the carriage on a screw to the comparison of a crank; others stay as they are."""
+    return replace(comparison, screw=screw_carriage(comparison.job, comparison["optimised"]))

@@ -98,7 +98,7 @@ def compare_view(comparison: Comparison) -> RenderableType:
             _mm(servo.shear_zone_error),
             style="bold" if row.name == "optimised" else "",
         )
-    return table
+    return table if comparison.screw is None else Group(table, Text(comparison.screw.sentence))
 
 
 def checks_view(checks: Sequence[Check]) -> RenderableType:

@@ -127,7 +127,7 @@ def trade_off(job: Job, step: Step = ignore) -> TradeOff:
     SolverError
         The solver failed on one of the objectives.
     """
-    from camwright.comparison import _law, law_names
+    from camwright.comparison import law_names, law_profile
     from design.optimise import solve
 
     objectives = _objectives(job)
@@ -143,7 +143,7 @@ def trade_off(job: Job, step: Step = ignore) -> TradeOff:
         placed = here if objective == job.objective else placed
     for name in law_names(placed.machine, placed.cut):
         step(f"measuring {name}")
-        rows.append(_row(name, "baseline", _law(name, placed.machine, placed.cut), placed, measures))
+        rows.append(_row(name, "baseline", law_profile(name, placed.machine, placed.cut), placed, measures))
     rows.sort(key=lambda row: _order(row.values[job.objective]))
     return TradeOff(placed, measures, tuple(rows))
 
