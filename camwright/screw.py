@@ -127,7 +127,7 @@ def _greatest_ratio(profile: CamProfile) -> float:
 
 def _measured(job: Job, profile: CamProfile) -> Measured:
     """Measure the carriage's cycle like the profiles of a comparison."""
-    from camwright.comparison import Comparison, Measured
+    from camwright.comparison import Measured
     from validation.motion import measure_motion
     from validation.motor import measure_motor
     from validation.response import servo_response
