@@ -26,6 +26,9 @@ from profiles.tables.text import decode
 if TYPE_CHECKING:
     from validation.tables import TableJudgement
 
+DENSE = 1001
+"""Points of a table that one might take for finer: in float32 its acceleration is worse."""
+
 _PLACES = 20_001
 
 
@@ -49,6 +52,8 @@ class Exported:
         The checks on the rebuilt motion.
     files
         Texts by file name; none if the table was not released.
+    dense
+        What a table of `DENSE` points would be like, for targets that round points to float32 and take any number.
     """
 
     target: Target
@@ -58,6 +63,7 @@ class Exported:
     accurate: bool
     judgement: TableJudgement
     files: dict[str, str]
+    dense: Choice | None = None
 
     @property
     def passed(self) -> bool:
@@ -159,12 +165,16 @@ def _export(
     facts = _facts(expected, job, position_error(profile, choice.rebuilt, choice.deviation, job))
     head = Header(job.name, camwright_version(), job.sha256, facts)
     result = _written(profile, job, choice, target, head, expected, accuracy)
+    if target.number_format == "float32" and target.placing == "free":
+        dense = choose(profile, target, table_units(target, profile, wanted), accuracy, DENSE, zones)
+        result = replace(result, dense=dense)
     if result.passed:
         return result
     if not force:
         return replace(result, files={})
     failed = tuple(f"check {check.name} failed" for check in result.judgement.checks if not check.passed)
-    return _written(profile, job, choice, target, replace(head, warnings=failed), expected, accuracy)
+    forced = _written(profile, job, choice, target, replace(head, warnings=failed), expected, accuracy)
+    return replace(forced, dense=result.dense)
 
 
 def _written(
@@ -218,11 +228,13 @@ def _judged(rebuilt: CamProfile, job: Job) -> TableJudgement:
 
 def _facts(judgement: TableJudgement, job: Job, off: float) -> tuple[tuple[str, str], ...]:
     """Give what the head says of the motion."""
-    found = {check.name: check.value for check in judgement.checks}
+    found = {check.name: check for check in judgement.checks}
     facts = [("line speed", f"{job.cut.line_speed:.9g} m/s")]
     unit = job.machine.slave_unit
     for name, power in (("speed", "/s"), ("acceleration", "/s^2"), ("jerk", "/s^3")):
-        facts.append((f"peak {name}", f"{found[name]:.6g} {unit}{power}"))
+        check = found[name]
+        how = "" if check.source == "exact" else f" ({check.source})"
+        facts.append((f"peak {name}", f"{check.value:.6g} {unit}{power}{how}"))
     if isinstance(job.machine, CrankSlider):
         facts.append(("sync_at", f"{job.machine.sync_at!r} rad"))
     facts.append(("greatest error of the rebuilt position", f"{off * 1e6:.3g} um"))
@@ -261,6 +273,11 @@ def export_report(
         entry["number_format"] = result.target.number_format
         entry["interpolation"] = result.target.interpolation
         entry["tested_on_controller"] = result.target.tested_on_controller
+        if result.dense is not None:
+            entry["dense"] = {
+                "knots": result.dense.table.points,
+                "acceleration_error_rel": result.dense.deviation.acceleration,
+            }
         entry["notes"] = list(result.table.notes)
         entry["checks"] = [asdict(check) for check in result.judgement.checks]
     reasons = {name: list(faults) for name, faults in (refused or {}).items()}

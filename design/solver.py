@@ -289,9 +289,9 @@ def _polish(problem: ScaledProblem, grid: Motion) -> tuple[Motion, bool, int]:
     """
     if grid.degree == 1:
         return _polish_arcs(problem, *read_cubic(grid, problem))
-    best, success, iterations = _polish_arcs(problem, *read_quintic(grid, problem, touched=True))
+    best, success, iterations = _polish_arcs(problem, *read_quintic(grid, problem, touched=False))
     if not success or best.objective > grid.objective * (1 + GRID_ERROR[grid.degree]):
-        other, also, used = _polish_arcs(problem, *read_quintic(grid, problem, touched=False))
+        other, also, used = _polish_arcs(problem, *read_quintic(grid, problem, touched=True))
         iterations += used
         if also and (not success or other.objective < best.objective):
             best, success = other, True

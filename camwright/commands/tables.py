@@ -168,6 +168,15 @@ def _export_view(results: list[Exported], refused: dict[str, tuple[str, ...]], d
         )
     note = "No table was tested on a controller. Check the integrity of the data after every import."
     notes = [Text(f"{name} cannot take this cam: {'; '.join(faults)}") for name, faults in refused.items()]
+    for result in results:
+        rough = result.dense.deviation.acceleration if result.dense else None
+        if rough is not None and rough > (result.deviation.acceleration or 0.0):
+            points = result.dense.table.points if result.dense else 0
+            notes.append(
+                Text(
+                    f"{result.target.name} rounds to float32: {points} points would be off by {rough * 100:.3g} % of the acceleration"
+                )
+            )
     if any(not result.accurate for result in results):
         notes.insert(0, Text("* the nearest that this target can come; the error asked for is exceeded somewhere"))
     return Group(table, *notes, Text(f"in {directory}"), Text(note))

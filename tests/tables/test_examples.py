@@ -95,7 +95,7 @@ def test_the_report_states_the_true_error(name: str, target: str) -> None:
         assert result.deviation.acceleration >= 0.9 * true - 1e-9
         near = np.unique(np.clip(np.concatenate([found.breaks, profile.breaks]), x[0], x[-1]))
         nodes = np.unique(np.concatenate([x, near, (near[1:] + near[:-1]) / 2]))
-        off = max(np.abs(found(nodes, 2, side=s) - profile(nodes, 2, side=s)).max() for s in ("left", "right"))  # type: ignore[arg-type]
+        off = max(np.abs(found(nodes, 2, side=s) - profile(nodes, 2, side=s)).max() for s in ("left", "right"))
         assert result.deviation.acceleration == pytest.approx(max(true, off / peak), rel=0.1, abs=1e-4)
 
 

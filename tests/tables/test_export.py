@@ -42,6 +42,10 @@ def test_all_targets_are_released_for_a_sound_cam() -> None:
     json.dumps(report, allow_nan=False)
     assert report["targets"]["logix"]["wraps"] == 3
     assert {check["name"] for check in report["targets"]["logix"]["checks"]} >= {"sync_position", "jerk", "closure"}
+    dense = report["targets"]["logix"]["dense"]
+    assert dense["knots"] > 900
+    assert dense["acceleration_error_rel"] > 4 * report["targets"]["logix"]["acceleration_error_rel"]
+    assert "dense" not in report["targets"]["codesys"]
     text = next(iter(results[0].files.values()))
     for fact in (JOB.sha256, "peak acceleration: ", "wraps judged: 3", "check the integrity of the imported data"):
         assert fact in text
