@@ -105,8 +105,8 @@ def read_quintic(grid: Motion, problem: ScaledProblem, touched: bool) -> tuple[M
     """Read runs of intervals with the same active limit (speed, acceleration, jerk, none), one piece each (degree 3).
 
     An optimum may touch a limit in a single point, or keep to it for less than an interval; there too the piece ends. With
-    ``touched`` such an interval counts as active, and a short free piece is put between different limits; without, only an
-    interval that keeps to the limit all along is active.
+    ``touched`` such an interval counts as active, without only one that keeps to the limit all along. Between two different
+    limits a short free piece is put: it is there in the optimum, if often shorter than an interval.
     """
     p = grid.degree
     rows = piece_coefficients(grid.accelerations, p)
@@ -122,7 +122,7 @@ def read_quintic(grid: Motion, problem: ScaledProblem, touched: bool) -> tuple[M
     arcs: list[Arc] = []
     for i, kind in enumerate(kinds):
         if i > 0 and kind != kinds[i - 1]:
-            if touched and "none" not in (kind, kinds[i - 1]):  # a free arc between them may be too short for this grid
+            if "none" not in (kind, kinds[i - 1]):  # a free arc between them may be too short for this grid
                 breaks.append(float(x[i] - grid.lengths[i - 1] / 3))
                 arcs.append("free")
                 breaks.append(float(x[i] + grid.lengths[i] / 3))
