@@ -350,8 +350,10 @@ def check_job(job: Job, tightened: str, factor: float) -> None:
     check_tightening(result, job, tightened, factor)
 
 
-@settings(max_examples=12)
-@given(jobs(), limit_names, st.floats(0.7, 1.0))
+@settings(
+    max_examples=12
+)  # the least RMS jerk at the edge of what is possible takes seconds a job: left to the slow test
+@given(jobs().filter(lambda job: job[3] != "rms_jerk"), limit_names, st.floats(0.7, 1.0))
 def test_tightening_and_suggestions(job: Job, tightened: str, factor: float) -> None:
     check_job(job, tightened, factor)
 
@@ -371,9 +373,11 @@ TOUCHING = [
     ((0.9625, 2.217, 4.434154, 1194.102), 34.0629),
     ((1.0, 1.742218, 287.7, 67.537688), 27.8280),
     ((2.3, 12.26, 5.903551, 45.355781), 27.0118),
-    ((0.33, 1.119894, 390.6, 401.601019), 165.7274),
+    pytest.param((0.33, 1.119894, 390.6, 401.601019), 165.7274, marks=pytest.mark.slow),
     ((3.0, 2.0, 4.32, 121.5), 40.2064),
-    ((3.6, 1.869163, 11.893454, 40.132580), 27.8951),
+    pytest.param((0.208, 1.321135, 34.752107, 89.682199), 60.4980, marks=pytest.mark.slow),
+    ((3.98, 2.502820, 6.126175, 44.221260), 27.0652),
+    pytest.param((3.6, 1.869163, 11.893454, 40.13258), 27.8951, marks=pytest.mark.slow),
     ((0.21, 1.321135, 40.353079, 136.069985), 49.0997),
 ]
 

@@ -84,27 +84,20 @@ def cubic_acceleration(values: list[float]) -> Motion:
     return Motion(np.full(count, 1 / count), a, 0.0)
 
 
-def test_arcs_are_told_by_the_active_limit() -> None:
+@pytest.mark.parametrize("touched", [False, True])
+def test_arcs_are_told_by_the_active_limit_with_free_pieces_between(touched: bool) -> None:
     # 0.08 at the jerk limit 50 rises by 4: a ramp, a hold at 4, something, and the same down
-    lengths = np.array([0.08, 0.1, 0.32, 0.32, 0.1, 0.08])
-    a = np.interp(np.arange(19) / 3, np.arange(7), [0.0, 4.0, 4.0, 0.0, -4.0, -4.0, 0.0])
-    motion, arcs = read_quintic(
-        Motion(lengths, a, 0.0), replace(JERK, greatest_ratio=9.0, least_ratio=-9.0), touched=False
-    )
-    assert arcs == ("ramp", "hold", "free", "hold", "ramp")
-    assert motion.lengths == pytest.approx([0.08, 0.1, 0.64, 0.1, 0.08])
-    assert motion.degree == 3
-
-
-def test_between_different_limits_a_free_piece_is_put() -> None:
     lengths = np.array([0.08, 0.12, 0.3, 0.3, 0.12, 0.08])
     a = np.interp(np.arange(19) / 3, np.arange(7), [0.0, 4.0, 4.0, 0.0, -4.0, -4.0, 0.0])
     problem = replace(JERK, greatest_ratio=9.0, least_ratio=-9.0)
-    motion, arcs = read_quintic(Motion(lengths, a, 0.0), problem, touched=True)
+    motion, arcs = read_quintic(Motion(lengths, a, 0.0), problem, touched)
     assert arcs[:3] == ("ramp", "free", "hold")
     assert arcs[-3:] == ("hold", "free", "ramp")
     assert motion.lengths.sum() == pytest.approx(1.0)
     assert motion.lengths[1] == pytest.approx((0.08 + 0.12) / 3)
+    assert motion.degree == 3
+    if not touched:  # the middle touches the limit at its ends only
+        assert arcs[3:-3] == ("free",)
 
 
 def test_a_touched_limit_ends_a_piece() -> None:
