@@ -29,7 +29,7 @@ class CutLengths:
         Bound of a perfect axis under the limits of speed, acceleration and jerk.
     linear_return, optimised
         Shortest cut with the axis within the sync tolerance throughout the shear zone: with the linear return, and with
-        the fastest return within the limits.
+        the return of least peak acceleration within the limits.
     """
 
     crossing: float | None

@@ -147,7 +147,7 @@ def lengths_view(lengths: CutLengths) -> RenderableType:
     table.add_row("eq. 10, settling", _mm(lengths.eq10_settling), _mm(lengths.settling), "")
     for name, least in (
         ("linear return, axis within the tolerance", lengths.linear_return),
-        ("fastest return, axis within the tolerance", lengths.optimised),
+        ("softest return, axis within the tolerance", lengths.optimised),
         ("physical bound, perfect axis", lengths.physical),
     ):
         table.add_row(name, _mm(least.length), _mm(least.transition), least.binding)
