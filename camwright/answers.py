@@ -8,6 +8,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from camwright.axis_answers import axis_answer, axis_lengths_answer, lead_answer, robust_answer
 from camwright.comparison import Comparison, Measured
 from camwright.cut_lengths import CutLengths
 from camwright.design_file import job_numbers, objective_answer, starts_answer
@@ -15,6 +16,7 @@ from camwright.job import Job
 from profiles.errors import CamwrightError, InfeasibleError
 
 if TYPE_CHECKING:
+    from camwright.axis_lengths import AxisLengths
     from camwright.results import Design
     from design.extremes import Extremes
     from profiles.machines.machine import SlaveUnit
@@ -48,6 +50,9 @@ def design_answer(design: Design, files: Sequence[Path]) -> dict[str, Any]:
         "checks": _checks(design.report.checks),
         "passed": design.passed,
         "minimum_cut_length_mm": _lengths(design.lengths),
+        "servo_aware": axis_answer(design.axis),
+        "robust": robust_answer(design.robust),
+        **lead_answer(design.job, design.report.length_errors),
         "tangential_mismatch": design.report.tangential_mismatch,
         "files": [str(file) for file in files],
     }
@@ -62,7 +67,7 @@ def compare_answer(comparison: Comparison, files: Sequence[Path]) -> dict[str, A
     }
 
 
-def limits_answer(job: Job, far: Extremes, lengths: CutLengths | None) -> dict[str, Any]:
+def limits_answer(job: Job, far: Extremes, lengths: CutLengths | None, axis: AxisLengths | None) -> dict[str, Any]:
     """Answer of ``camwright limits``; null where nothing works, or where the published equations are not about the machine."""
     return {
         "job": job.name,
@@ -76,6 +81,7 @@ def limits_answer(job: Job, far: Extremes, lengths: CutLengths | None) -> dict[s
             "crossing": millimetres(lengths.crossing) if lengths else None,
             "settling": millimetres(lengths.settling) if lengths else None,
         },
+        **axis_lengths_answer(axis),
     }
 
 
@@ -87,6 +93,7 @@ def validate_answer(job: Job, file: Path, report: ValidationReport) -> dict[str,
         "profile": _measures(report.motion, report.tool, report.motor, report.servo, job.machine.slave_unit),
         "checks": _checks(report.checks),
         "passed": report.passed,
+        **lead_answer(job, report.length_errors),
     }
 
 

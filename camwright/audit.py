@@ -140,7 +140,7 @@ def audit(path: Path, job: Job, target: str | None = None, units: str | None = N
     InputError
         The file is not read, or is no cam of this job.
     """
-    from design.optimise import solve
+    from camwright.servo_aware import solve_job
     from validation.report import validate
     from validation.tables import judge_table, one_cycle
 
@@ -157,7 +157,7 @@ def audit(path: Path, job: Job, target: str | None = None, units: str | None = N
     judgement = judge_table(rebuilt, placed.machine, job.cut, job.limits, job.servo)
     report = validate(cycle, placed.machine, job.cut, job.limits, job.servo)
     step("solving")
-    solution = solve(job.machine, job.cut, job.limits, job.objective)
+    solution = solve_job(job)
     best = replace(job, machine=solution.machine)
     best_report = validate(solution.profile, best.machine, job.cut, job.limits, job.servo)
     return Audit(

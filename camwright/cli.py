@@ -11,8 +11,10 @@ from typing import TYPE_CHECKING, Annotated, cast
 import typer
 
 from camwright.bending.commands import bend
+from camwright.commands.book import book
 from camwright.commands.envelope import envelope
 from camwright.commands.quick import quick
+from camwright.commands.recipe import register as register_recipes
 from camwright.commands.tables import register
 from camwright.output import BROKEN_PIPE, Voice, complain, prepare_streams, silence_stdout
 from profiles.errors import CamwrightError, InputError
@@ -132,10 +134,10 @@ def _compare(
     voice = Voice(as_json, quiet)
     files: list[Path] = []
     with voice.progress(len(names) + 3) as step:
-        from design.optimise import solve
+        from camwright.servo_aware import solve_job
 
         step("solving")
-        solution = solve(asked.machine, asked.cut, asked.limits, asked.objective)
+        solution = solve_job(asked)
         result = with_screw(compare(replace(asked, machine=solution.machine), solution.profile, names, step))
         if not no_figures:
             from camwright.plots import comparison_figure
@@ -161,25 +163,28 @@ def _compare(
 def _limits(job: _GivenJob, as_json: _Json = False, quiet: _Quiet = False) -> int:
     """Say how fast and how short the machine of a job can cut, and which limit binds."""
     from camwright.answers import limits_answer
+    from camwright.axis_lengths import axis_lengths
     from camwright.cut_lengths import cut_lengths
     from camwright.job import load_job
 
     asked = load_job(job)
     voice = Voice(as_json, quiet)
-    with voice.progress(2) as step:
+    with voice.progress(3) as step:
         from design.extremes import extremes
 
         step("finding the highest line speed and the shortest cut")
         far = extremes(asked.machine, asked.cut, asked.limits)
         step("finding minimum cut lengths")
         lengths = cut_lengths(asked)
+        step("finding minimum cut lengths with the axis in sync")
+        axis = axis_lengths(asked)
 
     def view() -> RenderableType:
         from camwright.tables import limits_view
 
-        return limits_view(asked, far, lengths)
+        return limits_view(asked, far, lengths, axis)
 
-    voice.answer(lambda: limits_answer(asked, far, lengths), view)
+    voice.answer(lambda: limits_answer(asked, far, lengths, axis), view)
     return 0
 
 
@@ -204,7 +209,7 @@ def _validate(
     def view() -> RenderableType:
         from camwright.tables import validate_view
 
-        return validate_view(file, report)
+        return validate_view(asked, file, report)
 
     voice.answer(lambda: validate_answer(asked, file, report), view)
     return 0 if report.passed else 1
@@ -229,7 +234,9 @@ def _check(job: _GivenJob, as_json: _Json = False, quiet: _Quiet = False) -> int
 
 app.command("quick")(quick)
 app.command("envelope")(envelope)
+app.command("book")(book)
 register(app)
+register_recipes(app)
 app.command("bend")(bend)
 
 

@@ -80,15 +80,22 @@ def job_numbers(job: Job) -> dict[str, Any]:
 
 def objective_unit(design: Design) -> str:
     """Name the unit of a design's objective."""
+    if design.job.minimise_sync_error:
+        return "m"
     return _UNITS.get(design.solution.objective_name, design.job.machine.slave_unit) + _OVER_TIME.get(
         design.solution.objective_name.rpartition("_")[2], ""
     )
 
 
+def objective_name(design: Design) -> str:
+    """Name what a design minimised."""
+    return "sync_error" if design.job.minimise_sync_error else design.solution.objective_name
+
+
 def objective_answer(design: Design) -> dict[str, Any]:
     """Write the objective of a design: name, value, unit, lower bound and gap, null where there is no bound."""
     return {
-        "name": design.solution.objective_name,
+        "name": objective_name(design),
         "value": design.objective,
         "unit": objective_unit(design),
         "lower_bound": None if math.isnan(design.bound.value) else design.bound.value,
@@ -262,6 +269,8 @@ def design_schema() -> dict[str, Any]:
                     position_gain=number,
                     sample_time=number,
                     velocity_feedforward=number,
+                    dead_time=number,
+                    lead_time=number,
                 ),
                 objective={"enum": objectives},
                 points={"type": "integer", "minimum": 2},

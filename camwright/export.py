@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -42,6 +42,8 @@ class Exported:
         The target.
     table
         The table as it was read back from the file.
+    units
+        Units of the table, whether its file states them or not.
     deviation
         How far the rebuilt motion is off the profile.
     position_error
@@ -58,6 +60,7 @@ class Exported:
 
     target: Target
     table: CamTable
+    units: Units
     deviation: Deviation
     position_error: float
     accurate: bool
@@ -135,11 +138,12 @@ def export_possible(
     targets = [target_of(name) for name in dict.fromkeys(names)]
     wanted = units or default_units(job.machine)
     asked = _in_slave_units(accuracy or Accuracy(), profile, job)
+    judge = _Judge(profile, job)
     results, refused = [], {}
     for target in targets:
         step(f"writing for {target.name}")
         try:
-            results.append(_export(profile, job, target, wanted, asked, points, force))
+            results.append(_export(profile, judge, target, wanted, asked, points, force))
         except InputError as error:
             refused[target.name] = tuple(error.faults)
     return results, refused
@@ -155,16 +159,46 @@ def _in_slave_units(accuracy: Accuracy, profile: CamProfile, job: Job) -> Accura
     return replace(accuracy, position=accuracy.position / lever, ratio=accuracy.ratio * in_sync)
 
 
+@dataclass(frozen=True, eq=False)
+class _Judge:
+    """Judges rebuilt motions, each once: the same numbers bit by bit are the same motion.
+
+    Many targets take the same points and put the same quintics between them, and a file read back should hold what was
+    written into it.
+    """
+
+    profile: CamProfile
+    job: Job
+    _known: dict[tuple[bytes, bytes], tuple[Deviation, float, TableJudgement]] = field(default_factory=dict)
+
+    def __call__(self, rebuilt: CamProfile) -> tuple[Deviation, float, TableJudgement]:
+        """Deviation from the profile, `position_error`, and the checks."""
+        key = rebuilt.breaks.tobytes(), rebuilt.coefficients.tobytes()
+        if key not in self._known:
+            from validation.tables import judge_table
+
+            job = self.job
+            off = deviation(self.profile, rebuilt)
+            judgement = judge_table(rebuilt, job.machine, job.cut, job.limits, job.servo)
+            self._known[key] = off, position_error(self.profile, rebuilt, off, job), judgement
+        return self._known[key]
+
+
 def _export(
-    profile: CamProfile, job: Job, target: Target, wanted: Units, accuracy: Accuracy, points: int | None, force: bool
+    profile: CamProfile,
+    judge: _Judge,
+    target: Target,
+    wanted: Units,
+    accuracy: Accuracy,
+    points: int | None,
+    force: bool,
 ) -> Exported:
-    cut = job.cut
+    job, cut = judge.job, judge.job.cut
     zones = (cut.return_zone,) if cut.origin == "return" else (0.5 * cut.sync_zone, cut.length - 0.5 * cut.sync_zone)
     choice = choose(profile, target, table_units(target, profile, wanted), accuracy, points, zones)
-    expected = _judged(choice.rebuilt, job)
-    facts = _facts(expected, job, position_error(profile, choice.rebuilt, choice.deviation, job))
-    head = Header(job.name, camwright_version(), job.sha256, facts)
-    result = _written(profile, job, choice, target, head, expected, accuracy)
+    _, error, expected = judge(choice.rebuilt)
+    head = Header(job.name, camwright_version(), job.sha256, _facts(expected, job, error))
+    result = _written(judge, choice, target, head, accuracy)
     if target.number_format == "float32" and target.placing == "free":
         dense = choose(profile, target, table_units(target, profile, wanted), accuracy, DENSE, zones)
         result = replace(result, dense=dense)
@@ -173,33 +207,19 @@ def _export(
     if not force:
         return replace(result, files={})
     failed = tuple(f"check {check.name} failed" for check in result.judgement.checks if not check.passed)
-    forced = _written(profile, job, choice, target, replace(head, warnings=failed), expected, accuracy)
+    forced = _written(judge, choice, target, replace(head, warnings=failed), accuracy)
     return replace(forced, dense=result.dense)
 
 
-def _written(
-    profile: CamProfile,
-    job: Job,
-    choice: Choice,
-    target: Target,
-    head: Header,
-    expected: TableJudgement,
-    accuracy: Accuracy,
-) -> Exported:
+def _written(judge: _Judge, choice: Choice, target: Target, head: Header, accuracy: Accuracy) -> Exported:
     """Write the table, read it back, and judge what the drive makes of it."""
     units = choice.table.units
     if units is None:
         raise InputError("the table's units were lost")
     files = target.write(choice.table, head)
     table, rebuilt = _read_back(target, files, units)
-    same = np.array_equal(rebuilt.breaks, choice.rebuilt.breaks) and np.array_equal(
-        rebuilt.coefficients, choice.rebuilt.coefficients
-    )
-    judgement = expected if same else _judged(rebuilt, job)  # the same numbers bit by bit are the same motion
-    off = deviation(profile, rebuilt)
-    return Exported(
-        target, table, off, position_error(profile, rebuilt, off, job), accuracy.kept_by(off), judgement, files
-    )
+    off, error, judgement = judge(rebuilt)
+    return Exported(target, table, table.units or units, off, error, accuracy.kept_by(off), judgement, files)
 
 
 def position_error(profile: CamProfile, rebuilt: CamProfile, off: Deviation, job: Job) -> float:
@@ -218,12 +238,6 @@ def _read_back(target: Target, files: dict[str, str], units: Units) -> tuple[Cam
     name, text = next(iter(files.items()))
     table = read_table(target, decode(text.encode(), name), name)
     return table, (table.units or units).to_si(target.rebuild(table))
-
-
-def _judged(rebuilt: CamProfile, job: Job) -> TableJudgement:
-    from validation.tables import judge_table
-
-    return judge_table(rebuilt, job.machine, job.cut, job.limits, job.servo)
 
 
 def _facts(judgement: TableJudgement, job: Job, off: float) -> tuple[tuple[str, str], ...]:

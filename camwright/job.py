@@ -9,15 +9,18 @@ from pathlib import Path
 
 from camwright.files import read_text
 from camwright.job_checks import conflicts
-from camwright.job_file import JobFile, Objective, read_structure
+from camwright.job_fields import Known
+from camwright.job_file import Command, JobFile, Objective, read_structure
 from camwright.machine_checks import moved_by_nothing, sync_zone_of
 from camwright.machine_tables import machine_of
+from camwright.servo_checks import tolerance_of
 from profiles.cycle import Cut
 from profiles.errors import InputError
 from profiles.limits import Limits
 from profiles.machines import Machine
 from profiles.motor import MotorCurve
 from profiles.servo import Servo
+from profiles.servo_tolerance import ServoTolerance
 
 BUNDLED_JOB = Path(__file__).parent / "jobs" / "paper-600.toml"
 """The paper's job, read when no job file is named."""
@@ -56,7 +59,15 @@ class Job:
         The discrete servo.
     objective
         What is made least: ``"peak_acceleration"``, ``"rms_acceleration"``, ``"peak_jerk"``, ``"rms_jerk"``, ``"rms_torque"``,
-        ``"peak_torque"`` or ``"energy"``.
+        ``"peak_torque"`` or ``"energy"``. Where the sync error is made least, the peak acceleration, for all that knows no sync error.
+    minimise_sync_error
+        Whether a servo-aware design makes the axis' sync error in the shear zone least.
+    servo_aware
+        Whether the axis, not only its command, keeps the sync tolerance in the shear zone.
+    command
+        What a servo-aware design may do to the command in the sync zone.
+    servo_tolerance
+        Ranges of the servo's parameters, nothing where the job file gives none.
     output
         How the cam is written.
     text
@@ -71,6 +82,10 @@ class Job:
     limits: Limits
     servo: Servo
     objective: Objective
+    minimise_sync_error: bool
+    servo_aware: bool
+    command: Command
+    servo_tolerance: ServoTolerance | None
     output: Output
     text: str
     sha256: str
@@ -129,12 +144,13 @@ def parse_job(text: str, place: str) -> Job:
         faults += moved_by_nothing(machine, file.objective.minimise, with_curve=file.limits.motor is not None)
     if file is None or machine is None or zone is None or faults:
         raise InputError(*(f"{place}: {fault}" for fault in faults))
-    return _job(file, machine, zone, text)
+    return _job(file, known, machine, zone, text)
 
 
-def _job(file: JobFile, machine: Machine, zone: float, text: str) -> Job:
+def _job(file: JobFile, known: Known, machine: Machine, zone: float, text: str) -> Job:
     """Make the job of a file without faults; fill in what it leaves out."""
-    cut, servo = file.cut, file.servo
+    cut, objective = file.cut, file.objective
+    servo = Servo(**file.servo.model_dump(exclude={"tolerance"}))
     at = zone - cut.shear_zone if cut.shear_zone_at is None else cut.shear_zone_at
     return Job(
         name=file.name,
@@ -148,6 +164,7 @@ def _job(file: JobFile, machine: Machine, zone: float, text: str) -> Job:
             sync_tolerance=cut.sync_tolerance,
             origin=file.output.origin,
             sync_ratio=cut.sync_ratio,
+            shaped=objective.servo_aware and objective.command == "shaped",
         ),
         limits=Limits(
             file.limits.speed,
@@ -156,8 +173,12 @@ def _job(file: JobFile, machine: Machine, zone: float, text: str) -> Job:
             file.limits.reversal,
             None if file.limits.motor is None else MotorCurve(file.limits.motor),
         ),
-        servo=Servo(servo.bandwidth, servo.damping, servo.position_gain, servo.sample_time, servo.velocity_feedforward),
-        objective=file.objective.minimise,
+        servo=servo,
+        objective="peak_acceleration" if objective.minimise == "sync_error" else objective.minimise,
+        minimise_sync_error=objective.minimise == "sync_error",
+        servo_aware=objective.servo_aware,
+        command=objective.command or "in_sync",
+        servo_tolerance=None if file.servo.tolerance is None else tolerance_of(known, servo),
         output=Output(file.output.points),
         text=text,
         sha256=hashlib.sha256(text.encode()).hexdigest(),

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 from camwright.job_fields import Known
 from camwright.machine_checks import machine_conflicts, sync_zone_of
 from camwright.machine_tables import machine_of
+from camwright.servo_checks import servo_conflicts
 from profiles.machines import Machine
-from profiles.servo import Servo, spectral_radius
 
 
 def conflicts(known: Known) -> list[str]:
@@ -25,8 +25,7 @@ def conflicts(known: Known) -> list[str]:
         One message for each conflict: quantity, value, limit, place, way out.
     """
     machine = machine_of(known)
-    numbers = known.numbers
-    return [*_zones(known, machine), *machine_conflicts(known, machine), *_servo(numbers)]
+    return [*_zones(known, machine), *machine_conflicts(known, machine), *servo_conflicts(known)]
 
 
 def _mm(value: float) -> str:
@@ -56,28 +55,4 @@ def _zones(known: Known, machine: Machine | None) -> Iterator[str]:
         yield (
             f"[cut] shear_zone_at = {_mm(at)}: the shear zone of {_mm(shear)} would end {_mm(at + shear)} after the "
             f"start of the sync zone of {_mm(sync)}; begin it at {_mm(sync - shear)} at the latest"
-        )
-
-
-def _servo(values: Mapping[str, float]) -> Iterator[str]:
-    """Check that the servo samples at least once a cycle and is stable."""
-    sample, length, line_speed = (values.get(key) for key in ("sample_time", "length", "line_speed"))
-    if sample is None:
-        return
-    if length is not None and line_speed is not None and sample > length / line_speed:
-        yield (
-            f"[servo] sample_time = {sample * 1e3:.10g} ms: longer than the cycle of "
-            f"{length / line_speed * 1e3:.10g} ms ([cut] length / line_speed); "
-            "give the drive's sampling period, usually 1 ms to 8 ms"
-        )
-        return  # a servo that slow is unstable for this reason alone
-    keys = ("bandwidth", "damping", "position_gain", "velocity_feedforward")
-    if not all(key in values for key in keys):
-        return
-    radius = spectral_radius(Servo(sample_time=sample, **{key: values[key] for key in keys}))
-    if not radius < 1.0:
-        yield (
-            f"[servo] position_gain = {values['position_gain']:.10g} 1/s: the sampled position loop is unstable: its "
-            f"spectral radius is {radius:.6g} and must be below 1; lower the position gain or the sample time "
-            f"({sample * 1e3:.10g} ms)"
         )

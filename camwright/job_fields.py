@@ -13,6 +13,9 @@ from pydantic_core import PydanticCustomError
 from camwright.units import KINDS, quantity, shown
 from profiles.errors import InputError
 
+Spread = float | tuple[float, float]
+"""Range of a parameter: the share of it by which it may be off to both sides, or its two ends."""
+
 TURNING = frozenset({"crank_slider"})
 """Kinds of machines whose slave is an angle."""
 
@@ -32,11 +35,17 @@ class Known:
         Numbers by key, in SI units.
     sync
         Which speed of the blade is in sync; nothing if the file says something that is not known.
+    spreads
+        Ranges of the servo's parameters, by key.
+    servo_aware
+        Whether the file says so.
     """
 
     kind: str | None = None
     numbers: dict[str, float] = field(default_factory=dict)
     sync: str | None = "tangential"
+    spreads: dict[str, Spread] = field(default_factory=dict)
+    servo_aware: bool = False
 
 
 class Table(BaseModel):

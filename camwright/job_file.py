@@ -12,6 +12,7 @@ from pydantic_core import ErrorDetails
 from camwright.job_fields import (
     TURNING,
     Known,
+    Spread,
     Table,
     checked,
     curve_field,
@@ -22,11 +23,16 @@ from camwright.job_fields import (
     zone_field,
 )
 from camwright.machine_tables import TABLES, MachineTable
+from camwright.spread_fields import aware_only, number_spread, quantity_spread
 from camwright.units import shown
 
 Objective = Literal[
     "peak_acceleration", "rms_acceleration", "peak_jerk", "rms_jerk", "rms_torque", "peak_torque", "energy"
 ]
+"""What is made least of the motion or the motor's load."""
+
+Command = Literal["in_sync", "shaped"]
+"""What a servo-aware design may do in the sync zone: the command in sync all over it, or shaped so that the axis is in the shear zone."""
 
 _LONGEST_NAME = 60
 _REFUSED_IN_NAMES = '/\\<>:"|?*'
@@ -57,7 +63,9 @@ class CutTable(Table):
         0.0
     )
     shear_zone_at: Annotated[float | None, *quantity_field("length", zero=True)] = None
-    sync_tolerance: Annotated[float, *quantity_field("length"), Field(json_schema_extra={"default": "0.1 mm"})] = 1e-4
+    sync_tolerance: Annotated[
+        float, *quantity_field("length", example="0.1 mm"), Field(json_schema_extra={"default": "0.1 mm"})
+    ] = 1e-4
     sync_ratio: Annotated[
         float,
         number_field(0.1, 10.0, "it is the speed of the tool over that of the material, from 0.1 to 10; 1 is in sync", "1.0"),
@@ -74,6 +82,16 @@ class LimitsTable(Table):
     jerk: Annotated[float, *slave_field("jerk", "angular jerk", "50000 rad/s^3")]
     reversal: Annotated[bool, Field(description="whether the slave may run backwards")] = False
     motor: Annotated[tuple[tuple[float, float], ...] | None, *curve_field()] = None
+
+
+class ServoToleranceTable(Table):
+    """Ranges in which the servo's parameters are known to lie."""
+
+    bandwidth: Annotated[Spread | None, *quantity_spread("angular rate", "108 rad/s", "132 rad/s")] = None
+    damping: Annotated[Spread | None, *number_spread(100.0, "the damping ratio", 0.63, 0.77)] = None
+    position_gain: Annotated[Spread | None, *quantity_spread("gain", "33 1/s", "37 1/s")] = None
+    sample_time: Annotated[Spread | None, *quantity_spread("time", "3.9 ms", "4.1 ms")] = None
+    dead_time: Annotated[Spread | None, *quantity_spread("time", "0 ms", "1 ms", zero=True)] = None
 
 
 class ServoTable(Table):
@@ -96,12 +114,30 @@ class ServoTable(Table):
         Field(description="share of the command's velocity fed forward", examples=[1.0],
               json_schema_extra={"minimum": 0, "maximum": 1}),
     ]  # fmt: skip
+    dead_time: Annotated[float, *quantity_field("time", zero=True), Field(json_schema_extra={"default": "0 ms"})] = 0.0
+    lead_time: Annotated[float, *quantity_field("time", zero=True), Field(json_schema_extra={"default": "0 ms"})] = 0.0
+    tolerance: ServoToleranceTable | None = None
 
 
 class ObjectiveTable(Table):
-    """What is made least."""
+    """What is made least, and whether of the command alone or with the axis in mind."""
 
-    minimise: Annotated[Objective, Field(description="what is made least")] = "peak_acceleration"
+    servo_aware: Annotated[
+        bool, Field(description="whether the axis, not only its command, keeps the sync tolerance")
+    ] = False
+    minimise: Annotated[
+        Literal[Objective, "sync_error"],
+        aware_only('minimise e.g. "peak_acceleration"', only="sync_error"),
+        Field(description="what is made least; sync_error, that of the axis in the shear zone, only if servo_aware"),
+    ] = "peak_acceleration"
+    command: Annotated[
+        Command | None,
+        aware_only("leave command out"),
+        Field(
+            description="whether the command keeps in sync in the whole sync zone, or only the axis in the shear zone; only if servo_aware",
+            json_schema_extra={"default": "in_sync"},
+        ),
+    ] = None
 
 
 class OutputTable(Table):
@@ -141,8 +177,12 @@ def job_schema() -> dict[str, Any]:
     schema = JobFile.model_json_schema()
     for definition in (schema, *schema["$defs"].values()):
         for entry in definition["properties"].values():
+            # left out, not null: TOML knows no null
             if "default" in entry and entry["default"] is None:
-                del entry["default"]  # left out, not null: TOML knows no null
+                del entry["default"]
+            if {"type": "null"} in entry.get("anyOf", ()):
+                (only,) = (kind for kind in entry.pop("anyOf") if kind != {"type": "null"})
+                entry.update(only)
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
 
 
@@ -166,6 +206,8 @@ def read_structure(data: dict[str, Any]) -> tuple[JobFile | None, Known, list[st
         kind, sync = machine.get("kind"), machine.get("sync", known.sync)
         known.kind = kind if isinstance(kind, str) and kind in TABLES else None
         known.sync = sync if sync in ("tangential", "horizontal") else None
+    objective = data.get("objective")
+    known.servo_aware = isinstance(objective, dict) and objective.get("servo_aware", False) is not False
     for name in JobFile.model_fields:
         if isinstance(data.get(name), dict):
             _fill_in(known, data[name], _model_at([name], known))
@@ -185,7 +227,7 @@ def _fill_in(known: Known, table: dict[str, Any], model: type[BaseModel] | None)
 def _fault(error: ErrorDetails, known: Known) -> str:
     """Say what is wrong, where, and the way out."""
     parts = [str(part) for part in error["loc"]]
-    if len(parts) > 2:  # the kind of the machine, which pydantic puts between its table and the key
+    if parts[0] == "machine" and len(parts) > 2:  # its kind, which pydantic puts between its table and the key
         del parts[1]
     place, key = parts[:-1], parts[-1]
     kind, value = error["type"], error["input"]
@@ -193,12 +235,13 @@ def _fault(error: ErrorDetails, known: Known) -> str:
         if kind == "union_tag_not_found":
             return '[machine] kind: missing; add e.g. kind = "rotary_knife"'
         return f"[machine] kind = {shown(value['kind'])}: not known; write {_choice(list(TABLES))}"
-    where = f"[{place[0]}] {key}" if place else (f"[{key}]" if _is_table(key) else key)
+    table = ".".join(place)
+    where = f"[{table}] {key}" if place else (f"[{key}]" if _is_table(key) else key)
     if kind == "missing":
         return f"{where}: missing; {_example(place, key, known)}"
     if kind == "extra_forbidden":
         known_keys = list(cast(type[BaseModel], _model_at(place, known)).model_fields)
-        where = f"[{place[0]}] {shown(key)[1:-1]}" if place else shown(key)[1:-1]
+        where = f"[{table}] {shown(key)[1:-1]}" if place else shown(key)[1:-1]
         near = difflib.get_close_matches(key[:100], known_keys, n=1, cutoff=0.5)
         advice = f"did you mean {near[0]}?" if near else f"the keys here are {', '.join(known_keys)}"
         return f"{where}: there is no such key; {advice}"
@@ -209,7 +252,7 @@ def _fault(error: ErrorDetails, known: Known) -> str:
         return f"{where} = {shown(value)}: not known; write {allowed}"
     if kind == "bool_type":
         return f"{where} = {shown(value)}: neither true nor false; write true or false without quotes"
-    return f"{where} = {shown(value)}: not a table; write [{key}] on a line of its own and its keys below"
+    return f"{where} = {shown(value)}: not a table; write [{'.'.join(parts)}] on a line of its own and its keys below"
 
 
 def _choice(words: list[str]) -> str:
@@ -229,6 +272,8 @@ def _model_at(place: list[str], known: Known) -> type[BaseModel] | None:
         return JobFile
     if place[0] == "machine":
         return TABLES.get(known.kind or "")
+    if place == ["servo", "tolerance"]:
+        return ServoToleranceTable
     model = JobFile.model_fields[place[0]].annotation
     return model if isinstance(model, type) and issubclass(model, BaseModel) else None
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from importlib.metadata import version
 
 SCHEMA_VERSION = 1
@@ -10,6 +11,7 @@ SCHEMA_VERSION = 1
 _LIBRARIES = ("casadi", "numpy", "scipy")
 
 
+@cache
 def camwright_version() -> str:
     """Version of camwright as installed."""
     return version("camwright")
@@ -31,6 +33,12 @@ def provenance(job_sha256: str) -> dict[str, str | int | dict[str, str]]:
     return {
         "camwright": camwright_version(),
         "job_sha256": job_sha256,
-        "libraries": {name: version(name) for name in _LIBRARIES},
+        "libraries": dict(_library_versions()),
         "schema_version": SCHEMA_VERSION,
     }
+
+
+@cache
+def _library_versions() -> tuple[tuple[str, str], ...]:
+    """Look the libraries' versions up once: each one is a search on the disk."""
+    return tuple((name, version(name)) for name in _LIBRARIES)

@@ -15,6 +15,7 @@ from camwright.progress import Step, ignore
 from profiles.polynomial import CamProfile
 
 if TYPE_CHECKING:
+    from camwright.servo_aware import AxisStudy, Robustness
     from design.optimise import Solution
     from validation.optimality import Bound
     from validation.report import ValidationReport
@@ -41,6 +42,10 @@ class Design:
         The optimal cycle beside the baselines.
     lengths
         How short the machine can cut; ``None`` for machines that the published equations are not about.
+    axis
+        What a servo-aware design promises of the axis; ``None`` for a servo-blind one.
+    robust
+        The sync error over the ranges of the servo's parameters; ``None`` if the job gives none.
     """
 
     job: Job
@@ -49,6 +54,8 @@ class Design:
     report: ValidationReport
     comparison: Comparison
     lengths: CutLengths | None
+    axis: AxisStudy | None
+    robust: Robustness | None
 
     @property
     def profile(self) -> CamProfile:
@@ -57,8 +64,10 @@ class Design:
 
     @property
     def objective(self) -> float:
-        """The objective at the job's line speed: m/s² or m/s³ (rad for m with a crank), N·m or J at the motor."""
+        """The objective at the job's line speed: m/s² or m/s³ (rad for m with a crank), N·m or J at the motor, m of sync error."""
         motor = self.comparison["optimised"].motor
+        if self.job.minimise_sync_error:
+            return self.solution.objective
         torques = {"rms_torque": motor.rms_torque, "peak_torque": motor.peak_torque, "energy": motor.energy}
         value = torques.get(self.solution.objective_name)
         return self.solution.objective if value is None else value
@@ -101,20 +110,24 @@ def design(job: Job, step: Step = ignore) -> Design:
     (True, 9.07)
     """
     from camwright.screw import with_screw
-    from design.optimise import solve
-    from validation.optimality import lower_bound
+    from camwright.servo_aware import axis_study, robustness, solve_job
+    from validation.optimality import Bound, lower_bound
     from validation.report import validate as judge
 
     step("solving")
-    solution = solve(job.machine, job.cut, job.limits, job.objective)
+    solution = solve_job(job)
     placed = replace(job, machine=solution.machine)
     step("bounding the objective from below")
-    bound = lower_bound(solution.profile, placed.machine, job.cut, job.limits, job.objective)
+    if job.cut.shaped or job.minimise_sync_error:  # what bounds a return bounds neither the whole cycle nor the axis
+        bound = Bound(math.nan, "none")
+    else:
+        bound = lower_bound(solution.profile, placed.machine, job.cut, job.limits, job.objective)
     step("checking")
-    report = judge(solution.profile, placed.machine, job.cut, job.limits, job.servo)
+    report = judge(solution.profile, placed.machine, job.cut, job.limits, job.servo, axis_limits=job.servo_aware)
+    aware, robust = axis_study(placed, solution), robustness(placed, solution.profile, solution)
     comparison = with_screw(compare(placed, solution.profile, step=step))
     step("finding minimum cut lengths")
-    return Design(placed, solution, bound, report, comparison, cut_lengths(placed))
+    return Design(placed, solution, bound, report, comparison, cut_lengths(placed), aware, robust)
 
 
 def validate(profile: CamProfile | str | Path, job: Job) -> ValidationReport:
@@ -144,6 +157,6 @@ def validate(profile: CamProfile | str | Path, job: Job) -> ValidationReport:
     from validation.report import validate as judge
 
     if isinstance(profile, CamProfile):
-        return judge(profile, job.machine, job.cut, job.limits, job.servo)
+        return judge(profile, job.machine, job.cut, job.limits, job.servo, axis_limits=job.servo_aware)
     cycle, machine = read_cycle(Path(profile), job)
-    return judge(cycle, machine, job.cut, job.limits, job.servo)
+    return judge(cycle, machine, job.cut, job.limits, job.servo, axis_limits=job.servo_aware)

@@ -11,12 +11,14 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from camwright.axis_views import axis_lengths_view, axis_views, lead_view
 from camwright.comparison import Comparison
 from camwright.cut_lengths import CutLengths
 from camwright.job import Job
 from profiles.machines import CrankSlider, LinearCarriage, Machine, RotaryKnife
 
 if TYPE_CHECKING:
+    from camwright.axis_lengths import AxisLengths
     from camwright.results import Design
     from design.extremes import Extremes
     from validation.checks import Check
@@ -30,6 +32,8 @@ def design_view(design: Design, files: Sequence[Path]) -> RenderableType:
         Text("\n".join(_head(design))),
         compare_view(design.comparison),
         checks_view(design.report.checks),
+        *axis_views(design),
+        lead_view(design.job, design.report.length_errors),
         *lengths,
         files_view(files),
     )
@@ -37,7 +41,7 @@ def design_view(design: Design, files: Sequence[Path]) -> RenderableType:
 
 def _head(design: Design) -> list[str]:
     """Say how the design ended: objective and bound, what was chosen, how well several starts agree."""
-    from camwright.design_file import objective_unit
+    from camwright.design_file import objective_name, objective_unit
 
     solution, unit = design.solution, objective_unit(design).replace("^2", "²").replace("^3", "³")
     bound = (
@@ -45,7 +49,7 @@ def _head(design: Design) -> list[str]:
         if design.gap is None
         else f"lower bound {_number(design.bound.value)} {unit} ({design.bound.method}), gap {design.gap:.1e}"
     )
-    ending = f"{design.job.name}: {solution.status.value}, {solution.objective_name} {_number(design.objective)} {unit}"
+    ending = f"{design.job.name}: {solution.status.value}, {objective_name(design)} {_number(design.objective)} {unit}"
     lines = [f"{ending} in {design.profile.pieces} pieces; {bound}"]
     if isinstance(solution.machine, CrankSlider):
         lines.append(f"sync zone on the crank: its middle at {math.degrees(solution.machine.sync_at):.5g}°")
@@ -119,7 +123,7 @@ def checks_view(checks: Sequence[Check]) -> RenderableType:
     return table
 
 
-def limits_view(job: Job, far: Extremes, lengths: CutLengths | None) -> RenderableType:
+def limits_view(job: Job, far: Extremes, lengths: CutLengths | None, axis: AxisLengths | None) -> RenderableType:
     """Show how fast and how short a job can be done, and what binds."""
     speed = f"{_number(far.max_line_speed * 60)} m/min" if far.max_line_speed else "none works"
     length = f"{_mm(far.min_cut_length)} mm" if far.min_cut_length else "none works"
@@ -132,7 +136,12 @@ def limits_view(job: Job, far: Extremes, lengths: CutLengths | None) -> Renderab
         length,
         far.cut_length_binding,
     )
-    return table if lengths is None else Group(table, lengths_view(lengths))
+    views: list[RenderableType] = [table]
+    if lengths is not None:
+        views.append(lengths_view(lengths))
+    if axis is not None:
+        views.append(axis_lengths_view(axis))
+    return Group(*views)
 
 
 def lengths_view(lengths: CutLengths) -> RenderableType:
@@ -154,11 +163,11 @@ def lengths_view(lengths: CutLengths) -> RenderableType:
     return table
 
 
-def validate_view(file: Path, report: ValidationReport) -> RenderableType:
+def validate_view(job: Job, file: Path, report: ValidationReport) -> RenderableType:
     """Show the checks on a file and the verdict."""
     failed = [check.name for check in report.checks if not check.passed]
     verdict = f"{len(failed)} checks failed: {', '.join(failed)}" if failed else "every check passed"
-    return Group(checks_view(report.checks), Text(f"{file}: {verdict}"))
+    return Group(checks_view(report.checks), lead_view(job, report.length_errors), Text(f"{file}: {verdict}"))
 
 
 def check_view(job: Job) -> RenderableType:

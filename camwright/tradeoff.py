@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -11,8 +11,9 @@ import numpy as np
 
 from camwright.job import Job
 from camwright.progress import Step, ignore
+from profiles.errors import SolverError
 from profiles.machines import LinearCarriage
-from profiles.returns import slave_at_start
+from profiles.returns import slave_zero
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -63,6 +64,14 @@ class Row:
     within_limits: bool
 
 
+@dataclass(frozen=True)
+class Failure:
+    """An objective that the solver found no optimum of, and why."""
+
+    name: str
+    reason: str
+
+
 @dataclass(frozen=True, eq=False)
 class TradeOff:
     """All objectives and baselines of a job.
@@ -75,11 +84,14 @@ class TradeOff:
         What was measured, in the order of the tables.
     rows
         The profiles by the measure that the job minimises, unbounded ones last.
+    failures
+        The objectives without an optimum.
     """
 
     job: Job
     measures: tuple[str, ...]
     rows: tuple[Row, ...]
+    failures: tuple[Failure, ...] = ()
 
     def best(self, measure: str) -> Row | None:
         """Profile of the least value of a measure among those that keep the limits; none where it is unbounded in all of them."""
@@ -111,7 +123,8 @@ def step_count(job: Job) -> int:
 def trade_off(job: Job, step: Step = ignore) -> TradeOff:
     """Solve a job for every objective and measure the optima and all baselines.
 
-    A crank whose sync zone is free has it where each objective wants it; the baselines have it where the job's own objective does.
+    A crank whose sync zone is free has it where each objective wants it; the baselines have it where the job's own objective does, or, if
+    the solver failed on that, the first one that it solved.
 
     Parameters
     ----------
@@ -125,7 +138,7 @@ def trade_off(job: Job, step: Step = ignore) -> TradeOff:
     InfeasibleError
         No motion keeps the limits of the job.
     SolverError
-        The solver failed on one of the objectives.
+        The solver failed on all of the objectives.
     """
     from camwright.comparison import law_names, law_profile
     from design.optimise import solve
@@ -134,18 +147,26 @@ def trade_off(job: Job, step: Step = ignore) -> TradeOff:
     measures = tuple(
         name for name in (*MOTION_MEASURES[:2], *TORQUE_MEASURES, *MOTION_MEASURES[2:]) if name in objectives
     )
-    rows, placed = [], job
+    rows: list[Row] = []
+    failures: list[Failure] = []
+    placed = job
     for objective in objectives:
         step(f"solving for the least {words(objective)}")
-        solution = solve(job.machine, job.cut, job.limits, objective)
+        try:
+            solution = solve(job.machine, job.cut, job.limits, objective)
+        except SolverError as error:
+            failures.append(Failure(objective, str(error)))
+            continue
         here = replace(job, machine=solution.machine)
+        placed = here if objective == job.objective or not rows else placed
         rows.append(_row(objective, "objective", solution.profile, here, measures))
-        placed = here if objective == job.objective else placed
+    if not rows:
+        raise SolverError(f"no objective was solved; the first, {failures[0].name}: {failures[0].reason}")
     for name in law_names(placed.machine, placed.cut):
         step(f"measuring {name}")
         rows.append(_row(name, "baseline", law_profile(name, placed.machine, placed.cut), placed, measures))
     rows.sort(key=lambda row: _order(row.values[job.objective]))
-    return TradeOff(placed, measures, tuple(rows))
+    return TradeOff(placed, measures, tuple(rows), tuple(failures))
 
 
 def words(name: str) -> str:
@@ -173,6 +194,7 @@ def tradeoff_answer(result: TradeOff, files: Sequence[Path]) -> dict[str, Any]:
             }
             for row in result.rows
         ],
+        "failed": [asdict(failure) for failure in result.failures],
         "files": [str(file) for file in files],
     }
 
@@ -193,8 +215,11 @@ def tradeoff_view(result: TradeOff) -> RenderableType:
         cells = [_cell(row.values[measure], result.cost(row, measure)) for measure in result.measures]
         style = "bold" if row.kind == "objective" else ""
         table.add_row(name + ("" if row.within_limits else " †"), *cells, style=style)
+    for failure in result.failures:
+        table.add_row(words(failure.name), "failed", *[""] * (len(result.measures) - 1), style="bold")
     broken = any(not row.within_limits for row in result.rows)
     notes = [Text("† breaks a limit of the job; not counted as the best")] if broken else []
+    notes += [Text(f"least {words(failure.name)}, failed: {failure.reason}") for failure in result.failures]
     return Group(table, *notes)
 
 
@@ -245,7 +270,7 @@ def _keeps_stroke(profile: CamProfile, job: Job) -> bool:
     machine = job.machine
     if not isinstance(machine, LinearCarriage):
         return True
-    start = slave_at_start(machine, job.cut) - float(profile(profile.start)) - machine.home
+    start = slave_zero(profile, machine, job.cut) - machine.home
     least, greatest = profile.extrema(0)
     rounding = _BEYOND * machine.stroke
     return start + least.value >= -rounding and start + greatest.value <= machine.stroke + rounding

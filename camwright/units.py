@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cache
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING, cast
 
 from profiles.errors import InputError
@@ -131,12 +131,32 @@ def quantity(text: object, kind: str, *, zero: bool = False, signed: bool = Fals
         ...
     profiles.errors.InputError: 200: a number without a unit; write e.g. "200 m/min"
     """
+    return float(exact_quantity(text, kind, zero=zero, signed=signed, example=example))
+
+
+def exact_quantity(
+    text: object, kind: str, *, zero: bool = False, signed: bool = False, example: str | None = None
+) -> Fraction:
+    """Read a quantity as `quantity` does, without rounding it to a float.
+
+    Examples
+    --------
+    >>> exact_quantity("0.1 mm", "length")
+    Fraction(1, 10000)
+    """
     wanted = KINDS[kind] if example is None else replace(KINDS[kind], example=example)
-    hint = f'write e.g. "{wanted.example}"'
     if isinstance(text, int | float) and not isinstance(text, bool):
         raise InputError(f'{shown(text)}: a number without a unit; write e.g. "{_repeated(text, wanted)}"')
     if not isinstance(text, str):
-        raise InputError(f"{shown(text)}: not {wanted.name} with a unit; {hint}")
+        raise InputError(f'{shown(text)}: not {wanted.name} with a unit; write e.g. "{wanted.example}"')
+    return _exact(text, kind, zero, signed, wanted.example)
+
+
+@lru_cache(maxsize=1024)
+def _exact(text: str, kind: str, zero: bool, signed: bool, example: str) -> Fraction:
+    """Read the text of a quantity; kept, because job files of one machine differ in few of them."""
+    wanted = replace(KINDS[kind], example=example)
+    hint = f'write e.g. "{example}"'
     if len(text) > _LONGEST:
         raise InputError(f"{shown(text)}: longer than {_LONGEST} characters; {hint}")
     found = _TEXT.fullmatch(text.strip())
@@ -150,7 +170,7 @@ def quantity(text: object, kind: str, *, zero: bool = False, signed: bool = Fals
         raise InputError(f"{shown(text)}: {_described(dimension)}, but {wanted.name} is expected; {hint}")
     exact = Fraction(number) * factor
     if (zero or signed) and exact == 0:
-        return 0.0
+        return exact
     if exact <= 0 and not signed:
         least = "not below zero" if zero else "greater than zero"
         raise InputError(
@@ -161,7 +181,7 @@ def quantity(text: object, kind: str, *, zero: bool = False, signed: bool = Fals
             f"{shown(text)}: outside the range of {wanted.name}, "
             f"{wanted.least:g} to {wanted.greatest:g} {wanted.unit}; {hint}"
         )
-    return float(exact)
+    return exact
 
 
 def shown(value: object) -> str:
@@ -194,11 +214,18 @@ def _unit(text: str, place: str, wanted: Kind) -> tuple[Fraction, dict[str, int]
                 "rad, deg, rev, rpm, kg, g, lb, N, Nm"
             )
         powers[known] = powers.get(known, 0) + (-1 if sign == "/" else 1) * int(power or 1)
+    factor, dimension = _size(tuple((name, power) for name, power in powers.items() if power))
+    return factor, dict(dimension)
+
+
+@lru_cache(maxsize=256)
+def _size(powers: tuple[tuple[str, int], ...]) -> tuple[Fraction, tuple[tuple[str, int], ...]]:
+    """Factor of a product of units to SI base units, and the powers of the base dimensions."""
     registry = _registry()
-    units = registry.UnitsContainer({name: power for name, power in powers.items() if power})
+    units = registry.UnitsContainer(dict(powers))
     factor = cast("Fraction | int", registry.get_base_units(units)[0])
     dimension = cast("Mapping[str, Fraction | int]", registry.get_dimensionality(units))
-    return Fraction(factor), {name: int(power) for name, power in dimension.items()}
+    return Fraction(factor), tuple((name, int(power)) for name, power in dimension.items())
 
 
 def _described(dimension: dict[str, int]) -> str:

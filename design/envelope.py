@@ -103,7 +103,7 @@ def envelope(
     if short:
         raise InputError(
             f"the envelope cannot begin at a cut length of {min(short) * 1e3:.6g} mm: it must be above the sync zone, "
-            f"cut.sync_zone = {cut.sync_zone * 1e3:.6g} mm"
+            f"[cut] sync_zone = {cut.sync_zone * 1e3:.6g} mm"
         )
     if isinstance(machine, CrankSlider) and math.isnan(machine.sync_at):
         machine = roomiest(machine, cut, limits)

@@ -8,6 +8,7 @@ could gain by using different torques at different speeds is left.
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -19,14 +20,15 @@ from profiles.polynomial import FloatArray
 PLACES = 3600
 
 
-def motor_limits(machine: Machine, limits: Limits) -> list[Limits]:
+@lru_cache(maxsize=1024)
+def motor_limits(machine: Machine, limits: Limits) -> tuple[Limits, ...]:
     """Limits of the slave, one for each rectangle of the motor's curve that leaves any acceleration; those given if there is no curve.
 
     The force at the slave is at most ``I A + I' V² / 2 + F`` with the largest inertia ``I`` and inertia slope ``I'``: exact for constant
     inertia, on the safe side for a crank.
     """
     if limits.motor is None:
-        return [limits]
+        return (limits,)
     around = _around(machine)
     inertia = float(np.max(machine.inertia(around)))
     slope = float(np.max(np.abs(machine.inertia_slope(around))))
@@ -38,7 +40,7 @@ def motor_limits(machine: Machine, limits: Limits) -> list[Limits]:
             continue
         acceleration = min(limits.acceleration, force / inertia) if inertia > 0 else limits.acceleration
         found.append(replace(limits, speed=speed, acceleration=acceleration, motor=None))
-    return found
+    return tuple(found)
 
 
 def moves_something(machine: Machine) -> bool:

@@ -24,8 +24,11 @@ from profiles.polynomial import FloatArray
 _POINTS = 65
 """Times at which the clearance is looked at, from the start of the return to the mould's play."""
 
-_CHUNK = 2000
+_CHUNK = 500
 """Bends handled at once, which bounds the memory."""
+
+_TURN_DIGITS = 11
+"""Decimals of workpiece angles (rad) that tell bends apart: beyond them stands the rounding of the drawing's numbers."""
 
 
 @dataclass(frozen=True)
@@ -130,12 +133,13 @@ def overlapped_table(
     fed = feed.time + dwell.feed * (feeds > 0)
     if not len(moulds):
         return TimeTable(np.zeros(1), np.zeros(0), np.zeros(0), feed, bend, float(fed[0]))
-    parts = [slice(i, i + _CHUNK) for i in range(0, len(moulds), _CHUNK)]
-    rows = np.arange(len(moulds))
-    wait = np.concatenate(
-        [feed_delay(feed.take(rows[p] + 1), bend.take(rows[p]), np.abs(turns[p]), drive) for p in parts]
-    )
-    approach = np.concatenate([_reaching(bend.take(rows[p]), np.full(len(rows[p]), drive.play)) for p in parts])
+    bends, which = _different(bend)
+    approach = bends.reaching(np.full(len(bends.time), drive.play))[which]
+    # bends alike in mould angle, workpiece angle and following feed wait alike
+    turn = np.asarray(np.round(np.abs(turns), _TURN_DIGITS), dtype=np.float64)
+    rows, alike = _first_of_each(which, feed.time[1:], turn)
+    parts = [rows[i : i + _CHUNK] for i in range(0, len(rows), _CHUNK)]
+    wait = np.concatenate([feed_delay(feed.take(p + 1), bend.take(p), turn[p], drive) for p in parts])[alike]
     # from one return's start to the next bend's start; the approach belongs to that next bend
     arrived = wait + fed[1:]
     back = bend.time + dwell.mould
@@ -163,50 +167,67 @@ def feed_delay(feed: Moves, bend: Moves, turn: FloatArray, drive: BenderDrive) -
     part = np.linspace(0.0, 1.0, _POINTS)
     bends, which = _different(bend)
     angle = bends.distance
-    t = _reaching(bends, np.maximum(angle - drive.play, 0.0))[:, None] * part
-    finger, t = (angle[:, None] - bends.position(t))[which], t[which]
-    allowed = clearance(finger, turn[:, None], drive.finger_radius)
+    t = bends.reaching(np.maximum(angle - drive.play, 0.0))[:, None] * part
+    finger = angle[:, None] - bends.position(t)
+    t = t[which]
+    allowed = _clear(np.cos(finger)[which], np.sin(finger)[which], turn[:, None], drive.finger_radius)
     # no further than at any later time: the feed never runs back
     allowed = np.minimum.accumulate(allowed[:, ::-1], axis=1)[:, ::-1]
-    moment = feed.time[:, None] * part
     feeds, which = _different(feed)
-    reached = feeds.position(feeds.time[:, None] * part)[which]
-    index = _last_not_above(reached, allowed)
-    free = allowed >= reached[:, -1:]  # the whole feed fits
+    reached = feeds.position(feeds.time[:, None] * part)
+    moment = _last_not_above(reached, which, allowed) * (feed.time / (_POINTS - 1))[:, None]
     # at the end of each interval of time the feed may be where the start of that interval allows
-    needed = np.where(free, 0.0, np.roll(t, -1, axis=1) - np.take_along_axis(moment, index, axis=1))
-    needed[:, -1] = np.where(free[:, -1], 0.0, t[:, -1] - np.take_along_axis(moment, index[:, -1:], axis=1)[:, 0])
-    return np.asarray(np.maximum(needed.max(axis=1), 0.0), dtype=np.float64)
+    needed = np.hstack([t[:, 1:], t[:, -1:]]) - moment
+    free = allowed >= reached[which, -1:]  # the whole feed fits
+    return np.asarray(np.where(free, 0.0, needed).max(axis=1, initial=0.0), dtype=np.float64)
 
 
 def clearance(finger: FloatArray, turn: FloatArray, radius: float) -> FloatArray:
     """Greatest feed (m) that the finger at an angle (rad) leaves to a rule bent by ``turn`` (rad, in (0, pi))."""
-    flank = np.sin(turn - finger) / np.sin(turn)
-    return np.asarray(radius * np.maximum(np.minimum(np.cos(finger), flank), 0.0), dtype=np.float64)
+    return _clear(np.cos(finger), np.sin(finger), turn, radius)
+
+
+def _clear(cos: FloatArray, sin: FloatArray, turn: FloatArray, radius: float) -> FloatArray:
+    """`clearance` from the finger's cosine and sine: ``sin(turn - phi) / sin(turn) = cos(phi) - sin(phi) / tan(turn)``."""
+    flank = cos - sin / np.tan(turn)
+    return np.asarray(radius * np.maximum(np.minimum(cos, flank), 0.0), dtype=np.float64)
 
 
 def _different(moves: Moves) -> tuple[Moves, NDArray[np.int64]]:
     """Find the different moves of an axis, told apart by their durations, and which of them each move is."""
-    _, first, which = np.unique(moves.time, return_index=True, return_inverse=True)
-    return moves.take(first.astype(np.int64)), which.astype(np.int64)
+    first, which = _first_of_each(moves.time)
+    return moves.take(first), which
 
 
-def _reaching(moves: Moves, distance: FloatArray) -> FloatArray:
-    """Time at which each move has covered a distance (s); its duration if it never does."""
-    low, high = np.zeros(len(distance)), moves.time.copy()
-    for _ in range(36):
-        middle = 0.5 * (low + high)
-        short = moves.position(middle[:, None])[:, 0] < distance
-        low, high = np.where(short, middle, low), np.where(short, high, middle)
-    return high
+def _first_of_each(*keys: NDArray[np.generic]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Find the different rows of some columns: the first of each, and for each row which of them it is."""
+    order = np.lexsort(keys)
+    fresh = np.zeros(len(order), dtype=np.bool_)
+    fresh[:1] = True
+    for key in keys:
+        fresh[1:] |= key[order[1:]] != key[order[:-1]]
+    which = np.empty(len(order), dtype=np.int64)
+    which[order] = np.cumsum(fresh) - 1
+    return order[fresh], which
 
 
-def _last_not_above(rising: FloatArray, value: FloatArray) -> NDArray[np.int64]:
-    """Index of the last entry of each rising row that does not exceed a value; rows of `_POINTS` entries."""
+def _last_not_above(rising: FloatArray, rows: NDArray[np.int64], value: FloatArray) -> NDArray[np.int64]:
+    """Index of the last but one entry, or one before it, of a rising row that does not exceed a value.
+
+    Parameters
+    ----------
+    rising
+        Shape ``(k, _POINTS)``.
+    rows
+        Shape ``(n,)``: which of these rows each row of values is looked up in.
+    value
+        Shape ``(n, m)``.
+    """
+    flat = rising.ravel()
+    first = rows[:, None] * _POINTS
     index = np.zeros(value.shape, dtype=np.int64)
     jump = (_POINTS - 1) // 2
     while jump:
-        try_at = np.minimum(index + jump, _POINTS - 1)
-        index = np.where(np.take_along_axis(rising, try_at, axis=1) <= value, try_at, index)
+        index += jump * (flat[first + index + jump] <= value)
         jump //= 2
     return index

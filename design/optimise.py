@@ -4,25 +4,26 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Literal, cast, get_args
+from typing import TYPE_CHECKING, Literal, get_args
 
-import numpy as np
-
-from design.extremes import roomiest
-from design.feasibility import infeasible, is_feasible, require_feasible
+from design.crank_place import place_for
+from design.feasibility import is_feasible
 from design.ipopt import SolveStatus
 from design.motor import motor_limits, moves_something
-from design.placement import place_sync
 from design.problem import Objective as MotionObjective
 from design.problem import ReturnProblem, return_problem
-from design.solver import grid_objective, objective_value, smoothest, solve_return
+from design.refusal import require_feasible
+from design.solver import objective_value, smoothest, solve_return
 from design.transcription import PEAKS
 from profiles.cycle import Cut
 from profiles.errors import InputError
 from profiles.limits import Limits
 from profiles.machines import CrankSlider, Machine
 from profiles.polynomial import CamProfile
-from profiles.returns import assemble, baseline, slave_at_start
+from profiles.returns import assemble
+
+if TYPE_CHECKING:
+    from design.servo_aware import AxisMotion
 
 TorqueObjective = Literal["rms_torque", "peak_torque", "energy"]
 Objective = Literal[
@@ -78,11 +79,14 @@ class Solution:
         What was minimised.
     objective
         Its value over time at the job's line speed, of the slave: m/s² or m/s³ (rad for m with a crank), root mean squares over the return
-        zone; for torque objectives the value of the motion objective that decided, or not a number where the torque itself did.
+        zone; for torque objectives the value of the motion objective that decided, or where the torque itself did its root mean square or
+        peak (N or N·m), or the mean power drawn (W), at the slave over the return.
     iterations
         Iterations of IPOPT, all together.
     starts
         Agreement of several starts; None where the problem is convex.
+    axis
+        What a servo-aware design found, whose `iterations` are programmes solved; None for a servo-blind one.
     """
 
     machine: Machine
@@ -93,10 +97,18 @@ class Solution:
     objective: float
     iterations: int
     starts: Starts | None = None
+    axis: AxisMotion | None = None
 
 
-def solve(machine: Machine, cut: Cut, limits: Limits, objective: Objective) -> Solution:
+def solve(machine: Machine, cut: Cut, limits: Limits, objective: Objective, *, suggest: bool = True) -> Solution:
     """Design the optimal cycle of a cutting machine.
+
+    Parameters
+    ----------
+    machine, cut, limits, objective
+        The job.
+    suggest
+        Whether an `InfeasibleError` says what would work; finding that takes longer than finding what binds.
 
     Raises
     ------
@@ -117,9 +129,9 @@ def solve(machine: Machine, cut: Cut, limits: Limits, objective: Objective) -> S
     ('optimal', 9.072, 6)
     """
     if isinstance(machine, CrankSlider) and math.isnan(machine.sync_at):
-        return _solve_free_crank(machine, cut, limits, objective)
+        return _solve_free_crank(machine, cut, limits, objective, suggest)
     machine.sync_start(cut)
-    require_feasible(machine, cut, limits)
+    require_feasible(machine, cut, limits, suggest=suggest)
     if limits.motor is not None:
         return _solve_for_motor(machine, cut, limits, objective)
     if objective in TORQUE_OBJECTIVES and not moves_something(machine):
@@ -127,7 +139,7 @@ def solve(machine: Machine, cut: Cut, limits: Limits, objective: Objective) -> S
             f"[objective] minimise = {objective!r} needs to know what the motor moves: give the machine's inertia or mass, or minimise "
             f"rms_acceleration"
         )
-    decisive = _motion_objective(machine, objective)
+    decisive = motion_objective(machine, objective)
     if decisive is None:
         return _solve_torque(machine, cut, limits, objective, valleys=1)
     problem = return_problem(machine, cut, limits, decisive)
@@ -146,7 +158,7 @@ def _solve_for_motor(machine: Machine, cut: Cut, limits: Limits, objective: Obje
         for each in motor_limits(machine, limits)
         if is_feasible(machine, cut, each)
     ]
-    return min(found, key=lambda solution: (math.isnan(solution.objective), solution.objective))
+    return min(found, key=lambda solution: solution.objective)
 
 
 def _unique(problem: ReturnProblem) -> bool:
@@ -162,7 +174,7 @@ def _smoothest(problem: ReturnProblem, back: CamProfile) -> CamProfile:
     return back if smooth is None else smooth
 
 
-def _motion_objective(machine: Machine, objective: Objective) -> MotionObjective | None:
+def motion_objective(machine: Machine, objective: Objective) -> MotionObjective | None:
     """Objective of the motion alone that has the same minimiser, if there is one.
 
     With constant inertia ``I`` and friction ``F`` that never changes its sign the mean square of the force is ``I² a_rms² + F²`` (the mean
@@ -186,38 +198,13 @@ def _solve_torque(machine: Machine, cut: Cut, limits: Limits, objective: Objecti
     found = solve_torque(machine, cut, problem, start, objective)  # type: ignore[arg-type]
     starts = Starts(found.starts, found.agreeing, found.spread, found.residual, valleys)
     profile = assemble(found.back, machine, cut)
-    return Solution(machine, profile, found.back, SolveStatus.ON_GRID, objective, math.nan, found.iterations, starts)
+    return Solution(machine, profile, found.back, SolveStatus.ON_GRID, objective, found.value, found.iterations, starts)
 
 
-def _solve_free_crank(machine: CrankSlider, cut: Cut, limits: Limits, objective: Objective) -> Solution:
+def _solve_free_crank(machine: CrankSlider, cut: Cut, limits: Limits, objective: Objective, suggest: bool) -> Solution:
     """Choose the place of the sync zone first, by the objective of the motion or by the mean square of the torque."""
-
-    def cost(placed: CrankSlider) -> float:
-        if objective in TORQUE_OBJECTIVES:
-            return _torque_cost(placed, cut, limits)
-        return grid_objective(return_problem(placed, cut, limits, cast("MotionObjective", objective)))
-
-    placement = place_sync(machine, cut, cost)
-    if placement is None:  # at the edge the grid sees no motion where there still is one
-        easiest = roomiest(machine, cut, limits)
-        if is_feasible(easiest, cut, limits):
-            return solve(easiest, cut, limits, objective)
-        raise infeasible(easiest, cut, limits)
-    solution = solve(placement.machine, cut, limits, objective)
+    placement = place_for(machine, cut, limits, objective)
+    solution = solve(placement.machine, cut, limits, objective, suggest=suggest)
     if solution.starts is None:
         return replace(solution, starts=Starts(1, 1, 0.0, 0.0, placement.valleys))
     return replace(solution, starts=replace(solution.starts, valleys=placement.valleys))
-
-
-def _torque_cost(machine: CrankSlider, cut: Cut, limits: Limits) -> float:
-    """Mean square torque of the quintic, infinite where no motion keeps the limits: a fast stand-in for the torque's own optimum.
-
-    The place matters through the inertia's change in the sync zone and the speeds that the return must join, which both share.
-    """
-    if math.isinf(grid_objective(return_problem(machine, cut, limits, "rms_acceleration"))):
-        return math.inf
-    cycle = baseline("poly_3_4_5", machine, replace(cut, origin="return"))
-    x = np.linspace(cycle.start, cycle.end, 2001)
-    y = slave_at_start(machine, replace(cut, origin="return")) + cycle(x)
-    torque = machine.inertia(y) * cycle(x, 2) + machine.inertia_slope(y) * cycle(x, 1) ** 2 / 2
-    return float(np.mean(torque**2))

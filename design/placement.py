@@ -52,7 +52,7 @@ def place_sync(machine: CrankSlider, cut: Cut, cost: Callable[[CrankSlider], flo
     """
     if cut.sync_ratio * cut.sync_zone >= machine.stroke:
         raise InputError(
-            f"cut.sync_zone needs {cut.sync_ratio * cut.sync_zone * 1e3:.6g} mm of carriage travel, the crank's stroke is "
+            f"[cut] sync_zone needs {cut.sync_ratio * cut.sync_zone * 1e3:.6g} mm of carriage travel, the crank's stroke is "
             f"{machine.stroke * 1e3:.6g} mm; shorten the sync zone below {machine.stroke / cut.sync_ratio * 1e3:.6g} mm or take a "
             f"longer crank"
         )

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Literal
 
 from profiles.cycle import Cut
 from profiles.limits import Limits
 from profiles.machines import LinearCarriage, Machine
+from profiles.polynomial import CamProfile
 
 Objective = Literal["peak_acceleration", "rms_acceleration", "peak_jerk", "rms_jerk"]
 """Objectives of the motion alone."""
@@ -61,6 +63,7 @@ class ReturnProblem:
 def return_problem(machine: Machine, cut: Cut, limits: Limits, objective: Objective) -> ReturnProblem:
     """Put the return of a cutting machine into numbers: the sync zone's ends give the return's boundary values."""
     sync = machine.sync_profile(cut)
+    ends = _ends(sync)
     v = cut.line_speed
     least, greatest = -math.inf, math.inf
     if isinstance(machine, LinearCarriage):
@@ -69,10 +72,10 @@ def return_problem(machine: Machine, cut: Cut, limits: Limits, objective: Object
     return ReturnProblem(
         length=cut.return_zone,
         height=machine.pitch - sync.advance,
-        start_ratio=float(sync(sync.end, 1)),
-        end_ratio=float(sync(sync.start, 1)),
-        start_slope=float(sync(sync.end, 2)),
-        end_slope=float(sync(sync.start, 2)),
+        start_ratio=ends[0],
+        end_ratio=ends[1],
+        start_slope=ends[2],
+        end_slope=ends[3],
         least_ratio=(-limits.speed if machine.turns_back else limits.least_velocity) / v,
         greatest_ratio=limits.speed / v,
         greatest_slope=limits.acceleration / v**2,
@@ -81,3 +84,9 @@ def return_problem(machine: Machine, cut: Cut, limits: Limits, objective: Object
         least_position=least,
         greatest_position=greatest,
     )
+
+
+@lru_cache(maxsize=256)
+def _ends(sync: CamProfile) -> tuple[float, float, float, float]:
+    """Ratio at the end and at the start of a sync zone, and the ratio slope there; kept with the sync zone."""
+    return float(sync(sync.end, 1)), float(sync(sync.start, 1)), float(sync(sync.end, 2)), float(sync(sync.start, 2))

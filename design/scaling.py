@@ -91,8 +91,7 @@ def motion_scale(problem: ReturnProblem) -> float:
         problem.end_slope * length**2,
     )
     size = max(abs(height), *(abs(value) for value in others))
-    simple = not any(others) and math.isinf(problem.least_position) and math.isinf(problem.greatest_position)
-    return -size if simple and height < 0 else size
+    return -size if not any(others) and height < 0 else size
 
 
 def scale_problem(problem: ReturnProblem, scale: float) -> ScaledProblem:

@@ -9,25 +9,35 @@ from dataclasses import replace
 import numpy as np
 
 from design.ipopt import SolveStatus, programme
+from design.possible import possible_motion
 from design.problem import Objective, ReturnProblem
 from design.scaling import ScaledProblem, motion_scale, scale_problem, unscale_profile
-from design.structure import extreme_motion, from_extreme, read_cubic, read_quintic, subdivide, tidy
+from design.starts import known_start
+from design.structure import VANISHED, extreme_motion, from_extreme, read_cubic, readings_of, subdivide, tidy
 from design.transcription import PEAKS, Arc, Motion, Shape
 from profiles.errors import SolverError
 from profiles.polynomial import CamProfile, FloatArray
-from profiles.reach import DoubleS, greatest_reach
+from profiles.reach import greatest_reach
 
 FREE: tuple[Arc, ...] = ("free",)
-# Intervals of the first look and of the fallback, by the degree of the acceleration. The structure, not the grid, decides the answer:
-# 40 intervals tell apart arcs of 1/40 of the return; 160 are 0.2 % from the optimum.
-COARSE = {1: 40, 3: 40}
+# Intervals of the first look and of the last, by the degree of the acceleration. The structure, not the grid, decides the answer: 40
+# intervals tell apart arcs of 1/40 of the return; 160 are 0.2 % from the optimum.
+COARSE = {1: 40, 3: 24}
+MEDIUM = 40
 FINE = {1: 160, 3: 80}
+# Intervals for each arc where a polished motion is looked at again.
+EACH_ARC = 6
 # Limits widened on the grid where a job leaves so little room that no motion on the grid keeps them.
 WIDER = 0.1
+# Where they leave less than this share, a few intervals of the same length have no motion that keeps them.
+LITTLE_ROOM = 1e-2
 # Where the limits leave less than this share of the way to spare, the extreme motion is the only one to within that share.
 NO_ROOM = 1e-8
 # Objectives that differ by less than this share are the same.
 SAME = 1e-7
+# By this share an answer may differ from a closed form that it confirms: the margin by which the programme draws limits in, enlarged
+# where a job leaves little room.
+CONFIRMED = 1e-6
 # By this share a polished answer may be above its grid's, by the degree of the acceleration: on the grid the solver widens limits by
 # 1e-8, which a mean square of the jerk shows enlarged.
 GRID_ERROR = {1: SAME, 3: 1e-5}
@@ -76,8 +86,9 @@ def solve_return(problem: ReturnProblem) -> tuple[CamProfile, SolveStatus, int]:
 def _solve_scaled(problem: ScaledProblem) -> tuple[CamProfile, SolveStatus, int]:
     """Grid, structure, polish; the grids are tried in turn until a polished answer is at least as good as its grid's.
 
-    From rest to rest the extreme motion (a closed form) is feasible too. It is the answer where the limits leave no room, and
-    where the solver ends with something worse, at the edge of what double precision resolves.
+    A closed form tells a motion that keeps the limits, from rest to rest the extreme one. It is the answer where the limits leave no room,
+    and where the solver ends with something worse, at the edge of what double precision resolves. Its corners make a grid on which
+    there is a motion, however little room there is.
     """
     if problem.objective == "rms_jerk":
         free = _quintic(problem)
@@ -85,20 +96,24 @@ def _solve_scaled(problem: ScaledProblem) -> tuple[CamProfile, SolveStatus, int]
             return free, SolveStatus.OPTIMAL, 0
     extreme = extreme_motion(problem)
     safe: CamProfile | None = None
-    if extreme is not None:
-        safe = tidy(from_extreme(extreme), problem).profile()
-        if _room(problem) < NO_ROOM:
-            return safe, SolveStatus.OPTIMAL, 0
-    iterations = 0
+    if extreme is not None and _room(problem) < NO_ROOM:
+        return tidy(from_extreme(extreme), problem).profile(), SolveStatus.OPTIMAL, 0
+    known, iterations = _confirmed(problem)
+    if known is not None:
+        return known, SolveStatus.OPTIMAL, iterations
+    witness = from_extreme(extreme) if extreme is not None else _possible(problem)
+    if witness is not None:
+        profile = tidy(witness, problem).profile()
+        safe = profile if excess(profile, problem) <= ALLOWED_EXCESS or extreme is not None else None
     reached = math.inf  # the least objective on any grid: a polished answer must be as good
-    for lengths, relax in _grids(problem, extreme):
+    for lengths, relax, thorough in _grids(problem, witness):
         grid, success, used = _on_grid(problem, lengths, relax)
         iterations += used
         if not success:
             continue
         if relax == 0.0:
             reached = min(reached, grid.objective)
-        polished, success, used = _polish(problem, grid)
+        polished, success, used = _polish(problem, grid, thorough)
         iterations += used
         if success and grid.degree > 1 and len(polished.lengths) > 1:
             polished, finer, used = _read_again(problem, polished)
@@ -118,6 +133,31 @@ def _solve_scaled(problem: ScaledProblem) -> tuple[CamProfile, SolveStatus, int]
             f"infeasible; loosen the limit that is nearest to binding by 1 % and report this job"
         )
     return safe, SolveStatus.OPTIMAL if _extreme_is_optimal(problem) else SolveStatus.ON_GRID, iterations
+
+
+def _possible(problem: ScaledProblem) -> Motion | None:
+    """Give a motion that keeps the limits, from a closed form; None if there is none."""
+    found = possible_motion(problem)
+    return None if found is None else Motion(np.diff(found[0]), found[1], math.nan)
+
+
+def _confirmed(problem: ScaledProblem) -> tuple[CamProfile | None, int]:
+    """Polish the optimum that a closed form tells; None if there is none, or if the programme comes to anything else.
+
+    A slave that keeps to a stroke of its own accord needs no limits of the position.
+    """
+    known = known_start(replace(problem, least_position=-math.inf, greatest_position=math.inf))
+    if known is None:
+        return None, 0
+    start, arcs = known
+    shape = Shape(arcs, start.degree, True, problem.objective)
+    motion, statistics = programme(shape, known=True).solve(problem, start)
+    iterations = int(statistics["iter_count"])
+    if statistics["success"] and abs(motion.objective - start.objective) <= CONFIRMED * start.objective:
+        profile = tidy(motion, problem).profile()
+        if excess(profile, problem) <= ALLOWED_EXCESS:
+            return profile, iterations
+    return None, iterations
 
 
 def _quintic(problem: ScaledProblem) -> CamProfile:
@@ -141,12 +181,14 @@ def _read_again(problem: ScaledProblem, polished: Motion) -> tuple[Motion, float
         arcs = polished.lengths[polished.lengths > LEAST_ARC]
         if len(arcs) < 2:
             break
-        grid, success, used = _on_grid(problem, subdivide(arcs / arcs.sum(), COARSE[polished.degree]), 0.0)
+        grid, success, used = _on_grid(problem, subdivide(arcs / arcs.sum(), EACH_ARC * len(arcs)), 0.0)
         iterations += used
         if not success:
             break
         reached = min(reached, grid.objective)
-        again, success, used = _polish(problem, grid)
+        if grid.objective >= polished.objective * (1 - SAME):
+            break
+        again, success, used = _polish(problem, grid, thorough=True)
         iterations += used
         if not success or again.objective >= polished.objective * (1 - SAME):
             break
@@ -168,19 +210,35 @@ def _better(profile: CamProfile, other: CamProfile | None, problem: ScaledProble
 
 def excess(profile: CamProfile, problem: ScaledProblem) -> float:
     """Largest share by which a scaled profile exceeds a limit or misses its end, exactly."""
-    low, high = profile.extrema(1)
-    slope = max(abs(extremum.value) for extremum in profile.extrema(2))
-    jerk = max(abs(extremum.value) for extremum in profile.extrema(3))
+    low, high, slope, jerk = _greatest(profile)
     room = max(problem.greatest_ratio, -problem.least_ratio)
     return max(
-        (high.value - problem.greatest_ratio) / room,
-        (problem.least_ratio - low.value) / room,
+        (high - problem.greatest_ratio) / room,
+        (problem.least_ratio - low) / room,
         slope / problem.greatest_slope - 1.0,
         jerk / problem.greatest_jerk - 1.0,
         abs(float(profile(1.0)) - problem.height),
         _beyond(profile, problem),
         abs(float(profile(1.0, 1)) - problem.end_ratio),
     )
+
+
+def _greatest(profile: CamProfile) -> tuple[float, float, float, float]:
+    """Least and greatest ratio, and the greatest magnitudes of its slope and of that slope's slope, exactly."""
+    if profile.degree > 3:
+        low, high = profile.extrema(1)
+        slope, jerk = (max(abs(extremum.value) for extremum in profile.extrema(order)) for order in (2, 3))
+        return low.value, high.value, slope, jerk
+    # pieces of cubics, all at once: the ratio is extreme at a node or where its slope, a straight line, is zero
+    width = np.diff(profile.breaks)
+    _, start, half, sixth = np.pad(profile.coefficients, ((0, 0), (0, 3 - profile.degree))).T
+    slope_end = 2 * half + 6 * sixth * width
+    turns = 2 * half * slope_end < 0
+    ratios = np.concatenate(
+        [start, start + width * (half * 2 + 3 * sixth * width), start[turns] - half[turns] ** 2 / (3 * sixth[turns])]
+    )
+    slopes = np.abs([2 * half, slope_end])
+    return float(ratios.min()), float(ratios.max()), float(slopes.max()), float(6 * np.abs(sixth).max())
 
 
 def _beyond(profile: CamProfile, problem: ScaledProblem) -> float:
@@ -204,7 +262,7 @@ def smoothest(problem: ReturnProblem) -> CamProfile | None:
     grid, success, _ = _on_grid(scaled, np.full(COARSE[3], 1.0 / COARSE[3]), 0.0)
     if not success:
         return None
-    polished, success, _ = _polish(scaled, grid)
+    polished, success, _ = _polish(scaled, grid, thorough=True)
     for motion in (polished, grid) if success else (grid,):
         profile = tidy(motion, scaled).profile()
         if excess(profile, scaled) <= ALLOWED_EXCESS:
@@ -255,15 +313,30 @@ def grid_objective(problem: ReturnProblem) -> float:
     return value * abs(scale) / problem.length ** (2 if problem.objective.endswith("acceleration") else 3)
 
 
-def _grids(problem: ScaledProblem, extreme: DoubleS | None) -> Iterator[tuple[FloatArray, float]]:
-    """Grids to try in turn, each with the share by which the limits are widened on it."""
+def _grids(problem: ScaledProblem, witness: Motion | None) -> Iterator[tuple[FloatArray, float, bool]]:
+    """Grids to try in turn, each with the share by which the limits are widened on it and with how thoroughly to polish."""
     degree = _degree(problem)
-    uniform = np.full(COARSE[degree], 1.0 / COARSE[degree])
-    yield uniform, 0.0
-    if extreme is not None:
-        yield subdivide(from_extreme(extreme).lengths, COARSE[degree]), 0.0
-    yield uniform, WIDER
-    yield np.full(FINE[degree], 1.0 / FINE[degree]), 0.0
+    arcs = None if witness is None else witness.lengths[witness.lengths > VANISHED]
+    arcs = None if arcs is None else arcs / arcs.sum()
+    little = problem.rest_to_rest and not problem.confined and _room(problem) <= LITTLE_ROOM
+    coarse, fine = (np.full(count, 1.0 / count) for count in (COARSE[degree], FINE[degree]))
+    if degree == 1:
+        yield coarse, 0.0, True
+        if arcs is not None:
+            yield subdivide(arcs, COARSE[degree]), 0.0, True
+        yield coarse, WIDER, True
+        yield fine, 0.0, True
+        return
+    medium = np.full(MEDIUM, 1.0 / MEDIUM)
+    if arcs is None or not little:
+        yield coarse, 0.0, False
+        yield medium, 0.0, False
+    if arcs is not None:
+        yield subdivide(arcs, MEDIUM), 0.0, False
+    yield fine, 0.0, True
+    if arcs is not None:
+        yield subdivide(arcs, FINE[degree]), 0.0, True
+    yield medium, WIDER, True
 
 
 def _degree(problem: ScaledProblem) -> int:
@@ -282,23 +355,37 @@ def _on_grid(problem: ScaledProblem, lengths: FloatArray, relax: float) -> tuple
     return motion, bool(statistics["success"]), int(statistics["iter_count"])
 
 
-def _polish(problem: ScaledProblem, grid: Motion) -> tuple[Motion, bool, int]:
+def _polish(problem: ScaledProblem, grid: Motion, thorough: bool) -> tuple[Motion, bool, int]:
     """Solve for few pieces of unknown length, starting from the structure of a grid solution.
 
-    A quintic grid can be read in two ways; the second is taken where the first ends with something worse than the grid.
+    A quintic grid can be read in several ways. They are tried in turn, with limits at the nodes alone and then, if ``thorough``, with
+    limits everywhere, until one ends with something as good as the grid.
     """
     if grid.degree == 1:
         return _polish_arcs(problem, *read_cubic(grid, problem))
-    best, success, iterations = _polish_arcs(problem, *read_quintic(grid, problem, touched=False))
-    if not success or best.objective > grid.objective * (1 + GRID_ERROR[grid.degree]):
-        other, also, used = _polish_arcs(problem, *read_quintic(grid, problem, touched=True))
-        iterations += used
-        if also and (not success or other.objective < best.objective):
-            best, success = other, True
+    enough = grid.objective * (1 + GRID_ERROR[grid.degree])
+    best, success, iterations = grid, False, 0
+    readings = readings_of(grid, problem)
+    for at_nodes in (True, False):
+        if (at_nodes and problem.confined) or not (at_nodes or thorough or problem.confined):
+            continue
+        for start, arcs in readings if at_nodes else readings[-2:]:
+            motion, also, used = _polish_arcs(problem, start, arcs, at_nodes)
+            iterations += used
+            if also and (not success or motion.objective < best.objective):
+                best, success = motion, True
+            if success and best.objective <= enough:
+                return best, True, iterations
     return best, success, iterations
 
 
-def _polish_arcs(problem: ScaledProblem, start: Motion, arcs: tuple[Arc, ...]) -> tuple[Motion, bool, int]:
-    shape = Shape(arcs, start.degree, True, problem.objective, problem.confined)
+def _polish_arcs(
+    problem: ScaledProblem, start: Motion, arcs: tuple[Arc, ...], at_nodes: bool = False
+) -> tuple[Motion, bool, int]:
+    """Solve for arcs of unknown length; with limits at the nodes alone it is a success only if they are kept between, too."""
+    shape = Shape(arcs, start.degree, True, problem.objective, problem.confined, at_nodes)
     motion, statistics = programme(shape).solve(problem, start)
-    return motion, bool(statistics["success"]), int(statistics["iter_count"])
+    success = bool(statistics["success"])
+    if success and at_nodes:
+        success = excess(tidy(motion, problem).profile(), problem) <= ALLOWED_EXCESS
+    return motion, success, int(statistics["iter_count"])

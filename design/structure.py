@@ -111,11 +111,9 @@ def read_quintic(grid: Motion, problem: ScaledProblem, touched: bool) -> tuple[M
     p = grid.degree
     rows = piece_coefficients(grid.accelerations, p)
     _, ratio = grid.nodes()
-    kinds = []
-    for i, (h, row) in enumerate(zip(grid.lengths, rows, strict=True)):
-        steps = p * np.diff(row) / h
-        pace = ratio[i] + h * np.concatenate([[0.0], np.cumsum(row)]) / (p + 1)
-        kinds.append(_active(pace, row, steps, problem, touched))
+    h = grid.lengths[:, None]
+    paces = ratio[:-1, None] + h * np.pad(np.cumsum(rows, axis=1), ((0, 0), (1, 0))) / (p + 1)
+    kinds = _active(paces, rows, p * np.diff(rows, axis=1) / h, problem, touched)
     x = np.concatenate([[0.0], np.cumsum(grid.lengths)])
     a = grid.accelerations
     breaks = [0.0]
@@ -135,11 +133,31 @@ def read_quintic(grid: Motion, problem: ScaledProblem, touched: bool) -> tuple[M
     coefficients = [float(a[0])]
     for left, right in itertools.pairwise(breaks):
         # Bernstein coefficients that interpolate the grid's acceleration at the piece's ends and thirds
-        third = np.array([_value(x, rows, left + (right - left) * s / 3) for s in range(4)])
-        inner_1 = (-5 * third[0] + 18 * third[1] - 9 * third[2] + 2 * third[3]) / 6
-        inner_2 = (2 * third[0] - 9 * third[1] + 18 * third[2] - 5 * third[3]) / 6
-        coefficients += [float(inner_1), float(inner_2), float(third[3])]
+        third = _values(x, rows, left + (right - left) * np.arange(4) / 3)
+        coefficients += (_THROUGH_THIRDS @ third).tolist()
     return Motion(np.diff(breaks), np.array(coefficients), grid.objective), tuple(arcs)
+
+
+def readings_of(grid: Motion, problem: ScaledProblem) -> list[tuple[Motion, tuple[Arc, ...]]]:
+    """Ways to read a quintic grid, each once: a cruise no longer than an interval may be a point where the speed is touched."""
+    found: dict[tuple[Arc, ...], Motion] = {}
+    strict, loose = (read_quintic(grid, problem, touched) for touched in (False, True))
+    step = float(grid.lengths.max())
+    for start, arcs in (_without_short_cruise(*strict, step), _without_short_cruise(*loose, step), strict, loose):
+        found.setdefault(arcs, start)
+    return [(start, arcs) for arcs, start in found.items()]
+
+
+def _without_short_cruise(start: Motion, arcs: tuple[Arc, ...], step: float) -> tuple[Motion, tuple[Arc, ...]]:
+    """Make a free arc, a short cruise and a free arc two free arcs that meet at the greatest speed."""
+    p = start.degree
+    for i in range(1, len(arcs) - 1):
+        if arcs[i - 1 : i + 2] == ("free", "cruise", "free") and start.lengths[i] <= 1.5 * step:
+            lengths = np.delete(start.lengths, i)
+            lengths[i - 1 : i + 1] += start.lengths[i] / 2
+            a = np.delete(start.accelerations, np.arange(i * p, (i + 1) * p))
+            return Motion(lengths, a, start.objective), (*arcs[: i - 1], "fall", *arcs[i + 1 :])
+    return start, arcs
 
 
 _ARC_OF_LIMIT: dict[str, Arc] = {
@@ -152,25 +170,31 @@ _ARC_OF_LIMIT: dict[str, Arc] = {
 }
 
 
-def _active(pace: FloatArray, row: FloatArray, steps: FloatArray, problem: ScaledProblem, touched: bool) -> str:
-    """Name the limit that an interval reaches: all along it, or if ``touched`` somewhere on it."""
+def _active(
+    paces: FloatArray, rows: FloatArray, steps: FloatArray, problem: ScaledProblem, touched: bool
+) -> list[str]:
+    """Name the limit that each interval reaches: all along it, or if ``touched`` somewhere on it. One row an interval."""
     reached = np.any if touched else np.all
-    if reached(pace >= problem.greatest_ratio - ACTIVE) or reached(pace <= problem.least_ratio + ACTIVE):
-        return "speed"
-    for name, values, limit in (("jerk", steps, problem.greatest_jerk), ("slope", row, problem.greatest_slope)):
-        if reached(values >= limit * (1 - ACTIVE)):
-            return f"+{name}"
-        if reached(values <= -limit * (1 - ACTIVE)):
-            return f"-{name}"
-    return "none"
+    kinds = np.full(len(rows), "none", dtype="<U6")
+    # what is named last wins: speed over jerk over acceleration
+    for name, values, limit in (("slope", rows, problem.greatest_slope), ("jerk", steps, problem.greatest_jerk)):
+        kinds[reached(values <= -limit * (1 - ACTIVE), axis=1)] = f"-{name}"
+        kinds[reached(values >= limit * (1 - ACTIVE), axis=1)] = f"+{name}"
+    kinds[reached(paces >= problem.greatest_ratio - ACTIVE, axis=1)] = "speed"
+    kinds[reached(paces <= problem.least_ratio + ACTIVE, axis=1)] = "speed"
+    return kinds.tolist()
 
 
-def _value(x: FloatArray, rows: FloatArray, at: float) -> float:
-    """Evaluate Bernstein pieces of degree 3 at one place."""
-    i = int(np.clip(np.searchsorted(x, at, side="right") - 1, 0, len(rows) - 1))
+def _values(x: FloatArray, rows: FloatArray, at: FloatArray) -> FloatArray:
+    """Evaluate Bernstein pieces of degree 3."""
+    i = np.clip(np.searchsorted(x, at, side="right") - 1, 0, len(rows) - 1)
     s = (at - x[i]) / (x[i + 1] - x[i])
-    weight = np.array([(1 - s) ** 3, 3 * s * (1 - s) ** 2, 3 * s**2 * (1 - s), s**3])
-    return float(weight @ rows[i])
+    weight = np.stack([(1 - s) ** 3, 3 * s * (1 - s) ** 2, 3 * s**2 * (1 - s), s**3], axis=1)
+    return np.asarray((weight * rows[i]).sum(axis=1))
+
+
+_THROUGH_THIRDS = np.array([[-5.0, 18.0, -9.0, 2.0], [2.0, -9.0, 18.0, -5.0], [0.0, 0.0, 0.0, 6.0]]) / 6
+"""Last three Bernstein coefficients of the cubic through values at the ends and thirds; the first is the first value."""
 
 
 def extreme_motion(problem: ScaledProblem) -> DoubleS | None:
@@ -198,9 +222,10 @@ def subdivide(arcs: FloatArray, count: int) -> FloatArray:
     arcs
         Lengths of the arcs, their sum 1; arcs of no length are left out.
     count
-        Number of intervals, at least `LEAST_INTERVALS` for each arc.
+        Number of intervals; more if that is less than `LEAST_INTERVALS` for each arc.
     """
     arcs = arcs[arcs > 0]
+    count = max(count, LEAST_INTERVALS * len(arcs))
     wanted = LEAST_INTERVALS + (count - LEAST_INTERVALS * len(arcs)) * arcs / arcs.sum()
     parts = np.floor(wanted).astype(int)
     parts[np.argsort(parts - wanted)[: count - int(parts.sum())]] += 1  # largest remainders first
@@ -265,12 +290,12 @@ def _without_vanished(lengths: FloatArray, a: FloatArray, p: int) -> tuple[Float
 
 def _end_response(lengths: FloatArray, p: int) -> FloatArray:
     """Linear map from the acceleration coefficients to (ratio, position) at the end, shape ``(2, M p + 1)``."""
-    matrix = np.zeros((2, len(lengths) * p + 1))
     remaining = 1.0 - np.cumsum(lengths)
     k = np.arange(p + 1)
-    for i, h in enumerate(lengths):
-        at = slice(i * p, i * p + p + 1)
-        ratio = np.full(p + 1, h / (p + 1))
-        matrix[0, at] += ratio
-        matrix[1, at] += h * h * (p + 1 - k) / ((p + 1) * (p + 2)) + ratio * remaining[i]
+    ratio = np.broadcast_to(lengths[:, None] / (p + 1), (len(lengths), p + 1))
+    position = lengths[:, None] ** 2 * (p + 1 - k) / ((p + 1) * (p + 2)) + ratio * remaining[:, None]
+    matrix = np.zeros((2, len(lengths) * p + 1))
+    for row, parts in zip(matrix, (ratio, position), strict=True):
+        row[:-1] += parts[:, :-1].ravel()
+        row[p::p] += parts[:, -1]
     return matrix

@@ -32,8 +32,9 @@ PEAKS: tuple[Objective, ...] = ("peak_acceleration", "peak_jerk")
 Cost = Objective | Literal["margin"]
 """What a programme minimises: an objective of the motion, or the least common factor on all limits that some motion keeps."""
 
-Arc = Literal["free", "ramp", "hold", "cruise"]
-"""What a piece is known to be: nothing, linear in the acceleration, of constant acceleration, of constant speed."""
+Arc = Literal["free", "ramp", "hold", "fall", "cruise"]
+"""What a piece is known to be: nothing, linear in the acceleration, of constant acceleration, without acceleration at its end, of constant
+speed."""
 
 # The solver answers to about 1e-10; limits drawn in by this much are kept to better than 1e-9 by whatever it returns.
 LIMIT_MARGIN = 2e-10
@@ -59,6 +60,8 @@ class Shape:
         What is minimised.
     confined
         Whether the position has limits.
+    at_nodes
+        Whether only the values at the nodes are limited, not those between: for a first try with few rows, to be checked afterwards.
     """
 
     arcs: tuple[Arc, ...]
@@ -66,6 +69,7 @@ class Shape:
     free_lengths: bool
     objective: Cost
     confined: bool = False
+    at_nodes: bool = False
 
     @property
     def pieces(self) -> int:
@@ -98,30 +102,24 @@ class Motion:
 
     def nodes(self) -> tuple[FloatArray, FloatArray]:
         """Position and ratio at the ``M + 1`` nodes, integrated from rest at zero."""
-        p = self.degree
+        p, h = self.degree, self.lengths
         rows = piece_coefficients(self.accelerations, p)
-        q, v = [0.0], [0.0]
-        for h, row in zip(self.lengths, rows, strict=True):
-            k = np.arange(p + 1)
-            v_end = v[-1] + h * float(row.sum()) / (p + 1)
-            q.append(q[-1] + h * v[-1] + h * h * float((row * (p + 1 - k)).sum()) / ((p + 1) * (p + 2)))
-            v.append(v_end)
-        return np.array(q), np.array(v)
+        v = np.concatenate([[0.0], np.cumsum(h * rows.sum(axis=1) / (p + 1))])
+        bent = h * h * (rows @ np.arange(p + 1, 0, -1)) / ((p + 1) * (p + 2))
+        return np.concatenate([[0.0], np.cumsum(h * v[:-1] + bent)]), v
 
     def profile(self) -> CamProfile:
         """Return the motion as a profile over ``[0, 1]``; pieces of no length are left out."""
         p = self.degree
         q, v = self.nodes()
-        breaks, rows = [0.0], []
-        for i, (h, row) in enumerate(zip(self.lengths, piece_coefficients(self.accelerations, p), strict=True)):
-            if breaks[-1] + h <= breaks[-1]:
-                continue
-            power = _power_basis(p) @ row / h ** np.arange(p + 1)
-            k = np.arange(p + 1)
-            rows.append(np.concatenate([[q[i], v[i]], power / ((k + 1) * (k + 2))]))
-            breaks.append(breaks[-1] + float(h))
-        breaks[-1] = 1.0
-        return CamProfile.from_arrays(breaks, rows)
+        x = np.concatenate([[0.0], np.cumsum(self.lengths)])
+        there = np.diff(x) > 0
+        h = self.lengths[there]
+        k = np.arange(p + 1)
+        power = piece_coefficients(self.accelerations, p)[there] @ _power_basis(p).T
+        rows = np.column_stack([q[:-1][there], v[:-1][there], power / h[:, None] ** k / ((k + 1) * (k + 2))])
+        breaks = np.append(x[:-1][there], 1.0)
+        return CamProfile(breaks, rows)
 
 
 def piece_coefficients(accelerations: FloatArray, degree: int) -> FloatArray:
@@ -157,7 +155,8 @@ class Programme:
     def __init__(self, shape: Shape, options: dict[str, Any]) -> None:
         self.shape = shape
         m, p = shape.pieces, shape.degree
-        self._split = SPLIT if shape.free_lengths and p > 1 else 1
+        split = SPLIT if shape.free_lengths and p > 1 and not shape.at_nodes else 1
+        self._hull = split == 1 and not shape.at_nodes  # the coefficients themselves are limited
         self._sizes = {
             "a": m * p + 1,
             "v": m + 1,
@@ -174,6 +173,10 @@ class Programme:
         if shape.free_lengths:
             equal.append(ca.sum1(lengths) - 1)
         equal += _known_arcs(shape, unknown["a"])
+        if shape.free_lengths and shape.objective == "rms_jerk":
+            # The least mean square has no jumps of the jerk. Where arcs meet, moving the node changes it in third order only, so without
+            # these equations nodes would be all but undetermined.
+            equal += [unknown["j"][i * p - 1] - unknown["j"][i * p] for i in range(1, m)]
         for i in range(m):
             for k in range(p):
                 step = p * (unknown["a"][i * p + k + 1] - unknown["a"][i * p + k])
@@ -200,14 +203,15 @@ class Programme:
                 positive += [unknown["t"] - share, unknown["t"] + share]
         # On a long piece the hull of a polynomial of higher degree is far too wide; halved often enough, it fits.
         bent: list[Any] = []
-        if self._split > 1:
-            bent, between = _finer(unknown, lengths, p, self._split)
+        paces: list[Any] = []
+        if shape.at_nodes:
+            between = []
+        elif split > 1:
+            bent, between = _finer(shape, unknown, lengths, split)
             if shape.objective == "rms_jerk":
-                cut = ca.DM(subdivision(p - 1, self._split))
-                steps = [ca.vertsplit(cut @ unknown["j"][i * p : (i + 1) * p] / jerk_limit) for i in range(m)]
-                positive += [1 - step for row in steps for step in row] + [1 + step for row in steps for step in row]
+                paces = _finer_jerk(shape, unknown["j"], jerk_limit, split)
         places = _places(unknown, lengths, p, drift, SPLIT if shape.free_lengths else 1) if shape.confined else []
-        self._counts = (len(equal), len(positive), len(between), len(bent), len(places))
+        self._counts = (len(equal), len(positive), len(between), len(bent), len(paces), len(places))
         parameters = ca.vertcat(jerk_limit, drift, slope_limit, ratio_limit)
         if not shape.free_lengths:
             parameters = ca.vertcat(parameters, lengths)
@@ -215,7 +219,7 @@ class Programme:
             "x": ca.vertcat(*(unknown[name] for name in self._sizes)),
             "p": parameters,
             "f": _cost(shape, unknown, lengths),
-            "g": ca.vertcat(*equal, *positive, *between, *bent, *places),
+            "g": ca.vertcat(*equal, *positive, *between, *bent, *paces, *places),
         }
         self._solver = ca.nlpsol("camwright", "ipopt", programme, options)
 
@@ -246,13 +250,16 @@ class Programme:
         margin = self.shape.objective == "margin"
         if margin:  # the limits are rows of the programme; only standing still is a limit of its own
             low, high = (low if problem.forward else -np.inf), np.inf
-        hull = np.inf if margin or self._split > 1 else slope
-        lower = {"a": [-hull] * (m * p + 1), "v": [low] * (m + 1), "q": [-np.inf] * (m + 1)}
-        pace = jerk if self._split == 1 else np.inf
-        lower |= {"j": [-pace] * (m * p), "h": [0.0] * m, "t": [0.0]}
-        upper = {"a": [hull] * (m * p + 1), "v": [high] * (m + 1), "q": [np.inf] * (m + 1)}
+        hull = np.full(m * p + 1, slope if self._hull and not margin else np.inf)
+        if not margin:
+            hull[::p] = slope  # at the nodes the coefficients are values
+        lower = {"a": -hull, "v": np.full(m + 1, low), "q": [-np.inf] * (m + 1)}
+        pace = np.full(m * p, jerk if self._hull else np.inf)
+        pace[::p] = pace[p - 1 :: p] = jerk
+        lower |= {"j": -pace, "h": [0.0] * m, "t": [0.0]}
+        upper = {"a": hull.copy(), "v": np.full(m + 1, high), "q": [np.inf] * (m + 1)}
         upper |= {
-            "j": [pace] * (m * p),
+            "j": pace.copy(),
             "h": [1.0] * m,
             "t": [np.inf if margin else jerk if self.shape.objective == "peak_jerk" else slope],
         }
@@ -264,7 +271,9 @@ class Programme:
         for name, (first, last) in ends.items():
             lower[name][0] = upper[name][0] = first
             lower[name][-1] = upper[name][-1] = last
-        equal, positive, between, bent, places = self._counts
+        if self.shape.at_nodes:
+            self._hold_limits(lower, upper, guess)
+        equal, positive, between, bent, paces, places = self._counts
         answer = self._solver(
             x0=self._pack(guess),
             p=[
@@ -276,16 +285,41 @@ class Programme:
             ],
             lbx=self._pack(lower),
             ubx=self._pack(upper),
-            lbg=[0.0] * (equal + positive) + [low] * between + [-slope] * bent + [problem.least_position] * places,
+            lbg=[0.0] * (equal + positive)
+            + [low] * between
+            + [-slope] * bent
+            + [-1.0] * paces
+            + [problem.least_position] * places,
             ubg=[0.0] * equal
             + [np.inf] * positive
             + [high] * between
             + [slope] * bent
+            + [1.0] * paces
             + [problem.greatest_position] * places,
         )
         found = self._unpack(np.asarray(answer["x"], dtype=np.float64).ravel())
         lengths = np.maximum(found["h"], 0.0) if self.shape.free_lengths else start.lengths
         return Motion(lengths, found["a"], float(answer["f"])), dict(self._solver.stats())
+
+    def _hold_limits(self, lower: dict[str, Any], upper: dict[str, Any], guess: dict[str, Any]) -> None:
+        """Put holds, cruises, ramps and the ends of falls on the limits that they keep to, those nearest to the guess.
+
+        The rest of such an arc follows.
+        """
+        p = self.shape.degree
+        for i, arc in enumerate(self.shape.arcs):
+            if arc == "free":
+                continue
+            name, first, rest = {
+                "hold": ("a", i * p, slice((i + 1) * p, (i + 1) * p + 1)),
+                "fall": ("v", i + 1, slice(0)),
+                "cruise": ("v", i, slice(i + 1, i + 2)),
+                "ramp": ("j", i * p, slice(i * p + 1, (i + 1) * p)),
+            }[arc]
+            low, high = lower[name], upper[name]
+            value = high[first] if guess[name][first] >= (low[first] + high[first]) / 2 else low[first]
+            low[rest], high[rest] = -np.inf, np.inf
+            low[first] = high[first] = value
 
     def _pack(self, parts: dict[str, Any]) -> FloatArray:
         return np.concatenate([np.asarray(parts[name], dtype=np.float64)[:size] for name, size in self._sizes.items()])
@@ -315,7 +349,7 @@ def _places(unknown: dict[str, Any], lengths: Any, p: int, drift: Any, split: in
     """Bernstein coefficients of the slave's position on each piece cut into equal parts: those of ``q`` and of the line."""
     places: list[Any] = []
     start = ca.SX(0)
-    cut = ca.DM(subdivision(p + 2, split))
+    cut = ca.DM(_inner(p + 2, split)[1:])
     for i in range(unknown["v"].numel() - 1):
         h = lengths[i]
         ratio, position = unknown["v"][i], unknown["q"][i]
@@ -330,18 +364,35 @@ def _places(unknown: dict[str, Any], lengths: Any, p: int, drift: Any, split: in
     return places
 
 
-def _finer(unknown: dict[str, Any], lengths: Any, p: int, split: int) -> tuple[list[Any], list[Any]]:
-    """Bernstein coefficients of acceleration and ratio on each piece cut into equal parts."""
-    bent, between = [], []
-    cut_slope, cut_ratio = ca.DM(subdivision(p, split)), ca.DM(subdivision(p + 1, split))
-    for i in range(unknown["v"].numel() - 1):
+def _finer(shape: Shape, unknown: dict[str, Any], lengths: Any, split: int) -> tuple[list[Any], list[Any]]:
+    """Bernstein coefficients of acceleration and ratio on each piece cut into equal parts, but for those that nodes bound.
+
+    Holds and cruises have no others, ramps none of the acceleration.
+    """
+    p, bent, between = shape.degree, [], []
+    for i, arc in enumerate(shape.arcs):
+        if arc in ("hold", "cruise"):
+            continue
         row = unknown["a"][i * p : (i + 1) * p + 1]
         ratio = [unknown["v"][i]]
         for k in range(p + 1):
             ratio.append(ratio[-1] + lengths[i] * row[k] / (p + 1))
-        bent += ca.vertsplit(cut_slope @ row)
-        between += ca.vertsplit(cut_ratio @ ca.vertcat(*ratio))
+        between += ca.vertsplit(ca.DM(_inner(p + 1, split)[1:-1]) @ ca.vertcat(*ratio))
+        if arc != "ramp":
+            bent += ca.vertsplit(ca.DM(_inner(p, split)[1:-1]) @ row)
     return bent, between
+
+
+def _finer_jerk(shape: Shape, jerk: Any, limit: Any, split: int) -> list[Any]:
+    """Bernstein coefficients of the jerk on each piece cut into equal parts, as shares of the limit; one where it is constant."""
+    p, paces = shape.degree, []
+    for i, arc in enumerate(shape.arcs):
+        row = jerk[i * p : (i + 1) * p] / limit
+        if arc == "ramp":
+            paces.append(row[0])
+        elif arc not in ("hold", "cruise"):
+            paces += ca.vertsplit(ca.DM(_inner(p - 1, split)) @ row)
+    return paces
 
 
 @lru_cache
@@ -361,8 +412,16 @@ def subdivision(degree: int, parts: int) -> FloatArray:
     return np.array(rows)
 
 
+@lru_cache
+def _inner(degree: int, parts: int) -> FloatArray:
+    """`subdivision` with each coefficient once: where two parts meet they share one."""
+    keep = np.arange(parts * (degree + 1)) % (degree + 1) > 0
+    keep[0] = True
+    return subdivision(degree, parts)[keep]
+
+
 def _known_arcs(shape: Shape, a: Any) -> list[Any]:
-    """Equations that make ramps linear, holds constant and cruises free of acceleration."""
+    """Equations that make ramps linear, holds constant, and falls end and cruises run without acceleration."""
     p, equations = shape.degree, []
     for i, arc in enumerate(shape.arcs):
         row = [a[i * p + k] for k in range(p + 1)]
@@ -370,6 +429,8 @@ def _known_arcs(shape: Shape, a: Any) -> list[Any]:
             equations += [row[k] - 2 * row[k + 1] + row[k + 2] for k in range(p - 1)]
         elif arc == "hold":
             equations += [row[k + 1] - row[k] for k in range(p)]
+        elif arc == "fall":
+            equations.append(row[p])
         elif arc == "cruise":
             after_cruise = i > 0 and shape.arcs[i - 1] == "cruise"
             equations += row[1:] if after_cruise else row

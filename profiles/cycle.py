@@ -30,6 +30,9 @@ class Cut:
         Where the master is zero: at the start of the return zone (``"return"``) or at mid sync zone (``"cut"``).
     sync_ratio
         Speed of the tool over the speed of the material in the sync zone, 1 for sync.
+    shaped
+        Whether the command is shaped so that the axis, not the command itself, is in sync in the shear zone. A profile's slave zero is
+        then the machine in sync at master zero, where the command may be elsewhere.
     """
 
     length: float
@@ -40,6 +43,7 @@ class Cut:
     sync_tolerance: float
     origin: Origin = "return"
     sync_ratio: float = 1.0
+    shaped: bool = False
 
     @property
     def return_zone(self) -> float:

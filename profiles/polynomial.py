@@ -5,13 +5,14 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from profiles.errors import InputError
+from profiles.roots import recentred, roots_between
 
 FloatArray = NDArray[np.float64]
 Side = Literal["left", "right"]
@@ -58,6 +59,9 @@ class CamProfile:
 
     breaks: FloatArray
     coefficients: FloatArray
+    # what was found already: a profile never changes, and its peaks are asked for again and again
+    _derivatives: dict[int, FloatArray] = field(default_factory=dict, init=False, repr=False)
+    _peaks: dict[int, tuple[Extremum, Extremum]] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self) -> None:
         if self.breaks.ndim != 1 or self.coefficients.ndim != 2 or len(self.breaks) != len(self.coefficients) + 1:
@@ -109,7 +113,10 @@ class CamProfile:
     @property
     def advance(self) -> float:
         """Slave travel from the start to the end of the domain (slave unit)."""
-        return float(self(self.end)) - float(self(self.start))
+        width, end = float(self.breaks[-1] - self.breaks[-2]), 0.0
+        for coefficient in reversed(self.coefficients[-1].tolist()):  # Horner
+            end = end * width + coefficient
+        return end - float(self.coefficients[0, 0])
 
     @property
     def degree(self) -> int:
@@ -171,12 +178,14 @@ class CamProfile:
         """Coefficients of the derivative of the given order, shape ``(n, max(1, degree + 1 - order))``."""
         if order < 0:
             raise InputError(f"the order of a derivative must not be negative; got {order}")
-        table = self.coefficients
-        for _ in range(order):
-            if table.shape[1] == 1:
-                return np.zeros((self.pieces, 1))
-            table = table[:, 1:] * np.arange(1, table.shape[1])
-        return table
+        if order == 0:
+            return self.coefficients
+        known = self._derivatives.get(order)
+        if known is None:
+            before = self._derived(order - 1)
+            known = before[:, 1:] * np.arange(1, before.shape[1]) if before.shape[1] > 1 else np.zeros((self.pieces, 1))
+            self._derivatives[order] = known
+        return known
 
     def jumps(self, order: int = 0, *, seam: bool = True) -> FloatArray:
         """Jump of a derivative (right minus left) at every inner break, and last at the seam of the repeated cycle.
@@ -184,12 +193,15 @@ class CamProfile:
         At the seam the position (``order=0``) is compared with its own advance, so it never jumps: use `advance` and the
         machine's pitch to judge closure of the position.
         """
-        inner = self.breaks[1:-1]
-        value = self(inner, order) - self(inner, order, side="left")
+        table, width = self._derived(order), np.diff(self.breaks)
+        ends = np.zeros(self.pieces)
+        for coefficient in table.T[::-1]:  # Horner
+            ends *= width
+            ends += coefficient
+        value: FloatArray = table[1:, 0] - ends[:-1]
         if not seam:
             return value
-        last = 0.0 if order == 0 else float(self(self.start, order)) - float(self(self.end, order))
-        return np.append(value, last)
+        return np.append(value, 0.0 if order == 0 else table[0, 0] - ends[-1])
 
     def extrema(
         self, order: int = 0, start: float | None = None, end: float | None = None
@@ -208,22 +220,30 @@ class CamProfile:
         (least, greatest)
             Value (slave unit per m**order) and master position (m).
         """
+        whole = start is None and end is None
+        if whole and order in self._peaks:
+            return self._peaks[order]
         first, last = self.start if start is None else start, self.end if end is None else end
-        table, slope = self._derived(order), self._derived(order + 1)
-        low, high = Extremum(math.inf, first), Extremum(-math.inf, first)
-        for i in range(self.pieces):
-            left, right = max(first, float(self.breaks[i])), min(last, float(self.breaks[i + 1]))
-            if right < left or (right == left and first < last):
-                continue
-            a, b = left - float(self.breaks[i]), right - float(self.breaks[i])
-            where = np.concatenate([[a], _roots_between(slope[i], a, b), [b]])
-            values = np.polynomial.polynomial.polyval(where, table[i])
-            k, m = int(np.argmin(values)), int(np.argmax(values))
-            if values[k] < low.value:
-                low = Extremum(float(values[k]), float(self.breaks[i] + where[k]))
-            if values[m] > high.value:
-                high = Extremum(float(values[m]), float(self.breaks[i] + where[m]))
-        return low, high
+        left, right = np.maximum(first, self.breaks[:-1]), np.minimum(last, self.breaks[1:])
+        rows = np.nonzero((right > left) | ((right == left) & (first >= last)))[0]
+        if not len(rows):
+            return Extremum(math.inf, first), Extremum(-math.inf, first)
+        origin = self.breaks[rows]
+        a, b = left[rows] - origin, right[rows] - origin
+        where = np.column_stack([a, roots_between(self._derived(order + 1)[rows], a, b), b])
+        where = np.where(np.isnan(where), a[:, None], where)
+        values = np.zeros_like(where)
+        for coefficient in self._derived(order)[rows].T[::-1]:  # Horner
+            values *= where
+            values += coefficient[:, None]
+
+        def extremum(index: int) -> Extremum:
+            return Extremum(float(values.flat[index]), float(origin[index // where.shape[1]] + where.flat[index]))
+
+        found = extremum(int(values.argmin())), extremum(int(values.argmax()))
+        if whole:
+            self._peaks[order] = found
+        return found
 
     def mean_square(self, order: int, start: float | None = None, end: float | None = None) -> float:
         """Mean of the squared derivative over a part of the domain, exactly (Gauss-Legendre of sufficient degree)."""
@@ -271,7 +291,7 @@ class CamProfile:
         breaks = np.concatenate([[start], inner, [end]])
         index = np.clip(np.searchsorted(self.breaks, breaks[:-1], side="right") - 1, 0, self.pieces - 1)
         offset = breaks[:-1] - self.breaks[index]
-        return CamProfile(breaks, _recentred(self.coefficients[index], offset))
+        return CamProfile(breaks, recentred(self.coefficients[index], offset))
 
     def repeat(self, cycles: int) -> CamProfile:
         """Repeat the cycle, the slave advancing by `advance` each time."""
@@ -306,7 +326,7 @@ class CamProfile:
         size = np.maximum(np.abs(self.coefficients * weight).max(axis=0), 1e-300)
         breaks, rows = [float(self.breaks[0])], [self.coefficients[0]]
         for i in range(1, self.pieces):
-            carried = _recentred(rows[-1][None, :], np.array([self.breaks[i] - breaks[-1]]))[0]
+            carried = recentred(rows[-1][None, :], np.array([self.breaks[i] - breaks[-1]]))[0]
             if (np.abs(carried - self.coefficients[i]) * weight <= tolerance * size).all():
                 continue
             breaks.append(float(self.breaks[i]))
@@ -352,36 +372,3 @@ def join(*parts: CamProfile) -> CamProfile:
     width = max(part.degree for part in parts) + 1
     tables = [np.pad(part.coefficients, ((0, 0), (0, width - part.degree - 1))) for part in parts]
     return CamProfile(np.concatenate(breaks), np.concatenate(tables))
-
-
-def _recentred(table: FloatArray, offset: FloatArray) -> FloatArray:
-    """Taylor shift: coefficients about a new origin that lies ``offset`` to the right; shapes ``(n, m)`` and ``(n,)``."""
-    moved = np.array(table, dtype=np.float64)
-    for row, by in zip(moved, offset, strict=True):
-        if by == 0.0:
-            continue
-        for k in range(len(row) - 1):  # synthetic division, once for each power
-            for p in range(len(row) - 2, k - 1, -1):
-                row[p] += by * row[p + 1]
-    return moved
-
-
-def _roots_between(coefficients: FloatArray, a: float, b: float) -> FloatArray:
-    """Real roots of a polynomial (ascending powers) inside ``(a, b)``, found on the unit interval for the sake of scaling."""
-    if not b > a:
-        return np.zeros(0)
-    unit = _recentred(coefficients[None, :], np.array([a]))[0] * (b - a) ** np.arange(len(coefficients))
-    size = np.abs(unit).max()
-    if size == 0.0:
-        return np.zeros(0)
-    significant = np.nonzero(np.abs(unit) > 1e-15 * size)[0]
-    unit = unit[: significant[-1] + 1]
-    if len(unit) <= 1:
-        return np.zeros(0)
-    if len(unit) == 2:
-        roots = np.array([-unit[0] / unit[1]])
-    else:
-        found = np.polynomial.polynomial.polyroots(unit)
-        # a double root splits into a complex pair of about sqrt(eps); its real part is as good as the root
-        roots = found[np.abs(found.imag) < 1e-6].real
-    return a + (b - a) * roots[(roots > 0.0) & (roots < 1.0)]

@@ -164,3 +164,11 @@ def slave_at_start(machine: Machine, cut: Cut) -> float:
     sync = machine.sync_profile(cut)
     passed = sync.end if cut.origin == "return" else 0.5 * cut.sync_zone
     return machine.sync_start(cut) + float(sync(passed))
+
+
+def slave_zero(profile: CamProfile, machine: Machine, cut: Cut) -> float:
+    """Slave coordinate of the machine at a profile's slave zero: add it to the profile's positions to get slave coordinates.
+
+    A profile, whatever it counts from, starts where the machine is in sync; a shaped one counts from there and may start elsewhere.
+    """
+    return slave_at_start(machine, cut) - (0.0 if cut.shaped else float(profile(profile.start)))

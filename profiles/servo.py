@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -26,6 +26,11 @@ class Servo:
         Sampling period ``dT`` (s).
     velocity_feedforward
         Share ``alpha`` of the command's velocity that is fed forward; 1 cancels the following error at constant speed.
+    dead_time
+        Time from measuring the master until the set value takes effect in the position loop: encoder, cam calculation,
+        bus (s).
+    lead_time
+        Time by which the controller predicts the master ahead (s).
     """
 
     bandwidth: float
@@ -33,6 +38,18 @@ class Servo:
     position_gain: float
     sample_time: float
     velocity_feedforward: float
+    dead_time: float = 0.0
+    lead_time: float = 0.0
+
+    @property
+    def delay(self) -> float:
+        """Time by which the position loop sees the command late (s): at time ``t`` it sees that of ``t - delay``."""
+        return self.dead_time - self.lead_time
+
+    @property
+    def loop(self) -> Servo:
+        """The position loop alone: the same servo without dead time and lead."""
+        return replace(self, dead_time=0.0, lead_time=0.0) if self.dead_time or self.lead_time else self
 
 
 PAPER_RANGES: dict[str, tuple[float, float]] = {
@@ -90,17 +107,13 @@ def sample_plant(servo: Servo, time: float) -> SampledPlant:
         slow, fast = math.exp(angle - sigma * time), math.exp(-angle - sigma * time)
         c, s = 0.5 * (slow + fast), 0.5 * (slow - fast) / math.sqrt(discriminant)
     # velocity loop in (v', v): exp(M t) = (c + sigma s) I + s M, M = [[-2 sigma, -w²], [1, 0]]
-    f = np.array([[c - sigma * s, -w * w * s], [s, c + sigma * s]])
+    f00, f01, f11 = c - sigma * s, -w * w * s, c + sigma * s  # and s
     # position: integral of the velocity; from v'' + 2 sigma v' + w² v = w² u follows
     # w² (p(t) - p(0)) = w² u t - (v'(t) - v'(0)) - 2 sigma (v(t) - v(0))
-    transition = np.zeros((3, 3))
-    transition[:2, :2] = f
-    transition[2, 0] = (1.0 - f[0, 0] - 2 * sigma * f[1, 0]) / (w * w)
-    transition[2, 1] = (-f[0, 1] + 2 * sigma * (1.0 - f[1, 1])) / (w * w)
-    transition[2, 2] = 1.0
+    p0, p1 = (1.0 - f00 - 2 * sigma * s) / (w * w), (-f01 + 2 * sigma * (1.0 - f11)) / (w * w)
+    transition = np.array([[f00, f01, 0.0], [s, f11, 0.0], [p0, p1, 1.0]])
     # rest at v = u: the response to the input is what is missing from the response to that state
-    held = np.array([-f[0, 1], 1.0 - f[1, 1], 0.0])
-    held[2] = time - (held[0] + 2 * sigma * held[1]) / (w * w)
+    held = np.array([-f01, 1.0 - f11, time - (-f01 + 2 * sigma * (1.0 - f11)) / (w * w)])
     return SampledPlant(transition, held)
 
 
@@ -123,5 +136,72 @@ def closed_loop(servo: Servo) -> tuple[FloatArray, FloatArray]:
 
 
 def spectral_radius(servo: Servo) -> float:
-    """Largest magnitude of the closed loop's poles in the z-plane; the servo is stable below 1."""
-    return float(np.abs(np.linalg.eigvals(closed_loop(servo)[0])).max())
+    """Largest magnitude of the closed loop's poles in the z-plane; the servo is stable below 1.
+
+    The poles are found as ``1 + w``, for most of them lie near 1: the characteristic polynomial ``w³ + c2 w² + c1 w + c0`` of
+    ``A - I`` is divided by a real root, and the other two poles are those of the quadratic that is left.
+    """
+    (a, b, c), (d, e, f), (g, h, i) = closed_loop(servo)[0].tolist()
+    a, e, i = a - 1.0, e - 1.0, i - 1.0
+    c2 = -(a + e + i)
+    c1 = a * e - b * d + a * i - c * g + e * i - f * h
+    c0 = -(a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g))
+    root = _real_root(c2, c1, c0)
+    p = c2 + root
+    q = c1 + root * p
+    inside = 0.25 * p * p - q
+    if inside < 0.0:
+        other = math.sqrt(max(0.0, 1.0 - p + q))
+    else:
+        other = max(abs(1.0 - 0.5 * p + math.sqrt(inside)), abs(1.0 - 0.5 * p - math.sqrt(inside)))
+    return max(abs(1.0 + root), other)
+
+
+def _real_root(c2: float, c1: float, c0: float) -> float:
+    """Real root of ``z³ + c2 z² + c1 z + c0``, of several the one of greatest magnitude about their mean."""
+    p, q = c1 / 3 - c2 * c2 / 9, c2 * (c1 / 3 - 2 * c2 * c2 / 27) / 2 - c0 / 2
+    inside = q * q + p**3
+    if inside >= 0.0:
+        side = math.copysign(math.sqrt(inside), q) + q
+        part = math.copysign(abs(side) ** (1 / 3), side)
+        root = part - p / part if part else 0.0
+    else:
+        root = math.copysign(2 * math.sqrt(-p) * math.cos(math.acos(min(1.0, abs(q) / math.sqrt(-(p**3)))) / 3), q)
+    root -= c2 / 3
+    for _ in range(2):
+        slope = (3 * root + 2 * c2) * root + c1
+        root -= (((root + c2) * root + c1) * root + c0) / slope if slope else 0.0
+    return root
+
+
+def mean_lag(servo: Servo) -> float:
+    """Time by which the axis lags at constant speed (s): ``dead_time + (1 - alpha) / K`` (S1, eq. 2).
+
+    It is the lead time that makes up for it, whatever the servo's own lead time.
+
+    Examples
+    --------
+    >>> mean_lag(Servo(120.0, 0.7, 35.0, 0.004, velocity_feedforward=1.0, dead_time=0.002))
+    0.002
+    """
+    return servo.dead_time + (1.0 - servo.velocity_feedforward) / servo.position_gain
+
+
+def gain_margin(servo: Servo) -> float:
+    """Factor on the position gain at which the servo becomes unstable; below 1 if it is unstable as it is.
+
+    A gain that is small enough is always stable and one that is great enough never is: the factor is bisected to 1e-9.
+    """
+    high = 1.0
+    while spectral_radius(replace(servo, position_gain=high * servo.position_gain)) < 1.0:
+        high *= 2.0
+    low = 0.5 * high
+    while not spectral_radius(replace(servo, position_gain=low * servo.position_gain)) < 1.0:
+        high, low = low, 0.5 * low
+    while high - low > 1e-9 * high:
+        middle = 0.5 * (low + high)
+        if spectral_radius(replace(servo, position_gain=middle * servo.position_gain)) < 1.0:
+            low = middle
+        else:
+            high = middle
+    return low

@@ -147,7 +147,7 @@ def test_the_designed_crank_never_turns_back_and_is_in_sync(objective: str) -> N
 
 
 def test_a_place_not_chosen_yet_is_refused() -> None:
-    with pytest.raises(InputError, match=r"not chosen yet; design the job first, or give machine\.sync_at"):
+    with pytest.raises(InputError, match=r"not chosen yet; design the job first, or give \[machine\] sync_at"):
         CRANK.sync_start(CUT)
 
 
@@ -159,6 +159,6 @@ def test_a_sync_zone_longer_than_the_stroke_is_refused_with_the_longest() -> Non
 
 def test_a_place_too_near_a_dead_centre_is_refused_with_the_range() -> None:
     with pytest.raises(
-        InputError, match=r"machine.sync_at 5\.72958° leaves no room .* between 54\.3147° and 136\.568°"
+        InputError, match=r"\[machine\] sync_at = 5\.72958 deg leaves no room .* between 54\.3147 deg and 136\.568 deg"
     ):
         replace(CRANK, sync_at=0.1).sync_start(CUT)

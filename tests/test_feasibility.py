@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from design.feasibility import edge, is_feasible, require_feasible, rounded_to
+from design.feasibility import edge, is_feasible
+from design.refusal import require_feasible, rounded_to
 from profiles.cycle import Cut
 from profiles.errors import InfeasibleError, Suggestion
 from profiles.limits import Limits
@@ -65,9 +66,9 @@ def test_the_binding_limit_is_named_with_what_is_missing(limits: Limits, binding
         assert least == pytest.approx(needed, rel=1e-9)
     assert is_feasible(KNIFE, CUT, replace(limits, **{binding: least * (1 + 1e-9)}))
     assert not is_feasible(KNIFE, CUT, replace(limits, **{binding: least * (1 - 1e-6)}))
-    assert f"limits.{binding} binds" in str(error)
+    assert f"[limits] {binding} binds" in str(error)
     assert error.unit in str(error)
-    assert "cut.length 300 mm at cut.line_speed 60 m/min, sync zone 100 mm" in str(error)
+    assert "[cut] length 300 mm at [cut] line_speed 60 m/min, sync zone 100 mm" in str(error)
 
 
 def test_the_refusal_offers_changes_that_work_and_are_the_nearest() -> None:
@@ -107,7 +108,7 @@ def test_reversal_is_offered_where_it_alone_works() -> None:
     assert is_feasible(KNIFE, cut, replace(limits, reversal=True))
     error = refusal(KNIFE, cut, limits)
     assert Suggestion("reversal", 1.0, "") in error.suggestions
-    assert "limits.reversal = true" in str(error)
+    assert "[limits] reversal = true" in str(error)
 
 
 def test_speed_limit_below_the_line() -> None:

@@ -105,6 +105,6 @@ def test_the_carriage_s_zone_lies_in_the_middle_of_the_stroke() -> None:
 
 def test_a_stroke_too_short_is_refused_with_what_is_needed() -> None:
     with pytest.raises(
-        InputError, match=r"stroke 100 mm is too short .* travels 105 mm; .* cut.sync_zone below 95\.2381 mm"
+        InputError, match=r"stroke 100 mm is too short .* travels 105 mm; .* \[cut\] sync_zone below 95\.2381 mm"
     ):
         LinearCarriage(0.1).sync_start(replace(CUT, sync_ratio=1.05))

@@ -7,8 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from scipy.sparse import csr_array
 
 from design.optimise import solve
 from design.problem import Objective
@@ -18,8 +19,20 @@ from profiles.laws import law
 from profiles.limits import Limits
 from profiles.machines import RotaryKnife
 from profiles.polynomial import CamProfile
+from profiles.reach import greatest_reach
 from profiles.returns import BASELINES, baseline
-from validation.optimality import CLOSED_FORM, DUAL, QUINTIC, _absolute_integral, _dual_bound, _Return, lower_bound
+from profiles.softest import softest
+from validation.optimality import (
+    CLOSED_FORM,
+    DUAL,
+    QUINTIC,
+    SOFTEST,
+    _dual_bound,
+    _integral_of_least,
+    _Return,
+    lower_bound,
+)
+from validation.quadratic import multipliers
 
 KNIFE = RotaryKnife(0.4)
 CUT = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4)
@@ -58,6 +71,7 @@ def test_no_motion_is_below_a_bound(
     objective: Objective, off: float, speed: float, acceleration: float, jerk: float, reversal: bool
 ) -> None:
     """Whatever profile a bound is taken at, it holds for the optimum and for every law that keeps the limits."""
+    assume(abs(off) > 1e-6)  # nearer to the straight line even a jump of the ratio is within the tolerance of `keeps`
     cut = replace(CUT, length=0.4 * math.exp(off))
     distance, time = max(abs(0.4 - cut.length), 0.01), cut.return_zone / cut.line_speed
     limits = Limits(
@@ -78,7 +92,7 @@ def test_no_motion_is_below_a_bound(
 
 @pytest.mark.parametrize(
     ("objective", "gap"),
-    [("peak_acceleration", 1e-8), ("peak_jerk", 1e-8), ("rms_acceleration", 2e-3), ("rms_jerk", 3e-3)],
+    [("peak_acceleration", 1e-8), ("peak_jerk", 1e-8), ("rms_acceleration", 1e-8), ("rms_jerk", 1e-4)],
 )
 @pytest.mark.parametrize(
     "limits",
@@ -92,7 +106,7 @@ def test_no_motion_is_below_a_bound(
 def test_gap_of_a_design_is_small(objective: Objective, gap: float, limits: Limits) -> None:
     result = solve(KNIFE, CUT, limits, objective)
     bound = lower_bound(result.profile, KNIFE, CUT, limits, objective)
-    assert bound.method in (CLOSED_FORM, QUINTIC, DUAL)
+    assert bound.method in (CLOSED_FORM, SOFTEST, QUINTIC, DUAL)
     assert 0.0 <= 1 - bound.value / result.objective + 1e-9 <= gap
 
 
@@ -128,42 +142,96 @@ def test_straight_line_has_the_bound_zero(objective: str) -> None:
 
 
 def test_dual_bound_of_the_quintic_is_720() -> None:
-    assert _dual_bound(law("poly_3_4_5"), LOOSE, 3) == pytest.approx(720, rel=1e-4)
-    assert _dual_bound(law("poly_3_4_5"), LOOSE, 3) <= 720 * (1 + 1e-9)
-
-
-@pytest.mark.parametrize("jerk", [1e3, 1e4])
-def test_dual_bound_of_the_cubic_is_12(jerk: float) -> None:
-    """The cubic is the optimum without a jerk limit: with one, the bound at the design lies between 12 and the design's value."""
-    limits = Limits(1e3, 1e6, jerk * 0.2)
-    result = solve(RotaryKnife(1.7), Cut(1.5, 1.0, 0.5, 0.0, 0.0, 1e-4), limits, "rms_acceleration")
-    motion = result.back.add_line(-1.0).scale(slave=1 / 0.2)
-    value = motion.mean_square(2)
-    bound = _dual_bound(motion, _Return(low=-1e3, high=1e3, slope=1e3, jerk=jerk), 2)
-    assert 12 * (1 - 1e-3) <= bound <= value * (1 + 1e-9)
-    assert bound == pytest.approx(value, rel=1e-3)
+    assert _dual_bound(law("poly_3_4_5"), LOOSE) == pytest.approx(720, rel=1e-5)
+    assert _dual_bound(law("poly_3_4_5"), LOOSE) <= 720 * (1 + 1e-9)
 
 
 @pytest.mark.parametrize("name", ["poly_4_5_6_7", "cycloid", "modified_sine"])
-@pytest.mark.parametrize(("order", "least"), [(2, 12), (3, 720)])
-def test_dual_bound_taken_elsewhere_still_is_a_bound(name: str, order: int, least: float) -> None:
-    assert _dual_bound(law(name), LOOSE, order) <= least * (1 + 1e-3 if order == 2 else 1 + 1e-9)
+def test_dual_bound_does_not_need_the_optimum(name: str) -> None:
+    """Only the grid comes from the profile."""
+    assert _dual_bound(law(name), LOOSE) == pytest.approx(720, rel=1e-4)
+    assert _dual_bound(law(name), LOOSE) <= 720 * (1 + 1e-9)
 
 
-def test_integral_of_absolute_values() -> None:
+@pytest.mark.parametrize("room", [1e-1, 1e-2, 1e-3])
+@pytest.mark.parametrize("speed", [1.2, 1.5, 3.0])
+def test_gap_of_the_least_rms_jerk_in_tight_jobs(speed: float, room: float) -> None:
+    """Limits of acceleration and jerk, alike in share, that let a slave go further than it must by a share of ``room``."""
+    share = 1.0
+    while greatest_reach(1.0, speed, 20 * share, 400 * share) > 1 + room:
+        share *= 0.999
+    limits = Limits(1 + speed * 0.2, 20 * share * 0.2, 400 * share * 0.2)
+    machine, cut = RotaryKnife(1.7), Cut(1.5, 1.0, 0.5, 0.0, 0.0, 1e-4)
+    result = solve(machine, cut, limits, "rms_jerk")
+    bound = lower_bound(result.profile, machine, cut, limits, "rms_jerk")
+    assert bound.method == DUAL
+    assert bound.value <= result.objective * (1 + 1e-8)
+    assert bound.value >= result.objective * (1 - 1e-2)
+
+
+def test_integral_of_the_least() -> None:
     rng = np.random.default_rng(5)
-    first, centre, last, h = rng.normal(size=(4, 200))
+    first, centre, last, h = 3 * rng.normal(size=(4, 200))
     h = np.abs(h) + 0.1
     s = np.linspace(0, 1, 200_001)
+    jerk = np.linspace(-1.3, 1.3, 5001)
+    found = _integral_of_least(first, centre, last, h, 1.3)
     for i in range(0, 200, 10):
         c, b = first[i], -3 * first[i] + 4 * centre[i] - last[i]
         a = 2 * first[i] - 4 * centre[i] + 2 * last[i]
-        naive = h[i] * np.trapezoid(np.abs(c + s * (b + s * a)), s)
-        exact = _absolute_integral(first[i : i + 1], centre[i : i + 1], last[i : i + 1], h[i : i + 1])[0]
-        assert exact == pytest.approx(naive, rel=1e-8)
-    # straight lines and constants
-    line = _absolute_integral(np.array([-1.0, 2.0]), np.array([0.0, 2.0]), np.array([1.0, 2.0]), np.array([3.0, 5.0]))
-    assert line.tolist() == pytest.approx([1.5, 10.0], rel=1e-14)
+        price = c + s * (b + s * a)
+        best = np.clip(-price, -1.3, 1.3)
+        assert found[i] == pytest.approx(-h[i] * np.trapezoid(best**2 / 2 + price * best, s), rel=1e-8)
+        least = (jerk**2 / 2 + price[7] * jerk).min()
+        assert best[7] ** 2 / 2 + price[7] * best[7] == pytest.approx(least, abs=1e-6)
+
+
+def test_multipliers_of_a_small_programme() -> None:
+    """Least ``(x² + 4 y²) / 2`` with ``x + y = 3`` and ``x <= 2``: x = 2, y = 1, price 4, multiplier 2."""
+    bottom, top = np.array([-9.0, -np.inf]), np.array([2.0, np.inf])
+    upper, lower, prices = multipliers(np.array([1.0, 4.0]), bottom, top, csr_array(np.ones((1, 2))), np.array([3.0]))
+    assert (float(upper[0]), float(prices[0])) == (pytest.approx(2.0, abs=1e-5), pytest.approx(4.0, abs=1e-5))
+    assert 0 <= float(lower[0]) <= 1e-5
+
+
+@settings(max_examples=200)
+@given(st.floats(0.01, 9.0), st.floats(0.0, 3.0), st.floats(0.0, 3.0), st.floats(1e-4, 1.0))
+def test_softest_motion_is_proved_by_duality(speed: float, acceleration: float, jerk: float, room: float) -> None:
+    """Any multipliers give a lower bound of the mean square; those of the motion itself give its own value.
+
+    Prices: ``w`` of the way and ``w`` per unit of cruise of the speed, which make the price of the acceleration a straight line up to the
+    cruise; and ``r`` of the jerk, whose slope makes up for what the line and the acceleration differ by on the ramp.
+    """
+    v, a, j = 1 + speed, 4 * math.exp(acceleration), 32 * math.exp(2 * jerk)
+    motion = softest(1.0, 1.0, v, a, j)
+    if motion is None:
+        assert greatest_reach(1.0, v, a, j) < 1 + 1e-6
+        return
+    assert greatest_reach(1.0, v, a, j) > 1 - 1e-6
+    top, rise, hold, fall = motion.acceleration, motion.rise, motion.hold, motion.fall
+    assert motion.time == pytest.approx(1.0, rel=1e-9)
+    assert top <= a * (1 + 1e-9)
+    assert top / rise <= j * (1 + 1e-9)
+    assert top * ((rise + fall) / 2 + hold) <= v * (1 + 1e-9)
+    # half of the motion, in pieces on which all is polynomial; Gauss points are exact
+    w = top / fall
+    way = rise + hold + fall
+    node, weight = np.polynomial.legendre.leggauss(6)
+
+    def integral(f: object, start: float, end: float) -> float:
+        return float((f(start + (end - start) * (node + 1) / 2) * weight).sum() * (end - start) / 2)  # type: ignore[operator]
+
+    # r' = a - w (way - s) on the ramp, r = 0 at its end: never negative there, the jerk being as large as it may
+    def r(s: np.ndarray) -> np.ndarray:
+        return top / rise * (s**2 - rise**2) / 2 + w * ((way - s) ** 2 - (way - rise) ** 2) / 2
+
+    inner = r(np.linspace(0, rise, 50))
+    assert (inner >= -1e-9 * (1 + np.abs(inner).max())).all()
+    ramp = -j * integral(lambda s: np.abs(r(s)), 0, rise) - integral(lambda s: (top / rise * s) ** 2 / 2, 0, rise)
+    held = -integral(lambda s: w * (way - s) * top - top**2 / 2, rise, rise + hold)
+    falling = -integral(lambda s: (w * (way - s)) ** 2 / 2, rise + hold, way)
+    dual = 2 * (ramp + held + falling) + w - v * w * motion.cruise
+    assert 2 * dual == pytest.approx(motion.mean_square, rel=1e-6)
 
 
 def test_unknown_objective_is_refused() -> None:

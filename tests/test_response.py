@@ -87,7 +87,7 @@ def made(errors: list[object]) -> tuple[ServoRun, CamProfile]:
     rows = [e(x - 0.4) for e, x in zip(polynomials, master, strict=True)]
     slopes = [e.deriv()(x - 0.4) for e, x in zip(polynomials, master, strict=True)]
     command = master - 0.2
-    return ServoRun(master, command, command + np.array(rows), 1.0 + np.array(slopes)), linear(CUT)
+    return ServoRun(master, command + np.array(rows), 1.0 + np.array(slopes), command), linear(CUT)
 
 
 def test_crossing_settling_overshoot_and_shear_zone_error_of_a_straight_error() -> None:
@@ -129,7 +129,7 @@ def test_a_shear_zone_of_no_length_is_judged_at_its_point() -> None:
 def test_sync_error_is_zero_for_the_command_itself() -> None:
     profile = linear(CUT)
     run = simulate(profile, CUT, PAPER)
-    perfect = ServoRun(run.master, run.command, run.command, np.ones_like(run.master))
+    perfect = ServoRun(run.master, run.command, np.ones_like(run.master), run.command)
     master, error, _ = sync_error(perfect, profile, KNIFE, CUT, 0.4, 0.6)
     inside = (master > 0.4) & (master < 0.6)  # the ends are interpolated, across the corners of this command
     assert inside.sum() > 1000
@@ -137,9 +137,9 @@ def test_sync_error_is_zero_for_the_command_itself() -> None:
 
 
 def test_sweep_has_all_corners_and_the_centre() -> None:
-    servos = sweep_servos(0.5)
+    servos = sweep_servos(replace(PAPER, velocity_feedforward=0.5, dead_time=0.003, lead_time=0.002))
     assert len(set(servos)) == 17
-    assert servos[-1] == Servo(115.0, 0.8, 30.0, pytest.approx(0.0045), 0.5)
+    assert servos[-1] == Servo(115.0, 0.8, 30.0, pytest.approx(0.0045), 0.5, 0.003, 0.002)
     assert {servo.sample_time for servo in servos[:-1]} == {1e-3, 8e-3}
 
 

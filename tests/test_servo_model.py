@@ -82,3 +82,30 @@ def test_spectral_radius_tells_where_the_gain_is_too_high() -> None:
     limit = 2 * 0.7 * 120.0
     assert spectral_radius(Servo(120.0, 0.7, 0.97 * limit, 1e-4, 1.0)) < 1.0
     assert spectral_radius(Servo(120.0, 0.7, 1.01 * limit, 1e-4, 1.0)) > 1.0
+
+
+@settings(deadline=None, max_examples=300)
+@given(
+    st.floats(0.5, 4.0).map(lambda power: 10**power),
+    st.floats(-2.0, 1.5).map(lambda power: 10**power),
+    st.floats(-2.0, 3.5).map(lambda power: 10**power),
+    st.floats(-5.0, -1.0).map(lambda power: 10**power),
+)
+def test_spectral_radius_is_that_of_the_matrix(bandwidth: float, damping: float, gain: float, time: float) -> None:
+    servo = Servo(bandwidth, damping, gain, time, 1.0)
+    poles = np.linalg.eigvals(closed_loop(servo)[0])
+    assert spectral_radius(servo) == pytest.approx(np.abs(poles).max(), rel=1e-9, abs=1e-5)
+
+
+def test_spectral_radius_of_the_published_servo_is_exact_to_rounding() -> None:
+    for gain in (1e-6, 1.0, 35.0, 128.0, 200.0, 1e9):
+        servo = Servo(120.0, 0.7, gain, 0.004, 1.0)
+        expected = np.abs(np.linalg.eigvals(closed_loop(servo)[0])).max()
+        assert spectral_radius(servo) == pytest.approx(expected, rel=1e-13)
+
+
+@pytest.mark.parametrize("bandwidth", [1e6, 1e8])
+def test_poles_near_the_origin_are_those_of_the_lag_of_the_velocity_loop(bandwidth: float) -> None:
+    # so fast a velocity loop only lags by 2 zeta / omega; with K dT = 1 what is left of a step is this times K, a sample later
+    servo = Servo(bandwidth, 0.7, 100.0, 0.01, 1.0)
+    assert spectral_radius(servo) == pytest.approx(np.sqrt(2 * 0.7 / bandwidth * 100.0), rel=1e-2)

@@ -17,10 +17,10 @@ from profiles.errors import InputError
 from profiles.machines import RotaryKnife
 from profiles.polynomial import CamProfile
 from profiles.returns import baseline
-from profiles.servo import PAPER_RANGES, Servo, closed_loop, sample_plant
+from profiles.servo import PAPER_RANGES, Servo, closed_loop, mean_lag, sample_plant
+from validation.lifting import SUBSTEPS, lift
 from validation.simulation import (
     PHASES,
-    SUBSTEPS,
     hermite,
     memory,
     simulate,
@@ -52,12 +52,12 @@ def naive_axis(
     """Servo sample by sample from standstill: master, axis and velocity at the substeps of every sample."""
     steps = [sample_plant(servo, servo.sample_time * s / SUBSTEPS) for s in range(SUBSTEPS)]
     whole = sample_plant(servo, servo.sample_time)
-    first = naive_command(profile, cut.line_speed * (offset - servo.sample_time))
+    first = naive_command(profile, cut.line_speed * (offset - servo.sample_time - servo.delay))
     state, before = np.array([0.0, 0.0, first]), first
     master, axis, velocity = [], [], []
     for k in range(samples):
         time = offset + k * servo.sample_time
-        command = naive_command(profile, cut.line_speed * time)
+        command = naive_command(profile, cut.line_speed * (time - servo.delay))
         held = servo.position_gain * (command - state[2])
         held += servo.velocity_feedforward * (command - before) / servo.sample_time
         for s, plant in enumerate(steps):
@@ -130,6 +130,50 @@ def test_simulation_is_the_plain_loop_for_any_servo_and_cut(
     assert np.abs(axis[-run.master.shape[1] :] - cycles * profile.advance - run.axis[3]).max() <= 1e-11
 
 
+@pytest.mark.parametrize(
+    ("dead_time", "lead_time"),
+    [(0.002, 0.0), (0.0, 0.0031), (0.0137, 0.002), (1.2345, 0.0), (0.45, 0.0), (1e-9, 0.0)],  # 0.45 s is a cycle
+)
+def test_a_delayed_command_is_that_of_the_plain_loop(dead_time: float, lead_time: float) -> None:
+    servo = replace(PAPER, velocity_feedforward=0.6, dead_time=dead_time, lead_time=lead_time)
+    profile = baseline("modified_sine", KNIFE, CUT)
+    run, prompt = (simulate(profile, CUT, each) for each in (servo, servo.loop))
+    assert np.array_equal(run.master, prompt.master)
+    assert np.array_equal(run.command, prompt.command)
+    cycles = math.ceil((memory(servo) + 30) * servo.sample_time / CUT.period) + 3
+    first = run.master[5, 0] + cycles * CUT.length
+    start = first / CUT.line_speed % servo.sample_time
+    size = run.master.shape[1]
+    samples = round((first / CUT.line_speed - start) / servo.sample_time) + size // SUBSTEPS
+    _, axis, velocity = naive_axis(profile, CUT, servo, start, samples)
+    assert np.abs(axis[-size:] - cycles * profile.advance - run.axis[5]).max() <= 2 * ROUNDING
+    assert np.abs(velocity[-size:] / CUT.line_speed - run.axis_ratio[5]).max() <= 1e-9
+
+
+def test_lead_makes_up_for_dead_time() -> None:
+    profile = baseline("cycloid", KNIFE, CUT)
+    prompt = simulate(profile, CUT, PAPER)
+    led = simulate(profile, CUT, replace(PAPER, dead_time=0.0125, lead_time=0.0125))
+    assert np.array_equal(led.axis, prompt.axis)
+    late = simulate(profile, CUT, replace(PAPER, dead_time=0.0125, lead_time=0.0025))
+    assert np.abs(late.axis - simulate(profile, CUT, replace(PAPER, dead_time=0.01)).axis).max() <= 1e-14
+
+
+def test_dead_time_in_whole_samples_only_moves_the_axis_later() -> None:
+    # the loop does not know: three samples later it is where it would have been
+    profile = baseline("cycloid", KNIFE, CUT)
+    prompt, late = (simulate(profile, CUT, replace(PAPER, dead_time=n * PAPER.sample_time)) for n in (0, 3))
+    assert np.abs(late.axis[:, 3 * SUBSTEPS :] - prompt.axis[:, : -3 * SUBSTEPS]).max() <= 1e-12
+
+
+def test_the_matrices_do_not_depend_on_dead_time_and_lead() -> None:
+    profile = baseline("cycloid", KNIFE, CUT)
+    simulate(profile, CUT, PAPER)
+    before = lift.cache_info().misses, memory.cache_info().misses
+    simulate(profile, CUT, replace(PAPER, dead_time=0.00321, lead_time=0.001))
+    assert (lift.cache_info().misses, memory.cache_info().misses) == before
+
+
 def test_phases_are_equally_spaced_and_cover_the_cycle() -> None:
     run = simulate(baseline("linear_return", KNIFE, CUT), CUT, PAPER)
     sample = CUT.line_speed * PAPER.sample_time
@@ -141,13 +185,15 @@ def test_phases_are_equally_spaced_and_cover_the_cycle() -> None:
 
 
 @pytest.mark.parametrize("feedforward", [0.0, 0.4, 0.9, 1.1])
-def test_steady_following_error_is_that_of_the_loop(feedforward: float) -> None:
+@pytest.mark.parametrize("delay", [0.0, 0.0062])
+def test_steady_following_error_is_that_of_the_loop(feedforward: float, delay: float) -> None:
     # eqs. 1 and 2, by the plain loop at constant speed and by the end of a long linear return
-    servo = replace(PAPER, velocity_feedforward=feedforward)
+    servo = replace(PAPER, velocity_feedforward=feedforward, dead_time=delay + 0.001, lead_time=0.001)
     line = CamProfile.from_arrays([0.0, 0.6], [[0.0, 1.0]])
     master, axis, _ = naive_axis(line, CUT, servo, 0.0, 400)
-    expected = (1 - feedforward) * CUT.line_speed / servo.position_gain
-    assert steady_following_error(CUT.line_speed, servo) == pytest.approx(expected, rel=1e-15)
+    expected = (1 - feedforward) * CUT.line_speed / servo.position_gain + CUT.line_speed * delay
+    assert steady_following_error(CUT.line_speed, servo) == pytest.approx(expected, rel=1e-14)
+    assert CUT.line_speed * (mean_lag(servo) - servo.lead_time) == pytest.approx(expected, rel=1e-14)
     assert master[-1] - axis[-1] == pytest.approx(expected, rel=1e-6)
 
     long = replace(CUT, length=3.0)
@@ -224,7 +270,7 @@ def test_hermite_reproduces_a_cubic_and_its_slope() -> None:
     assert np.allclose(slope, cubic.deriv()(left + part * step), rtol=1e-12, atol=1e-13)
 
 
-@pytest.mark.parametrize("servo", sweep_servos(1.0), ids=str)
+@pytest.mark.parametrize("servo", sweep_servos(PAPER), ids=str)
 def test_what_the_memory_leaves_out_is_below_rounding(servo: Servo) -> None:
     a, past = closed_loop(servo)[0], memory(servo)
     state, left_out = sample_plant(servo, servo.sample_time).input, 0.0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,10 +18,12 @@ from camwright.job import Job, load_job
 from camwright.output import Voice
 from camwright.plots.tradeoff import tradeoff_figure
 from camwright.screw import ScrewCarriage, reversals, screw_carriage
-from camwright.tradeoff import TradeOff, trade_off, tradeoff_answer
-from design.optimise import MOTION_OBJECTIVES, OBJECTIVES, solve
+from camwright.tradeoff import Failure, TradeOff, trade_off, tradeoff_answer, tradeoff_view
+from design.optimise import MOTION_OBJECTIVES, OBJECTIVES, Objective, Solution, solve
+from profiles.cycle import Cut
+from profiles.errors import SolverError
 from profiles.limits import Limits
-from profiles.machines import CrankSlider, LinearCarriage, RotaryKnife
+from profiles.machines import CrankSlider, LinearCarriage, Machine, RotaryKnife
 from profiles.machines.screw_equivalent import screw_equivalent
 from profiles.polynomial import CamProfile
 
@@ -97,6 +100,41 @@ def test_a_law_that_leaves_the_stroke_breaks_a_limit(carriage: TradeOff) -> None
     from camwright.tradeoff import _row
 
     assert _row("poly_3_4_5", "baseline", quintic.profile, longer, carriage.measures).within_limits
+
+
+def failing(names: set[str]) -> Callable[..., Solution]:
+    """Solver that fails on some objectives."""
+
+    def solve_or_fail(machine: Machine, cut: Cut, limits: Limits, objective: Objective) -> Solution:
+        if objective in names:
+            raise SolverError(f"no luck with {objective}")
+        return solve(machine, cut, limits, objective)
+
+    return solve_or_fail
+
+
+def test_an_objective_that_fails_is_listed_and_the_rest_goes_on(
+    paper: TradeOff, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("design.optimise.solve", failing({"peak_acceleration", "rms_jerk"}))
+    result = trade_off(paper.job)
+    assert result.failures == (
+        Failure("peak_acceleration", "no luck with peak_acceleration"),
+        Failure("rms_jerk", "no luck with rms_jerk"),
+    )
+    assert {row.name for row in paper.rows} - {row.name for row in result.rows} == {"peak_acceleration", "rms_jerk"}
+    answer = tradeoff_answer(result, [])
+    assert answer["failed"][0] == {"name": "peak_acceleration", "reason": "no luck with peak_acceleration"}
+    Voice(as_json=False, quiet=False).answer(lambda: answer, lambda: tradeoff_view(result))
+    shown = capsys.readouterr().out
+    assert "least RMS jerk, failed: no luck with rms_jerk" in shown
+    assert isinstance(tradeoff_figure(result), Figure)
+
+
+def test_where_every_objective_fails_so_does_the_trade_off(paper: TradeOff, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("design.optimise.solve", failing(set(OBJECTIVES)))
+    with pytest.raises(SolverError, match="no objective was solved; the first, peak_acceleration: no luck"):
+        trade_off(paper.job)
 
 
 def test_rows_are_sorted_by_the_objective_of_the_job(paper: TradeOff, carriage: TradeOff) -> None:

@@ -21,11 +21,15 @@ from profiles.returns import assemble, baseline
 from profiles.servo import Servo
 from validation.response import servo_response, sync_error
 from validation.simulation import simulate
+from validation.zone_search import ZoneSearch
 
 Binding = Literal["speed", "acceleration", "jerk", "settling"]
 
-_COARSE, _FINE = 8, 64
-"""Parts into which the room between shear zone and pitch is divided by the sync zones tried, first and last."""
+Law = Literal["linear_return", "poly_3_4_5", "least_acceleration"]
+"""Returns of which the minimum is looked for."""
+
+_FINE = 64
+"""Parts into which the room between shear zone and pitch is divided by the sync zones tried."""
 
 _ZONE_RESOLUTION = 1e-5
 """Step of the sync zone with which the search ends, relative to the pitch."""
@@ -112,9 +116,9 @@ def physical(machine: RotaryKnife, cut: Cut, limits: Limits) -> MinimumCutLength
         The shear zone is not shorter than the pitch.
     """
     _require_room(machine, cut)
-    length = _fastest_cut(machine, cut.line_speed, limits, cut.shear_zone)
+    length = fastest_cut(machine, cut.line_speed, limits, cut.shear_zone)
     gain = {
-        name: length - _fastest_cut(machine, cut.line_speed, eased, cut.shear_zone)
+        name: length - fastest_cut(machine, cut.line_speed, eased, cut.shear_zone)
         for name, eased in _eased(limits).items()
     }
     return MinimumCutLength(length, cut.shear_zone, 0.0, _greatest(gain))
@@ -143,7 +147,7 @@ def linear_return_to_tolerance(machine: RotaryKnife, cut: Cut, limits: Limits, s
         The shear zone is not shorter than the pitch, or the servo cannot be simulated
         (`validation.simulation.simulate`).
     """
-    return _minimum(_Search(machine, cut, limits, servo, linear=True))
+    return _minimum(_Laws(machine, cut, limits, servo, "linear_return"))
 
 
 def optimised_to_tolerance(machine: RotaryKnife, cut: Cut, limits: Limits, servo: Servo) -> MinimumCutLength:
@@ -153,40 +157,48 @@ def optimised_to_tolerance(machine: RotaryKnife, cut: Cut, limits: Limits, servo
     jerk (`profiles.reach.least_acceleration`), from the shortest that the limits allow at all
     (`profiles.reach.shortest_return_length`) to ever gentler ones.
     """
-    return _minimum(_Search(machine, cut, limits, servo, linear=False))
+    return _minimum(_Laws(machine, cut, limits, servo, "least_acceleration"))
+
+
+def quintic_to_tolerance(machine: RotaryKnife, cut: Cut, limits: Limits, servo: Servo) -> MinimumCutLength:
+    """Shortest cut length with the axis within tolerance in the whole shear zone: polynomial 3-4-5 within the limits.
+
+    As `linear_return_to_tolerance`.
+    """
+    return _minimum(_Laws(machine, cut, limits, servo, "poly_3_4_5"))
 
 
 @dataclass(frozen=True)
-class _Search:
-    """One search for a minimum cut length; ``relief`` is the part of the transition by which it may end too late."""
+class _Laws:
+    """Cycles of one kind of return, and whether the axis follows them.
+
+    ``relief`` is the part of the transition by which it may end late.
+    """
 
     machine: RotaryKnife
     cut: Cut
     limits: Limits
     servo: Servo
-    linear: bool
+    law: Law
     relief: float = 0.0
 
-    @property
-    def resolution(self) -> float:
-        """Accuracy of the cut length (m)."""
-        return _LENGTH_RESOLUTION * self.machine.pitch
+    def search(self, zone_resolution: float) -> ZoneSearch:
+        """Search for the minimum cut length."""
+        pitch = self.machine.pitch
+        return ZoneSearch(self.cut, pitch, self.lower, self.holds, _FINE, _LENGTH_RESOLUTION, zone_resolution)
 
     def lower(self, sync_zone: float) -> float:
         """Cut length of the shortest return beside a sync zone (m)."""
-        if self.linear:
+        if self.law == "linear_return":
             return cut_length_eq10(sync_zone, 0.0, self.machine.pitch, self.cut.line_speed, self.limits.speed)
-        return _fastest_cut(self.machine, self.cut.line_speed, self.limits, sync_zone)
-
-    def shape(self, length: float, sync_zone: float) -> Cut:
-        """Cut with its shear zone at the end of the sync zone."""
-        at = sync_zone - self.cut.shear_zone
-        return replace(self.cut, length=length, sync_zone=sync_zone, shear_zone_at=at, origin="return")
+        if self.law == "poly_3_4_5":
+            return _fastest_quintic_cut(self.machine, self.cut.line_speed, self.limits, sync_zone)
+        return fastest_cut(self.machine, self.cut.line_speed, self.limits, sync_zone)
 
     def cycle(self, shape: Cut) -> CamProfile:
         """Cycle with the return of this search."""
-        if self.linear:
-            return baseline("linear_return", self.machine, shape)
+        if self.law != "least_acceleration":
+            return baseline(self.law, self.machine, shape)
         speed, acceleration, jerk = _over_master(self.limits, shape.line_speed)
         rise, length = self.machine.pitch - shape.length, shape.return_zone
         # rounding may ask for a little more than the limit at the shortest return
@@ -196,83 +208,61 @@ class _Search:
         breaks[-1] = length  # equal but for rounding
         return assemble(CamProfile(breaks, motion.coefficients.copy()).add_line(1.0), self.machine, shape)
 
-    def holds(self, length: float, sync_zone: float) -> bool:
+    def holds(self, shape: Cut) -> bool:
         """Whether the axis is within tolerance in the whole shear zone at every phase."""
-        shape = self.shape(length, sync_zone)
         profile = self.cycle(shape)
         run = simulate(profile, shape, self.servo)
         start = shape.shear_start + self.relief * shape.shear_zone_at
-        error = sync_error(run, profile, self.machine, shape, start, length)[1]
+        error = sync_error(run, profile, self.machine, shape, start, shape.length)[1]
         return float(abs(error).max()) <= self.cut.sync_tolerance
 
-    def shorter(self, sync_zone: float, best: float) -> float | None:
-        """Shortest cut length of a sync zone, ``None`` if it is not below the best by the resolution."""
-        high, low = best - self.resolution, self.lower(sync_zone)
-        if low > high or not self.holds(high, sync_zone):
-            return None
-        if self.holds(low, sync_zone):
-            return low
-        while high - low > self.resolution:
-            middle = 0.5 * (low + high)
-            if self.holds(middle, sync_zone):
-                high = middle
-            else:
-                low = middle
-        return high
 
-    def scan(self) -> tuple[float, float]:
-        """Best cut length and its sync zone on ever finer grids of sync zones, the pitch if there is none."""
-        best, zone = self.machine.pitch, self.machine.pitch
-        room = self.machine.pitch - self.cut.shear_zone
-        parts = _COARSE
-        while parts <= _FINE:
-            for i in range(1, parts):
-                if i % 2 == 0 and parts > _COARSE:
-                    continue  # tried on the grid before
-                trial = self.cut.shear_zone + room * i / parts
-                found = self.shorter(trial, best)
-                if found is not None:
-                    best, zone = found, trial
-            parts *= 2
-        return best, zone
-
-    def refine(self, best: float, zone: float, resolution: float) -> tuple[float, float]:
-        """Best cut length and sync zone about those given, by steps of the sync zone that are halved."""
-        step = 0.5 * (self.machine.pitch - self.cut.shear_zone) / _FINE
-        while step > resolution * self.machine.pitch:
-            for trial in (zone - step, zone + step):
-                found = self.shorter(trial, best) if self.cut.shear_zone < trial < self.machine.pitch else None
-                if found is not None:
-                    best, zone = found, trial
-                    break
-            else:
-                step *= 0.5
-        return best, zone
-
-
-def _minimum(search: _Search) -> MinimumCutLength:
+def _minimum(laws: _Laws) -> MinimumCutLength:
     """Search the whole room, then once more about the answer with each quantity eased, to see what binds."""
-    machine, cut = search.machine, search.cut
+    machine, cut = laws.machine, laws.cut
     _require_room(machine, cut)
-    if search.limits.speed <= cut.line_speed:  # the knife cannot run ahead of the material
+    if laws.limits.speed <= cut.line_speed:  # the knife cannot run ahead of the material
         return MinimumCutLength(machine.pitch, machine.pitch, 0.0, "speed")
-    best, zone = search.refine(*search.scan(), _ZONE_RESOLUTION)
+    search = laws.search(_ZONE_RESOLUTION)
+    best, zone = search.find()
     if zone == machine.pitch:
         return MinimumCutLength(best, zone, 0.0, "settling")
     shape = search.shape(best, zone)
-    settling = servo_response(search.cycle(shape), machine, shape, search.servo).settling
-    eased = {name: replace(search, limits=limits) for name, limits in _eased(search.limits).items()}
-    eased["settling"] = replace(search, relief=_RELAXATION)
-    gain = {
-        name: best - other.refine(other.shorter(zone, best) or best, zone, _GAIN_RESOLUTION)[0]
-        for name, other in eased.items()
-    }
+    settling = servo_response(laws.cycle(shape), machine, shape, laws.servo).settling
+    eased = {name: replace(laws, limits=limits) for name, limits in _eased(laws.limits).items()}
+    eased["settling"] = replace(laws, relief=_RELAXATION)
+    gain: dict[Binding, float] = {}
+    for name, other in eased.items():
+        again = other.search(_GAIN_RESOLUTION)
+        gain[name] = best - again.refine(again.shorter(zone, best) or best, zone)[0]
     # settled it has, in tolerance as it is; to rounding, before the shear zone begins
     transition = zone - cut.shear_zone if settling is None else settling
     return MinimumCutLength(best, zone, transition, _greatest(gain))
 
 
-def _fastest_cut(machine: RotaryKnife, line_speed: float, limits: Limits, sync_zone: float) -> float:
+def _fastest_quintic_cut(machine: RotaryKnife, line_speed: float, limits: Limits, sync_zone: float) -> float:
+    """Cut length of the fastest polynomial 3-4-5 within the limits, beside a sync zone (m).
+
+    Seen from the material it rises by ``y_c - x_c`` over the return of length ``R``: its peaks are 15/8 of the mean ratio, ``10/sqrt(3)``
+    and 60 of the rise over ``R²`` and ``R³``. The rise falls and the powers grow with ``R``, so one bisection finds where all limits hold.
+    """
+    if limits.speed <= line_speed or sync_zone >= machine.pitch:
+        return machine.pitch
+    speed, acceleration, jerk = _over_master(limits, line_speed)
+    low, high = 0.0, machine.pitch - sync_zone
+    while high - low > _LENGTH_RESOLUTION * machine.pitch:
+        length = 0.5 * (low + high)
+        rise = machine.pitch - sync_zone - length
+        shares = (
+            15 / 8 * rise / length / (speed - 1),
+            10 / 3**0.5 * rise / length**2 / acceleration,
+            60 * rise / length**3 / jerk,
+        )
+        low, high = (low, length) if max(shares) <= 1.0 else (length, high)
+    return sync_zone + high
+
+
+def fastest_cut(machine: RotaryKnife, line_speed: float, limits: Limits, sync_zone: float) -> float:
     """Cut length of the fastest return within the limits, beside a sync zone (m)."""
     if limits.speed <= line_speed or sync_zone >= machine.pitch:  # no running ahead, or no need to
         return machine.pitch

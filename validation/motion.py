@@ -14,7 +14,7 @@ from profiles.cycle import Cut
 from profiles.errors import InputError
 from profiles.machines import Machine
 from profiles.polynomial import CamProfile, Extremum, FloatArray
-from profiles.returns import is_straight, slave_at_start
+from profiles.returns import is_straight, slave_zero
 from validation.composed import compose, integral
 
 RATIO_JUMP = 1e-9
@@ -99,7 +99,7 @@ def greatest_jump(profile: CamProfile, order: int) -> Extremum:
 
 def position_scale(profile: CamProfile, machine: Machine) -> float:
     """Size of the slave's travel that rounding is measured against (slave unit): the cut length for m, one turn for rad."""
-    return profile.length if machine.slave_unit == "m" else machine.pitch
+    return profile.length if machine.slave_unit == "m" else 2 * math.pi
 
 
 def ratio_scale(profile: CamProfile, machine: Machine) -> float:
@@ -131,7 +131,7 @@ def tool_profile(profile: CamProfile, machine: Machine, cut: Cut) -> CamProfile:
     """
     if machine.slave_unit == "m":
         return profile
-    start = slave_at_start(machine, cut) - float(profile(profile.start))
+    start = slave_zero(profile, machine, cut)
     return integral(compose(lambda y, ratio, _: np.asarray(machine.tool_ratio(start + y) * ratio), profile))
 
 
@@ -158,7 +158,7 @@ def _tool_in_sync(part: CamProfile, profile: CamProfile, machine: Machine, cut: 
         per_slave = cut.sync_ratio / float(machine.sync_profile(cut)(0.0, 1))
         ratios = part.coefficients[:, 1:] * np.arange(1, part.degree + 1) * per_slave
         return CamProfile(part.breaks.copy(), ratios)
-    start = slave_at_start(machine, cut) - float(profile(profile.start))
+    start = slave_zero(profile, machine, cut)
     if part.end > 0.5 * cut.length:  # the next pitch is the next blade, and the formulas speak of the blade that cuts
         start -= machine.pitch
 
@@ -192,9 +192,18 @@ def measure_motion(profile: CamProfile, machine: Machine, cut: Cut) -> Motion:
     return _measure(profile, cut, steady, steady and is_smooth(profile), sync_ratio_error(profile, machine, cut).value)
 
 
-def measure_tool(profile: CamProfile, machine: Machine, cut: Cut) -> Motion:
-    """Measure the tool (m) like `measure_motion` the slave; where the slave is counted in m both are the same."""
-    slave = measure_motion(profile, machine, cut)
+def measure_tool(profile: CamProfile, machine: Machine, cut: Cut, slave: Motion | None = None) -> Motion:
+    """Measure the tool (m) like `measure_motion` the slave; where the slave is counted in m both are the same.
+
+    Parameters
+    ----------
+    profile, machine, cut
+        As in `measure_motion`.
+    slave
+        Measures of the slave, if they are known already.
+    """
+    if slave is None:
+        slave = measure_motion(profile, machine, cut)
     if machine.slave_unit == "m":
         return slave
     steady, smooth = slave.peak_acceleration is not None, slave.peak_jerk is not None

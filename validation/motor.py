@@ -11,7 +11,7 @@ from profiles.cycle import Cut
 from profiles.machines import Machine
 from profiles.motor import MotorCurve
 from profiles.polynomial import CamProfile, Extremum, FloatArray
-from profiles.returns import slave_at_start
+from profiles.returns import slave_zero
 from validation.composed import compose, integral, recut, split, zeros
 from validation.motion import greatest_magnitude, is_steady, require_period
 
@@ -102,7 +102,7 @@ def motor_torque(profile: CamProfile, machine: Machine, cut: Cut) -> CamProfile:
     profile
         One cycle with a bounded acceleration; its position may begin anywhere.
     """
-    start = slave_at_start(machine, cut) - float(profile(profile.start))
+    start = slave_zero(profile, machine, cut)
     v, ratio = cut.line_speed, machine.motor_ratio
 
     def inertial(y: FloatArray, slope: FloatArray, bend: FloatArray) -> FloatArray:

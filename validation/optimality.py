@@ -1,9 +1,9 @@
 """How far a return is from the best possible: lower bounds by a road that shares nothing with the design's.
 
-Where a closed form holds it is the bound. Else the objective is convex, so it lies above its tangent at the profile in question; the least
-value of that tangent under the limits is a linear programme. HiGHS solves it on a fine grid, and its multipliers are put into the
-dual function in continuous time, which any multipliers make a lower bound (weak duality): what the grid misses makes the
-bound a little lower, never wrong.
+Where a closed form holds it is the bound. That leaves the mean square of the jerk under limits that bind. It is a quadratic programme: on a
+grid an interior point method gives its multipliers, and these are put into the dual function in continuous time, which any multipliers
+make a lower bound (weak duality): what the grid misses makes the bound a little lower, never wrong. The quadratic stays in the dual
+function, so an error of the multipliers enters squared.
 """
 
 from __future__ import annotations
@@ -20,13 +20,19 @@ from profiles.machines import Machine
 from profiles.polynomial import CamProfile, FloatArray
 from profiles.reach import least_acceleration, least_jerk
 from profiles.returns import is_straight
+from profiles.softest import softest
 from validation.motor import moves_something
+from validation.quadratic import multipliers
 
 OBJECTIVES = ("peak_acceleration", "rms_acceleration", "peak_jerk", "rms_jerk", "rms_torque", "peak_torque", "energy")
-INTERVALS = 400
+INTERVALS = 140
+"""Intervals of half a motion."""
+GREATEST = 1e3
+"""Largest limit that the quadratic programme is told; none that matters is that large."""
 CLOSED_FORM = "closed form, double-S"
+SOFTEST = "closed form, softest motion"
 QUINTIC = "closed form, quintic"
-DUAL = "weak duality, multipliers by HiGHS on 400 intervals"
+DUAL = f"weak duality, multipliers by an interior point on {2 * INTERVALS} intervals"
 NONE = "none"
 
 
@@ -57,7 +63,7 @@ def lower_bound(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits,
     Parameters
     ----------
     profile
-        One cycle over ``[0, x_c]``. Root-mean-square bounds are tangents at this profile: exact at the optimum, lower elsewhere.
+        One cycle over ``[0, x_c]``. Where the bound is the dual's, its grid holds this profile's breaks; that makes it the sharper.
     machine, cut, limits
         The job.
     objective
@@ -88,21 +94,23 @@ def lower_bound(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits,
         return Bound(least_acceleration(abs(height), time, speed, limits.jerk), CLOSED_FORM)
     if objective == "peak_jerk":
         return Bound(least_jerk(abs(height), time, speed, limits.acceleration), CLOSED_FORM)
-    order = 2 if objective == "rms_acceleration" else 3
-    unit = abs(height) / time**order
+    if objective == "rms_acceleration":
+        motion = softest(abs(height), time, speed, limits.acceleration, limits.jerk)
+        return Bound(math.inf if motion is None else math.sqrt(motion.mean_square), SOFTEST)
+    unit = abs(height) / time**3
     job = _Return(
         low=-(down if height > 0 else up) * time / abs(height),
         high=speed * time / abs(height),
         slope=limits.acceleration * time**2 / abs(height),
         jerk=limits.jerk * time**3 / abs(height),
     )
-    if order == 3 and job.high >= 15 / 8 and job.slope >= 10 / math.sqrt(3) and job.jerk >= 60:
+    if job.high >= 15 / 8 and job.slope >= 10 / math.sqrt(3) and job.jerk >= 60:
         return Bound(math.sqrt(720) * unit, QUINTIC)
     start = cut.return_start
     back = profile.restrict(start, start + length).shift(-start, -float(profile(start)))
     scaled = back.add_line(-ratio).scale(master=1.0 / length, slave=1.0 / height)
     scaled = CamProfile(np.append(scaled.breaks[:-1], 1.0), scaled.coefficients.copy())
-    return Bound(math.sqrt(max(0.0, _dual_bound(scaled, job, order))) * unit, DUAL)
+    return Bound(math.sqrt(max(0.0, _dual_bound(scaled, job))) * unit, DUAL)
 
 
 def _torque_bound(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits, objective: str) -> Bound:
@@ -125,28 +133,34 @@ def _torque_bound(profile: CamProfile, machine: Machine, cut: Cut, limits: Limit
     )
 
 
-def _dual_bound(motion: CamProfile, job: _Return, order: int) -> float:
-    """Lower bound of the mean square of the derivative ``order`` (2 or 3) of any motion from 0 to 1, rest to rest, in unit time."""
-    x = _grid(motion)
-    weight = _weight(motion, order)
-    slope_price, speed_price, constant = _multipliers(x, weight, job)
-    breaks = np.unique(np.concatenate([x, weight.breaks]))
-    middle = 0.5 * (breaks[:-1] + breaks[1:])
-    cell = np.clip(np.searchsorted(x, middle, side="right") - 1, 0, len(x) - 2)
-    later = [np.append(np.cumsum(values[::-1])[::-1], 0.0)[cell + 1] for values in (speed_price[0], speed_price[0] * x)]
+def _dual_bound(motion: CamProfile, job: _Return) -> float:
+    """Lower bound of the mean square of the jerk of any motion from 0 to 1, rest to rest, in unit time.
+
+    With a motion its mirror image about the middle keeps the limits, and so does the mean of the two, whose mean square is no greater.
+    So half of the motion is all there is to look at: it ends in the middle at half the way without acceleration, at any speed.
+    The dual function is that of the half's integral; what the jerk adds to it at ``s``, with the price ``c(s)`` of the constraints
+    that lie ahead, is the least of ``j² / 2 + c j`` over ``|j| <= J``.
+    """
+    x = _half_grid(motion)
+    slope_price, speed_price, (turn, way), constant = _multipliers(x, job, math.sqrt(motion.mean_square(3)))
+    cell = np.arange(len(x) - 1)
+    later = [_beyond(values)[cell + 1] for values in (speed_price, speed_price * x)]
     atoms, spread = _spread(slope_price)
 
     def price(s: FloatArray) -> FloatArray:
-        """Price of the jerk at s: what it adds to the tangent, less what it uses of the constraints that lie ahead."""
-        ahead = np.append(np.cumsum(atoms[::-1])[::-1], 0.0)[cell + 1] + _spread_ahead(spread, x, cell, s)
-        return np.asarray(weight(s) - ahead - (later[1] - s * later[0]) - speed_price[1] * (1.0 - s) ** 2 / 2)
+        ahead = _beyond(atoms)[cell + 1] + _spread_ahead(spread, x, cell, s)
+        return np.asarray(ahead + later[1] - s * later[0] - turn - way * (0.5 - s) ** 2 / 2)
 
-    # three values on each part make the quadratic that the price is there
-    h = np.diff(breaks)
+    # three values on each interval make the quadratic that the price is there
+    h = np.diff(x)
     inside = 1e-9 * h
-    first, centre, last = price(breaks[:-1] + inside), price(middle), price(breaks[1:] - inside)
-    tangent = constant - job.jerk * float(_absolute_integral(first, centre, last, h).sum())
-    return 2 * tangent - motion.mean_square(order)
+    prices = price(x[:-1] + inside), price(0.5 * (x[:-1] + x[1:])), price(x[1:] - inside)
+    return 4 * (constant - float(_integral_of_least(*prices, h, job.jerk).sum()))
+
+
+def _beyond(values: FloatArray) -> FloatArray:
+    """Add up from each place on; last comes zero."""
+    return np.append(np.cumsum(values[::-1])[::-1], 0.0)
 
 
 def _spread(price: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -173,105 +187,82 @@ def _spread_ahead(spread: FloatArray, x: FloatArray, cell: FloatArray, s: FloatA
     return np.asarray(beyond + rising + falling)
 
 
-def _grid(motion: CamProfile) -> FloatArray:
-    """Return the profile's own breaks and uniform nodes, without those that nearly coincide with a break."""
-    uniform = np.linspace(0.0, 1.0, INTERVALS + 1)
-    near = np.abs(uniform[:, None] - motion.breaks[None, :]).min(axis=1)
-    return np.union1d(uniform[near > 0.01 / INTERVALS], motion.breaks)
+def _half_grid(motion: CamProfile) -> FloatArray:
+    """Return nodes on half the motion: uniform ones and, of a motion with few pieces, its breaks folded and as many between each two."""
+    nodes = np.linspace(0.0, 0.5, INTERVALS // 2 + 1)
+    own = np.unique(np.concatenate([np.minimum(motion.breaks, 1.0 - motion.breaks), [0.5]]))
+    own = own[np.append(True, np.diff(own) > 1e-3 / INTERVALS)]
+    if len(own) <= INTERVALS // 8:
+        own[-1] = 0.5
+        parts = INTERVALS // 2 // (len(own) - 1)
+        own = np.interp(np.arange((len(own) - 1) * parts + 1) / parts, np.arange(len(own)), own)
+        near = np.abs(nodes[:, None] - own[None, :]).min(axis=1)
+        nodes = np.union1d(nodes[near > 0.02 / INTERVALS], own)
+    return nodes
 
 
-def _weight(motion: CamProfile, order: int) -> CamProfile:
-    """Gradient of half the mean square with respect to the jerk: the jerk itself, or minus the ratio (rest to rest, by parts)."""
-    table = motion.coefficients
-    if order == 3:
-        for _ in range(3):
-            table = table[:, 1:] * np.arange(1, table.shape[1])
-        return CamProfile(motion.breaks.copy(), table.copy())
-    return CamProfile(motion.breaks.copy(), -(table[:, 1:] * np.arange(1, table.shape[1])))
-
-
-def _multipliers(x: FloatArray, weight: CamProfile, job: _Return) -> tuple[FloatArray, tuple[FloatArray, float], float]:
-    """Solve the tangent's linear programme on a grid with the jerk constant on each interval.
+def _multipliers(x: FloatArray, job: _Return, unit: float) -> tuple[FloatArray, FloatArray, FloatArray, float]:
+    """Solve the quadratic programme of half a motion on a grid with the jerk constant on each interval, ``unit`` its jerk that counts as 1.
 
     Returns
     -------
-    (slope prices, (speed prices, price of the position at the end), constant of the dual function)
-        Multipliers of ``q''`` and ``q'`` at the nodes, the end conditions among them.
+    (slope prices, speed prices, end prices, constant of the dual function)
+        Multipliers of ``q''`` and ``q'`` at the nodes; of ``q''`` and ``q`` in the middle.
     """
-    from scipy.optimize import linprog
-    from scipy.sparse import bmat, diags_array, eye_array
+    from scipy.sparse import block_array, csr_array, diags_array, eye_array
 
-    n = len(x) - 1
-    h = np.diff(x)
-    node = 0.5 * (1 + np.polynomial.legendre.leggauss(3)[0])
-    gauss = np.polynomial.legendre.leggauss(3)[1] / 2
-    cost = (weight(x[:-1, None] + h[:, None] * node) @ gauss) * h
-    ahead = eye_array(n, n + 1, k=1) - eye_array(n, n + 1)
-    at = eye_array(n, n + 1)
-    # unknowns: jerks (n), then q'', q', q at the nodes (n + 1 each); the jerk divided by its limit
-    scale = job.jerk
-    matrix = bmat(
+    n, h = len(x) - 1, np.diff(x)
+    slope = min(job.slope, GREATEST) / unit
+    high, low = min(job.high, GREATEST) / unit, max(job.low, -GREATEST) / unit
+    jerk = min(job.jerk / unit, GREATEST)
+    # unknowns: the jerk of each interval, then q'', q', q at its end, all over the unit
+    ahead = eye_array(n) - eye_array(n, k=-1)
+    before = eye_array(n, k=-1)
+    end = np.zeros((1, n))
+    end[0, -1] = 1.0
+    system = block_array(
         [
-            [-diags_array(h * scale), ahead, None, None],
-            [-diags_array(h**2 / 2 * scale), -diags_array(h) @ at, ahead, None],
-            [-diags_array(h**3 / 6 * scale), -diags_array(h**2 / 2) @ at, -diags_array(h) @ at, ahead],
+            [-diags_array(h), ahead, None, None],
+            [-diags_array(h**2 / 2), -diags_array(h) @ before, ahead, None],
+            [-diags_array(h**3 / 6), -diags_array(h**2 / 2) @ before, -diags_array(h) @ before, ahead],
+            [None, csr_array(end), None, None],
+            [None, None, None, csr_array(end)],
         ],
         format="csr",
     )
-    bounds = np.full((4 * n + 3, 2), [-np.inf, np.inf])
-    bounds[:n] = [-1.0, 1.0]
-    slope, speed, place = n + np.arange(n + 1), 2 * n + 1 + np.arange(n + 1), 3 * n + 2 + np.arange(n + 1)
-    bounds[slope] = [-job.slope, job.slope]
-    bounds[speed] = [job.low, job.high]
-    for index in (slope[0], slope[-1], speed[0], speed[-1], place[0]):
-        bounds[index] = 0.0
-    bounds[place[-1]] = 1.0
-    objective = np.concatenate([cost * scale, np.zeros(3 * n + 3)])
-    for wider in (
-        0.0,
-        1e-4,
-        1e-2,
-    ):  # a tight job may have no motion on the grid; wider limits change the multipliers little
-        answer = linprog(
-            objective,
-            A_eq=matrix,
-            b_eq=np.zeros(3 * n),
-            bounds=bounds * (1 + wider * (bounds[:, :1] != bounds[:, 1:])),
-            method="highs",
-        )
-        if answer.status == 0:
-            break
-    else:
-        return np.zeros(n + 1), (np.zeros(n + 1), 0.0), 0.0  # a bound all the same: the trivial one
-    lower = np.minimum(0.0, -answer.lower.marginals)  # signs forced, so that rounding cannot spoil the bound
-    upper = np.minimum(0.0, answer.upper.marginals)
-    price = upper - lower
-    fixed = bounds[:, 0] == bounds[:, 1]
-    price[fixed] = (answer.lower.marginals + answer.upper.marginals)[fixed]
-    finite = np.isfinite(bounds[:, 0])
-    constant = np.zeros(len(bounds))
-    constant[finite] = np.where(
-        fixed[finite],
-        price[finite] * bounds[finite, 0],
-        upper[finite] * bounds[finite, 1] - lower[finite] * bounds[finite, 0],
-    )
-    states = np.concatenate([slope, speed, place[-1:]])
-    return price[slope], (price[speed], float(price[place[-1]])), float(constant[states].sum())
+    none = np.full(n, np.inf)
+    slopes = np.append(np.full(n - 1, slope), np.inf)
+    top = np.concatenate([np.full(n, jerk), slopes, np.full(n, high), none])
+    bottom = np.concatenate([np.full(n, -jerk), -slopes, np.full(n, low), -none])
+    goal = np.append(np.zeros(3 * n + 1), 0.5 / unit)
+    upper, lower, prices = multipliers(np.concatenate([h, np.zeros(3 * n)]), bottom, top, system, goal)
+    limited = np.isfinite(top) & (np.arange(4 * n) >= n)
+    constant = goal[-1] * prices[-1] - float(upper[limited] @ top[limited] - lower[limited] @ bottom[limited])
+    price = np.concatenate([[0.0], (upper - lower)[n : 2 * n], [0.0], (upper - lower)[2 * n : 3 * n]])
+    return unit * price[: n + 1], unit * price[n + 1 :], unit * prices[-2:], unit**2 * constant
 
 
-def _absolute_integral(first: FloatArray, centre: FloatArray, last: FloatArray, h: FloatArray) -> FloatArray:
-    """Integral of the absolute value of quadratics given at both ends and the middle of intervals of length ``h``."""
-    c = first
+def _integral_of_least(
+    first: FloatArray, centre: FloatArray, last: FloatArray, h: FloatArray, limit: float
+) -> FloatArray:
+    """Integral of ``-min(j² / 2 + c j)`` over ``|j| <= limit``, ``c`` quadratics given at both ends and the middle of intervals ``h``.
+
+    That is ``c² / 2`` up to ``|c| = limit``, beyond it ``limit |c| - limit² / 2``; between the places where it changes Gauss-Legendre
+    with three points is exact.
+    """
     b = -3 * first + 4 * centre - last
     a = 2 * first - 4 * centre + 2 * last
-    square = b * b - 4 * a * c
-    root = np.sqrt(np.maximum(square, 0.0))
-    q = -0.5 * (b + np.where(b >= 0, root, -root))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        one, two = q / a, c / q
-    roots = np.stack(
-        [np.where((square > 0) & (r > 0) & (r < 1), r, 0.0) for r in (np.nan_to_num(one), np.nan_to_num(two))]
-    )
-    edges = np.sort(np.concatenate([np.zeros((1, len(h))), roots, np.ones((1, len(h)))]), axis=0)
-    primitive = edges * (c + edges * (b / 2 + edges * a / 3))
-    return np.asarray(np.abs(np.diff(primitive, axis=0)).sum(axis=0) * h)
+    places = [np.zeros_like(h), np.ones_like(h)]
+    for level in (limit, -limit):
+        c = first - level
+        root = np.sqrt(np.maximum(b * b - 4 * a * c, 0.0))
+        q = -0.5 * (b + np.where(b >= 0, root, -root))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            found = np.nan_to_num(q / a), np.nan_to_num(c / q)
+        places += [np.where((b * b > 4 * a * c) & (r > 0) & (r < 1), r, 0.0) for r in found]
+    edges = np.sort(np.stack(places), axis=0)
+    node, weight = np.polynomial.legendre.leggauss(3)
+    s = edges[:-1, None] + np.diff(edges, axis=0)[:, None] * (0.5 * (node + 1))[:, None]
+    size = np.abs(first + s * (b + s * a))
+    least = np.where(size <= limit, 0.5 * size**2, limit * size - 0.5 * limit**2)
+    return np.asarray((np.diff(edges, axis=0) * (least * weight[:, None] / 2).sum(axis=1)).sum(axis=0) * h)

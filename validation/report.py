@@ -11,9 +11,11 @@ from profiles.cycle import Cut
 from profiles.limits import Limits
 from profiles.machines import LinearCarriage, Machine, RotaryKnife
 from profiles.polynomial import CamProfile, Extremum
-from profiles.returns import slave_at_start
+from profiles.returns import slave_zero
 from profiles.servo import Servo, spectral_radius
+from validation.axis_motion import axis_checks, axis_peaks
 from validation.checks import Check
+from validation.lead import LengthError, length_errors
 from validation.minimum_length import cut_length_eq10, physical, required_sync_zone
 from validation.motion import (
     POSITION_JUMP,
@@ -61,7 +63,9 @@ class ValidationReport:
     servo
         Response of the job's servo, ``None`` if it is unstable.
     sweep
-        Responses over the published ranges of the servo's parameters: information, judged by no check.
+        Responses over the published ranges of the servo's parameters, ``None`` if they were not asked for: information, judged by no check.
+    length_errors
+        Where the cut falls at shares of the line speed, empty if the sweep was not asked for or the servo is unstable: information too.
     """
 
     checks: tuple[Check, ...]
@@ -70,7 +74,8 @@ class ValidationReport:
     motor: MotorMeasures
     tangential_mismatch: float | None
     servo: ServoResponse | None
-    sweep: Sweep
+    sweep: Sweep | None
+    length_errors: tuple[LengthError, ...]
 
     @property
     def passed(self) -> bool:
@@ -78,7 +83,16 @@ class ValidationReport:
         return all(check.passed for check in self.checks)
 
 
-def validate(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits, servo: Servo) -> ValidationReport:
+def validate(
+    profile: CamProfile,
+    machine: Machine,
+    cut: Cut,
+    limits: Limits,
+    servo: Servo,
+    *,
+    sweep: bool = True,
+    axis_limits: bool = False,
+) -> ValidationReport:
     """Judge a profile, whoever made it.
 
     Parameters
@@ -93,6 +107,11 @@ def validate(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits, se
         Limits of the slave.
     servo
         The servo.
+    sweep
+        Whether to run the servos of the published ranges, and lower line speeds, too, which no check needs and which takes most of the
+        time.
+    axis_limits
+        Whether the axis, too, must keep the limits of speed, acceleration and reversal: what a servo-aware design is asked for.
 
     Raises
     ------
@@ -110,16 +129,18 @@ def validate(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits, se
         *_motor(profile, machine, cut, limits, motor),
         Check("servo_stability", radius < 1.0, radius, 1.0, "1", None, "largest closed-loop pole in the z-plane (S1)"),
         *_servo(response, cut),
+        *(_axis(profile, machine, cut, limits, servo) if axis_limits and response is not None else ()),
         *_minimum_lengths(response, machine, cut, limits),
     )
     return ValidationReport(
         checks=checks,
         motion=motion,
-        tool=measure_tool(profile, machine, cut),
+        tool=measure_tool(profile, machine, cut, motion),
         motor=motor,
         tangential_mismatch=machine.tangential_mismatch(cut) if isinstance(machine, RotaryKnife) else None,
         servo=response,
-        sweep=servo_sweep(profile, machine, cut, servo),
+        sweep=servo_sweep(profile, machine, cut, servo) if sweep else None,
+        length_errors=length_errors(profile, machine, cut, servo) if sweep and response is not None else (),
     )
 
 
@@ -190,18 +211,19 @@ def _motion(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits, mot
 
     ratio_jump = greatest_jump(profile, 1)
     jump = greatest_jump(profile, 2) if motion.peak_acceleration is not None else ratio_jump
+    sync = _at_most(
+        "sync_ratio",
+        in_sync.value,
+        SYNC_RATIO,
+        0.0,
+        "1",
+        in_sync.at,
+        "k = 1 in the whole sync zone (S1)"
+        if cut.sync_ratio == 1.0
+        else f"tool at {cut.sync_ratio:g} times the line speed in the whole sync zone",
+    )
     return [
-        _at_most(
-            "sync_ratio",
-            in_sync.value,
-            SYNC_RATIO,
-            0.0,
-            "1",
-            in_sync.at,
-            "k = 1 in the whole sync zone (S1)"
-            if cut.sync_ratio == 1.0
-            else f"tool at {cut.sync_ratio:g} times the line speed in the whole sync zone",
-        ),
+        *(() if cut.shaped else (sync,)),  # a shaped command is judged by its axis alone
         bounded("speed", motion.peak_speed, limits.speed, "/s", 1, ratio_jump),
         bounded("acceleration", motion.peak_acceleration, limits.acceleration, "/s^2", 2, ratio_jump),
         bounded("jerk", motion.peak_jerk, limits.jerk, "/s^3", 3, jump),
@@ -221,7 +243,7 @@ def _stroke(profile: CamProfile, machine: Machine, cut: Cut) -> list[Check]:
     """Whether a carriage stays on its guide."""
     if not isinstance(machine, LinearCarriage):
         return []
-    start = slave_at_start(machine, cut) - float(profile(profile.start))
+    start = slave_zero(profile, machine, cut)
     middle = machine.home + 0.5 * machine.stroke
     least, greatest = profile.extrema(0)
     behind, ahead = middle - (start + least.value), start + greatest.value - middle
@@ -280,6 +302,17 @@ def _servo(response: ServoResponse | None, cut: Cut) -> list[Check]:
     settled = needed is not None and needed <= cut.sync_zone
     equation = "eq. 6" if shear > 0 else "eq. 5"
     error = response.shear_zone_error if response else None
+    in_shear = Check(
+        "shear_zone_error",
+        error is not None and error <= cut.sync_tolerance,
+        error,
+        cut.sync_tolerance,
+        "m",
+        None,
+        "tool against material in the shear zone, at every sampling phase",
+    )
+    if cut.shaped:  # it has no transition: its axis is in sync where the shear zone begins
+        return [in_shear]
     return [
         Check(
             "following_error",
@@ -308,16 +341,14 @@ def _servo(response: ServoResponse | None, cut: Cut) -> list[Check]:
             None,
             f"l_t + l_j <= l_s ({equation}) with l_t the settling length to the sync tolerance",
         ),
-        Check(
-            "shear_zone_error",
-            error is not None and error <= cut.sync_tolerance,
-            error,
-            cut.sync_tolerance,
-            "m",
-            None,
-            "tool against material in the shear zone, at every sampling phase",
-        ),
+        in_shear,
     ]
+
+
+def _axis(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits, servo: Servo) -> list[Check]:
+    """Check the limits on the axis itself."""
+    least = -limits.speed if machine.turns_back else limits.least_velocity
+    return axis_checks(axis_peaks(profile, cut, servo), limits.speed, limits.acceleration, least, machine.slave_unit)
 
 
 def _minimum_lengths(response: ServoResponse | None, machine: Machine, cut: Cut, limits: Limits) -> list[Check]:
@@ -325,7 +356,7 @@ def _minimum_lengths(response: ServoResponse | None, machine: Machine, cut: Cut,
 
     With a sync ratio ``s`` the knife moves as with a line ``s`` times as fast whose lengths are ``s`` times as long.
     """
-    if not (isinstance(machine, RotaryKnife) and machine.sync == "tangential"):
+    if cut.shaped or not (isinstance(machine, RotaryKnife) and machine.sync == "tangential"):
         return []
     s, v = cut.sync_ratio, cut.sync_ratio * cut.line_speed
     settling = response.settling if response else None

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from profiles.cycle import Cut
 from profiles.machines import Machine
 from profiles.polynomial import CamProfile, FloatArray
-from profiles.returns import slave_at_start
+from profiles.returns import slave_zero
 from profiles.servo import Servo
-from validation.simulation import ServoRun, hermite, simulate
+from validation.simulation import AxisRun, ServoRun, hermite, simulate
 
 ON_THE_LINE = 1e-9
 """Part of the cut length within which the axis counts as lying on the ideal sync line; well above rounding, well
@@ -86,12 +86,11 @@ def measure_response(
     run: ServoRun, profile: CamProfile, machine: Machine, cut: Cut, tolerance: float | None = None
 ) -> ServoResponse:
     """Measure a simulated response; arguments as in `servo_response`."""
-    start = cut.return_start + cut.return_zone  # counted on like ServoRun.master
+    start = cut.return_start + cut.return_zone  # counted on like AxisRun.master
     master, error, slope = sync_error(run, profile, machine, cut, start, start + cut.sync_zone)
     crossing, overshoot = _crossing(master - start, error, slope, ON_THE_LINE * cut.length)
     settling = _settling(master - start, error, slope, cut.sync_tolerance if tolerance is None else tolerance)
-    shear = start + cut.shear_zone_at
-    in_shear = sync_error(run, profile, machine, cut, shear, min(shear + cut.shear_zone, start + cut.sync_zone))[1]
+    in_shear = shear_zone_error(run, profile, machine, cut)[1]
     return ServoResponse(
         crossing=crossing,
         settling=settling,
@@ -103,18 +102,18 @@ def measure_response(
 
 
 def sync_error(
-    run: ServoRun, profile: CamProfile, machine: Machine, cut: Cut, start: float, end: float
+    run: AxisRun, profile: CamProfile, machine: Machine, cut: Cut, start: float, end: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Tool minus ideal sync line in a part of the sync zone, for every sampling phase.
 
     The ideal line passes through the profile's position at the cut length ``x_c``, which lies in the sync zone with
-    either origin (S1: ``Y = X - x_c + y_c`` in the first cycle). With the machine's map ``X`` and the slave coordinate ``c`` of that
-    line the error is ``X(c + e) - X(c)`` for an axis that is off by ``e``.
+    either origin (S1: ``Y = X - x_c + y_c`` in the first cycle); for a shaped command, which is elsewhere there, through the pitch. With
+    the machine's map ``X`` and the slave coordinate ``c`` of that line the error is ``X(c + e) - X(c)`` for an axis that is off by ``e``.
 
     Parameters
     ----------
     start, end
-        The part (m), counted like `ServoRun.master`.
+        The part (m), counted like `validation.simulation.AxisRun.master`.
 
     Returns
     -------
@@ -125,7 +124,8 @@ def sync_error(
     sync = machine.sync_profile(cut)
     master, axis, ratio = run.window(start, end)
     inside = np.clip(master - zone, sync.start, sync.end)
-    line = sync(inside) + (float(profile(profile.end)) - float(sync(np.clip(cut.length - zone, sync.start, sync.end))))
+    met = machine.pitch if cut.shaped else float(profile(profile.end))
+    line = sync(inside) + (met - float(sync(np.clip(cut.length - zone, sync.start, sync.end))))
     ideal = machine.sync_start(cut) + sync(inside)
     actual = ideal + (axis - line)
     error = np.asarray(machine.tool(actual) - machine.tool(ideal))
@@ -133,11 +133,20 @@ def sync_error(
     return master, error, slope
 
 
+def shear_zone_error(
+    run: AxisRun, profile: CamProfile, machine: Machine, cut: Cut
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Sync error in the shear zone; as `sync_error`."""
+    zone = cut.return_start + cut.return_zone
+    start = zone + cut.shear_zone_at
+    return sync_error(run, profile, machine, cut, start, min(start + cut.shear_zone, zone + cut.sync_zone))
+
+
 def _following_error(run: ServoRun, profile: CamProfile, machine: Machine, cut: Cut) -> FloatArray:
     """Command minus axis; for a slave in rad at the tool (m)."""
     if machine.slave_unit == "m":
         return run.command - run.axis
-    start = slave_at_start(machine, cut) - float(profile(profile.start))
+    start = slave_zero(profile, machine, cut)
     return np.asarray(machine.tool(start + run.command) - machine.tool(start + run.axis))
 
 

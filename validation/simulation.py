@@ -19,18 +19,16 @@ import numpy as np
 from profiles.cycle import Cut
 from profiles.errors import InputError
 from profiles.polynomial import CamProfile, FloatArray
-from profiles.servo import Servo, sample_plant, spectral_radius
+from profiles.servo import Servo, spectral_radius
+from validation.lifting import SUBSTEPS, follow, lift
 from validation.motion import require_period
 
 Number = TypeVar("Number", float, FloatArray)
 """Floats and arrays, taken alike."""
 
 PHASES = 16
-"""Sampling phases simulated: shifts of the servo's clock by a 16th of the sample time."""
-
-SUBSTEPS = 8
-"""Points of the axis per sample, the sampling instant included. Phases are a multiple of it, so all share one command
-grid."""
+"""Sampling phases simulated: shifts of the servo's clock by a 16th of the sample time. A multiple of `SUBSTEPS`, so that all
+phases share one command grid."""
 
 _FORGOTTEN = 1e-12
 """The start-up transient has decayed to this part of itself when the simulated cycle begins."""
@@ -38,9 +36,6 @@ _FORGOTTEN = 1e-12
 _TRANSIENT_GROWTH = 1e3
 """Added to the decay because the loop's poles are not orthogonal: with it, the part of the command that is left out
 moves the axis by less than 1e-12 of its size, over all of S1's ranges."""
-
-_BLOCK = 32
-"""Samples that one step of the block recursion advances."""
 
 _MOST_VALUES = 2**17
 """Command values of one simulation above which fewer phases are taken (never fewer than `SUBSTEPS`)."""
@@ -50,18 +45,15 @@ _MOST_SAMPLES = 2**17
 
 
 @dataclass(frozen=True, eq=False)
-class ServoRun:
-    """Periodic response of the servo: one cycle at each sampling phase.
+class AxisRun:
+    """Axis of one or more servos in a part of the cycle, at one sampling phase a row.
 
-    All arrays have the shape ``(phases, points)``; points are equally spaced along the line, each phase begins up to
-    one sample before the return zone and ends beyond the sync zone.
+    All arrays have the shape ``(phases, points)``; the points of a row are equally spaced along the line.
 
     Parameters
     ----------
     master
         Master position (m), counted on from the start of the return zone: the sync zone ends one cut length later.
-    command
-        Commanded slave position (m), continuous in time.
     axis
         Slave position (m).
     axis_ratio
@@ -69,7 +61,6 @@ class ServoRun:
     """
 
     master: FloatArray
-    command: FloatArray
     axis: FloatArray
     axis_ratio: FloatArray
 
@@ -95,9 +86,9 @@ class ServoRun:
         (master, axis, axis_ratio)
             Shapes ``(phases, n)``.
         """
-        step = float(self.master[0, 1] - self.master[0, 0])
-        first = np.floor((start - self.master[:, 0]) / step).astype(int)
-        last = np.ceil((end - self.master[:, 0]) / step).astype(int)
+        step = self.master[:, 1:2] - self.master[:, :1]
+        first = np.floor((start - self.master[:, 0]) / step[:, 0]).astype(int)
+        last = np.ceil((end - self.master[:, 0]) / step[:, 0]).astype(int)
         rows = np.arange(self.phases)[:, None]
         columns = np.minimum(first[:, None] + np.arange(int((last - first).max()) + 1), self.master.shape[1] - 1)
         x, y, k = self.master[rows, columns], self.axis[rows, columns], self.axis_ratio[rows, columns]
@@ -114,7 +105,22 @@ class ServoRun:
         return x, y, k
 
 
-def hermite(part: Number, step: float, value: Sequence[Number], slope: Sequence[Number]) -> tuple[Number, Number]:
+@dataclass(frozen=True, eq=False)
+class ServoRun(AxisRun):
+    """Periodic response of one servo: a cycle at each sampling phase.
+
+    Each phase begins up to one sample before the return zone and ends beyond the sync zone.
+
+    Parameters
+    ----------
+    command
+        Commanded slave position (m), continuous in time, shape ``(phases, points)``.
+    """
+
+    command: FloatArray
+
+
+def hermite(part: Number, step: Number, value: Sequence[Number], slope: Sequence[Number]) -> tuple[Number, Number]:
     """Value and slope of the cubic through two points with slopes, at a part ``0 … 1`` of the step between."""
     rise = value[1] - value[0]
     square = 3 * rise - step * (2 * slope[0] + slope[1])
@@ -139,16 +145,39 @@ def memory(servo: Servo) -> int:
             f"lower the position gain ({servo.position_gain:g} 1/s), shorten the sample time ({servo.sample_time:g} s) "
             f"or raise the bandwidth ({servo.bandwidth:g} rad/s)"
         )
+    return memory_at(radius)
+
+
+def memory_at(radius: float) -> int:
+    """Count the samples after which a servo whose largest pole has this magnitude, below 1, has forgotten its past."""
     return max(2, math.ceil(math.log(_FORGOTTEN / _TRANSIENT_GROWTH) / math.log(max(radius, 1e-3))))
+
+
+def require_samples(cut: Cut, servo: Servo, past: int, samples: int) -> None:
+    """Refuse a simulation of more samples than fit.
+
+    Raises
+    ------
+    InputError
+        The samples that are remembered and those of the simulated part are more than 131072 together.
+    """
+    if past + samples > _MOST_SAMPLES:
+        raise InputError(
+            f"the servo simulation takes {past + samples} samples: {samples} for a cycle of {cut.period:.6g} s and "
+            f"{past} that the servo remembers; the limit is {_MOST_SAMPLES}; raise the line speed "
+            f"({cut.line_speed:g} m/s), the sample time ({servo.sample_time:g} s) or the position gain "
+            f"({servo.position_gain:g} 1/s)"
+        )
 
 
 def simulate(profile: CamProfile, cut: Cut, servo: Servo) -> ServoRun:
     """Periodic response of the servo to a profile repeated for ever.
 
-    The command is split into its mean straight line, which the servo follows with the constant error ``(1 - alpha) v
-    / K`` of eq. 2, and what is periodic in the cut length. Only the latter is simulated, so the accuracy does not
+    The command is split into its mean straight line, which the servo follows with the constant error of
+    `steady_following_error`, and what is periodic in the cut length. Only the latter is simulated, so the accuracy does not
     depend on how far the slave has run. Exact at the sampling instants and between them: no step size but the servo's
-    own.
+    own. The loop sees the command of the time ``t - delay`` (`profiles.servo.Servo.delay`): of the master position that
+    lies ``v delay`` behind.
 
     Parameters
     ----------
@@ -166,28 +195,23 @@ def simulate(profile: CamProfile, cut: Cut, servo: Servo) -> ServoRun:
         samples.
     """
     require_period(profile, cut)
-    past = memory(servo)
+    loop = servo.loop
+    past = memory(loop)
     samples = math.ceil(cut.period / servo.sample_time) + 2
-    if past + samples > _MOST_SAMPLES:
-        raise InputError(
-            f"the servo simulation takes {past + samples} samples: {samples} for a cycle of {cut.period:.6g} s and "
-            f"{past} that the servo remembers; the limit is {_MOST_SAMPLES}; raise the line speed "
-            f"({cut.line_speed:g} m/s), the sample time ({servo.sample_time:g} s) or the position gain "
-            f"({servo.position_gain:g} 1/s)"
-        )
+    require_samples(cut, servo, past, samples)
     phases = PHASES
     while phases > SUBSTEPS and phases * (past + samples) > _MOST_VALUES:
         phases //= 2
 
     # one grid for all: phase j samples at (j / phases - 1 + k) dT from the start of the return zone, k = 0, 1, …
     sample = servo.sample_time * cut.line_speed
-    index = np.arange(-(past + 1) * phases, samples * phases, dtype=np.float64)
-    master = cut.return_start + index * (sample / phases)
-    start = float(profile.coefficients[0, 0])
-    mean_ratio = (_end(profile) - start) / profile.length
-    deviation = _deviation(profile, master, mean_ratio)
-    lifted = _lift(servo, past)
-    loop = _loop(lifted, servo, deviation[: (past + samples) * phases].reshape(-1, phases))
+    master = np.arange(-(past + 1) * phases, samples * phases, dtype=np.float64)
+    master *= sample / phases
+    master += cut.return_start
+    start, slope = float(profile.coefficients[0, 0]), mean_ratio(profile)
+    periodic = deviation(profile, master)
+    shift = math.fmod(cut.line_speed * servo.delay, cut.length)  # the deviation is periodic
+    seen = deviation(profile, master - shift) if shift else periodic
 
     def by_phase(values: FloatArray) -> FloatArray:
         """Spread the common grid to ``(phases, points)``; phases overlap, so nothing is copied."""
@@ -197,26 +221,21 @@ def simulate(profile: CamProfile, cut: Cut, servo: Servo) -> ServoRun:
         spread.setflags(write=False)
         return spread
 
-    master, deviation = master[past * phases :], deviation[past * phases :]
-    line = start + mean_ratio * (master - profile.start)
-    axis = (loop @ lifted.position).reshape(phases, -1)
-    axis += by_phase(line - steady_following_error(mean_ratio * cut.line_speed, servo))
-    ratio = (loop @ (lifted.velocity / cut.line_speed)).reshape(phases, -1)
-    ratio += mean_ratio
-    return ServoRun(master=by_phase(master), command=by_phase(line + deviation), axis=axis, axis_ratio=ratio)
+    master, periodic = master[past * phases :], periodic[past * phases :]
+    line = start + slope * (master - profile.start)
+    ratio, axis = follow(
+        lift(loop, past),
+        loop,
+        seen[: (past + samples) * phases].reshape(-1, phases),
+        line[:phases] - steady_following_error(slope * cut.line_speed, servo),
+        slope,
+        cut.line_speed,
+    )
+    return ServoRun(master=by_phase(master), axis=axis, axis_ratio=ratio, command=by_phase(line + periodic))
 
 
-def _end(profile: CamProfile) -> float:
-    """Position at the end of the profile (m)."""
-    width = float(profile.breaks[-1] - profile.breaks[-2])
-    value = 0.0
-    for coefficient in reversed(profile.coefficients[-1].tolist()):
-        value = value * width + coefficient
-    return value
-
-
-def _deviation(profile: CamProfile, master: FloatArray, mean_ratio: float) -> FloatArray:
-    """Repeated profile minus the straight line through its start.
+def deviation(profile: CamProfile, master: FloatArray) -> FloatArray:
+    """Repeated profile minus the straight line through its start, which is periodic in the cut length.
 
     As the master only rises, the points of a piece follow one another: the breaks are looked up among the points, not
     the points among the breaks, and every coefficient is repeated for the points of its piece.
@@ -224,140 +243,60 @@ def _deviation(profile: CamProfile, master: FloatArray, mean_ratio: float) -> Fl
     Parameters
     ----------
     master
-        Ascending master positions (m), any number of cycles.
-    mean_ratio
-        Slope of the line, ``advance / length`` of the profile.
+        Master positions (m), any number of cycles, ascending along the last axis; shape ``(points,)`` or ``(rows, points)``.
     """
-    first, last = (math.floor((float(x) - profile.start) / profile.length) for x in (master[0], master[-1]))
-    cycles = np.arange(first, last + 1) * profile.length
-    table = np.empty((profile.degree + 2, len(cycles), profile.pieces))  # coefficients and, last, start of each piece
-    table[:-1] = profile.coefficients.T[:, None]
-    table[0] -= profile.coefficients[0, 0] + mean_ratio * (profile.breaks[:-1] - profile.start)
-    table[-1] = cycles[:, None] + profile.breaks[:-1]
-    bounds = np.searchsorted(master, table[-1].ravel())
-    bounds[0] = 0
-    counts = np.append(bounds[1:], len(master)) - bounds
-    repeated = table.reshape(profile.degree + 2, -1).repeat(counts, axis=1)
-    local = master - repeated[-1]
-    found: FloatArray = repeated[-2]
-    for coefficient in repeated[-3::-1]:  # Horner
+    table = _straightened(profile)
+    rows = master.reshape(-1, master.shape[-1])
+    least, greatest = (rows[0, 0], rows[0, -1]) if len(rows) == 1 else (rows[:, 0].min(), rows[:, -1].max())
+    first, last = (math.floor((float(x) - profile.start) / profile.length) for x in (least, greatest))
+    table = np.tile(table, last + 1 - first)
+    table[-1] += np.repeat(np.arange(first, last + 1) * profile.length, profile.pieces)
+    bounds = np.zeros((len(rows), table.shape[1] + 1), dtype=np.intp)
+    for row, bound in zip(rows, bounds, strict=True):
+        bound[1:-1] = row.searchsorted(table[-1, 1:])
+    bounds[:, -1] = rows.shape[1]
+    counts = (bounds[:, 1:] - bounds[:, :-1]).ravel()
+    if len(rows) > 1:
+        table = np.tile(table, len(rows))
+    local = master.ravel() - table[-1].repeat(counts)
+    found: FloatArray = table[-2].repeat(counts)
+    for coefficient in table[-3::-1]:  # Horner, one coefficient spread at a time: less memory is faster
         found *= local
-        found += coefficient
-    local *= mean_ratio
-    found -= local
-    return found
+        found += coefficient.repeat(counts)
+    return found.reshape(master.shape)
+
+
+@lru_cache(maxsize=8)
+def _straightened(profile: CamProfile) -> FloatArray:
+    """Coefficients of the profile minus the straight line, ascending powers, and last the start of each piece; a row each."""
+    ratio = mean_ratio(profile)
+    table = np.zeros((max(profile.degree, 1) + 2, profile.pieces))
+    table[: profile.degree + 1] = profile.coefficients.T
+    table[0] -= profile.coefficients[0, 0] + ratio * (profile.breaks[:-1] - profile.start)
+    table[1] -= ratio
+    table[-1] = profile.breaks[:-1]
+    return table
+
+
+@lru_cache(maxsize=8)
+def mean_ratio(profile: CamProfile) -> float:
+    """Slave advance over the master's: slope of the straight line that a repeated profile follows."""
+    width, end = float(profile.breaks[-1] - profile.breaks[-2]), 0.0
+    for coefficient in reversed(profile.coefficients[-1].tolist()):
+        end = end * width + coefficient
+    return (end - float(profile.coefficients[0, 0])) / profile.length
 
 
 def steady_following_error(speed: float, servo: Servo) -> float:
-    """Following error at constant speed (m), positive where the axis lags: ``(1 - alpha) v / K`` (S1, eq. 2).
+    """Following error at constant speed (m), positive where the axis lags: ``(1 - alpha) v / K + v delay``.
 
-    Without velocity feed-forward (``alpha = 0``) this is ``v / K`` (S1, eq. 1).
+    Without delay these are eq. 2 of S1 and, without velocity feed-forward (``alpha = 0``), eq. 1: ``v / K``.
 
     Parameters
     ----------
     speed
         Slave speed ``v`` (m/s).
     servo
-        The servo, of position gain ``K`` and velocity feed-forward ``alpha``.
+        The servo, of position gain ``K``, velocity feed-forward ``alpha``, dead time and lead.
     """
-    return (1.0 - servo.velocity_feedforward) * speed / servo.position_gain
-
-
-@dataclass(frozen=True, eq=False)
-class _Lifted:
-    """The closed loop over many samples at once, and between two samples; a property of the servo alone.
-
-    With the command ``c``, the state ``z`` of `profiles.servo.SampledPlant`, the closed loop's input ``f`` (m/s), all
-    as rows, and ``w = (z, f)``::
-
-        z[0]                = c[-past:0] @ history
-        w[0 … size - 1]     = z[0] @ free + f[0:size] @ forced
-        z[size]             = z[0] @ free_end + f[0:size] @ forced_end
-        position, velocity  = w @ position, w @ velocity    at the substeps after a sample
-
-    with ``history`` ``(past, 3)``, ``free`` ``(3, 4 size)``, ``forced`` ``(size, 4 size)``, ``free_end`` ``(3, 3)``,
-    ``forced_end`` ``(size, 3)``, the other two ``(4, SUBSTEPS)``; ``size`` is `_BLOCK`.
-    """
-
-    history: FloatArray
-    free: FloatArray
-    forced: FloatArray
-    free_end: FloatArray
-    forced_end: FloatArray
-    position: FloatArray
-    velocity: FloatArray
-
-
-@lru_cache(maxsize=32)
-def _lift(servo: Servo, past: int) -> _Lifted:
-    """Powers of the closed loop: ``z[j] = A^j z[0] + sum_i A^(j-1-i) b f[i]``."""
-    plant = sample_plant(servo, servo.sample_time)
-    gain, lead = servo.position_gain, servo.velocity_feedforward / servo.sample_time
-    a = plant.transition.copy()
-    a[:, 2] -= gain * plant.input
-    response = _powers_times(a, plant.input[:, None], max(past, _BLOCK) + 1)[..., 0]
-    earliest_first = np.append(response[past - 1 :: -1], np.zeros((1, 3)), axis=0)
-    powers = _powers_times(a, np.eye(3), _BLOCK + 1)
-    free = np.zeros((3, _BLOCK, 4))
-    free[..., :3] = powers[:-1].transpose(2, 0, 1)
-    forced = np.zeros((_BLOCK, _BLOCK, 4))
-    before, after = np.triu_indices(_BLOCK, 1)
-    forced[before, after, :3] = response[after - before - 1]
-    forced[np.arange(_BLOCK), np.arange(_BLOCK), 3] = 1.0
-    # between the samples the reference u = f - K p is held, so the plant alone decides: on (z, u), then on (z, f)
-    part = sample_plant(servo, servo.sample_time / SUBSTEPS)
-    held = np.eye(4)
-    held[:3] = np.column_stack([part.transition, part.input])
-    between = _powers_times(held, np.eye(4), SUBSTEPS)
-    between[:, :, 2] -= gain * between[:, :, 3]
-    return _Lifted(
-        history=(gain + lead) * earliest_first[:-1] - lead * earliest_first[1:],
-        free=free.reshape(3, -1),
-        forced=forced.reshape(_BLOCK, -1),
-        free_end=powers[-1].T.copy(),
-        forced_end=response[_BLOCK - 1 :: -1].copy(),
-        position=between[:, 2].T.copy(),
-        velocity=between[:, 1].T.copy(),
-    )
-
-
-def _powers_times(transition: FloatArray, start: FloatArray, length: int) -> FloatArray:
-    """Powers of a matrix times columns: ``A^j S`` for ``j`` = 0 … ``length - 1``, shape ``(length, rows, columns)``."""
-    found, power, done = start, transition, 1
-    while done < length:  # twice as many in each round, side by side
-        found = np.concatenate([found, power @ found], axis=1)
-        power = power @ power
-        done *= 2
-    return found.reshape(len(start), done, -1)[:, :length].transpose(1, 0, 2).copy()
-
-
-def _loop(lifted: _Lifted, servo: Servo, command: FloatArray) -> FloatArray:
-    """State and input of the closed loop at the samples after its memory, from rest before it.
-
-    All blocks and phases take one matrix product together; only the first states of the blocks depend on each other.
-
-    Parameters
-    ----------
-    command
-        The command at the samples ``c[k]`` (m), memory first, shape ``(samples, phases)``.
-
-    Returns
-    -------
-    ndarray
-        ``(z, f)`` with ``f[k] = K c[k] + alpha (c[k] - c[k-1]) / dT`` (m/s), shape ``(phases, samples - past, 4)``.
-    """
-    past = len(lifted.history)
-    phases, wanted = command.shape[1], len(command) - past
-    blocks = -(-wanted // _BLOCK)
-    lead = servo.velocity_feedforward / servo.sample_time
-    inputs = np.zeros((phases, blocks * _BLOCK))
-    inputs[:, :wanted] = ((servo.position_gain + lead) * command[past:] - lead * command[past - 1 : -1]).T
-    inputs = inputs.reshape(-1, _BLOCK)
-    ends = (inputs @ lifted.forced_end).reshape(phases, blocks, 3)
-    first = np.empty((phases, blocks, 3))
-    first[:, 0] = command[:past].T @ lifted.history
-    for block in range(1, blocks):
-        first[:, block] = first[:, block - 1] @ lifted.free_end + ends[:, block - 1]
-    found = inputs @ lifted.forced
-    found += first.reshape(-1, 3) @ lifted.free
-    return found.reshape(phases, -1, 4)[:, :wanted]
+    return (1.0 - servo.velocity_feedforward) * speed / servo.position_gain + speed * servo.delay

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 
 from profiles.cycle import Cut
@@ -52,14 +52,18 @@ class Sweep:
         return min(found, default=None), max(found, default=None)
 
 
-def sweep_servos(velocity_feedforward: float) -> tuple[Servo, ...]:
-    """Servos at all corners of `profiles.servo.PAPER_RANGES` and, last, at the centre."""
+def sweep_servos(servo: Servo) -> tuple[Servo, ...]:
+    """Servos at all corners of `profiles.servo.PAPER_RANGES` and, last, at the centre.
+
+    Parameters
+    ----------
+    servo
+        Gives what no range is published for: velocity feed-forward, dead time and lead.
+    """
     names = tuple(PAPER_RANGES)
     centre = tuple(0.5 * (low + high) for low, high in PAPER_RANGES.values())
     points = (*product(*PAPER_RANGES.values()), centre)
-    return tuple(
-        Servo(**dict(zip(names, point, strict=True)), velocity_feedforward=velocity_feedforward) for point in points
-    )
+    return tuple(replace(servo, **dict(zip(names, point, strict=True))) for point in points)
 
 
 def servo_sweep(profile: CamProfile, machine: Machine, cut: Cut, servo: Servo) -> Sweep:
@@ -70,11 +74,11 @@ def servo_sweep(profile: CamProfile, machine: Machine, cut: Cut, servo: Servo) -
     profile, machine, cut
         As in `validation.response.servo_response`.
     servo
-        Gives the velocity feed-forward, for which no range is published.
+        Gives what no range is published for.
     """
     return Sweep(
         tuple(
             SweepCase(each, servo_response(profile, machine, cut, each) if spectral_radius(each) < 1.0 else None)
-            for each in sweep_servos(servo.velocity_feedforward)
+            for each in sweep_servos(servo)
         )
     )

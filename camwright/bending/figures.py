@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from camwright.bending.program_file import BentOutline
 from design.moves import TimeTable
@@ -21,10 +22,28 @@ _PER_MOVE = 60
 _FINENESS = 3000
 """A view's width over the coarseness of arcs drawn in it."""
 
-MOST_VECTORS = 5000
+MOST_VECTORS = 50_000
 """Sides of the rule from which on the lines of the whole view are drawn as pixels."""
 
-_STYLE: dict[Any, Any] = {"svg.hashsalt": "camwright", "svg.fonttype": "path", "font.size": 9.0}
+_STYLE: dict[Any, Any] = {
+    "axes.titley": 1.0,
+    "font.size": 9.0,
+    "path.simplify": True,
+    "svg.fonttype": "path",
+    "svg.hashsalt": "camwright",
+}
+_DPI = 150
+_COMPRESSION = 3
+"""Effort of the PNG's compression, 0 to 9."""
+
+_WIDTH = 9.0
+_LEFT, _BETWEEN, _RIGHT, _BOTTOM, _TOP = 0.75, 0.75, 0.15, 0.85, 0.6
+_WIDEST, _TALLEST = 5.0, 5.6
+"""Width of the figure, its margins, and the greatest width and height of the whole view (in)."""
+
+_PLAIN = 1e4
+"""Coordinates (mm) up to which the close view's ticks show all their digits."""
+
 _DRAWN, _BENT, _WORST = "#b9c4d0", "#11304f", "#c1121f"
 
 
@@ -34,11 +53,13 @@ def draw(outline: BentOutline, directory: Path, name: str) -> None:
 
     with mpl.rc_context(_STYLE):
         for kind, figure in (("proof", _proof_figure(outline)), ("times", _times_figure(outline))):
-            if figure.get_layout_engine() is not None:
-                figure.draw_without_rendering()
-                figure.set_layout_engine("none")  # laid out once for both files
-            figure.savefig(directory / f"{name}-{kind}.svg", metadata={"Date": None, "Creator": None}, dpi=150)
-            figure.savefig(directory / f"{name}-{kind}.png", dpi=150, metadata={"Software": None})
+            figure.savefig(directory / f"{name}-{kind}.svg", metadata={"Date": None, "Creator": None}, dpi=_DPI)
+            figure.savefig(
+                directory / f"{name}-{kind}.png",
+                metadata={"Software": None},
+                dpi=_DPI,
+                pil_kwargs={"compress_level": _COMPRESSION},
+            )
 
 
 def drawn_as_pixels(outline: BentOutline) -> bool:
@@ -46,8 +67,8 @@ def drawn_as_pixels(outline: BentOutline) -> bool:
     return outline.plan.bends >= MOST_VECTORS
 
 
-def outline_path(outline: Outline, coarseness: float) -> FloatArray:
-    """Return points along an outline (m), arcs as chords within a distance of them (m)."""
+def outline_path(outline: Outline, coarseness: float | FloatArray) -> FloatArray:
+    """Return points along an outline (m), arcs as chords within a distance of them (m), one for all or one a segment."""
     radius = np.where(outline.arcs, outline.radii, 1.0)
     widest = 2 * np.arccos(1 - np.minimum(coarseness / radius, 0.5))
     steps = np.maximum(1, np.ceil(np.abs(outline.included) / widest)).astype(np.int64)
@@ -62,55 +83,82 @@ def outline_path(outline: Outline, coarseness: float) -> FloatArray:
 
 
 def _proof_figure(outline: BentOutline) -> Figure:
-    from matplotlib.figure import Figure
-
     bent, worst, deviation = 1e3 * outline.proof.points, 1e3 * outline.proof.worst, 1e3 * outline.proof.deviation
     drawn = 1e3 * outline_path(outline.plan.outline, 1e-3 * float(np.ptp(bent, axis=0).max()) / _FINENESS)
     size = np.ptp(drawn, axis=0)
-    tall = float(np.clip(size[1] / max(size[0], 1e-9), 0.45, 1.1))
-    figure = Figure(figsize=(9.0, 1.3 + 5.2 * tall), layout="constrained")
-    whole, near = figure.subplots(1, 2, width_ratios=(2, 1))
+    half = 0.56 * np.maximum(size, 0.35 * size.max())  # a straight line gets some room beside it
+    figure, whole, near = _panels(float(half[1] / half[0]))
     reach = _window(outline, worst)
-    fine = 1e3 * outline_path(outline.plan.outline, 1e-3 * reach / _FINENESS)
+    seen = _seen(outline.plan.outline, worst, reach)
+    fine = 1e3 * outline_path(outline.plan.outline, 1e-3 * np.where(seen, reach, np.inf) / _FINENESS)
     close = [_inside(points, worst, reach) for points in (fine, bent)]
     pixels = drawn_as_pixels(outline)
     for axes, (under, over), width, raster in ((whole, (drawn, bent), 3.5, pixels), (near, close, 6.0, False)):
         axes.plot(*under.T, color=_DRAWN, linewidth=width, label="drawing", solid_joinstyle="round",
-                  solid_capstyle="butt", rasterized=raster, in_layout=False)  # fmt: skip
-        axes.plot(*over.T, color=_BENT, linewidth=0.9, label="bent rule", rasterized=raster, in_layout=False)
-        axes.set_aspect("equal", adjustable="box")
-        axes.set_xlabel("x (mm)")
+                  solid_capstyle="butt", rasterized=raster)  # fmt: skip
+        axes.plot(*over.T, color=_BENT, linewidth=0.9, label="bent rule", rasterized=raster)
     bends = bent[1:-1][(np.abs(bent[1:-1] - worst) <= reach).all(axis=1)]
     near.plot(*bends.T, linestyle="none", marker="o", markersize=3.0, color=_BENT, label="bends")
     whole.plot(*bent[0], linestyle="none", marker="s", markersize=6, color="#2a9d3a", label="start")
     for axes in (whole, near):
         axes.plot(*worst, linestyle="none", marker="o", markersize=13, markerfacecolor="none", color=_WORST,
                   markeredgewidth=1.5, label=f"largest deviation {deviation:.4f} mm")  # fmt: skip
-    near.set_xlim(worst[0] - reach, worst[0] + reach)
-    near.set_ylim(worst[1] - reach, worst[1] + reach)
-    near.ticklabel_format(useOffset=False)
-    near.locator_params(nbins=5)
-    near.set_title("at the largest deviation")
-    whole.set_ylabel("y (mm)")
     middle = 0.5 * (drawn.min(axis=0) + drawn.max(axis=0))
-    half = 0.56 * np.maximum(size, 0.35 * size.max())  # a straight line gets some room beside it
-    whole.set_xlim(middle[0] - half[0], middle[0] + half[0])
-    whole.set_ylim(middle[1] - half[1], middle[1] + half[1])
+    for axes, centre, around in ((whole, middle, half), (near, worst, np.full(2, reach))):
+        axes.set_xlim(centre[0] - around[0], centre[0] + around[0])
+        axes.set_ylim(centre[1] - around[1], centre[1] + around[1])
+    near.locator_params(nbins=5)
+    near.ticklabel_format(useOffset=bool(np.abs(worst).max() > _PLAIN))
+    near.set_title("at the largest deviation")
     closing = outline.proof.closing_error
     ends = "open" if closing is None else f"closing error {1e3 * closing:.4f} mm"
-    whole.set_title(
+    title = (
         f"{outline.program.name}: {outline.plan.bends} bends, {1e3 * outline.proof.rule_length:.1f} mm of rule, {ends}"
     )
+    figure.text(_LEFT / _WIDTH, 1 - 0.22 / figure.get_figheight(), title, fontsize="large", va="center")
     handles, labels = near.get_legend_handles_labels()
     start = [(h, t) for h, t in zip(*whole.get_legend_handles_labels(), strict=True) if t == "start"]
     figure.legend(
         [*handles, *(h for h, _ in start)],
         [*labels, *(t for _, t in start)],
-        loc="outside lower center",
+        loc="lower center",
         ncols=5,
         frameon=False,
     )
     return figure
+
+
+def _panels(tall: float) -> tuple[Figure, Axes, Axes]:
+    """Place the view of the whole, ``tall`` times as high as wide, and the square close view beside it.
+
+    All places are known beforehand, those of titles and labels too: asking matplotlib to find them takes as long as drawing.
+    """
+    from matplotlib.figure import Figure
+
+    width = min(_WIDEST, _TALLEST / tall)
+    square = min(_WIDTH - width - _LEFT - _BETWEEN - _RIGHT, _TALLEST)
+    content = max(width * tall, square)
+    height = _BOTTOM + content + _TOP
+    figure = Figure(figsize=(_WIDTH, height))
+    axes = []
+    for left, across, up in ((_LEFT, width, width * tall), (_LEFT + width + _BETWEEN, square, square)):
+        low = _BOTTOM + 0.5 * (content - up)
+        box = figure.add_axes((left / _WIDTH, low / height, across / _WIDTH, up / height))
+        box.set_xlabel("x (mm)")
+        box.xaxis.set_label_coords(0.5, -0.3 / up)
+        axes.append(box)
+    axes[0].set_ylabel("y (mm)")
+    axes[0].yaxis.set_label_coords(-0.55 / width, 0.5)
+    return figure, axes[0], axes[1]
+
+
+def _seen(outline: Outline, centre: FloatArray, reach: float) -> NDArray[np.bool_]:
+    """Tell which segments may be seen in a square (mm)."""
+    points = 1e3 * outline.points - centre
+    # an arc stays this near to its chord
+    rise = np.where(outline.arcs, 0.5e3 * np.hypot(*outline.chords.T) * np.maximum(1.0, np.abs(outline.bulges)), 0.0)
+    low, high = np.minimum(points[:-1], points[1:]) - rise[:, None], np.maximum(points[:-1], points[1:]) + rise[:, None]
+    return np.asarray(((low <= reach) & (high >= -reach)).all(axis=1))
 
 
 def _inside(points: FloatArray, centre: FloatArray, reach: float) -> FloatArray:

@@ -35,6 +35,8 @@ CLOSING = 10e-6
 
 _MOST_FAULTS = 20
 _SETTLED = 200
+_NEAR = 1e-6
+"""Part of the mould's range within which a bend's mould angle is computed to tell whether it exceeds the range."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,9 +166,13 @@ def _planned(outline: Outline, job: BenderJob) -> tuple[BendPlan, list[str]]:
         for x, y in places[:3]
     ]
     if not faults:
-        factors = job.springback.by_radius(plan.radii).tolist()
-        for i, (turn, factor) in enumerate(zip(plan.turns.tolist(), factors, strict=True)):
-            mould = abs(job.springback.mould_angle(turn, factor))
+        factors = job.springback.by_radius(plan.radii)
+        # the mould angle rises with the workpiece angle: few bends come near to the greatest
+        greatest = job.springback.workpiece_angle(job.greatest_angle)
+        reach = (1 - _NEAR) * np.where(np.isnan(factors), greatest, job.greatest_angle / factors)
+        for i in np.flatnonzero(np.abs(plan.turns) > reach).tolist():
+            turn = float(plan.turns[i])
+            mould = abs(job.springback.mould_angle(turn, float(factors[i])))
             if mould > job.greatest_angle:
                 x, y = 1e3 * plan.vertices[i + 1]
                 faults.append(

@@ -51,10 +51,14 @@ def export_command(
     from camwright.answers import to_json
     from camwright.export import export_answer, export_possible, export_report
     from camwright.files import staged
+    from camwright.provenance import camwright_version
     from camwright.table_options import parse_targets, parse_units
     from camwright.units import quantity
+    from camwright.withheld import copy_aside, older_tables, remove
     from profiles.errors import InputError
     from profiles.tables.knots import Accuracy
+    from profiles.tables.target import Header
+    from profiles.tables.targets import target_of
 
     names = parse_targets(to)
     accuracy = Accuracy(position=quantity(max_error, "length"))
@@ -70,12 +74,21 @@ def export_command(
         if refused and (to.strip() != "all" or not results):
             raise InputError(*(f"{name}: {fault}" for name, faults in refused.items() for fault in faults))
         step("writing files")
+        withheld = [result.target for result in results if not result.files]
+        withheld += [target_of(name) for name in refused]
+        older = older_tables(directory, withheld, Header(job.name, camwright_version()))
         with staged(directory) as aside:
             for result in results:
                 for name, text in result.files.items():
                     (aside / name).write_bytes(text.encode())
-            (aside / "report.json").write_bytes(to_json(export_report(results, job, refused)).encode())
-    voice.answer(lambda: export_answer(results), lambda: _export_view(results, refused, directory))
+            copy_aside(directory, aside, older)
+            report = {**export_report(results, job, refused), "set_aside": older}
+            (aside / "report.json").write_bytes(to_json(report).encode())
+        remove(directory, older)
+    voice.answer(
+        lambda: {**export_answer(results), "set_aside": older},
+        lambda: _export_view(results, refused, older, directory),
+    )
     return 0 if all(result.passed for result in results) else 1
 
 
@@ -146,7 +159,12 @@ def targets_command(as_json: _Json = False, quiet: _Quiet = False) -> int:
     return 0
 
 
-def _export_view(results: list[Exported], refused: dict[str, tuple[str, ...]], directory: Path) -> RenderableType:
+def _export_view(
+    results: list[Exported],
+    refused: dict[str, tuple[str, ...]],
+    older: dict[str, dict[str, str]],
+    directory: Path,
+) -> RenderableType:
     from rich.console import Group
     from rich.table import Table
     from rich.text import Text
@@ -168,6 +186,11 @@ def _export_view(results: list[Exported], refused: dict[str, tuple[str, ...]], d
         )
     note = "No table was tested on a controller. Check the integrity of the data after every import."
     notes = [Text(f"{name} cannot take this cam: {'; '.join(faults)}") for name, faults in refused.items()]
+    notes += [
+        Text(f"{name}: the new table is withheld; the older {old} is now {new}", "yellow")
+        for name, names in older.items()
+        for old, new in names.items()
+    ]
     for result in results:
         rough = result.dense.deviation.acceleration if result.dense else None
         if rough is not None and rough > (result.deviation.acceleration or 0.0):

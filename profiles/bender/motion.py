@@ -15,6 +15,9 @@ from profiles.limits import Limits
 from profiles.polynomial import FloatArray
 from profiles.reach import fastest
 
+_HALVINGS = 36
+"""Bisections of a piece of a move, down to a part of 1e-11 of it."""
+
 
 @dataclass(frozen=True, eq=False)
 class Moves:
@@ -56,6 +59,28 @@ class Moves:
                 term *= since
             total += term
         return total
+
+    def reaching(self, distance: FloatArray) -> FloatArray:
+        """Find when (s) double-S moves have covered distances of shape ``(n,)``; the duration if they never do."""
+        until = self.position(self.knots[:, 1:-1])
+        piece = (until < distance[:, None]).sum(axis=1)
+        rows = np.arange(len(piece))
+        start, end = self.knots[rows, piece], self.knots[rows, piece + 1]
+        # the truncated powers at work in the piece, as one cubic of the time since its start
+        since = np.maximum(start[:, None] - self.knots, 0.0)
+        weights = np.where(np.arange(self.knots.shape[1]) <= piece[:, None], self.weights, 0.0)
+        d = weights.sum(axis=1)
+        weights *= since
+        c = 3 * weights.sum(axis=1)
+        weights *= since
+        b = 3 * weights.sum(axis=1)
+        a = (weights * since).sum(axis=1) - distance
+        low, high = np.zeros(len(piece)), end - start
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (low + high)
+            short = a + middle * (b + middle * (c + middle * d)) < 0
+            low, high = np.where(short, middle, low), np.where(short, high, middle)
+        return np.asarray(start + high, dtype=np.float64)
 
     def take(self, rows: NDArray[np.int64]) -> Moves:
         """Pick moves by their row."""

@@ -65,24 +65,23 @@ def write_program(program: NcProgram, flavour: Flavour, numbering: Numbering, sp
     lines = [f"%{program.name}"] if flavour == "fagor" else ["%", f"({program.name})"]
     head = [*_HEADER[flavour][:-1], f"{_HEADER[flavour][-1]} F{speed:.3f}"]
     lines += [f"N{i + 1:03d} {words}" for i, words in enumerate(head)]
-    numbers = iter(numbering.numbers(program.blocks + 1).tolist())
-    zero = "Y0.0" if flavour == "fagor" else "Y0.000"
-    for feed, bend in zip(program.feeds.tolist(), [*program.bends.tolist(), None], strict=True):
-        if feed:
-            lines.append(f"N{next(numbers):03d} G01 G91 X{_decimal(feed)}")
-        if bend is not None:
-            lines.append(f"N{next(numbers):03d} G01 G90 Y{_decimal(bend % FULL_TURN)}")  # right: 360° - beta
-            lines.append(f"N{next(numbers):03d} G01 G90 {zero}")
-    lines.append(f"N{next(numbers):03d} M30")
+    numbers = numbering.numbers(program.blocks + 1)
+    at = program.bend_blocks()
+    feeds, bends = np.divmod(program.feeds, 1000), np.divmod(program.bends % FULL_TURN, 1000)  # right: 360° - beta
+    columns = (numbers[at - 1], feeds[0][:-1], feeds[1][:-1], numbers[at], *bends, numbers[at + 1])
+    bent = "N%03d G01 G90 Y%d.%03d\nN%03d G01 G90 " + ("Y0.0" if flavour == "fagor" else "Y0.000")
+    fed_and_bent = f"{_FED}\n{bent}"
+    for row in zip(*(column.tolist() for column in columns), strict=True):
+        lines.append(fed_and_bent % row if row[1] or row[2] else bent % row[3:])
+    if program.feeds[-1]:
+        lines.append(_FED % (numbers[-2], feeds[0][-1], feeds[1][-1]))
+    lines.append(f"N{numbers[-1]:03d} M30")
     if flavour == "iso":
         lines.append("%")
     return "\n".join(lines) + "\n"
 
 
-def _decimal(thousandths: int) -> str:
-    return f"{thousandths // 1000}.{thousandths % 1000:03d}"
-
-
+_FED = "N%03d G01 G91 X%d.%03d"
 _MOTION = re.compile(r"N\d{3,8} G01 (G91 X|G90 Y)(-?)(\d{1,9})\.(\d{1,3})")
 _END = re.compile(r"N\d{3,8} M30")
 _HEAD = re.compile(r"N\d{3,8}(?: (?:G71|G21|G07|G61|G94|F\d+\.\d{3}))+")

@@ -113,32 +113,13 @@ class CrankSlider(Machine):
         """Crank angle at the start of the sync zone (rad)."""
         if math.isnan(self.sync_at):
             raise InputError(
-                "the place of the sync zone on the crank is not chosen yet; design the job first, or give machine.sync_at"
+                "the place of the sync zone on the crank is not chosen yet; design the job first, or give [machine] sync_at"
             )
-        travel = cut.sync_ratio * cut.sync_zone
-        if travel >= self.stroke:
-            raise InputError(
-                f"cut.sync_zone needs {travel * 1e3:.6g} mm of carriage travel, the crank's stroke is {self.stroke * 1e3:.6g} mm; "
-                f"shorten the sync zone below {self.stroke / cut.sync_ratio * 1e3:.6g} mm or take a longer crank"
-            )
-        middle = float(self.tool(self.sync_at))
-        back, front = self.dead_centres
-        behind = middle - 0.5 * travel - float(self.tool(back))
-        ahead = float(self.tool(front)) - middle - 0.5 * travel
-        if not (back < self.sync_at < front and behind > 0 and ahead > 0):
-            least, greatest = self.sync_range(cut)
-            raise InputError(
-                f"machine.sync_at {math.degrees(self.sync_at):.6g}° leaves no room for the sync zone between the dead centres; it must lie "
-                f"between {math.degrees(least):.6g}° and {math.degrees(greatest):.6g}°"
-            )
-        return float(self.angle_at(np.array([middle - 0.5 * travel]))[0])
+        return _sync_start(self, cut.sync_zone, cut.sync_ratio)
 
     def sync_range(self, cut: Cut) -> tuple[float, float]:
         """Crank angles between which `sync_at` must lie for the sync zone to fit between the dead centres (rad)."""
-        half = 0.5 * cut.sync_ratio * cut.sync_zone
-        back, front = self.dead_centres
-        least, greatest = self.angle_at(np.array([float(self.tool(back)) + half, float(self.tool(front)) - half]))
-        return float(least), float(greatest)
+        return _sync_range(self, cut.sync_ratio * cut.sync_zone)
 
     def sync_profile(self, cut: Cut) -> CamProfile:
         """Crank angle in the sync zone: ``X(alpha) = X(alpha_start) + s x`` with the sync ratio ``s``."""
@@ -160,6 +141,36 @@ class CrankSlider(Machine):
             if settled:
                 break
         return np.asarray(angle)
+
+
+@lru_cache(maxsize=256)
+def _sync_start(machine: CrankSlider, zone: float, ratio: float) -> float:
+    """Crank angle at the start of the sync zone; kept, because line speed and cut length do not change it."""
+    travel = ratio * zone
+    if travel >= machine.stroke:
+        raise InputError(
+            f"[cut] sync_zone needs {travel * 1e3:.6g} mm of carriage travel, the crank's stroke is {machine.stroke * 1e3:.6g} mm; shorten "
+            f"the sync zone below {machine.stroke / ratio * 1e3:.6g} mm or take a longer crank"
+        )
+    middle = float(machine.tool(machine.sync_at))
+    back, front = machine.dead_centres
+    behind = middle - 0.5 * travel - float(machine.tool(back))
+    ahead = float(machine.tool(front)) - middle - 0.5 * travel
+    if not (back < machine.sync_at < front and behind > 0 and ahead > 0):
+        least, greatest = _sync_range(machine, travel)
+        raise InputError(
+            f"[machine] sync_at = {math.degrees(machine.sync_at):.6g} deg leaves no room for the sync zone between the dead centres; it "
+            f"must lie between {math.degrees(least):.6g} deg and {math.degrees(greatest):.6g} deg"
+        )
+    return float(machine.angle_at(np.array([middle - 0.5 * travel]))[0])
+
+
+def _sync_range(machine: CrankSlider, travel: float) -> tuple[float, float]:
+    """Crank angles between which the middle of a carriage travel must lie."""
+    back, front = machine.dead_centres
+    ends = np.array([float(machine.tool(back)) + 0.5 * travel, float(machine.tool(front)) - 0.5 * travel])
+    least, greatest = machine.angle_at(ends)
+    return float(least), float(greatest)
 
 
 @lru_cache(maxsize=256)

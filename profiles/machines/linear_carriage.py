@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 from profiles.cycle import Cut
 from profiles.errors import InputError
-from profiles.machines.machine import Machine, SlaveUnit
+from profiles.machines.machine import Machine, SlaveUnit, straight_sync
 from profiles.polynomial import CamProfile
 
 
@@ -56,14 +56,14 @@ class LinearCarriage(Machine):
         travel = cut.sync_ratio * cut.sync_zone
         if travel >= self.stroke:
             raise InputError(
-                f"machine.stroke {self.stroke * 1e3:.6g} mm is too short for the sync zone, over which the carriage travels "
-                f"{travel * 1e3:.6g} mm; lengthen the stroke or shorten cut.sync_zone below {self.stroke / cut.sync_ratio * 1e3:.6g} mm"
+                f"[machine] stroke {self.stroke * 1e3:.6g} mm is too short for the sync zone, over which the carriage travels "
+                f"{travel * 1e3:.6g} mm; lengthen the stroke or shorten [cut] sync_zone below {self.stroke / cut.sync_ratio * 1e3:.6g} mm"
             )
         return self.home + 0.5 * (self.stroke - travel)
 
     def sync_profile(self, cut: Cut) -> CamProfile:
         """Slave in the sync zone: ``y = s x`` with the sync ratio ``s``."""
-        return CamProfile.from_arrays([0.0, cut.sync_zone], [[0.0, cut.sync_ratio]])
+        return straight_sync(cut.sync_zone, cut.sync_ratio)
 
     def tool(self, y: Any) -> Any:
         """Return the carriage itself."""

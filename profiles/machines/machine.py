@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, ClassVar, Literal
 
 from profiles.cycle import Cut
@@ -70,3 +71,9 @@ class Machine(ABC):
     def friction(self) -> float:
         """Friction against the motion (N for m, N·m for rad), a magnitude."""
         return 0.0
+
+
+@lru_cache(maxsize=256)
+def straight_sync(zone: float, ratio: float) -> CamProfile:
+    """Slave that moves at a constant ratio over a sync zone of a length (m); kept, because it is asked for again and again."""
+    return CamProfile.from_arrays([0.0, zone], [[0.0, ratio]])

@@ -12,7 +12,7 @@ import numpy as np
 from profiles.cycle import Cut
 from profiles.errors import InputError
 from profiles.fitting import fit_profile
-from profiles.machines.machine import Machine, SlaveUnit
+from profiles.machines.machine import Machine, SlaveUnit, straight_sync
 from profiles.polynomial import CamProfile, FloatArray
 
 Sync = Literal["tangential", "horizontal"]
@@ -80,7 +80,7 @@ class RotaryKnife(Machine):
             return -half
         if cut.sync_zone > self.greatest_sync_zone(cut.sync_ratio):
             raise InputError(
-                f"cut.sync_zone {cut.sync_zone * 1e3:.6g} mm takes the blade beyond ±{math.degrees(GREATEST_ANGLE):.0f}° from the cut "
+                f"[cut] sync_zone {cut.sync_zone * 1e3:.6g} mm takes the blade beyond ±{math.degrees(GREATEST_ANGLE):.0f}° from the cut "
                 f"point, where horizontal sync ends; the longest possible is "
                 f"{self.greatest_sync_zone(cut.sync_ratio) * 1e3:.6g} mm"
             )
@@ -89,7 +89,7 @@ class RotaryKnife(Machine):
     def sync_profile(self, cut: Cut) -> CamProfile:
         """Slave in the sync zone: ``y = s x``, or ``r sin(y / r) = s (x - l_s / 2)``, with the sync ratio ``s``."""
         if self.sync == "tangential":
-            return CamProfile.from_arrays([0.0, cut.sync_zone], [[0.0, cut.sync_ratio]])
+            return straight_sync(cut.sync_zone, cut.sync_ratio)
         self.sync_start(cut)  # refuses a zone beyond the greatest angle
         return _horizontal(self.radius, cut.sync_zone, cut.sync_ratio)
 

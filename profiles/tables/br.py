@@ -142,6 +142,7 @@ TARGET = Target(
         "Hand CamData to MC_BR_CamPrepare, then couple with MC_BR_CamIn or the cam automat.",
         "Positions are whole units of the axes; the head of the file states which.",
     ),
+    endings=("_br.st",),
     write=write,
     read=read,
     rebuild=rebuild,

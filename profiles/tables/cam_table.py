@@ -194,13 +194,15 @@ def sample_profile(profile: CamProfile, x: FloatArray, units: Units, law: PieceL
     A knot holds one ratio and one ratio slope. Where the profile's own values jump, the mean of both sides is taken.
     """
     master, slave = units.master.size, units.slave.size
+    on_break = profile.breaks[np.searchsorted(profile.breaks, x).clip(max=profile.pieces)] == x
     columns = []
     for order in range(3):
-        right, left = profile(x, order), profile(x, order, side="left")
-        columns.append(0.5 * (right + left) * (master**order / slave))
+        value = profile(x, order)
+        value[on_break] = 0.5 * (value[on_break] + profile(x[on_break], order, side="left"))
+        columns.append(value * (master**order / slave))
     laws: tuple[PieceLaw, ...] = (law,) * (len(x) - 1)
     if law == "quintic":
-        straight = np.array([not np.any(row[2:]) for row in profile.coefficients])
+        straight = ~np.asarray(profile.coefficients[:, 2:].any(axis=1))
         piece = np.searchsorted(profile.breaks, 0.5 * (x[1:] + x[:-1]), side="right") - 1
         whole = np.searchsorted(profile.breaks, x[1:], side="left") - 1 == piece  # the span holds no break inside
         laws = tuple("line" if flat else "quintic" for flat in straight[piece] & whole)

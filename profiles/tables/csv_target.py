@@ -110,6 +110,7 @@ TARGET = Target(
         "Read the file with a script or a spreadsheet: the header names columns and units.",
         "Between two rows the cam is the quintic through position, ratio and ratio slope of both.",
     ),
+    endings=("_cam.csv",),
     write=write,
     read=read,
     rebuild=rebuild,

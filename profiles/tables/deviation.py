@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -47,29 +48,57 @@ def deviation(profile: CamProfile, rebuilt: CamProfile) -> Deviation:
     rebuilt
         What the drive makes of the table, in SI units.
     """
+    worst, peak = _worst(profile, rebuilt, _NODES)
+    return Deviation(worst[0], worst[1], worst[2] / max(peak, 1e-300) if _bounded(profile, rebuilt) else None)
+
+
+def glance(profile: CamProfile, rebuilt: CamProfile, peak: float) -> Deviation:
+    """Bound `deviation` from below, in a fifth of its time: by both ends and the middle of every piece.
+
+    Parameters
+    ----------
+    profile, rebuilt
+        As in `deviation`.
+    peak
+        Greatest magnitude of the profile's ratio slope.
+    """
+    worst, _ = _worst(profile, rebuilt, _NODES[::8])
+    acceleration = worst[2] / max(peak * (1.0 + 1e-12), 1e-300)
+    return Deviation(worst[0], worst[1], acceleration if _bounded(profile, rebuilt) else None)
+
+
+def _worst(profile: CamProfile, rebuilt: CamProfile, nodes: FloatArray) -> tuple[list[float], float]:
+    """Greatest deviations of position, ratio and ratio slope at places of the pieces, and the profile's greatest slope."""
     start, end = max(profile.start, rebuilt.start), min(profile.end, rebuilt.end)
     breaks = np.union1d(profile.breaks, rebuilt.breaks)
     breaks = np.concatenate([[start], breaks[(breaks > start) & (breaks < end)], [end]])
     middle = 0.5 * (breaks[1:] + breaks[:-1])
-    x = breaks[:-1, None] + np.diff(breaks)[:, None] * _NODES
+    x = breaks[:-1] + np.diff(breaks) * nodes[:, None]
     worst: list[float] = []
-    for order in range(3):
-        wanted, found = _on_pieces(profile, middle, x, order), _on_pieces(rebuilt, middle, x, order)
-        worst.append(float(np.abs(found - wanted).max()))
-        peak = float(np.abs(wanted).max())
+    for wanted, found in zip(_on_pieces(profile, middle, x), _on_pieces(rebuilt, middle, x), strict=True):
+        peak = max(float(wanted.max()), -float(wanted.min()))
+        off = found
+        off -= wanted
+        worst.append(max(float(off.max()), -float(off.min())))
+    return worst, peak
+
+
+def _bounded(profile: CamProfile, rebuilt: CamProfile) -> bool:
+    """Say whether the rebuilt ratio does not jump, so that there is an acceleration."""
     scale = max(1.0, float(np.abs(profile(profile.breaks[:-1], 1)).max()))
-    bounded = float(np.abs(rebuilt.jumps(1)).max()) <= _JUMP * scale
-    return Deviation(worst[0], worst[1], worst[2] / max(peak, 1e-300) if bounded else None)
+    return float(np.abs(rebuilt.jumps(1)).max()) <= _JUMP * scale
 
 
-def _on_pieces(profile: CamProfile, middle: FloatArray, x: FloatArray, order: int) -> FloatArray:
-    """Evaluate a derivative at the places ``x`` (shape ``(pieces, n)``) by the pieces that hold the middles."""
+def _on_pieces(profile: CamProfile, middle: FloatArray, x: FloatArray) -> Iterator[FloatArray]:
+    """Evaluate position, ratio and ratio slope at places ``x``, shape ``(n, pieces)``, by the pieces that hold the middles."""
     index = np.clip(np.searchsorted(profile.breaks, middle, side="right") - 1, 0, profile.pieces - 1)
-    table = profile.coefficients[index]
-    for _ in range(order):
-        table = table[:, 1:] * np.arange(1, table.shape[1])
-    local = x - profile.breaks[index][:, None]
-    value = np.zeros_like(local)
-    for power in range(table.shape[1] - 1, -1, -1):  # Horner
-        value = value * local + table[:, power, None]
-    return value
+    local = x - profile.breaks[index]
+    table = profile.coefficients
+    for order in range(3):
+        if order:
+            table = table[:, 1:] * np.arange(1, table.shape[1])
+        value = np.zeros_like(local)
+        for coefficient in table.T[::-1]:  # Horner
+            value *= local
+            value += coefficient[index]
+        yield value

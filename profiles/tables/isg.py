@@ -177,6 +177,7 @@ TARGET = Target(
         "Set up both axes as modulo axes: the master turns 360° a cycle, the slave's modulo is its travel per cycle.",
         "Command MC_CamIn with FunctionType TableDefined, start mode EndlessPositive if the slave keeps turning.",
     ),
+    endings=("_isg.txt",),
     write=write,
     read=read,
     rebuild=rebuild,

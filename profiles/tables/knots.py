@@ -11,7 +11,7 @@ import numpy as np
 from profiles.errors import InputError
 from profiles.polynomial import CamProfile, FloatArray
 from profiles.tables.cam_table import CamTable, Unit, Units, sample_profile
-from profiles.tables.deviation import Deviation, deviation
+from profiles.tables.deviation import Deviation, deviation, glance
 from profiles.tables.number_formats import rounded
 from profiles.tables.placing import candidates, required_points, zone_ends
 from profiles.tables.target import Target
@@ -90,33 +90,64 @@ def choose(
         most = target.max_points or points
         if not target.min_points <= points <= most:
             raise InputError(f"{target.name} takes {target.min_points} to {most} points; {points} are asked for")
-    best: Choice | None = None
     required = required_points(profile, zone_ends(profile) if zones is None else zones)
     least, greatest = profile.extrema(2)
-    allowed = np.array(
-        [accuracy.position, accuracy.ratio, accuracy.acceleration * max(-least.value, greatest.value, 1e-300)]
-    )
+    peak = max(-least.value, greatest.value, 1e-300)
+    allowed = np.array([accuracy.position, accuracy.ratio, accuracy.acceleration * peak])
+    tried: list[tuple[float, int, FloatArray]] = []
     for x in candidates(profile, target, required, allowed, points):
-        choice = _try(profile, target, units, x)
-        if best is None or points is not None or _misses(choice, accuracy) < _misses(best, accuracy):
-            best = choice  # of the points asked for, the last candidate has the most
-        if points is None and accuracy.kept_by(choice.deviation):
-            return choice
-    if best is None:
+        table, rebuilt = _rebuilt(profile, target, units, x)
+        bound = _misses(glance(profile, rebuilt, peak), accuracy)
+        if points is None and bound <= 1.0:
+            choice = Choice(table, rebuilt, deviation(profile, rebuilt))
+            if accuracy.kept_by(choice.deviation):
+                return choice
+        tried.append((bound, len(tried), x))
+    if not tried:
         raise InputError(
             f"{target.name} takes at most {points or target.max_points} points, too few for the pieces of this profile"
         )
+    if points is not None:  # of the points asked for, the last candidate has the most
+        return _chosen(profile, target, units, tried[-1][2])
+    return _nearest(profile, target, units, accuracy, tried)
+
+
+def _nearest(
+    profile: CamProfile,
+    target: Target,
+    units: Units,
+    accuracy: Accuracy,
+    tried: Sequence[tuple[float, int, FloatArray]],
+) -> Choice:
+    """Choose the candidate with the least deviation; of equals the first.
+
+    Candidates come with what they miss the accuracy by at least, so most of them need not be looked at closely.
+    """
+    order = sorted(tried, key=lambda entry: entry[:2])
+    best = _chosen(profile, target, units, order[0][2])
+    least = _misses(best.deviation, accuracy), order[0][1]
+    for bound, number, x in order[1:]:
+        if bound > least[0]:
+            break
+        choice = _chosen(profile, target, units, x)
+        found = _misses(choice.deviation, accuracy), number
+        if found < least:
+            best, least = choice, found
     return best
 
 
-def _misses(choice: Choice, accuracy: Accuracy) -> float:
+def _misses(found: Deviation, accuracy: Accuracy) -> float:
     """By how many times the worst deviation exceeds what it may be."""
-    found = choice.deviation
     acceleration = 0.0 if found.acceleration is None else found.acceleration / accuracy.acceleration
     return max(found.position / accuracy.position, found.ratio / accuracy.ratio, acceleration)
 
 
-def _try(profile: CamProfile, target: Target, units: Units, x: FloatArray) -> Choice:
+def _chosen(profile: CamProfile, target: Target, units: Units, x: FloatArray) -> Choice:
+    table, rebuilt = _rebuilt(profile, target, units, x)
+    return Choice(table, rebuilt, deviation(profile, rebuilt))
+
+
+def _rebuilt(profile: CamProfile, target: Target, units: Units, x: FloatArray) -> tuple[CamTable, CamProfile]:
     """Sample the profile where the target's number format can put its points, and rebuild the motion."""
     if target.placing == "equidistant" and target.number_format == "int32":  # the drive counts points
         finest = Unit("0.1um", 1e-7) if units.slave.si == "m" else Unit("1e-5deg", math.radians(1e-5), "rad")
@@ -128,8 +159,7 @@ def _try(profile: CamProfile, target: Target, units: Units, x: FloatArray) -> Ch
     if target.law == "quintic" and target.number_format == "float32":
         # the chord between two rounded points has not quite the ratio that its neighbours end with
         table = replace(table, laws=(target.law,) * len(table.laws))
-    rebuilt = units.to_si(target.rebuild(table))
-    return Choice(table, rebuilt, deviation(profile, rebuilt))
+    return table, units.to_si(target.rebuild(table))
 
 
 def table_units(target: Target, profile: CamProfile, units: Units) -> Units:

@@ -96,6 +96,7 @@ TARGET = Target(
         ),
         "Check that the profile is cyclic and its first and last velocity agree.",
     ),
+    endings=("_kas.csv", "_kas.txt"),
     write=write,
     read=read,
     rebuild=rebuild,

@@ -70,6 +70,7 @@ TARGET = Target(
         "The positions are the user units of both axes: set them as the comments in the file state.",
         "Record the first cycles at low speed: how the drive interpolates is not documented.",
     ),
+    endings=("_lenze.txt",),
     write=write,
     read=read,
     rebuild=rebuild,

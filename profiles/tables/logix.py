@@ -306,6 +306,7 @@ TARGET = Target(
         "Start the cam with MAPC, execution mode Continuous, once the Status of the profile's first element is 2.",
         "The values have no units: set the scaling of the axes as the head of the file states.",
     ),
+    endings=("_Cam.L5X", "_Cam_mccp.txt"),
     write=write,
     read=read,
     rebuild=rebuild,

@@ -101,6 +101,7 @@ TARGET = Target(
         ),
         "The units are those of the axes: set them as the head of the file states.",
     ),
+    endings=("_pacdrive.st",),
     write=write,
     read=read,
     rebuild=rebuild,

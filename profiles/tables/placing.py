@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -40,7 +41,7 @@ def zone_ends(profile: CamProfile) -> FloatArray:
 
 def straight_pieces(profile: CamProfile) -> NDArray[np.bool_]:
     """Say of each piece whether the ratio is constant on it; shape ``(pieces,)``."""
-    return np.array([not np.any(row[2:]) for row in profile.coefficients])
+    return np.asarray(~profile.coefficients[:, 2:].any(axis=1))
 
 
 def required_points(profile: CamProfile, zones: Sequence[float] | FloatArray) -> FloatArray:
@@ -92,9 +93,9 @@ def candidates(
 def _thinned(profile: CamProfile, required: FloatArray, gap: float) -> FloatArray:
     """Give the breaks and the required points, without breaks that lie nearer to another point than the gap."""
     kept = required.tolist()
-    for at in profile.breaks:
-        if np.abs(np.array(kept) - at).min() > gap:
-            kept.append(float(at))
+    for at in profile.breaks.tolist():
+        if min(abs(other - at) for other in kept) > gap:
+            kept.append(at)
     return np.unique(kept)
 
 
@@ -114,7 +115,8 @@ def _pieces(
     x = required
     if len(x) > most:
         return
-    missed = [_missed(profile, *span, allowed) for span in pairwise(x)]
+    may = float(allowed[0]), float(allowed[1]), float(allowed[2])
+    missed = [_missed(profile, *span, may) for span in pairwise(x.tolist())]
     shown = 0
     while True:
         done = max(missed) <= 1.0 and points is None
@@ -125,7 +127,7 @@ def _pieces(
         if len(x) >= most or np.diff(x)[worst] <= 4.0 * least:
             return
         x = _inserted(profile, x, worst, least)
-        missed[worst : worst + 1] = [_missed(profile, x[k], x[k + 1], allowed) for k in (worst, worst + 1)]
+        missed[worst : worst + 1] = [_missed(profile, *span, may) for span in pairwise(x[worst : worst + 3].tolist())]
 
 
 def _inserted(profile: CamProfile, x: FloatArray, piece: int, least: float = 0.0) -> FloatArray:
@@ -136,7 +138,8 @@ def _inserted(profile: CamProfile, x: FloatArray, piece: int, least: float = 0.0
     return np.insert(x, piece + 1, at)
 
 
-def _missed(profile: CamProfile, left: float, right: float, allowed: FloatArray) -> float:
+@lru_cache(maxsize=2048)  # each target with quintics asks for the same spans
+def _missed(profile: CamProfile, left: float, right: float, allowed: tuple[float, float, float]) -> float:
     """By how many times the quintic between two points misses the profile more than it may."""
     rebuilt = quintics(sample_profile(profile, np.array([left, right]), _METRES))
     inside = profile.breaks[(profile.breaks > left) & (profile.breaks < right)]
@@ -157,15 +160,23 @@ def _subdivided(
     near = _SAME * profile.length
     whole = (profile.breaks[piece] <= breaks[:-1] + near) & (profile.breaks[piece + 1] >= breaks[1:] - near)
     straight = straight_pieces(profile)[piece] & whole
-    carried = np.array([not np.any(row[4 if spline else 2 :]) for row in profile.coefficients])[piece] & whole
+    carried = ~np.asarray(profile.coefficients[:, 4 if spline else 2 :].any(axis=1))[piece] & whole
     width = np.diff(breaks)
     reach = float(width[~straight].sum()) or profile.length
 
     def divided(divisions: float) -> FloatArray:
-        parts = [np.array([profile.start])]
         step = reach / divisions
-        for left, right, flat in zip(breaks, breaks[1:], straight, strict=False):
-            parts.append(_graded(left, right, step) if flat and spline else _divided(left, right, step, flat))
+        counts = np.where(straight, 1, np.maximum(1, np.rint(width / step))).astype(np.int64)
+        if not (spline and straight.any()):
+            return np.concatenate([[profile.start], _evenly(breaks[:-1], breaks[1:], counts)])
+        parts = [np.array([profile.start])]
+        ends = np.flatnonzero(np.diff(straight, prepend=~straight[0], append=~straight[-1]))
+        for first, last in pairwise(ends.tolist()):  # runs of pieces of one kind
+            left, right = breaks[first:last], breaks[first + 1 : last + 1]
+            if straight[first]:
+                parts += [_graded(*span, step) for span in zip(left, right, strict=True)]
+            else:
+                parts.append(_evenly(left, right, counts[first:last]))
         return np.concatenate(parts)
 
     if points is not None:
@@ -186,10 +197,13 @@ def _subdivided(
         divisions *= _GROWTH
 
 
-def _divided(left: float, right: float, step: float, flat: bool) -> FloatArray:
-    """Even points of a piece without its left end; of a straight one its right end only."""
-    count = 1 if flat else max(1, round((right - left) / step))
-    return np.linspace(left, right, count + 1)[1:]
+def _evenly(left: FloatArray, right: FloatArray, counts: NDArray[np.int64]) -> FloatArray:
+    """Even points of neighbouring pieces, so many a piece, without the left end of the first."""
+    last = np.cumsum(counts)
+    number = 1 + np.arange(last[-1]) - np.repeat(last - counts, counts)
+    points = number * np.repeat((right - left) / counts, counts) + np.repeat(left, counts)
+    points[last - 1] = right
+    return np.asarray(points, dtype=np.float64)
 
 
 def _graded(left: float, right: float, step: float) -> FloatArray:

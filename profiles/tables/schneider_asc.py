@@ -113,6 +113,7 @@ TARGET = Target(
         "Check period, travel and the slopes at both ends against the text beside the file.",
         "The units are those of the axes: set them as the text beside the file states.",
     ),
+    endings=(".asc", "_asc.txt"),
     write=write,
     read=read,
     rebuild=rebuild,

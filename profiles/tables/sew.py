@@ -74,6 +74,7 @@ TARGET = Target(
         ),
         "The positions are user units of both axes: set them as the text beside the file states.",
     ),
+    endings=("_sew.txt", "_sew_head.txt"),
     write=write,
     read=read,
     rebuild=rebuild,

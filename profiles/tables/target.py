@@ -145,6 +145,8 @@ class Target:
         Where the layout and the interpolation are known from, and what was inferred.
     steps
         What the engineer does to bring the table into the controller.
+    endings
+        What the names of its files end with, behind the header's identifier.
     write
         The table and its header as files, by name.
     read
@@ -168,9 +170,14 @@ class Target:
     number_format: NumberFormat
     evidence: str
     steps: tuple[str, ...]
+    endings: tuple[str, ...]
     write: Callable[[CamTable, Header], dict[str, str]]
     read: Callable[[str, str], CamTable]
     rebuild: Callable[[CamTable], CamProfile]
     tested_on_controller: bool = False
     min_points: int = 2
     least_step: float = 0.0
+
+    def file_names(self, header: Header) -> tuple[str, ...]:
+        """Names of the files that `write` makes."""
+        return tuple(header.identifier + ending for ending in self.endings)

@@ -85,6 +85,7 @@ TARGET = Target(
             "both axes so."
         ),
     ),
+    endings=("_technosoft.txt", "_technosoft_head.txt"),
     write=write,
     read=read,
     rebuild=rebuild,

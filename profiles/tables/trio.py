@@ -85,6 +85,7 @@ TARGET = Target(
         ),
         "Table values are encoder edges from the start of the cycle: the text beside the file states how long one is.",
     ),
+    endings=("_trio.bas", "_trio.txt"),
     write=write,
     read=read,
     rebuild=rebuild,

@@ -24,6 +24,8 @@ Every file is read back by the target's own reader, the motion is rebuilt as the
 format, run over three wraps and judged: limits (1 % allowed), sync zone against the sync tolerance, closure, stroke,
 reversal, servo. The answer, with all errors and checks, stands in `report.json` beside the tables. A table that fails is
 not released unless `--force` is given, and then says so in its head (`NOT RELEASED: …`); either way the exit code is 1.
+Where a table is withheld, an older one of that target and product in the same folder is renamed: its name then ends with
+`.withheld-old`, so that nobody loads it for the new one. `set_aside` in the report and in `--json` says which.
 `--to all` leaves out targets that cannot take the cam and says why; a target that was named is an error then (exit
 code 2).
 

@@ -1,0 +1,199 @@
+"""Making one combination of a book: designed, validated, exported. The same wherever it runs: here, in a worker, in a cluster."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import os
+import platform
+import re
+import threading
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from camwright.book.entry import Entry, Limit
+from camwright.book.plan import Book, Combination
+from camwright.provenance import provenance
+from profiles.errors import InfeasibleError, InputError, SolverError
+from profiles.machines import CrankSlider
+
+if TYPE_CHECKING:
+    from camwright.export import Exported
+    from camwright.job import Job
+    from camwright.results import Design
+
+_ONE_AT_A_TIME = threading.Lock()
+# the solver is not made for several threads of one process, and workers of a cluster may have them
+
+
+@dataclass(frozen=True)
+class Made:
+    """A combination that is done.
+
+    Parameters
+    ----------
+    entry
+        Its line in the index.
+    texts
+        Its files' texts by name.
+    worker
+        Name of the process that made it.
+    peak_rss
+        The most memory that this process has had so far (bytes), 0 where the system does not tell.
+    """
+
+    entry: Entry
+    texts: dict[str, str]
+    worker: str
+    peak_rss: int
+
+
+def make_chunk(book: Book, numbers: Sequence[int]) -> list[Made]:
+    """Make some combinations of a book.
+
+    Raises
+    ------
+    InputError
+        This process runs another version of camwright or of a library than the one that plans the book.
+    """
+    origin = provenance(book.job_sha256)
+    libraries = origin["libraries"]
+    own = {"camwright": str(origin["camwright"]), **(libraries if isinstance(libraries, dict) else {})}
+    faults = [
+        f"a worker runs {name} {own.get(name)}, but this book is made with {version}; install the same versions everywhere"
+        for name, version in book.versions
+        if own.get(name) != version
+    ]
+    if faults:
+        raise InputError(*faults)
+    with _ONE_AT_A_TIME:
+        return [_made(*make(book, book.combination(number))) for number in numbers]
+
+
+def _made(entry: Entry, texts: dict[str, str]) -> Made:
+    return Made(entry, texts, f"{platform.node()}:{os.getpid()}", peak_rss())
+
+
+def peak_rss() -> int:
+    """Give the most memory that this process has had (bytes); 0 where the system does not tell."""
+    try:
+        import resource
+    except ImportError:
+        return 0
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+
+
+def make(book: Book, combination: Combination) -> tuple[Entry, dict[str, str]]:
+    """Make one combination; its entry and the texts of its files by name."""
+    number = combination.number
+    try:
+        job = book.job(combination)
+    except InputError as error:
+        return _no_job(number, error, None), {}
+    limit = _limit(job) if combination.first else None
+    try:
+        design = _designed(job)
+    except InfeasibleError as error:
+        return Entry(number, "infeasible", binding=error.binding, reason=str(error), limit=limit), {}
+    except InputError as error:
+        return _no_job(number, error, limit), {}
+    except SolverError as error:
+        return Entry(number, "failed", reason=str(error), limit=limit), {}
+    return _exported(number, design, book.targets, limit)
+
+
+def _no_job(number: int, error: InputError, limit: Limit | None) -> Entry:
+    """Enter a combination that is no job; what binds is the key of the job file that the first fault names."""
+    key = re.search(r"\[\w+\] (\w+)", error.faults[0])
+    return Entry(number, "infeasible", binding=key[1] if key else "job", reason="; ".join(error.faults), limit=limit)
+
+
+def _limit(job: Job) -> Limit | None:
+    """Find how fast a cut length can be run; left out for a crank that each design places anew, which would take minutes."""
+    from design.extremes import fastest_line
+
+    if isinstance(job.machine, CrankSlider) and math.isnan(job.machine.sync_at):
+        return None
+    return Limit(*fastest_line(job.machine, job.cut, job.limits))
+
+
+def _designed(job: Job) -> Design:
+    """Design and check a job like `camwright.results.design`, without what a book does not hold.
+
+    Left out are the lower bound, the baselines, the minimum cut lengths, the ranges of the servo, where the cut falls at other line
+    speeds, and the search for what would work.
+    """
+    from camwright.comparison import Comparison, Measured
+    from camwright.results import Design
+    from camwright.servo_aware import axis_study, solve_job
+    from validation.optimality import Bound
+    from validation.report import validate
+
+    solution = solve_job(job, suggest=False)
+    placed = replace(job, machine=solution.machine)
+    report = validate(
+        solution.profile, placed.machine, job.cut, job.limits, job.servo, sweep=False, axis_limits=job.servo_aware
+    )
+    if report.servo is None:
+        raise InputError("the servo is unstable")
+    row = Measured("optimised", solution.profile, report.motion, report.tool, report.motor, report.servo)
+    return Design(
+        job=placed,
+        solution=solution,
+        bound=Bound(math.nan, "none"),
+        report=report,
+        comparison=Comparison(placed, (row,)),
+        lengths=None,
+        axis=axis_study(placed, solution),
+        robust=None,
+    )
+
+
+def _exported(number: int, design: Design, targets: Sequence[str], limit: Limit | None) -> tuple[Entry, dict[str, str]]:
+    """Write the tables of a design, read them back and judge them, and gather everything."""
+    from camwright.answers import to_json
+    from camwright.design_file import design_text, objective_unit
+    from camwright.export import export_possible
+
+    results, refused = export_possible(design.profile, design.job, targets)
+    failed = [check.name for check in design.report.checks if not check.passed]
+    for result in results:
+        failed += [f"{result.target.name}: {check.name}" for check in result.judgement.checks if not check.passed]
+    failed += [f"{name}: refused" for name in refused]
+    texts = {
+        "design.json": design_text(design),
+        "report.json": to_json(_report(design, results, refused)),
+        **{name: text for result in results for name, text in result.files.items()},
+    }
+    tool, servo = design.report.tool, design.report.servo
+    entry = Entry(
+        number,
+        "check_failed" if failed else "passed",
+        objective=design.objective + 0.0,  # no negative zero
+        unit=objective_unit(design),
+        peak_speed=tool.peak_speed,
+        peak_acceleration=tool.peak_acceleration,
+        rms_acceleration=tool.rms_acceleration,
+        peak_jerk=tool.peak_jerk,
+        following_error=servo.peak_following_error if servo else None,
+        settling=servo.settling if servo else None,
+        shear_zone_error=servo.shear_zone_error if servo else None,
+        failed_checks=tuple(failed),
+        tables=tuple((result.target.name, result.table.points) for result in results if result.passed),
+        reason="; ".join(f"{name}: {fault}" for name, faults in refused.items() for fault in faults),
+        limit=limit,
+        files=tuple((name, hashlib.sha256(text.encode()).hexdigest()) for name, text in sorted(texts.items())),
+    )
+    return entry, texts
+
+
+def _report(design: Design, results: list[Exported], refused: dict[str, tuple[str, ...]]) -> dict[str, object]:
+    """Contents of a combination's report.json: the checks of the design, then what ``camwright export`` reports."""
+    from camwright.export import export_report
+
+    return {
+        "checks": [vars(check) for check in design.report.checks],
+        "passed": design.passed,
+        **export_report(results, design.job, refused),
+    }

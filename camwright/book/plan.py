@@ -1,0 +1,263 @@
+"""`Book`: which combinations of cut length, line speed and objective a book holds, and under which numbers and names."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import tomllib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+from typing import Any, get_args
+
+from camwright.book.job_text import job_text
+from camwright.book.ranges import Range, decimal, distinct, parse_range
+from camwright.job import Job, parse_job
+from camwright.job_file import Objective
+from camwright.provenance import provenance
+from camwright.table_options import parse_targets
+from camwright.units import shown
+from profiles.errors import InputError
+
+MOST_DESIGNS = 100_000
+"""Most combinations of a book."""
+
+LAYOUT = 1
+"""Version of the layout of a book's folder."""
+
+SYNC_ERROR = "sync_error"
+"""The objective that only servo-aware jobs have."""
+
+_LONGEST_NAME = 60
+
+
+@dataclass(frozen=True)
+class Combination:
+    """One recipe of a book.
+
+    Parameters
+    ----------
+    number
+        Its number in the book, from 1: by length, then line speed, then objective.
+    length
+        Cut length (m), exact.
+    line_speed
+        Line speed (m/s), exact.
+    objective
+        What is made least.
+    first
+        Whether it is the first of its cut length.
+    """
+
+    number: int
+    length: Fraction
+    line_speed: Fraction
+    objective: str
+    first: bool
+
+    @property
+    def length_mm(self) -> str:
+        """Cut length in millimetres, as it is written."""
+        return decimal(self.length * 1000)
+
+    @property
+    def speed_m_per_min(self) -> str:
+        """Line speed in metres a minute, as it is written."""
+        return decimal(self.line_speed * 60)
+
+    @property
+    def folder(self) -> str:
+        """Where its files lie in the book's folder."""
+        return f"designs/{self.length_mm}mm/{self.speed_m_per_min}m-per-min/{self.objective}"
+
+
+@dataclass(frozen=True)
+class Book:
+    """What a book is made of; everything that its bytes depend on.
+
+    Parameters
+    ----------
+    name
+        Name of the job.
+    toml
+        Text of the job file.
+    job_sha256
+        SHA-256 of that text.
+    lengths
+        Cut lengths (m), ascending.
+    line_speeds
+        Line speeds (m/s), ascending.
+    objectives
+        Objectives.
+    targets
+        Names of the targets that tables are written for.
+    versions
+        Versions of camwright and the libraries, by name.
+    """
+
+    name: str
+    toml: str
+    job_sha256: str
+    lengths: Range
+    line_speeds: Range
+    objectives: tuple[str, ...]
+    targets: tuple[str, ...]
+    versions: tuple[tuple[str, str], ...]
+
+    def __len__(self) -> int:
+        """Count the combinations."""
+        return len(self.lengths) * len(self.line_speeds) * len(self.objectives)
+
+    def combination(self, number: int) -> Combination:
+        """Give the combination of a number, 1 and up."""
+        rest, objective = divmod(number - 1, len(self.objectives))
+        length, speed = divmod(rest, len(self.line_speeds))
+        return Combination(
+            number,
+            self.lengths[length],
+            self.line_speeds[speed],
+            self.objectives[objective],
+            first=speed == objective == 0,
+        )
+
+    def job(self, combination: Combination) -> Job:
+        """Make the job of a combination, read from a job file of its own.
+
+        Its name begins with number, length and speed, so that no two cams in a controller are called alike.
+
+        Raises
+        ------
+        InputError
+            The combination is no job: its zones do not fit into its cut length, for example.
+        """
+        of, data = combination, _data(self.toml)
+        text = job_text(
+            {
+                **data,
+                "name": f"C{of.number:05d} L{of.length_mm} V{of.speed_m_per_min} {self.name}"[:_LONGEST_NAME].rstrip(
+                    " ."
+                ),
+                "cut": {
+                    **data["cut"],
+                    "length": _written(of.length, 1000, "mm", "m"),
+                    "line_speed": _written(of.line_speed, 60, "m/min", "m/s"),
+                },
+                "objective": {**data.get("objective", {}), "minimise": of.objective},
+            }
+        )
+        return parse_job(text, self.name)
+
+    def parameters(self) -> dict[str, Any]:
+        """Name what makes two books the same, as it is told and stored."""
+        return {
+            "layout": LAYOUT,
+            "job_sha256": self.job_sha256,
+            "length": _range_text(self.lengths, 1000, "mm"),
+            "line_speed": _range_text(self.line_speeds, 60, "m/min"),
+            "objective": list(self.objectives),
+            "targets": list(self.targets),
+            "versions": dict(self.versions),
+        }
+
+    @property
+    def fingerprint(self) -> str:
+        """SHA-256 of the parameters and all values."""
+        ranges = [
+            str(number) for each in (self.lengths, self.line_speeds) for number in (each.first, each.step, each.count)
+        ]
+        return hashlib.sha256(json.dumps([self.parameters(), ranges], sort_keys=True).encode()).hexdigest()
+
+
+def plan_book(job: Job, length: str, line_speed: str, objectives: Sequence[str] = (), targets: str = "csv") -> Book:
+    """Plan a book.
+
+    Parameters
+    ----------
+    job
+        The job; its cut length, line speed and, if some are given, its objective are replaced.
+    length, line_speed
+        Ranges as `camwright.book.ranges.parse_range` reads them; bare numbers are mm and m/min.
+    objectives
+        Objectives; the job's if none is given.
+    targets
+        Names of targets, separated by commas, or ``all``.
+
+    Raises
+    ------
+    InputError
+        Every fault of all of them.
+    """
+    faults: list[str] = []
+
+    def gathered(text: str, option: str, kind: str, unit: str, scale: int) -> Range:
+        try:
+            values = parse_range(text, option, kind, unit)
+        except InputError as error:
+            faults.extend(error.faults)
+            return Range(Fraction(0), Fraction(0), 0)
+        if not distinct(values, scale):
+            faults.append(f"{option} {shown(text)}: neighbouring values are the same to 15 digits; take a larger step")
+        return values
+
+    lengths = gathered(length, "--length", "length", "mm", 1000)
+    speeds = gathered(line_speed, "--line-speed", "speed", "m/min", 60)
+    asked = tuple(dict.fromkeys(objectives)) or (SYNC_ERROR if job.minimise_sync_error else job.objective,)
+    for name in asked:
+        faults += _objective_faults(job, name)
+    names: list[str] = []
+    try:
+        names = parse_targets(targets)
+    except InputError as error:
+        faults += [fault.replace("--to ", "--targets ") for fault in error.faults]
+    count = len(lengths) * len(speeds) * len(asked)
+    if count > MOST_DESIGNS:
+        faults.append(
+            f"{len(lengths)} lengths, {len(speeds)} line speeds and {len(asked)} objectives are {count} designs, the limit is "
+            f"{MOST_DESIGNS}; make several books"
+        )
+    if faults:
+        raise InputError(*faults)
+    origin = provenance(job.sha256)
+    libraries = origin["libraries"]
+    versions = {"camwright": str(origin["camwright"]), **(libraries if isinstance(libraries, dict) else {})}
+    return Book(
+        job.name, job.text, job.sha256, lengths, speeds, asked, tuple(dict.fromkeys(names)), tuple(versions.items())
+    )
+
+
+def _objective_faults(job: Job, name: str) -> tuple[str, ...]:
+    """Say what is wrong with an objective: there is none of that name, or it is none for this job."""
+    known = (*get_args(Objective), SYNC_ERROR)
+    if name not in known:
+        return (f"--objective {shown(name)}: there is no such objective; the objectives are {', '.join(known)}",)
+    data = _data(job.text)
+    text = job_text({**data, "objective": {**data.get("objective", {}), "minimise": name}})
+    try:
+        parse_job(text, f"--objective {name}")
+    except InputError as error:
+        return error.faults
+    return ()
+
+
+@lru_cache(maxsize=4)
+def _data(toml: str) -> dict[str, Any]:
+    """Read the data of a job file; kept, because every combination begins with it."""
+    return tomllib.loads(toml.removeprefix("\ufeff"))
+
+
+def _written(value: Fraction, scale: int, unit: str, si: str) -> str:
+    """Write a value so that it is read back exactly, or where it is no decimal number, to the nearest float."""
+    scaled = value * scale
+    power = next((power for power in range(16) if (scaled * 10**power).denominator == 1), None)
+    if power is None:
+        return f"{float(value)!r} {si}"
+    whole, part = divmod((scaled * 10**power).numerator, 10**power)
+    return f"{whole}.{part:0{power}d} {unit}" if power else f"{whole} {unit}"
+
+
+def _range_text(values: Range, scale: int, unit: str) -> str:
+    """Write a range for people, or its one value."""
+    if len(values) == 1:
+        return f"{decimal(values.first * scale)} {unit}"
+    return ":".join(decimal(value * scale) for value in (values.first, values.last, values.step)) + f" {unit}"

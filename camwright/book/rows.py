@@ -1,0 +1,147 @@
+"""The rows of a book's index and of its limit table."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from itertools import groupby
+
+from camwright.book.entry import Entry, Limit
+from camwright.book.plan import Book
+
+Cell = str | float | int | None
+"""A text, a number, or nothing."""
+
+COLUMNS = (
+    "number",
+    "length_mm",
+    "line_speed_m_per_min",
+    "objective",
+    "status",
+    "value",
+    "unit",
+    "peak_speed_m_per_s",
+    "peak_acceleration_m_per_s2",
+    "rms_acceleration_m_per_s2",
+    "peak_jerk_m_per_s3",
+    "following_error_mm",
+    "settling_mm",
+    "shear_zone_error_mm",
+    "tables",
+    "failed_checks",
+    "binding",
+    "reason",
+    "folder",
+)
+"""Columns of the index. ``tables`` names each target with the points of its table."""
+
+LIMIT_COLUMNS = (
+    "length_mm",
+    "objective",
+    "highest_line_speed_m_per_min",
+    "lower_that_fail",
+    "next_line_speed_m_per_min",
+    "binding",
+    "physical_line_speed_m_per_min",
+    "physical_binding",
+)
+"""Columns of the limit table, see `limit_rows`."""
+
+
+@dataclass(frozen=True)
+class Counts:
+    """How many combinations ended how."""
+
+    designs: int = 0
+    passed: int = 0
+    check_failed: int = 0
+    infeasible: int = 0
+    failed: int = 0
+
+
+def count(entries: Iterable[Entry]) -> Counts:
+    """Count entries by how they ended."""
+    found = dict.fromkeys(("passed", "check_failed", "infeasible", "failed"), 0)
+    for entry in entries:
+        found[entry.status] += 1
+    return Counts(designs=sum(found.values()), **found)
+
+
+def index_rows(book: Book, entries: Iterable[Entry]) -> Iterator[list[Cell]]:
+    """Give a row of `COLUMNS` for every combination."""
+    for entry in entries:
+        of = book.combination(entry.number)
+        yield [
+            entry.number,
+            float(of.length * 1000),
+            float(of.line_speed * 60),
+            of.objective,
+            entry.status,
+            entry.objective,
+            entry.unit or None,
+            entry.peak_speed,
+            entry.peak_acceleration,
+            entry.rms_acceleration,
+            entry.peak_jerk,
+            _mm(entry.following_error),
+            _mm(entry.settling),
+            _mm(entry.shear_zone_error),
+            " ".join(f"{name}:{points}" for name, points in entry.tables) or None,
+            "; ".join(entry.failed_checks) or None,
+            entry.binding or None,
+            entry.reason or None,
+            of.folder if entry.files else None,
+        ]
+
+
+def limit_rows(book: Book, entries: Iterable[Entry]) -> Iterator[list[Cell]]:
+    """Give a row of `LIMIT_COLUMNS` for every cut length and objective.
+
+    The highest line speed is the highest of the book's own at which every check passed and every table was released; how many lower
+    ones of the book do not is said beside it. What binds is what forbids the next one of the book. The physical line speed is that of
+    the limits of speed, acceleration, jerk and reversal alone, as ``camwright limits`` finds it; the servo may not settle there.
+    """
+    for _, group in groupby(entries, key=lambda entry: book.combination(entry.number).length):
+        at_length = list(group)
+        limit = next((entry.limit for entry in at_length if entry.limit), None)
+        for objective in book.objectives:
+            own = [entry for entry in at_length if book.combination(entry.number).objective == objective]
+            yield _limit_row(book, own, objective, limit)
+
+
+def _limit_row(book: Book, entries: list[Entry], objective: str, limit: Limit | None) -> list[Cell]:
+    """Give the row of one cut length and one objective; the entries ascend by line speed."""
+    works = [index for index, entry in enumerate(entries) if entry.status == "passed"]
+    highest = works[-1] if works else None
+    beyond = 0 if highest is None else highest + 1
+    next_one = entries[beyond] if beyond < len(entries) else None
+    of = book.combination(entries[0].number)
+    return [
+        float(of.length * 1000),
+        objective,
+        None if highest is None else float(book.combination(entries[highest].number).line_speed * 60),
+        0 if highest is None else highest + 1 - len(works),
+        None if next_one is None else float(book.combination(next_one.number).line_speed * 60),
+        None if next_one is None else _binding(next_one),
+        None if limit is None or limit.line_speed is None else _rounded_down(limit.line_speed * 60),
+        None if limit is None else limit.binding,
+    ]
+
+
+def _binding(entry: Entry) -> str:
+    """Say in a word or two what forbids a combination."""
+    if entry.status == "failed":
+        return "solver"
+    return entry.binding or " ".join(dict.fromkeys(name.rpartition(": ")[2] for name in entry.failed_checks))
+
+
+def _rounded_down(value: float) -> float:
+    """Round to seven digits, downwards: a limit that is kept is below the one that was found."""
+    scale = 10.0 ** (6 - math.floor(math.log10(value)))
+    return math.floor(value * scale) / scale
+
+
+def _mm(length: float | None) -> float | None:
+    """Turn metres into millimetres."""
+    return None if length is None else length * 1e3

@@ -1,0 +1,189 @@
+"""Making a book with several processes: in chunks, results as they come, processes that die replaced."""
+
+from __future__ import annotations
+
+import contextlib
+import multiprocessing
+import os
+import signal
+import threading
+from collections import deque
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
+from functools import partial
+from itertools import islice
+from multiprocessing.synchronize import Event
+
+from camwright.book.entry import Entry
+from camwright.book.making import Made, make_chunk
+from camwright.book.plan import Book
+from profiles.errors import InputError
+
+_AHEAD = 2
+"""Chunks that lie ready for each worker."""
+
+_ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+
+
+Work = Callable[[Book, Sequence[int]], list[Made]]
+"""Makes a chunk of combinations, given by their numbers."""
+
+
+@dataclass(frozen=True)
+class Crew:
+    """Who makes a book.
+
+    Parameters
+    ----------
+    start
+        Starts an executor; called again when the one before broke.
+    size
+        Gives the number of chunks that can be worked on at the same time.
+    chunk
+        Combinations that are given at a time.
+    work
+        Makes a chunk, in the worker.
+    lost
+        Errors by which an executor tells that a worker died.
+    """
+
+    start: Callable[[], contextlib.AbstractContextManager[Executor]]
+    size: Callable[[], int]
+    chunk: int
+    work: Work
+    lost: tuple[type[Exception], ...]
+
+
+def default_jobs() -> int:
+    """Count the processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def local_crew(jobs: int, work: Work = make_chunk) -> Crew:
+    """Make a crew of processes on this machine.
+
+    They are given one combination at a time: a chunk saves nothing where nothing is sent over a network, and would be lost whole.
+
+    Parameters
+    ----------
+    jobs
+        Number of processes.
+    work
+        Makes a chunk.
+    """
+
+    @contextlib.contextmanager
+    def start() -> Iterator[Executor]:
+        context = multiprocessing.get_context("spawn")
+        stop = context.Event()
+        with _environment(dict.fromkeys(_ONE_THREAD, "1")):
+            executor = ProcessPoolExecutor(jobs, context, _settle, (stop,))
+            try:
+                yield executor
+            finally:
+                stop.set()
+                executor.shutdown(wait=True, cancel_futures=True)
+
+    return Crew(start, lambda: jobs, 1, partial(_unless_stopped, work), (BrokenProcessPool,))
+
+
+@contextlib.contextmanager
+def _environment(values: dict[str, str]) -> Iterator[None]:
+    """Set environment variables for the processes that are started meanwhile: two workers on two cores need no more threads."""
+    before = {name: os.environ.get(name) for name in values}
+    os.environ.update(values)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
+
+
+_stop: Event | None = None
+
+
+def _settle(stop: Event) -> None:
+    """Begin a worker: an interrupt is for the process that leads, and when that is gone nobody waits for results."""
+    global _stop  # noqa: PLW0603 - what a worker process is told once
+    _stop = stop
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    leader = multiprocessing.parent_process()
+    if leader is not None:
+
+        def follow() -> None:
+            leader.join()
+            os._exit(1)
+
+        threading.Thread(target=follow, daemon=True).start()
+
+
+def _unless_stopped(work: Work, book: Book, numbers: Sequence[int]) -> list[Made]:
+    """Make a chunk; nothing of what still waited when the leading process stopped."""
+    return [] if _stop is not None and _stop.is_set() else work(book, numbers)
+
+
+def make_all(book: Book, numbers: Iterable[int], crew: Crew) -> Generator[Made, None, None]:
+    """Make combinations, in any order.
+
+    Parameters
+    ----------
+    book
+        The book.
+    numbers
+        Numbers of the combinations.
+    crew
+        Who makes them.
+
+    Yields
+    ------
+    Made
+        Each combination when it is done. One whose worker died is tried again alone; if that worker dies, too, it has failed.
+    """
+    rest = iter(numbers)
+    chunks = deque(iter(lambda: tuple(islice(rest, crew.chunk)), ()))
+    suspects: list[tuple[int, ...]] = []
+    while chunks:
+        yield from _round(book, chunks, suspects, crew, together=True)
+    chunks.extend((number,) for chunk in suspects for number in chunk)
+    suspects.clear()
+    while chunks:
+        yield from _round(book, chunks, suspects, crew, together=False)
+    for (number,) in suspects:
+        yield Made(Entry(number, "failed", reason="the process that designed it died, twice"), {}, "", 0)
+
+
+def _round(
+    book: Book, chunks: deque[tuple[int, ...]], lost: list[tuple[int, ...]], crew: Crew, *, together: bool
+) -> Iterator[Made]:
+    """Run chunks on one executor, together or one after another, until none is left or it broke; what died with it is lost."""
+    with crew.start() as executor:
+        running: dict[Future[list[Made]], tuple[int, ...]] = {}
+        broken = False
+        while running or (chunks and not broken):
+            ahead = _AHEAD * max(1, crew.size()) if together else 1
+            while chunks and not broken and len(running) < ahead:
+                chunk = chunks.popleft()
+                try:
+                    running[executor.submit(crew.work, book, chunk)] = chunk
+                except crew.lost:
+                    chunks.appendleft(chunk)
+                    broken = True
+            done, _ = wait(running, return_when=FIRST_COMPLETED)
+            for future in done:
+                chunk = running.pop(future)
+                try:
+                    found = future.result()
+                except crew.lost as error:
+                    lost.append(chunk)
+                    broken = broken or isinstance(error, BrokenProcessPool)
+                    continue
+                except CancelledError as error:
+                    raise InputError("the workers are gone; what is done is kept, --resume goes on with it") from error
+                except ImportError as error:
+                    raise InputError(f"a worker cannot run camwright: {error}; install it there, too") from error
+                yield from found

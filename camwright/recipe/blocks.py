@@ -1,0 +1,34 @@
+"""What a document is made of: blocks of plain texts that PDF and HTML know how to set."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from camwright.recipe.catalogue import Catalogue
+from camwright.recipe.quantities import shown
+
+Block = dict[str, Any]
+"""A ``kind`` and what belongs to it."""
+
+
+def text_block(text: str, *, strong: bool = False) -> Block:
+    """Make a paragraph."""
+    return {"kind": "text", "text": text, "strong": strong}
+
+
+def table_block(head: list[str], rows: list[list[str]], left: int = 1, widths: list[float] | None = None) -> Block:
+    """Make a table whose first columns are words and whose others are numbers."""
+    return {"kind": "table", "head": head, "rows": rows, "left": left, "widths": widths or []}
+
+
+def length_text(value: float, unit: str) -> str:
+    """Write a value; a length to a tenth of a micrometre, the same number of digits at every speed."""
+    if unit != "m":
+        return shown(value, unit, 4)
+    text = f"{1e3 * value:.4f}".replace("-", "−")
+    return "0.0000" if text == "−0.0000" else text
+
+
+def fixed_text(value: float | None, words: Catalogue) -> str:
+    """Write a length like `length_text`, or that there is none."""
+    return words("nothing") if value is None else length_text(value, "m")

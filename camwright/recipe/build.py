@@ -1,0 +1,208 @@
+"""Making a recipe of a design: judged, written for drives, looked at from every side that a fitter asks about."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from camwright.design_file import StoredDesign, job_numbers
+from camwright.export import Exported, export_possible
+from camwright.job import Job
+from camwright.progress import Step, ignore
+from camwright.provenance import provenance
+from camwright.recipe.manifest import sha256
+from camwright.recipe.model import (
+    RECIPE_VERSION,
+    JobRecord,
+    Language,
+    Objective,
+    Origin,
+    Points,
+    Profile,
+    Recipe,
+    RecipeCheck,
+    RecipeTable,
+    Refusal,
+    TableFile,
+    TableUnit,
+    Zones,
+)
+from camwright.recipe.speeds import at_speeds
+from camwright.recipe.working_range import working_range
+from profiles.cycle import Cut
+from profiles.errors import InputError
+from profiles.polynomial import FloatArray
+from profiles.returns import slave_at_start
+from profiles.servo import mean_lag
+
+if TYPE_CHECKING:
+    from validation.checks import Check
+    from validation.report import ValidationReport
+
+STEPS = 4
+"""Steps that `make_recipe` tells beside one for each target."""
+
+TABLES = "tables"
+"""Folder of the tables inside a recipe."""
+
+_UNITS = {"rms_torque": "N m", "peak_torque": "N m", "energy": "J"}
+_OVER_TIME = {"acceleration": "/s^2", "jerk": "/s^3"}
+
+
+@dataclass(frozen=True, eq=False)
+class MadeRecipe:
+    """A recipe, and the texts of its tables by their paths in the folder."""
+
+    recipe: Recipe
+    tables: dict[str, str]
+
+
+def designed(job: Job) -> StoredDesign:
+    """Find the optimal cam of a job, servo-aware if it says so.
+
+    Raises
+    ------
+    InfeasibleError
+        No motion keeps the limits of the job.
+    SolverError
+        The solver failed.
+    """
+    from camwright.servo_aware import solve_job
+
+    solution = solve_job(job)
+    return StoredDesign(solution.profile, replace(job, machine=solution.machine))
+
+
+def make_recipe(
+    design: StoredDesign,
+    targets: Sequence[str],
+    language: Language = "en",
+    note: str = "",
+    *,
+    required: bool = True,
+    step: Step = ignore,
+) -> MadeRecipe:
+    """Make the recipe of a design.
+
+    Parameters
+    ----------
+    design
+        A cam and its job.
+    targets
+        Names of the targets that tables are written for.
+    language
+        Language of what people read.
+    note
+        Any text that stands on the recipe.
+    required
+        Whether a target that cannot take the cam is a fault; else the recipe names it.
+    step
+        Told what begins now.
+
+    Raises
+    ------
+    InputError
+        An unknown target, one that cannot take the cam, or none that can.
+    """
+    from validation.report import validate
+
+    job, profile = design.job, design.profile
+    step("checking")
+    report = validate(profile, job.machine, job.cut, job.limits, job.servo)
+    step("simulating lower speeds")
+    speeds = at_speeds(profile, job)
+    step("finding the working range")
+    far = working_range(job)
+    results, refused = export_possible(profile, job, targets, step=step)
+    if refused and (required or not results):
+        raise InputError(*(f"{name}: {fault}" for name, faults in refused.items() for fault in faults))
+    origin = provenance(job.sha256)
+    libraries = origin["libraries"]
+    recipe = Recipe(
+        schema_version=RECIPE_VERSION,
+        kind="camwright recipe",
+        name=job.name,
+        note=note,
+        language=language,
+        released=report.passed and all(result.passed for result in results),
+        job=JobRecord(job.text, job_numbers(job)),
+        slave_unit=job.machine.slave_unit,
+        slave_start=slave_at_start(job.machine, job.cut),
+        pitch=float(job.machine.pitch),
+        objective=_objective(job, report),
+        profile=Profile(tuple(profile.breaks.tolist()), tuple(map(tuple, profile.coefficients.tolist()))),
+        zones=zones(job.cut),
+        checks=_checks(report.checks),
+        speeds=speeds,
+        lead_time=mean_lag(job.servo),
+        working_range=far,
+        tables=tuple(_table(result) for result in results),
+        refused=tuple(Refusal(name, faults) for name, faults in refused.items()),
+        provenance=Origin(str(origin["camwright"]), job.sha256, libraries if isinstance(libraries, dict) else {}),
+    )
+    return MadeRecipe(recipe, {_path(name): text for result in results for name, text in result.files.items()})
+
+
+def _path(name: str) -> str:
+    return f"{TABLES}/{name}"
+
+
+def _objective(job: Job, report: ValidationReport) -> Objective:
+    """Give the value of the job's objective for a cam, whoever made it."""
+    name = job.objective
+    source = report.motor if name in _UNITS else report.motion
+    unit = _UNITS.get(name) or job.machine.slave_unit + _OVER_TIME[name.rpartition("_")[2]]
+    return Objective(name, getattr(source, name), unit)
+
+
+def zones(cut: Cut) -> Zones:
+    """Place sync zone and shear zone on the period ``[0, x_c]``."""
+    start = cut.shear_start if cut.origin == "return" else cut.shear_start % cut.length
+    end = start + cut.shear_zone
+    over = end - cut.length
+    shear = ((start, end),) if over <= 1e-12 * cut.length else ((start, cut.length), (0.0, over))
+    return Zones(cut.sync_parts, shear)
+
+
+def _checks(checks: Sequence[Check]) -> tuple[RecipeCheck, ...]:
+    return tuple(RecipeCheck(**_plain(asdict(check))) for check in checks)
+
+
+def _plain(values: dict[str, Any]) -> dict[str, Any]:
+    """Turn numpy's numbers into Python's."""
+    return {key: value.item() if isinstance(value, np.generic) else value for key, value in values.items()}
+
+
+def _table(result: Exported) -> RecipeTable:
+    table, target, units = result.table, result.target, result.units
+    return RecipeTable(
+        target=target.name,
+        title=target.title,
+        released=result.passed,
+        files=tuple(TableFile(_path(name), sha256(text.encode())) for name, text in result.files.items()),
+        master_unit=TableUnit(units.master.symbol, units.master.size),
+        slave_unit=TableUnit(units.slave.symbol, units.slave.size),
+        points=Points(
+            tuple(table.x.tolist()), tuple(table.y.tolist()), _column(table.ratio), _column(table.ratio_slope)
+        ),
+        position_error=result.position_error,
+        ratio_error=result.deviation.ratio,
+        acceleration_error=result.deviation.acceleration,
+        within_asked_error=result.accurate,
+        wraps=result.judgement.wraps,
+        checks=_checks(result.judgement.checks),
+        interpolation=target.interpolation,
+        number_format=target.number_format,
+        evidence=target.evidence,
+        tested_on_controller=target.tested_on_controller,
+        steps=target.steps,
+    )
+
+
+def _column(values: FloatArray) -> tuple[float | None, ...] | None:
+    if np.isnan(values).all():
+        return None
+    return tuple(None if np.isnan(value) else value for value in values.tolist())

@@ -1,0 +1,205 @@
+"""What changes on the machine when one recipe takes the place of another."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from camwright.design_file import MOST_BYTES
+from camwright.files import read_text
+from camwright.recipe.facts import GROUPS
+from camwright.recipe.model import Recipe, RecipeCheck, RecipeTable
+from camwright.recipe.quantities import SHOWN, converted, unit_shown
+from camwright.recipe.recipe_file import RECIPE_FILE, parse_recipe
+from profiles.errors import InputError
+from profiles.polynomial import CamProfile
+
+_PLACES = 20_001
+
+_ROUNDING = 1e-12
+
+_CLOSING = ("position_closure", "position_joins", "ratio_joins", "ratio_slope_joins", "sync_ratio")
+"""Checks whose values are rounding: only whether they passed is compared."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """One thing that differs.
+
+    Parameters
+    ----------
+    group
+        ``"recipe"``, ``"machine"``, ``"product"``, ``"limits"``, ``"servo"``, ``"cam"``, ``"reached"``, ``"range"``, ``"speeds"`` or
+        ``"tables"``.
+    name
+        What differs.
+    unit
+        Unit of both values; ``""`` for words.
+    before, after
+        The values; ``None`` where there is none.
+    """
+
+    group: str
+    name: str
+    unit: str
+    before: Any
+    after: Any
+
+
+def read_recipe(directory: Path) -> Recipe:
+    """Read the recipe of a folder.
+
+    Raises
+    ------
+    InputError
+        The directory holds none.
+    """
+    if not directory.is_dir():
+        raise InputError(f"{directory}: there is no such directory; name a recipe folder")
+    file = directory / RECIPE_FILE
+    if not file.is_file():
+        raise InputError(f"{directory}: not a recipe: there is no {RECIPE_FILE} in it")
+    return parse_recipe(read_text(file, "recipe", MOST_BYTES), str(file))
+
+
+def compare_recipes(before: Recipe, after: Recipe) -> list[Change]:
+    """List what differs between two recipes, grouped in a fixed order; numbers in the units in which a fitter reads them."""
+    return [change for change in _pairs(before, after) if not _same(change)]
+
+
+def _same(change: Change) -> bool:
+    """Whether two values are the same, lengths to a nanometre: below that servo errors are rounding."""
+    before, after = change.before, change.after
+    if isinstance(before, float) and isinstance(after, float):
+        return abs(before - after) <= _ROUNDING * max(abs(before), abs(after)) + (1e-6 if change.unit == "mm" else 0.0)
+    return bool(before == after)
+
+
+def _pairs(before: Recipe, after: Recipe) -> Iterator[Change]:
+    """Set side by side everything that can differ."""
+    yield Change("recipe", "name", "", before.name, after.name)
+    yield Change("recipe", "note", "", before.note, after.note)
+    yield Change("recipe", "released", "", before.released, after.released)
+    yield Change("recipe", "objective", "", before.objective.name, after.objective.name)
+    yield Change("recipe", "camwright", "", before.provenance.camwright, after.provenance.camwright)
+    for heading, listed in GROUPS.items():
+        group = heading.rpartition(".")[2]
+        facts = [{fact.key: fact for fact in listed(recipe)} for recipe in (before, after)]
+        for key in dict.fromkeys([*facts[0], *facts[1]]):
+            units = [each[key].unit for each in facts if key in each]
+            values = [each[key].value if key in each else None for each in facts]
+            yield _change(group, key, units, values)
+    yield from _cam(before, after)
+    yield from _reached(before.checks, after.checks)
+    yield from _range(before, after)
+    yield from _speeds(before, after)
+    yield from _tables(before, after)
+
+
+def _change(group: str, name: str, units: list[str], values: list[Any]) -> Change:
+    """Make a change of a number in the unit in which a fitter reads it; of two kinds of slave both are told in SI."""
+    unit = units[0]
+    if len(set(units)) > 1:
+        texts = [None if value is None else f"{value:.6g} {unit}" for value, unit in zip(values, units, strict=True)]
+        return Change(group, name, "", *texts)
+    if unit not in SHOWN or any(isinstance(value, str | bool) for value in values):
+        return Change(group, name, "", *values)
+    shown = [None if value is None else converted(value, unit) for value in values]
+    return Change(group, name, unit_shown(unit), *shown)
+
+
+def _cam(before: Recipe, after: Recipe) -> Iterator[Change]:
+    yield Change("cam", "pieces", "", len(before.profile.coefficients), len(after.profile.coefficients))
+    if before.slave_unit == after.slave_unit:
+        largest, at = position_difference(before, after)
+        unit = before.slave_unit
+        yield Change(
+            "cam", "largest position difference over the master", unit_shown(unit), 0.0, converted(largest, unit)
+        )
+        if largest > 0.0:
+            yield Change("cam", "where it is, of the cycle", "%", None, 100.0 * at)
+
+
+def position_difference(before: Recipe, after: Recipe) -> tuple[float, float]:
+    """Greatest difference of the slave's position over the cycle, and where, as a part of the cycle.
+
+    Both cycles are laid over each other from master zero to master zero, the slave counted from where it stands there.
+
+    Returns
+    -------
+    (difference, part)
+        In the slave's unit; from 0 to 1.
+    """
+    part = np.linspace(0.0, 1.0, _PLACES)
+    places = []
+    for recipe in (before, after):
+        profile = CamProfile(np.array(recipe.profile.breaks), np.array(recipe.profile.coefficients))
+        places.append(profile(profile.start + part * profile.length) - float(profile(profile.start)))
+    off = np.abs(places[1] - places[0])
+    return float(off.max()), float(part[off.argmax()])
+
+
+def _reached(before: tuple[RecipeCheck, ...], after: tuple[RecipeCheck, ...]) -> Iterator[Change]:
+    found = [{check.name: check for check in checks} for checks in (before, after)]
+    for name in dict.fromkeys([*found[0], *found[1]]):
+        checks = [each.get(name) for each in found]
+        units = [check.unit for check in checks if check is not None]
+        if name not in _CLOSING:
+            yield _change("reached", name, units, [check.value if check else None for check in checks])
+        yield Change("reached", f"{name}: passed", "", *(check.passed if check else None for check in checks))
+
+
+def _range(before: Recipe, after: Recipe) -> Iterator[Change]:
+    for name, unit in (("min_length", "m"), ("max_length", "m"), ("min_line_speed", "m/s"), ("max_line_speed", "m/s")):
+        ends = [getattr(recipe.working_range, name) for recipe in (before, after)]
+        yield _change("range", name, [unit], [end.value for end in ends])
+        yield Change("range", f"{name}: binding", "", *(end.binding for end in ends))
+
+
+_SPEED_UNITS = {
+    "line_speed": "m/s",
+    "motor_speed": "rad/s",
+    "peak_torque": "N m",
+    "rms_torque": "N m",
+    "following_error": "m",
+    "sync_error": "m",
+    "length_offset": "m",
+    "length_offset_with_lead": "m",
+    "length_variation": "m",
+}
+
+
+def _speeds(before: Recipe, after: Recipe) -> Iterator[Change]:
+    for rows in zip(before.speeds, after.speeds, strict=False):
+        for name, unit in _SPEED_UNITS.items():
+            yield _change(
+                "speeds", f"{name} at {100 * rows[0].share:g} %", [unit], [getattr(row, name) for row in rows]
+            )
+
+
+def _tables(before: Recipe, after: Recipe) -> Iterator[Change]:
+    found = [{table.target: table for table in recipe.tables} for recipe in (before, after)]
+    for target in dict.fromkeys([*found[0], *found[1]]):
+        tables = [each.get(target) for each in found]
+        yield Change(
+            "tables", f"{target}: points", "", *(len(table.points.master) if table else None for table in tables)
+        )
+        yield Change("tables", f"{target}: files", "", *(_sums(table) for table in tables))
+
+
+def _sums(table: RecipeTable | None) -> dict[str, str] | None:
+    return None if table is None else {file.path: file.sha256 for file in table.files}
+
+
+def compare_answer(before: Path, after: Path, changes: list[Change]) -> dict[str, Any]:
+    """Answer of ``camwright recipe --compare``."""
+    return {
+        "before": str(before),
+        "after": str(after),
+        "same": not changes,
+        "changes": [asdict(change) for change in changes],
+    }

@@ -1,0 +1,136 @@
+"""The parameters of a recipe as a list: machine, product, limits, servo, each with its value and SI unit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+from camwright.recipe.catalogue import Catalogue
+from camwright.recipe.model import Recipe
+from camwright.recipe.quantities import with_unit
+
+
+@dataclass(frozen=True)
+class Fact:
+    """One parameter.
+
+    Parameters
+    ----------
+    key
+        Key of its name in the catalogue.
+    value
+        A number (SI), a word of the catalogue, yes or no, or nothing.
+    unit
+        SI unit of a number; ``"curve"`` for pairs of motor speed and torque.
+    """
+
+    key: str
+    value: Any
+    unit: str = "1"
+
+
+MACHINE = {
+    "circumference": "m",
+    "blades": "1",
+    "gear_ratio": "1",
+    "sync": "word",
+    "inertia": "kg m^2",
+    "friction": "N m",
+    "stroke": "m",
+    "home": "m",
+    "mass": "kg",
+    "travel_per_turn": "m",
+    "crank": "m",
+    "rod": "m",
+    "offset": "m",
+    "crank_inertia": "kg m^2",
+    "carriage_mass": "kg",
+    "sync_at": "rad",
+}
+"""Units of the machine's parameters, of all kinds."""
+
+PRODUCT = {
+    "length": "m",
+    "line_speed": "m/s",
+    "sync_zone": "m",
+    "shear_zone": "m",
+    "shear_zone_at": "m",
+    "sync_tolerance": "m",
+    "sync_ratio": "1",
+    "origin": "word",
+    "shaped": "word",
+}
+
+SERVO = {
+    "bandwidth": "bandwidth",
+    "damping": "1",
+    "position_gain": "1/s",
+    "sample_time": "s",
+    "velocity_feedforward": "1",
+    "dead_time": "s",
+    "lead_time": "s",
+}
+
+
+def machine_facts(recipe: Recipe) -> list[Fact]:
+    """List the machine's parameters."""
+    machine = recipe.job.si["machine"]
+    return [Fact("kind", machine["kind"], "word"), *_listed(machine, MACHINE)]
+
+
+def product_facts(recipe: Recipe) -> list[Fact]:
+    """List the product's numbers and what follows from them."""
+    cut = recipe.job.si["cut"]
+    facts = [fact for fact in _listed(cut, PRODUCT) if fact.key != "shaped" or fact.value]  # the exception
+    facts.insert(2, Fact("cuts", 60.0 * cut["line_speed"] / cut["length"]))
+    unit = recipe.slave_unit
+    return [*facts, Fact("slave_start", recipe.slave_start, unit), Fact("pitch", recipe.pitch, unit)]
+
+
+def limit_facts(recipe: Recipe) -> list[Fact]:
+    """List the limits of the slave."""
+    limits, unit = recipe.job.si["limits"], recipe.slave_unit
+    powers = {"speed": "/s", "acceleration": "/s^2", "jerk": "/s^3"}
+    facts = [Fact(key, limits[key], unit + power) for key, power in powers.items()]
+    facts.append(Fact("reversal", limits["reversal"], "word"))
+    if limits["motor"] is not None:
+        facts.append(Fact("motor", limits["motor"]["points"], "curve"))
+    return facts
+
+
+def servo_facts(recipe: Recipe) -> list[Fact]:
+    """List the servo's parameters and the lead time that makes up for its lag."""
+    return [*_listed(recipe.job.si["servo"], SERVO), Fact("mean_lag", recipe.lead_time, "s")]
+
+
+GROUPS = {
+    "section.machine": machine_facts,
+    "section.product": product_facts,
+    "section.limits": limit_facts,
+    "section.servo": servo_facts,
+}
+"""The parameters by group, under the heading's key."""
+
+
+def _listed(values: dict[str, Any], units: dict[str, str]) -> list[Fact]:
+    return [Fact(key, values[key], unit) for key, unit in units.items() if key in values]
+
+
+def fact_text(fact: Fact, words: Catalogue) -> str:
+    """Write the value of a parameter with its unit."""
+    value = fact.value
+    if value is None:
+        return words("nothing")
+    if isinstance(value, bool):
+        return words("yes" if value else "no")
+    if isinstance(value, str):
+        return words.named("word", value)
+    if fact.unit == "curve":
+        return _curve_text(value)
+    return with_unit(value, fact.unit)
+
+
+def _curve_text(points: Iterable[Iterable[float]]) -> str:
+    pairs = [(with_unit(speed, "rad/s", 4), with_unit(torque, "N m", 4)) for speed, torque in points]
+    return ";\n".join(f"{speed}, {torque}" for speed, torque in pairs)

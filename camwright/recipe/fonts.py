@@ -1,0 +1,83 @@
+"""The fonts of a printed recipe, and what of a user's text they can show."""
+
+from __future__ import annotations
+
+import re
+import textwrap
+import unicodedata
+from functools import lru_cache
+from importlib.util import find_spec
+from pathlib import Path
+
+from camwright.recipe.user_text import spelled
+from profiles.errors import MissingExtraError
+
+EXTRA = "recipe"
+
+_LATIN = ("matplotlib", "mpl-data/fonts/ttf", "DejaVuSans.ttf")
+_HAN = ("pylopdf_fonts_zh_cn", "", "NotoSansSC-Regular.otf")
+_LONGEST_WORD = 24
+_LONG_WORD = re.compile(rf"[^\s\u2e80-\uffff]{{{_LONGEST_WORD + 1},}}")  # Chinese can be broken anywhere as it is
+_BREAK = "\u200b"  # where a line may end, without width
+
+_DISTRIBUTIONS = {"pylopdf_fonts_zh_cn": "pylopdf-fonts-zh-cn"}
+
+
+def require(*libraries: str) -> None:
+    """Refuse to go on without libraries of the extra.
+
+    Raises
+    ------
+    MissingExtraError
+        One is not installed.
+    """
+    for library in libraries:
+        if find_spec(library) is None:
+            raise MissingExtraError(_DISTRIBUTIONS.get(library, library), EXTRA)
+
+
+def font_files() -> tuple[Path, Path]:
+    """Find DejaVu Sans and Noto Sans SC.
+
+    Raises
+    ------
+    MissingExtraError
+        The package that carries one is not installed.
+    """
+    latin, han = (_file(*place) for place in (_LATIN, _HAN))
+    return latin, han
+
+
+def _file(package: str, folder: str, name: str) -> Path:
+    spec = find_spec(package)
+    file = Path(spec.origin).parent / folder / name if spec is not None and spec.origin else None
+    if file is None or not file.is_file():
+        raise MissingExtraError(f"the font {name} ({_DISTRIBUTIONS.get(package, package)})", EXTRA)
+    return file
+
+
+def printable(text: str) -> str:
+    r"""Write a user's text so that every character of it can be printed.
+
+    What no font here shows, and what is not meant to be seen (controls, marks of direction), is written as its code point, such as
+    ``⟨U+1F600⟩``; line ends stay. Words longer than a line may be broken anywhere.
+
+    Examples
+    --------
+    >>> printable("Messer 切刀 \u202e\U0001f98a")
+    'Messer 切刀 ⟨U+202E⟩⟨U+1F98A⟩'
+    """
+    text = spelled(text, lambda letter: ord(letter) in covered() and unicodedata.category(letter)[0] != "C")
+    return _LONG_WORD.sub(lambda word: _BREAK.join(textwrap.wrap(word[0], _LONGEST_WORD)), text)
+
+
+@lru_cache(maxsize=1)
+def covered() -> frozenset[int]:
+    """Code points that the fonts have a glyph for."""
+    from fontTools.ttLib import TTFont
+
+    found: set[int] = set()
+    for file in font_files():
+        with TTFont(file, lazy=True) as font:
+            found |= set(font.getBestCmap())
+    return frozenset(found)

@@ -1,0 +1,31 @@
+"""recipe.html: the recipe as one page that needs nothing else."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from camwright.recipe.catalogue import catalogue
+from camwright.recipe.figure import figure_svg
+from camwright.recipe.fonts import require
+from camwright.recipe.model import Recipe
+from camwright.recipe.sheet import sheet
+
+_TEMPLATES = Path(__file__).parent / "templates"
+
+
+def recipe_html(recipe: Recipe) -> str:
+    """Write a recipe as a page; every text is escaped, and the page may load nothing.
+
+    Raises
+    ------
+    MissingExtraError
+        jinja2 is not installed.
+    """
+    require("jinja2")
+    import jinja2
+
+    words = catalogue(recipe.language)
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(_TEMPLATES), autoescape=True, undefined=jinja2.StrictUndefined
+    )
+    return environment.get_template("recipe.html").render(**sheet(recipe, words), drawing=figure_svg(recipe, words))

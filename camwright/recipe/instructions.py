@@ -1,0 +1,109 @@
+"""What a fitter does: before enabling, when importing, and what is written down at the end."""
+
+from __future__ import annotations
+
+from camwright.recipe.blocks import Block, fixed_text, text_block
+from camwright.recipe.catalogue import Catalogue
+from camwright.recipe.model import AtSpeed, Recipe, RecipeTable
+from camwright.recipe.quantities import number, shown, unit_shown, with_unit
+
+_FINEST = 0.001
+"""What an error is at least said to be within: micrometres, and percent of the acceleration."""
+
+
+def before(recipe: Recipe, words: Catalogue) -> list[Block]:
+    """List what to see with one's own eyes before the drive is enabled."""
+    machine, cut = recipe.job.si["machine"], recipe.job.si["cut"]
+    kind, full = machine["kind"], _at_full_speed(recipe)
+    speed, unit = shown(cut["line_speed"], "m/s"), recipe.slave_unit
+    values = {
+        "origin": words.named("word", cut["origin"]),
+        "start": shown(recipe.slave_start, unit),
+        "first": with_unit(recipe.profile.coefficients[0][0], unit),
+        "pitch": shown(recipe.pitch, unit),
+        "line_speed": speed,
+        "lead": shown(recipe.lead_time, "s", 4),
+        "speed": shown(full.motor_speed, "rad/s", 4),
+        "error": fixed_text(full.following_error, words),
+    }
+    if kind == "rotary_knife":
+        values["turn"] = shown(machine["circumference"], "m")
+    elif kind == "linear_carriage":
+        values["turn"] = shown(machine["travel_per_turn"], "m")
+        values["home"] = shown(machine["home"], "m")
+        values["end"] = shown(machine["home"] + machine["stroke"], "m")
+    keys = (
+        "guards",
+        "master",
+        f"direction.{kind}",
+        f"scale.{kind}",
+        f"zero.{kind}",
+        "motor",
+        "following",
+        "lead",
+        "readback",
+        "run",
+    )
+    return [{"kind": "checklist", "items": [words(f"before.{key}", **values) for key in keys]}]
+
+
+def _at_full_speed(recipe: Recipe) -> AtSpeed:
+    return max(recipe.speeds, key=lambda row: row.share)
+
+
+def imports(recipe: Recipe, words: Catalogue) -> list[Block]:
+    """List the import steps of every target, and what its controller makes of the cam."""
+    blocks: list[Block] = []
+    for table in recipe.tables:
+        about: list[Block] = [{"kind": "heading", "text": words.phrase(table.title)}]
+        about += [{"kind": "files", "paths": [file.path for file in table.files]}] if table.files else []
+        about.append(text_block(_table_words(table, words)))
+        if not table.released:
+            about.append(text_block(words("import.not_released"), strong=True))
+        about.append({"kind": "checklist", "items": [words.phrase(step) for step in table.steps]})
+        blocks.append({"kind": "together", "blocks": about})
+    if recipe.refused:
+        blocks.append(text_block(words("import.refused", targets=", ".join(each.target for each in recipe.refused))))
+    return [*blocks, text_block(words("import.safety"), strong=True)]
+
+
+def _table_words(table: RecipeTable, words: Catalogue) -> str:
+    values = {
+        "points": str(len(table.points.master)),
+        "master": table.master_unit.symbol,
+        "slave": table.slave_unit.symbol,
+        "position": number(max(table.position_error * 1e6, _FINEST), 2),
+    }
+    if table.acceleration_error is None:
+        text = words("import.facts_unbounded", **values)
+    else:
+        text = words("import.facts", **values, acceleration=number(max(100.0 * table.acceleration_error, _FINEST), 2))
+    gap = "" if words.language == "zh" else " "
+    if not table.within_asked_error:
+        text += gap + words("import.inaccurate")
+    if not table.tested_on_controller:
+        text += gap + words("import.untested")
+    return text
+
+
+def record(recipe: Recipe, words: Catalogue) -> list[Block]:
+    """Make the form for what was found and what was left."""
+    servo = recipe.job.si["servo"]
+    unit = recipe.slave_unit
+    designed = {
+        "position_gain": number(servo["position_gain"]),
+        "velocity_feedforward": number(servo["velocity_feedforward"]),
+        "lead_time": shown(recipe.lead_time, "s", 4),
+        "slave_zero": f"{shown(recipe.slave_start, unit)} {unit_shown(unit)}",
+        "following_error": fixed_text(_at_full_speed(recipe).following_error, words),
+    }
+    length = shown(recipe.job.si["cut"]["length"], "m")
+    designed |= {f"length_{share}": length for share in (25, 50, 100)}
+    return [
+        {
+            "kind": "record",
+            "head": [words(f"column.{key}") for key in ("quantity", "value", "as_found", "as_left")],
+            "rows": [[words(f"record.{key}"), value] for key, value in designed.items()],
+            "fields": [words(f"record.{key}") for key in ("machine", "name", "date", "signature")],
+        }
+    ]

@@ -1,0 +1,90 @@
+"""manifest.json: the checksum of every file of a recipe folder, and its own."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import asdict
+from typing import Any
+
+from camwright.recipe.model import Origin
+from camwright.recipe.recipe_file import canonical
+
+MANIFEST_FILE = "manifest.json"
+
+_KIND = "camwright recipe manifest"
+
+
+def sha256(data: bytes) -> str:
+    """SHA-256 in hexadecimal."""
+    return hashlib.sha256(data).hexdigest()
+
+
+def manifest_text(files: Mapping[str, bytes], origin: Origin) -> str:
+    """Write the manifest of files, by their paths in the folder.
+
+    Its own ``sha256`` is that of the same text without that line's entry, so that a change in the manifest is found, too.
+    """
+    entries = [{"path": path, "sha256": sha256(files[path]), "bytes": len(files[path])} for path in sorted(files)]
+    content = {"kind": _KIND, "schema_version": 1, "provenance": asdict(origin), "files": entries}
+    return canonical({**content, "sha256": own_sum(content)})
+
+
+def own_sum(content: Mapping[str, Any]) -> str:
+    """Checksum of a manifest's content without its own checksum."""
+    return sha256(canonical({key: value for key, value in content.items() if key != "sha256"}).encode())
+
+
+def read_manifest(data: bytes) -> tuple[dict[str, tuple[str, int]], list[str]]:
+    """Read a manifest.
+
+    Parameters
+    ----------
+    data
+        Bytes of the file.
+
+    Returns
+    -------
+    (files, faults)
+        Checksum and size by path, as far as they can be read; what is wrong with the manifest itself.
+    """
+    try:
+        content = json.loads(data.decode("utf-8"))
+    except (ValueError, RecursionError) as error:
+        return {}, [f"not JSON in UTF-8: {error}"]
+    if not isinstance(content, dict):
+        return {}, ["not an object"]
+    faults = []
+    if content.get("kind") != _KIND or content.get("schema_version") != 1:
+        faults.append(f"kind {content.get('kind')!r:.60} of version {content.get('schema_version')!r:.20} is not read")
+    if canonical_bytes(content) != data:
+        faults.append("its bytes are not those that were written")
+    found = own_sum(content) if _writable(content) else "unknown"
+    if content.get("sha256") != found:
+        faults.append(f"sha256 is {content.get('sha256')!r:.80}, but that of its content is {found}")
+    files = {}
+    for entry in content["files"] if isinstance(content.get("files"), list) else []:
+        path, stored, size = (
+            entry.get(key) if isinstance(entry, dict) else None for key in ("path", "sha256", "bytes")
+        )
+        if isinstance(path, str) and isinstance(stored, str) and isinstance(size, int):
+            files[path] = (stored, size)
+        else:
+            faults.append(f"entry {entry!r:.80} has no path, sha256 and bytes")
+    if not files:
+        faults.append("lists no files")
+    return files, faults
+
+
+def canonical_bytes(content: dict[str, Any]) -> bytes:
+    """Bytes of a manifest as this program writes it; none if it holds what it never writes."""
+    return canonical(content).encode() if _writable(content) else b""
+
+
+def _writable(content: dict[str, Any]) -> bool:
+    try:
+        canonical(content).encode()
+    except ValueError:  # NaN, infinity, half a surrogate pair
+        return False
+    return True

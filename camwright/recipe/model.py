@@ -1,0 +1,317 @@
+"""`Recipe`: the one data model that every file of a recipe folder is made from."""
+
+from __future__ import annotations
+
+from typing import Any, Final, Literal
+
+from pydantic import ConfigDict
+from pydantic.dataclasses import dataclass
+
+Language = Literal["en", "de", "zh"]
+
+RECIPE_VERSION: Final = 1
+"""Version of the layout of recipe.json; it changes when an older reader would misread the file."""
+
+_STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
+
+
+@dataclass(frozen=True, config=_STRICT)
+class Profile:
+    """One cycle as pieces of polynomials, as in a design.json.
+
+    Parameters
+    ----------
+    breaks
+        Ends of the pieces on the master (m).
+    coefficients
+        Per piece, ascending powers of the distance from its first break (slave unit per m**power).
+    """
+
+    breaks: tuple[float, ...]
+    coefficients: tuple[tuple[float, ...], ...]
+
+
+@dataclass(frozen=True, config=_STRICT)
+class JobRecord:
+    """The job: its text, and its numbers in SI units.
+
+    Parameters
+    ----------
+    toml
+        The job file as it was read.
+    si
+        The same in plain SI numbers, with everything that the design chose; laid out as in a design.json.
+    """
+
+    toml: str
+    si: dict[str, Any]
+
+
+@dataclass(frozen=True, config=_STRICT)
+class Objective:
+    """What was minimised, and its value at the job's line speed."""
+
+    name: str
+    value: float | None
+    unit: str
+
+
+@dataclass(frozen=True, config=_STRICT)
+class Zones:
+    """Where the zones lie on the master, as parts of the period ``[0, cut length]`` (m): two parts over the seam."""
+
+    sync: tuple[tuple[float, float], ...]
+    shear: tuple[tuple[float, float], ...]
+
+
+@dataclass(frozen=True, config=_STRICT)
+class RecipeCheck:
+    """One judgement: as `validation.checks.Check`, SI units."""
+
+    name: str
+    passed: bool
+    value: float | None
+    limit: float | None
+    unit: str
+    at: float | None
+    source: str
+
+
+@dataclass(frozen=True, config=_STRICT)
+class AtSpeed:
+    """What to expect at a share of the line speed, the cam over the master being the same (SI units).
+
+    Parameters
+    ----------
+    share
+        Share of the job's line speed, 1 for all of it.
+    line_speed
+        The line speed (m/s).
+    speed, acceleration, jerk
+        Peaks of the slave (slave unit over s, s², s³); ``None`` where unbounded.
+    motor_speed
+        Peak speed of the motor (rad/s).
+    peak_torque, rms_torque
+        Torque of the motor (N·m); ``None`` where the job says nothing of what is moved.
+    following_error
+        Greatest command minus axis (m); ``None`` for an unstable servo, like all below.
+    sync_error
+        Greatest sync error in the shear zone (m).
+    length_offset, length_offset_with_lead, length_variation
+        As `validation.lead.LengthError` (m): mean sync error in the shear zone, positive where the tool is late and the piece too
+        long; the same with the recipe's lead time set; what changes from cut to cut.
+    """
+
+    share: float
+    line_speed: float
+    speed: float
+    acceleration: float | None
+    jerk: float | None
+    motor_speed: float
+    peak_torque: float | None
+    rms_torque: float | None
+    following_error: float | None
+    sync_error: float | None
+    length_offset: float | None
+    length_offset_with_lead: float | None
+    length_variation: float | None
+
+
+@dataclass(frozen=True, config=_STRICT)
+class Edge:
+    """One end of a range: the value (SI), and what binds there; ``None`` where nothing ends the range.
+
+    Parameters
+    ----------
+    value
+        The end.
+    binding
+        A limit, ``"reversal"``, ``"stroke"``, ``"sync_zone"``, ``"motor"``; ``"none"`` where nothing ends the range, ``"not_found"``
+        where no end was found.
+    """
+
+    value: float | None
+    binding: str
+
+
+@dataclass(frozen=True, config=_STRICT)
+class WorkingRange:
+    """How far a machine can go at the job's other numbers: cut lengths (m) and line speeds (m/s)."""
+
+    min_length: Edge
+    max_length: Edge
+    min_line_speed: Edge
+    max_line_speed: Edge
+
+
+@dataclass(frozen=True, config=_STRICT)
+class TableFile:
+    """A file of a table: path inside the recipe folder, SHA-256 of its bytes."""
+
+    path: str
+    sha256: str
+
+
+@dataclass(frozen=True, config=_STRICT)
+class TableUnit:
+    """A unit of a table: symbol, and size in m or rad."""
+
+    symbol: str
+    size: float
+
+
+@dataclass(frozen=True, config=_STRICT)
+class Points:
+    """The points of a table in its own units, as they were read back; ``None`` for what the table does not hold.
+
+    Parameters
+    ----------
+    master, slave
+        Positions.
+    ratio, ratio_slope
+        First and second derivative of the slave over the master; ``None`` where a point holds none.
+    """
+
+    master: tuple[float, ...]
+    slave: tuple[float, ...]
+    ratio: tuple[float | None, ...] | None
+    ratio_slope: tuple[float | None, ...] | None
+
+
+@dataclass(frozen=True, config=_STRICT)
+class RecipeTable:
+    """The cam written for one target, and what the target makes of it.
+
+    Parameters
+    ----------
+    target, title
+        Name of the target; maker and mechanism.
+    released
+        Whether every check passed; a table that is not released has no files.
+    files
+        Its files, the one that holds the points first.
+    master_unit, slave_unit
+        Units of the points.
+    points
+        The points.
+    position_error
+        Greatest error of the rebuilt position, at the tool for a slave in rad (m).
+    ratio_error
+        Greatest error of the rebuilt ratio.
+    acceleration_error
+        Greatest error of the rebuilt acceleration, relative to the peak; ``None`` where it is unbounded.
+    within_asked_error
+        Whether the errors are below what was asked for.
+    wraps
+        Cycles that were judged.
+    checks
+        The checks on the rebuilt motion.
+    interpolation, number_format, evidence, tested_on_controller, steps
+        As the target states them, in English.
+    """
+
+    target: str
+    title: str
+    released: bool
+    files: tuple[TableFile, ...]
+    master_unit: TableUnit
+    slave_unit: TableUnit
+    points: Points
+    position_error: float
+    ratio_error: float
+    acceleration_error: float | None
+    within_asked_error: bool
+    wraps: int
+    checks: tuple[RecipeCheck, ...]
+    interpolation: str
+    number_format: str
+    evidence: str
+    tested_on_controller: bool
+    steps: tuple[str, ...]
+
+
+@dataclass(frozen=True, config=_STRICT)
+class Refusal:
+    """A target that cannot take the cam, and why not."""
+
+    target: str
+    reasons: tuple[str, ...]
+
+
+@dataclass(frozen=True, config=_STRICT)
+class Origin:
+    """Where the recipe comes from: versions, and the SHA-256 of the job file."""
+
+    camwright: str
+    job_sha256: str
+    libraries: dict[str, str]
+
+
+@dataclass(frozen=True, config=_STRICT)
+class Recipe:
+    """All that one product needs on one machine; SI units, angles in rad.
+
+    Parameters
+    ----------
+    schema_version
+        `RECIPE_VERSION`.
+    kind
+        Tells the file apart from others.
+    name
+        Name of the job.
+    note
+        What the user wants to be read, any text.
+    language
+        Language of PDF, HTML and XLSX.
+    released
+        Whether every check of the design and of every table passed.
+    job
+        The job.
+    slave_unit
+        ``"m"`` or ``"rad"``.
+    slave_start
+        Slave coordinate of the machine where the master is zero (slave unit).
+    pitch
+        Slave travel per cycle (slave unit).
+    objective
+        What was minimised.
+    profile
+        The cam.
+    zones
+        Where the zones lie.
+    checks
+        The checks on the cam.
+    speeds
+        What to expect at shares of the line speed.
+    lead_time
+        Lead time of the master that makes up for the servo's mean lag (s).
+    working_range
+        How far the machine can go.
+    tables
+        The tables.
+    refused
+        Targets that cannot take the cam.
+    provenance
+        Where it comes from.
+    """
+
+    schema_version: Literal[1]
+    kind: Literal["camwright recipe"]
+    name: str
+    note: str
+    language: Language
+    released: bool
+    job: JobRecord
+    slave_unit: Literal["m", "rad"]
+    slave_start: float
+    pitch: float
+    objective: Objective
+    profile: Profile
+    zones: Zones
+    checks: tuple[RecipeCheck, ...]
+    speeds: tuple[AtSpeed, ...]
+    lead_time: float
+    working_range: WorkingRange
+    tables: tuple[RecipeTable, ...]
+    refused: tuple[Refusal, ...]
+    provenance: Origin

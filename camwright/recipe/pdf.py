@@ -1,0 +1,56 @@
+"""recipe.pdf: the recipe typeset by typst, its figure as vectors, its fonts embedded."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from camwright.recipe.catalogue import catalogue
+from camwright.recipe.figure import figure_svg
+from camwright.recipe.fonts import font_files, printable, require
+from camwright.recipe.model import Recipe
+from camwright.recipe.sheet import sheet
+
+_TEMPLATE = Path(__file__).parent / "templates" / "recipe.typ"
+
+
+def recipe_pdf(recipe: Recipe) -> bytes:
+    """Typeset a recipe; the same recipe gives the same bytes.
+
+    Raises
+    ------
+    MissingExtraError
+        typst or a font is not installed.
+    """
+    require("typst")
+    fonts = font_files()
+    import typst
+
+    words = catalogue(recipe.language)
+    data = _printable({**sheet(recipe, words), "version": recipe.provenance.camwright})
+    with tempfile.TemporaryDirectory() as folder:
+        place = Path(folder)
+        shutil.copyfile(_TEMPLATE, place / "recipe.typ")
+        (place / "data.json").write_text(json.dumps(data), encoding="utf-8")
+        (place / "cam.svg").write_text(figure_svg(recipe, words), encoding="utf-8")
+        return bytes(
+            typst.compile(
+                str(place / "recipe.typ"),
+                root=folder,
+                font_paths=[str(font.parent) for font in fonts],
+                ignore_system_fonts=True,
+                timestamp=0,
+            )
+        )
+
+
+def _printable(data: Any) -> Any:
+    """Make every text in nested lists and tables printable."""
+    if isinstance(data, str):
+        return printable(data)
+    if isinstance(data, dict):
+        return {key: _printable(value) for key, value in data.items()}
+    return [_printable(value) for value in data] if isinstance(data, list) else data

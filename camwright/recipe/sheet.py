@@ -1,0 +1,144 @@
+"""The recipe as a document: sections of blocks in the reader's language, which PDF and HTML set alike."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from camwright.recipe.blocks import Block, length_text, table_block, text_block
+from camwright.recipe.catalogue import Catalogue
+from camwright.recipe.facts import GROUPS, fact_text
+from camwright.recipe.figure import figure_caption
+from camwright.recipe.instructions import before, imports, record
+from camwright.recipe.judgements import checks, files, reached, table_checks
+from camwright.recipe.model import Edge, Recipe
+from camwright.recipe.quantities import number, shown, unit_shown, with_unit
+from camwright.recipe.user_text import shortened, visible
+from camwright.recipe.working_range import LONGEST, NOT_FOUND
+
+
+def sheet(recipe: Recipe, words: Catalogue) -> dict[str, Any]:
+    """Set a recipe in a language.
+
+    Returns
+    -------
+    dict
+        ``kind``, ``title``, ``short`` (the title on one line), ``language``, ``released``, ``status``, ``head`` (rows of two), ``groups``
+        (parameters in two columns), ``page`` and ``sections``: each a ``key``, a ``heading`` and ``blocks``, every one of a ``kind``. All
+        values are plain text.
+    """
+    makers: tuple[tuple[str, Callable[[Recipe, Catalogue], list[Block]]], ...] = (
+        ("section.cam", _cam),
+        ("section.reached", reached),
+        ("section.speeds", _speeds),
+        ("section.range", _range),
+        ("section.before", before),
+        ("section.import", imports),
+        ("section.checks", checks),
+        ("section.table_checks", table_checks),
+        ("section.files", files),
+        ("section.record", record),
+    )
+    note = [[words("note"), visible(recipe.note)]] if recipe.note else []
+    name = visible(recipe.name)
+    return {
+        "title": name,
+        "short": shortened(name),
+        "kind": words("recipe"),
+        "language": recipe.language,
+        "released": recipe.released,
+        "status": words("released" if recipe.released else "not_released"),
+        "head": [
+            *note,
+            [words("head.objective"), objective_text(recipe, words)],
+            [words("head.camwright"), f"camwright {recipe.provenance.camwright}"],
+            [words("head.job_sha256"), recipe.provenance.job_sha256],
+        ],
+        "groups": [[_group(recipe, heading, words) for heading in column] for column in _COLUMNS],
+        "page": words("page"),
+        "sections": [{"key": key, "heading": words(key), "blocks": make(recipe, words)} for key, make in makers],
+    }
+
+
+def objective_text(recipe: Recipe, words: Catalogue) -> str:
+    """Name what was minimised, with its value where it has one."""
+    objective = recipe.objective
+    name = words.named("word", objective.name)
+    return name if objective.value is None else f"{name}: {with_unit(objective.value, objective.unit)}"
+
+
+_COLUMNS = (("section.machine", "section.servo"), ("section.product", "section.limits"))
+"""Groups of parameters in two columns of about the same length."""
+
+
+def _group(recipe: Recipe, heading: str, words: Catalogue) -> Block:
+    rows = [[words(fact.key), fact_text(fact, words)] for fact in GROUPS[heading](recipe)]
+    return {"heading": words(heading), "rows": rows}
+
+
+def _cam(recipe: Recipe, words: Catalogue) -> list[Block]:
+    return [{"kind": "figure", "caption": figure_caption(recipe, words)}]
+
+
+def speed_columns(recipe: Recipe) -> list[tuple[str, str, str]]:
+    """List the columns of what to expect at lower line speeds: key of the heading, field of `AtSpeed`, SI unit."""
+    unit = recipe.slave_unit
+    columns = [
+        ("column.line_speed", "line_speed", "m/s"),
+        ("column.speed", "speed", f"{unit}/s"),
+        ("column.acceleration", "acceleration", f"{unit}/s^2"),
+        ("column.jerk", "jerk", f"{unit}/s^3"),
+        ("column.motor_speed", "motor_speed", "rad/s"),
+        ("column.peak_torque", "peak_torque", "N m"),
+        ("column.rms_torque", "rms_torque", "N m"),
+        ("column.following_error", "following_error", "m"),
+        ("column.sync_error", "sync_error", "m"),
+        ("column.length_offset", "length_offset", "m"),
+        ("column.length_offset_with_lead", "length_offset_with_lead", "m"),
+        ("column.length_variation", "length_variation", "m"),
+    ]
+    moved = any(row.peak_torque is not None for row in recipe.speeds)
+    return [column for column in columns if moved or "torque" not in column[1]]
+
+
+def _speeds(recipe: Recipe, words: Catalogue) -> list[Block]:
+    """Set what to expect with one column a speed: four of them fit the page, twelve quantities do not."""
+    head = [words("column.share_of_speed"), *(number(100.0 * row.share) for row in recipe.speeds)]
+    rows = []
+    for key, field, unit in speed_columns(recipe):
+        values = [getattr(row, field) for row in recipe.speeds]
+        rows.append(
+            [
+                words(key, unit=unit_shown(unit)),
+                *(words("nothing") if value is None else length_text(value, unit) for value in values),
+            ]
+        )
+    return [
+        table_block(head, rows, widths=[2.6, *(1.0 for _ in recipe.speeds)]),
+        text_block(words("speeds.law")),
+        text_block(words("speeds.lead", lead=shown(recipe.lead_time, "s", 4))),
+    ]
+
+
+def _range(recipe: Recipe, words: Catalogue) -> list[Block]:
+    cut = recipe.job.si["cut"]
+    speed, length = shown(cut["line_speed"], "m/s"), shown(cut["length"], "m")
+    far = recipe.working_range
+    looked = far.max_length.binding == NOT_FOUND
+    longest = words("range.not_looked", factor=number(LONGEST)) if looked else words("range.no_longest")
+    ends: tuple[tuple[str, Edge, str, str], ...] = (
+        ("range.min_length", far.min_length, "m", words("range.not_found")),
+        ("range.max_length", far.max_length, "m", longest),
+        ("range.min_line_speed", far.min_line_speed, "m/s", words("range.no_lowest")),
+        ("range.max_line_speed", far.max_line_speed, "m/s", words("range.not_found")),
+    )
+    rows = [
+        [
+            words(key, line_speed=speed, length=length),
+            without if edge.value is None else shown(edge.value, unit),
+            words.named("binding", edge.binding),
+        ]
+        for key, edge, unit, without in ends
+    ]
+    head = [words(key) for key in ("column.end", "column.value", "column.binding")]
+    return [table_block(head, rows, left=3, widths=[2.2, 1.7, 1.0]), text_block(words("range.note", line_speed=speed))]

@@ -1,0 +1,60 @@
+"""What to expect at shares of the line speed: the same cam over the master, the servo simulated at each speed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from camwright.job import Job
+from camwright.recipe.model import AtSpeed
+from profiles.polynomial import CamProfile
+from profiles.servo import spectral_radius
+
+
+def at_speeds(profile: CamProfile, job: Job) -> tuple[AtSpeed, ...]:
+    """Measure a cam at 10, 25, 50 and 100 % of the line speed.
+
+    Over time the speed goes with the line speed, the acceleration with its square, the jerk with its cube; what the servo makes of
+    it follows no such law and is simulated.
+
+    Parameters
+    ----------
+    profile
+        One cycle.
+    job
+        The job, its machine with everything that the design chose.
+    """
+    from validation.lead import length_errors
+    from validation.motion import measure_motion
+    from validation.motor import measure_motor
+    from validation.response import servo_response
+
+    machine, stable = job.machine, spectral_radius(job.servo) < 1.0
+    rows = []
+    errors = {error.share: error for error in length_errors(profile, machine, job.cut, job.servo)} if stable else {}
+    for share in SHARES:
+        cut = replace(job.cut, line_speed=share * job.cut.line_speed)
+        motion, motor = measure_motion(profile, machine, cut), measure_motor(profile, machine, cut)
+        response = servo_response(profile, machine, cut, job.servo) if stable else None
+        error = errors.get(share)
+        rows.append(
+            AtSpeed(
+                share=share,
+                line_speed=cut.line_speed,
+                speed=motion.peak_speed,
+                acceleration=motion.peak_acceleration,
+                jerk=motion.peak_jerk,
+                motor_speed=motor.peak_speed,
+                peak_torque=motor.peak_torque,
+                rms_torque=motor.rms_torque,
+                following_error=response.peak_following_error if response else None,
+                sync_error=response.shear_zone_error if response else None,
+                length_offset=error.offset if error else None,
+                length_offset_with_lead=error.offset_with_lead if error else None,
+                length_variation=error.variation if error else None,
+            )
+        )
+    return tuple(rows)
+
+
+SHARES = (0.1, 0.25, 0.5, 1.0)
+"""Shares of the line speed at which a machine is commissioned."""

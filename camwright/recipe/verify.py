@@ -1,0 +1,258 @@
+"""Verifying a recipe folder: nothing changed, and the tables are still the motion that the recipe promises."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from camwright.design_file import MOST_BYTES, StoredDesign, job_numbers
+from camwright.export import position_error
+from camwright.recipe.manifest import MANIFEST_FILE, read_manifest, sha256
+from camwright.recipe.model import Points, Recipe, RecipeTable
+from camwright.recipe.recipe_file import RECIPE_FILE, parse_recipe, recipe_text, stored_design
+from profiles.errors import InputError
+from profiles.tables.cam_table import CamTable, Unit, Units
+from profiles.tables.deviation import deviation
+from profiles.tables.targets import TARGETS, read_table
+from profiles.tables.text import decode
+
+SAME = 1e-6
+"""What a value computed anew may be off the recorded one, relative to it: another processor or another version of numpy."""
+
+_ROUNDING = 1e-9
+"""The same relative to the limit that a value is judged by, or to the tool's travel: values near zero are rounding."""
+
+
+@dataclass(frozen=True)
+class Fault:
+    """What is wrong with a recipe folder.
+
+    Parameters
+    ----------
+    file
+        Path inside the folder.
+    what
+        What is wrong: the value found, and the one recorded.
+    """
+
+    file: str
+    what: str
+
+
+def verify(directory: Path) -> list[Fault]:
+    """Check a recipe folder.
+
+    Checksums of all files, none missing and none added; recipe.json by its schema; every table read by its target's reader, rebuilt
+    as the target does, and judged, against the numbers in recipe.json.
+
+    Parameters
+    ----------
+    directory
+        The folder.
+
+    Returns
+    -------
+    list
+        What is wrong; nothing for a recipe as it was written.
+
+    Raises
+    ------
+    InputError
+        The directory is no recipe, or cannot be read.
+    """
+    found = _files(directory)
+    if MANIFEST_FILE not in found and RECIPE_FILE not in found:
+        raise InputError(f"{directory}: not a recipe: neither {MANIFEST_FILE} nor {RECIPE_FILE} is in it")
+    data = {path: _bytes(directory / path) for path in sorted(found)}
+    faults = list(_sums(data))
+    faults += _contents(data)
+    return faults
+
+
+def _files(directory: Path) -> set[str]:
+    """Paths of everything in a folder that is not a plain directory."""
+    if not directory.is_dir():
+        raise InputError(f"{directory}: there is no such directory")
+    paths = set()
+    for root, folders, names in os.walk(directory):
+        links = [name for name in folders if (Path(root) / name).is_symlink()]
+        paths |= {(Path(root) / name).relative_to(directory).as_posix() for name in (*names, *links)}
+    return paths
+
+
+def _bytes(file: Path) -> bytes | None:
+    """Contents of a file; nothing for what is no plain file, too large, or cannot be read."""
+    if file.is_symlink() or not file.is_file():
+        return None
+    try:
+        return file.read_bytes() if file.stat().st_size <= MOST_BYTES else None
+    except OSError:
+        return None
+
+
+def _sums(data: dict[str, bytes | None]) -> Iterator[Fault]:
+    """Compare the folder with its manifest."""
+    manifest = data.get(MANIFEST_FILE)
+    if manifest is None:
+        yield Fault(MANIFEST_FILE, "missing, or not a readable file")
+        return
+    stored, faults = read_manifest(manifest)
+    for fault in faults:
+        yield Fault(MANIFEST_FILE, fault)
+    for path in sorted(stored.keys() | data.keys() - {MANIFEST_FILE}):
+        content = data.get(path)
+        if path not in stored:
+            yield Fault(path, "not in the manifest")
+        elif path not in data:
+            yield Fault(path, "missing")
+        elif content is None:
+            yield Fault(path, "not a readable file")
+        elif (found := sha256(content)) != stored[path][0]:
+            yield Fault(path, f"SHA-256 is {found}, the manifest has {stored[path][0]}")
+        elif len(content) != stored[path][1]:
+            yield Fault(path, f"{len(content)} bytes, the manifest has {stored[path][1]}")
+
+
+def _contents(data: dict[str, bytes | None]) -> list[Fault]:
+    """Check recipe.json in itself, and the tables against it."""
+    content = data.get(RECIPE_FILE)
+    if content is None:
+        return []  # told with the checksums
+    try:
+        recipe = parse_recipe(_text(content), RECIPE_FILE)
+        design = stored_design(recipe)
+    except InputError as error:
+        return [Fault(RECIPE_FILE, fault.removeprefix(f"{RECIPE_FILE}: ")) for fault in error.faults]
+    faults = [Fault(RECIPE_FILE, what) for what in _own_faults(recipe, design, content)]
+    for table in recipe.tables:
+        faults += _table_faults(table, design, data)
+    return faults
+
+
+def _text(content: bytes) -> str:
+    try:
+        return content.decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise InputError(f"{RECIPE_FILE}: not UTF-8 text (byte {error.start})") from error
+
+
+def _own_faults(recipe: Recipe, design: StoredDesign, content: bytes) -> Iterator[str]:
+    """Compare what recipe.json says twice."""
+    if recipe_text(recipe).encode() != content:
+        yield "its bytes are not those that were written"
+    numbers = job_numbers(design.job)
+    for path, stored, again in _differences(recipe.job.si, _lists(numbers)):
+        yield f"job.si{path} is {stored!r}, the job's text says {again!r}"
+    if recipe.name != design.job.name:
+        yield f"name is {recipe.name!r}, the job's text says {design.job.name!r}"
+    released = all(check.passed for check in recipe.checks) and all(table.released for table in recipe.tables)
+    if recipe.released is not released:
+        yield f"released is {recipe.released}, its checks say {released}"
+
+
+def _lists(value: Any) -> Any:
+    """Turn tuples into lists, as JSON gives them back."""
+    if isinstance(value, dict):
+        return {key: _lists(each) for key, each in value.items()}
+    return [_lists(each) for each in value] if isinstance(value, list | tuple) else value
+
+
+def _differences(stored: Any, again: Any, path: str = "") -> Iterator[tuple[str, Any, Any]]:
+    """List where stored values differ from those read again; what a later version knows beside them does not matter."""
+    if isinstance(stored, dict) and isinstance(again, dict):
+        for key in sorted(stored):
+            yield from _differences(stored.get(key), again.get(key), f"{path}.{key}")
+    elif stored != again:
+        yield path, stored, again
+
+
+def _table_faults(table: RecipeTable, design: StoredDesign, data: dict[str, bytes | None]) -> list[Fault]:
+    """Read one table again and judge it again."""
+    faults = [
+        Fault(file.path, f"SHA-256 is {sha256(content)}, {RECIPE_FILE} has {file.sha256}")
+        for file in table.files
+        if (content := data.get(file.path)) is not None and sha256(content) != file.sha256
+    ]
+    target = TARGETS.get(table.target)
+    if target is None:
+        return [*faults, Fault(RECIPE_FILE, f"there is no target {table.target!r:.40}")]
+    content = data.get(table.files[0].path) if table.files else None
+    if content is None:
+        return faults  # not released, or told with the checksums
+    path = table.files[0].path
+    try:
+        read = read_table(target, decode(content, path), path)
+        units = Units(
+            Unit(table.master_unit.symbol, table.master_unit.size),
+            Unit(table.slave_unit.symbol, table.slave_unit.size, design.job.machine.slave_unit),
+        )
+        return [*faults, *(Fault(path, what) for what in _number_faults(table, read, units, design))]
+    except InputError as error:
+        return [*faults, *(Fault(path, fault.removeprefix(f"{path}: ")) for fault in error.faults)]
+
+
+def _number_faults(table: RecipeTable, read: CamTable, units: Units, design: StoredDesign) -> Iterator[str]:
+    """Compare the points, the errors and the checks of a table with the recorded ones."""
+    from validation.tables import judge_table
+
+    yield from _point_faults(table.points, read)
+    job, profile = design.job, design.profile
+    if read.units is not None and read.units != units:
+        yield f"units are {_units(read.units)}, recorded {_units(units)}"
+        units = read.units
+    rebuilt = units.to_si(TARGETS[table.target].rebuild(read))
+    off = deviation(profile, rebuilt)
+    scale = float(np.ptp(profile(profile.breaks))) or 1.0
+    yield from _differs("position error (m)", position_error(profile, rebuilt, off, job), table.position_error, scale)
+    yield from _differs("ratio error", off.ratio, table.ratio_error, float(np.abs(profile(profile.breaks, 1)).max()))
+    yield from _differs("acceleration error", off.acceleration, table.acceleration_error, 1.0)
+    judgement = judge_table(rebuilt, job.machine, job.cut, job.limits, job.servo, table.wraps)
+    again = {check.name: check for check in judgement.checks}
+    recorded = {check.name: check for check in table.checks}
+    if again.keys() != recorded.keys():
+        yield f"checks are {', '.join(again)}, recorded {', '.join(recorded)}"
+    for name in again.keys() & recorded.keys():
+        new, old = again[name], recorded[name]
+        yield from _differs(f"check {name}, {new.unit}", new.value, old.value, abs(old.limit or 1.0))
+        if new.passed is not old.passed:
+            yield f"check {name} {'passes' if new.passed else 'fails'}, recorded {'passed' if old.passed else 'failed'}"
+
+
+def _point_faults(points: Points, read: CamTable) -> Iterator[str]:
+    """Compare points bit by bit; the first that differs is told."""
+    if read.points != len(points.master):
+        yield f"{read.points} points, recorded {len(points.master)}"
+        return
+    columns = {"master": read.x, "slave": read.y, "ratio": read.ratio, "ratio slope": read.ratio_slope}
+    for (name, values), stored in zip(columns.items(), asdict(points).values(), strict=True):
+        recorded = np.array([math.nan] * len(values) if stored is None else stored, dtype=float)
+        same = (values == recorded) | (np.isnan(values) & np.isnan(recorded))
+        if not same.all():
+            i = int(np.argmin(same))
+            yield f"point {i + 1}: {name} is {float(values[i])!r}, recorded {float(recorded[i])!r}"
+
+
+def _differs(name: str, found: float | None, recorded: float | None, scale: float) -> Iterator[str]:
+    """Tell a value that is not the recorded one, but for rounding."""
+    same = (
+        found is recorded
+        if found is None or recorded is None
+        else abs(found - recorded) <= SAME * abs(recorded) + _ROUNDING * scale
+    )
+    if not same:
+        yield f"{name}: {found!r}, recorded {recorded!r}"
+
+
+def _units(units: Units) -> str:
+    return ", ".join(f"{unit.symbol} ({unit.size!r} {unit.si})" for unit in (units.master, units.slave))
+
+
+def verify_answer(faults: list[Fault]) -> dict[str, Any]:
+    """Answer of ``camwright verify``."""
+    return {"ok": not faults, "faults": [asdict(fault) for fault in faults]}

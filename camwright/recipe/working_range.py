@@ -1,0 +1,113 @@
+"""How far a machine can go at a job's other numbers: cut lengths and line speeds, and what binds at either end."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from camwright.job import Job
+from camwright.recipe.model import Edge, WorkingRange
+from profiles.cycle import Cut
+from profiles.limits import Limits
+from profiles.machines import LinearCarriage, Machine
+
+LONGEST = 4.0
+"""Cut lengths up to this multiple of the job's are looked at where the slave cannot wait at rest."""
+
+NO_END = "none"
+"""What binds where nothing ends a range."""
+
+NOT_FOUND = "not_found"
+"""What binds where no end was found up to `LONGEST`."""
+
+_ACCURACY = 1e-6
+"""Accuracy of a greatest cut length, relative to it."""
+
+_BEYOND = 1e-3
+"""What binds is asked this far beyond the edge."""
+
+
+def working_range(job: Job) -> WorkingRange:
+    """Find the shortest and longest cut at the job's line speed, and the highest line speed at its cut length.
+
+    There is no lowest line speed: the same cam over the master asks for less of everything the slower the line runs.
+
+    Parameters
+    ----------
+    job
+        The job, a crank's sync zone where the design chose it.
+    """
+    from design.extremes import extremes
+
+    far = extremes(job.machine, job.cut, job.limits)
+    return WorkingRange(
+        min_length=Edge(far.min_cut_length, far.cut_length_binding),
+        max_length=longest_cut(job.machine, job.cut, job.limits),
+        min_line_speed=Edge(None, NO_END),
+        max_line_speed=Edge(far.max_line_speed, far.line_speed_binding),
+    )
+
+
+def longest_cut(machine: Machine, cut: Cut, limits: Limits) -> Edge:
+    """Find the longest cut at a line speed.
+
+    A slave that can come to rest between two sync zones can wait there for any length. One that must not run backwards and has no
+    room to stop can be slowed down by so much only.
+    """
+    from design.feasibility import binding_limit, edge, is_feasible, needed_limits
+
+    if can_rest(machine, cut, limits):
+        return Edge(None, NO_END)
+
+    def works(length: float) -> bool:
+        return is_feasible(machine, replace(cut, length=length), limits)
+
+    far = LONGEST * cut.length
+    if works(far) or not works(cut.length):
+        return Edge(None, NOT_FOUND)
+    found = edge(works, cut.length, far, _ACCURACY)
+    beyond = replace(cut, length=(found or cut.length) * (1 + _BEYOND))
+    return Edge(found, binding_limit(machine, beyond, limits, needed_limits(machine, beyond, limits)))
+
+
+def can_rest(machine: Machine, cut: Cut, limits: Limits) -> bool:
+    """Whether the slave can come to rest after a sync zone, and from rest into the next: enough room for both, or reversal allowed."""
+    from design.motor import motor_limits
+
+    if limits.motor is not None:
+        return any(can_rest(machine, cut, each) for each in motor_limits(machine, limits))
+    sync, v = machine.sync_profile(cut), cut.line_speed
+    after = stopping_distance(
+        v * float(sync(sync.end, 1, side="left")), v * v * float(sync(sync.end, 2, side="left")), limits
+    )
+    before = stopping_distance(v * float(sync(0.0, 1)), -v * v * float(sync(0.0, 2)), limits)  # run backwards in time
+    travel = float(sync(sync.end))
+    if isinstance(machine, LinearCarriage):
+        start = machine.sync_start(cut)
+        return before <= start - machine.home and after <= machine.home + machine.stroke - start - travel
+    return limits.reversal or before + after <= machine.pitch - travel
+
+
+def stopping_distance(speed: float, acceleration: float, limits: Limits) -> float:
+    """Distance in which a slave can come to rest (slave unit); exact from steady motion, else not below the least one.
+
+    The acceleration is brought to zero first. From steady motion the deceleration rises and falls evenly, so the mean speed is half
+    the speed at first, over ``w/a + a/j``, or ``2 sqrt(w/j)`` where the deceleration stays below its limit ``a``.
+
+    Parameters
+    ----------
+    speed, acceleration
+        At first, the acceleration in the direction of motion (slave unit over s, s²).
+    limits
+        Limits of acceleration ``a`` and jerk ``j``.
+
+    Examples
+    --------
+    >>> round(stopping_distance(2.0, 0.0, Limits(speed=5.0, acceleration=4.0, jerk=8.0)), 12)
+    1.0
+    """
+    a, j = limits.acceleration, limits.jerk
+    easing = abs(acceleration) / j
+    steady = max(speed, speed + 0.5 * acceleration * easing)
+    time = steady / a + a / j if steady * j >= a * a else 2.0 * math.sqrt(steady / j)
+    return steady * (easing + 0.5 * time)

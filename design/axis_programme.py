@@ -1,0 +1,316 @@
+"""The programmes of a servo-aware design: rows over a command's unknowns, made where they matter.
+
+The sync error of the axis is a row of numbers for every place, sampling phase and servo. A few rows stand from the start; after each answer
+those are added where it is worst, until it holds everywhere.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from design.axis import PHASES, SUBSTEPS, Axis
+from design.command_basis import Command, command_basis
+from design.convex import ACCEPTED, ConvexProgramme
+from profiles.cycle import Cut
+from profiles.errors import SolverError
+from profiles.limits import Limits
+from profiles.machines import LinearCarriage, Machine
+from profiles.polynomial import CamProfile, FloatArray
+from profiles.servo import Servo
+
+Cost = Literal["sync_error", "peak_acceleration", "rms_acceleration", "peak_jerk", "rms_jerk"]
+"""What a programme minimises."""
+
+RATIO = 2.0
+"""Error of the axis' ratio allowed in the shear zone, times its length over the sync tolerance: along the zone the tool could at most go
+from one edge of its band to the other."""
+
+# Limits are drawn in by this share, twice what an answer may break its rows by.
+LIMIT_MARGIN = 2 * ACCEPTED
+# The band in the shear zone is drawn in by this share, as rows stand at single places and times.
+BAND_MARGIN = 1e-3
+# Rows of the axis may be broken by this share of their band, far less than it is drawn in by.
+BAND_ACCEPTED = 1e-5
+# Limits of the axis' own speed and acceleration are drawn in by this share, for the same reason.
+AXIS_MARGIN = 1e-3
+# Places in the shear zone that have rows from the start, and times after a sample.
+PLACES, TIMES = 6, 2
+# Rounds of adding rows, most rows of each kind added in a round, and the share by which a band may be missed without another round.
+ROUNDS, MOST_ROWS, NEARLY = 8, 12, 1e-3
+# Least band that is asked for (share of the tolerance): below it the motion matters more.
+LEAST_ERROR = 5e-3
+_ORDER = {"peak_acceleration": 2, "rms_acceleration": 2, "peak_jerk": 3, "rms_jerk": 3}
+_EVERYWHERE = 1e300
+
+
+@dataclass(frozen=True, eq=False)
+class AxisProblem:
+    """A servo-aware design in numbers.
+
+    Parameters
+    ----------
+    machine
+        The machine, its sync zone placed.
+    cut
+        The cut; its sync tolerance is the band of the axis.
+    limits
+        Limits of the command.
+    command
+        What may be chosen: the return alone, or the whole cycle.
+    servos
+        Servos that must keep to the band, the nominal one first.
+    axis_limits
+        Whether the nominal axis, too, must keep the limits of speed, acceleration and reversal.
+    structure
+        A return whose breaks the command may share.
+    """
+
+    machine: Machine
+    cut: Cut
+    limits: Limits
+    command: Command
+    servos: tuple[Servo, ...]
+    axis_limits: bool
+    structure: CamProfile | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class _Rows:
+    """Rows ``low <= matrix @ z + constant <= high``."""
+
+    matrix: FloatArray
+    constant: FloatArray
+    low: FloatArray
+    high: FloatArray
+
+    @property
+    def size(self) -> FloatArray:
+        """What rows are divided by, so that their bounds are about one."""
+        return np.maximum(np.abs(self.low), np.abs(self.high))
+
+
+class AxisProgramme:
+    """The programmes of one `AxisProblem`; rows found by one answer serve the next.
+
+    Unknowns are in units of the slave's travel per cycle. The programmes count what they solve in `solved`.
+    """
+
+    def __init__(self, problem: AxisProblem) -> None:
+        self.problem = problem
+        self.axes = tuple(Axis(problem.machine, problem.cut, servo) for servo in problem.servos)
+        self.basis = command_basis(problem.machine, problem.cut, problem.command, problem.structure)
+        self.scale = max(abs(problem.machine.pitch), abs(problem.machine.sync_profile(problem.cut).advance))
+        self.solved = 0
+        self._bands = [self._band(axis, *_first_rows(axis)) for axis in self.axes]
+        self._ratios = [self._ratio(*_first_rows(self.axes[0]))] if problem.cut.shear_zone else []
+        self._own: list[_Rows] = []
+
+    def solve(
+        self, cost: Cost, band: float | None, caps: dict[int, float] | None = None
+    ) -> tuple[FloatArray, float] | None:
+        """Find the command with the least cost.
+
+        Parameters
+        ----------
+        cost
+            What is made least.
+        band
+            Sync error allowed, as a share of the tolerance; ``None`` if it is the cost. A band of 1 asks for the ratio, too.
+        caps
+            Peaks of derivatives over the master, by order, that must be kept beside the limits.
+
+        Returns
+        -------
+        (unknowns, value) or None
+            The value is a share of the tolerance, or the peak or root mean square over the master. ``None`` if no command will do.
+        """
+        for _ in range(ROUNDS + 1):
+            found = self._feasible(cost, caps or {}) if band == 1.0 else self._solve_rows(cost, band, caps or {})
+            if found is None or not self._add_worst(found[0], found[1] if band is None else band, ratio=band == 1.0):
+                break
+        return found
+
+    def reaches(self) -> bool:
+        """Whether some command brings every axis into the tolerance; no more exactly than that asks for."""
+        for _ in range(ROUNDS):
+            found = self._feasible(
+                "peak_acceleration", {}
+            )  # the gentlest command breaks the fewest limits between the rows
+            if found is None:  # rows yet to come can only make it worse
+                return False
+            if not self._add_worst(found[0], 1.0, ratio=True):
+                return True
+        return False
+
+    def _feasible(self, cost: Cost, caps: dict[int, float]) -> tuple[FloatArray, float] | None:
+        """Solve within the tolerance; at its very edge, where the solver cannot tell, by how far it would have to be widened."""
+        try:
+            return self._solve_rows(cost, 1.0, caps)
+        except SolverError:
+            wider = self._solve_rows("sync_error", None, caps, elastic=True)
+            if wider is None or wider[1] > 1.0 - BAND_MARGIN:
+                return None
+            raise
+
+    def profile(self, unknowns: FloatArray) -> CamProfile:
+        """Return the command of an answer, from the start of the return."""
+        return self.basis.profile(unknowns * self.scale)
+
+    def errors(self, profile: CamProfile) -> tuple[float, ...]:
+        """Largest sync error of the tool in the shear zone (m), by servo."""
+        return tuple(float(np.abs(axis.zone_errors(profile)[2]).max()) for axis in self.axes)
+
+    def _solve_rows(
+        self, cost: Cost, band: float | None, caps: dict[int, float], *, elastic: bool = False
+    ) -> tuple[FloatArray, float] | None:
+        """Solve with the rows there are; ``elastic`` widens the ratio's band with that of the position."""
+        self.solved += 1
+        count = self.basis.matrix.shape[1]
+        peak = not cost.startswith("rms")
+        programme = ConvexProgramme(count + peak)
+        bounds = self._limits()
+        for order, (low, high) in bounds.items():
+            peak_allowed = caps.get(order, math.inf)
+            size = min(max(abs(low), abs(high)), peak_allowed)
+            room = LIMIT_MARGIN * size if order else 0.0
+            least, most = max(low, -peak_allowed) + room, min(high, peak_allowed) - room
+            matrix, constant = self.basis.differences[order]
+            programme.add(matrix * (self.scale / size), (least - constant) / size, (most - constant) / size)
+        for rows in self._bands + (self._ratios if elastic or band == 1.0 else []):
+            matrix, constant = rows.matrix * (self.scale / rows.size)[:, None], rows.constant / rows.size
+            below, above = rows.low / rows.size, rows.high / rows.size
+            if band is None:
+                programme.add_peak(matrix, constant, below, above, BAND_ACCEPTED)
+            else:
+                share = band * (1.0 - BAND_MARGIN)
+                programme.add(matrix, below * share - constant, above * share - constant, BAND_ACCEPTED)
+        for rows in self._own:
+            matrix, constant = rows.matrix * (self.scale / rows.size)[:, None], rows.constant / rows.size
+            programme.add(matrix, rows.low / rows.size - constant, rows.high / rows.size - constant, BAND_ACCEPTED)
+        if not peak:
+            return self._mean_square(programme, _ORDER[cost], sure=not caps)
+        unit = 1.0
+        if cost != "sync_error":
+            unit = bounds[_ORDER[cost]][1]
+            matrix, constant = self.basis.differences[_ORDER[cost]]
+            programme.add_peak(matrix * (self.scale / unit), constant / unit, -1.0, 1.0)
+        answer = programme.solve(np.append(np.zeros(count), 1.0))
+        return None if answer is None else (answer[:-1], float(answer[-1]) * unit)
+
+    def _mean_square(self, programme: ConvexProgramme, order: int, *, sure: bool) -> tuple[FloatArray, float] | None:
+        """Least mean square of a derivative: linear between the nodes (order 2) or constant on the intervals (order 3)."""
+        matrix, constant = self.basis.differences[order]
+        widths = np.diff(self.basis.nodes) / self.basis.nodes[-1]
+        gram = np.diag(widths)
+        if order == 2:  # the mean of (a + (b - a) s)² over an interval is (a² + a b + b²) / 3
+            gram = np.zeros((len(widths) + 1, len(widths) + 1))
+            index = np.arange(len(widths))
+            gram[index, index] += widths / 3
+            gram[index + 1, index + 1] += widths / 3
+            gram[index, index + 1] = gram[index + 1, index] = widths / 6
+        matrix = matrix * self.scale
+        square, slope = matrix.T @ gram @ matrix, matrix.T @ gram @ constant
+        size = float(np.trace(square)) / len(square)
+        answer = programme.solve(slope / size, square / size, sure=sure)
+        if answer is None:
+            return None
+        values = matrix @ answer + constant
+        return answer, math.sqrt(float(values @ gram @ values))
+
+    def _limits(self) -> dict[int, tuple[float, float]]:
+        """Limits of the command over the master, by order of the derivative."""
+        machine, cut, limits = self.problem.machine, self.problem.cut, self.problem.limits
+        v = cut.line_speed
+        least = -limits.speed if machine.turns_back else limits.least_velocity
+        slope, jerk = limits.acceleration / v**2, limits.jerk / v**3
+        found = {1: (least / v, limits.speed / v), 2: (-slope, slope), 3: (-jerk, jerk)}
+        if isinstance(machine, LinearCarriage):
+            end = machine.sync_start(cut) + machine.sync_profile(cut).advance
+            found[0] = (machine.home - end, machine.home + machine.stroke - end)
+        return found
+
+    def _band(self, axis: Axis, places: FloatArray, times: FloatArray) -> _Rows:
+        """Rows that keep the axis in its band."""
+        matrix, constant = axis.rows(self.basis, places, times)
+        low, high = axis.band(places, self.problem.cut.sync_tolerance)
+        return _Rows(matrix, constant - axis.ideal(places)[0], low, high)
+
+    def _ratio(self, places: FloatArray, times: FloatArray) -> _Rows:
+        """Rows that keep the ratio of the nominal axis to that of the sync zone."""
+        axis, cut = self.axes[0], self.problem.cut
+        matrix, constant = axis.rows(self.basis, places, times, 1)
+        _, ratio, coordinate = axis.ideal(places)
+        room = (
+            RATIO
+            * cut.sync_tolerance
+            / cut.shear_zone
+            / np.abs(self.problem.machine.tool_ratio(coordinate) + np.zeros(len(places)))
+        )
+        return _Rows(matrix, constant - ratio, -room, room)
+
+    def _add_worst(self, unknowns: FloatArray, band: float, *, ratio: bool) -> bool:
+        """Add rows where an answer leaves its band, or the nominal axis breaks a limit; whether there were any."""
+        profile = self.profile(unknowns)
+        nearly = 1.0 if band == 1.0 else 1.0 + NEARLY
+        limit = max(band, LEAST_ERROR) * self.problem.cut.sync_tolerance * nearly
+        added = False
+        for axis in self.axes:
+            places, times, errors = axis.zone_errors(profile)
+            worst = _peaks(np.abs(errors) - limit)
+            if len(worst):
+                self._bands.append(self._band(axis, places[worst], times[worst]))
+                added = True
+        if ratio and self.problem.cut.shear_zone:
+            added |= self._add_ratio(profile)
+        return (self.problem.axis_limits and self._add_own(profile)) or added
+
+    def _add_ratio(self, profile: CamProfile) -> bool:
+        """Add rows where the ratio of the nominal axis leaves its band."""
+        axis, cut = self.axes[0], self.problem.cut
+        places, times, ratios = axis.zone_ratios(profile)
+        _, ratio, coordinate = axis.ideal(places)
+        error = np.abs((ratios - ratio) * self.problem.machine.tool_ratio(coordinate))
+        worst = _peaks(error - RATIO * cut.sync_tolerance / cut.shear_zone)
+        if len(worst):
+            self._ratios.append(self._ratio(places[worst], times[worst]))
+        return bool(len(worst))
+
+    def _add_own(self, profile: CamProfile) -> bool:
+        """Add rows where the nominal axis breaks a limit of speed or acceleration."""
+        axis, added = self.axes[0], False
+        step = axis.sample / PHASES
+        count = math.ceil(self.problem.cut.length / step)
+        for order, (low, high) in self._limits().items():
+            if order not in (1, 2):
+                continue
+            values = axis.on_grid(profile, 0, count, order)
+            worst = _peaks(np.maximum(values - high, low - values).ravel())
+            if len(worst):
+                sub, place = np.divmod(worst, count)
+                times = np.asarray(sub * (axis.servo.sample_time / SUBSTEPS), dtype=np.float64)
+                matrix, constant = axis.rows(self.basis, np.asarray(place * step, dtype=np.float64), times, order)
+                room, ones = high * AXIS_MARGIN, np.ones(len(matrix))
+                self._own.append(_Rows(matrix, constant, (low + room) * ones, (high - room) * ones))
+                added = True
+        return added
+
+
+def _first_rows(axis: Axis) -> tuple[FloatArray, FloatArray]:
+    """Places and times of the first rows: the ends of the shear zone and places between, at a few times after a sample."""
+    start, end = axis.shear_zone
+    count = PLACES if end > start else 1
+    places = start + (end - start) * (1.0 - np.cos(np.pi * np.arange(count) / max(1, count - 1))) / 2
+    times = axis.servo.sample_time * np.arange(TIMES) / TIMES
+    return np.tile(places, TIMES), np.repeat(times, count)
+
+
+def _peaks(excess: FloatArray) -> NDArray[np.intp]:
+    """Find the local maxima above zero, the worst first."""
+    padded = np.concatenate([[-_EVERYWHERE], excess, [-_EVERYWHERE]])
+    found = np.nonzero((excess > 0.0) & (excess >= padded[:-2]) & (excess > padded[2:]))[0]
+    return np.asarray(found[np.argsort(-excess[found], kind="stable")][:MOST_ROWS])

@@ -1,0 +1,249 @@
+"""The programme of returns whose torque counts: as the objective, or within what the motor gives at its speed.
+
+The pieces, limits and boundary values are those of `design.transcription`; torque and power are evaluated at Gauss points of every
+interval through the machine's own formulas. It is not convex where the inertia changes.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import casadi as ca
+import numpy as np
+
+from design.ipopt import QUIET
+from design.problem import Objective, ReturnProblem
+from design.scaling import ScaledProblem
+from design.transcription import Motion, dynamics
+from profiles.cycle import Cut
+from profiles.machines import Machine
+from profiles.motor import MotorCurve
+from profiles.polynomial import CamProfile, FloatArray
+
+# NumPy's functions on CasADi's symbols are meant: a machine is written once, for numbers and symbols alike.
+ca.GlobalOptions.setNumpyMode(1)
+
+TorqueObjective = Literal["rms_torque", "peak_torque", "energy"]
+Aim = TorqueObjective | Objective | Literal["load"]
+"""What is minimised; the load is the greatest share of the motor's torque at its speed that is used."""
+
+INTERVALS = 80
+GAUSS_POINTS = 3
+# A step in the power's sign is rounded over this share of the largest power; a peak also pays this share of the mean square, so that of
+# all motions with that peak the smoothest is taken.
+ROUNDING = 1e-4
+DRAWN_IN = 3e-8
+"""Share by which limits are drawn in here: the solver answers this programme to about 1e-8, the contract says 1e-9."""
+CURVE_DRAWN_IN = 2e-3
+"""The same for the motor's torque, which is looked at in Gauss points only."""
+
+_OPTIONS: dict[str, Any] = QUIET | {"ipopt.tol": 1e-8, "ipopt.max_iter": 500, "ipopt.mu_strategy": "adaptive"}
+
+
+@dataclass(frozen=True, eq=False)
+class TorqueTask:
+    """What a programme is made for.
+
+    Parameters
+    ----------
+    machine, cut
+        The machine and its cycle.
+    problem
+        The return as numbers over the master; its own objective does not count.
+    scale
+        Slave travel that is 1 in the scaled problem (slave unit).
+    start
+        Slave coordinate at the start of the return (slave unit).
+    aim
+        What is minimised.
+    curve
+        What the motor can give; None where that is no limit.
+    """
+
+    machine: Machine
+    cut: Cut
+    problem: ReturnProblem
+    scale: float
+    start: float
+    aim: Aim
+    curve: MotorCurve | None
+
+
+@dataclass(frozen=True, eq=False)
+class TorqueAnswer:
+    """One answer of the solver.
+
+    Parameters
+    ----------
+    motion
+        The scaled motion.
+    value
+        Its objective, as `TorqueProgramme.value` has it.
+    residual
+        Largest KKT residual (scaled).
+    success
+        Whether the solver converged.
+    iterations
+        Its iterations.
+    """
+
+    motion: Motion
+    value: float
+    residual: float
+    success: bool
+    iterations: int
+
+
+class TorqueProgramme:
+    """The programme of one task: accelerations at nodes, piecewise linear between, and the node states."""
+
+    def __init__(self, task: TorqueTask) -> None:
+        n = INTERVALS
+        self._task = task
+        self._h = np.full(n, 1.0 / n)
+        a, v, q, t = ca.SX.sym("a", n + 1), ca.SX.sym("v", n + 1), ca.SX.sym("q", n + 1), ca.SX.sym("t")
+        equations, between = dynamics({"a": a, "v": v, "q": q}, ca.DM(self._h), 1)
+        jerk = [(a[i + 1] - a[i]) / self._h[i] for i in range(n)]
+        torques, powers, available, shares = self._at_gauss_points(a, v, q)
+        self._shares = np.array(shares)
+        unknown = ca.vertcat(a, v, q, t)
+        self._measure = ca.Function(
+            "measure", [unknown], [ca.vertcat(*torques), ca.vertcat(*powers), ca.vertcat(*available)]
+        )
+        units = ca.SX.sym("u", 2)  # of the torque or motion, and of the power
+        mean_square = ca.dot(ca.DM(shares), (ca.vertcat(*torques) / units[0]) ** 2)
+        peaks: list[Any] = []
+        match task.aim:
+            case "rms_torque":
+                cost = mean_square
+            case "energy":
+                power = ca.vertcat(*powers) / units[1]
+                cost = ca.dot(ca.DM(shares), (power + ca.sqrt(power**2 + ROUNDING**2)) / 2) + ROUNDING * mean_square
+            case "rms_acceleration":
+                cost = sum(self._h[i] * (a[i] ** 2 + a[i] * a[i + 1] + a[i + 1] ** 2) for i in range(n)) / 3 / units[0] ** 2
+            case "rms_jerk":
+                cost = sum(self._h[i] * jerk[i] ** 2 for i in range(n)) / units[0] ** 2
+            case _:
+                shown = {
+                    "peak_torque": [torque / units[0] for torque in torques],
+                    "load": [torque / most for torque, most in zip(torques, available, strict=True)],
+                    "peak_acceleration": [a[i] / units[0] for i in range(n + 1)],
+                    "peak_jerk": [step / units[0] for step in jerk],
+                }[task.aim]
+                peaks = [bound for value in shown for bound in (t - value, t + value)]
+                smooth = mean_square if task.aim in ("peak_torque", "load") else 0.0
+                cost = t + ROUNDING * smooth
+        if task.curve is not None and task.aim != "load":
+            strongest = task.curve.points[0][1] * task.machine.motor_ratio
+            for torque, most in zip(torques, available, strict=True):
+                allowed = most * (1 - CURVE_DRAWN_IN)
+                peaks += [(allowed - torque) / strongest, (allowed + torque) / strongest]
+        self._counts = (2 * n, len(peaks), len(between), n)
+        nlp = {"x": unknown, "p": units, "f": cost, "g": ca.vertcat(*equations, *peaks, *between, *jerk)}
+        self._solver = ca.nlpsol("camwright_torque", "ipopt", nlp, _OPTIONS)
+
+    def _at_gauss_points(self, a: Any, v: Any, q: Any) -> tuple[list[Any], list[Any], list[Any], list[float]]:
+        """Torque or force and power at the slave, what the motor gives there, and the weights."""
+        task = self._task
+        drift = task.problem.start_ratio * task.problem.length / task.scale
+        per_time = task.cut.line_speed * task.scale / task.problem.length
+        node, weight = np.polynomial.legendre.leggauss(GAUSS_POINTS)
+        node, weight = 0.5 * (node + 1), 0.5 * weight
+        torques, powers, available, shares = [], [], [], []
+        for i, h in enumerate(self._h.tolist()):
+            rise = a[i + 1] - a[i]
+            for s, w in zip(node, weight, strict=True):
+                pace = v[i] + h * s * (a[i] + rise * s / 2)
+                place = q[i] + h * s * (v[i] + h * s * (a[i] / 2 + rise * s / 6))
+                y = task.start + task.scale * (place + drift * (i + s) * h)
+                velocity = per_time * (pace + drift)
+                acceleration = per_time * task.cut.line_speed / task.problem.length * (a[i] + rise * s)
+                machine = task.machine
+                force = machine.inertia(y) * acceleration + machine.inertia_slope(y) * velocity**2 / 2
+                turning = ca.tanh(velocity / (0.01 * task.cut.line_speed)) if machine.turns_back else 1.0
+                force += machine.friction * turning
+                torques.append(force)
+                powers.append(force * velocity)
+                shares.append(h * w)
+                if task.curve is not None:
+                    speeds, most = (ca.DM(list(column)) for column in zip(*task.curve.points, strict=True))
+                    given = ca.pw_lin(ca.fabs(velocity) * machine.motor_ratio, speeds, most)
+                    available.append(given * machine.motor_ratio)
+        return torques, powers, available, shares
+
+    def _state(self, guess: CamProfile, bound: float) -> FloatArray:
+        x = np.clip(np.concatenate([[0.0], np.cumsum(self._h)]), guess.start, guess.end)
+        return np.concatenate([guess(x, 2), guess(x, 1), guess(x), [bound]])
+
+    def value(self, guess: CamProfile) -> float:
+        """Objective of a scaled profile: at the slave for torques and power, over the scaled master for motions; the load as a share."""
+        return self._value(self._state(guess, 0.0))
+
+    def _value(self, state: FloatArray) -> float:
+        torque, power, available = (np.asarray(part).ravel() for part in self._measure(state))
+        n = INTERVALS
+        a = state[: n + 1]
+        jerk = np.diff(a) / self._h
+        match self._task.aim:
+            case "rms_torque":
+                return math.sqrt(float(self._shares @ torque**2))
+            case "peak_torque":
+                return float(np.abs(torque).max())
+            case "energy":
+                return float(self._shares @ np.maximum(power, 0.0))
+            case "load":
+                return float(np.abs(torque / available).max())
+            case "peak_acceleration":
+                return float(np.abs(a).max())
+            case "rms_acceleration":
+                return math.sqrt(float(self._h @ (a[:-1] ** 2 + a[:-1] * a[1:] + a[1:] ** 2)) / 3)
+            case "peak_jerk":
+                return float(np.abs(jerk).max())
+            case "rms_jerk":
+                return math.sqrt(float(self._h @ jerk**2))
+
+    def solve(self, problem: ScaledProblem, guess: CamProfile) -> TorqueAnswer:
+        """Solve from a guess."""
+        n = INTERVALS
+        start = self._state(guess, 1.5)
+        torque, power, _ = (np.asarray(part).ravel() for part in self._measure(start))
+        unit = float(np.sqrt(np.mean(torque**2))) if "torque" in self._task.aim or self._task.aim == "energy" else 1.0
+        unit = self._value(start) if self._task.aim.endswith(("acceleration", "jerk")) else unit
+        units = [max(unit, 1e-300), max(float(np.abs(power).max()), 1e-300)]
+        if self._task.aim == "load":
+            start[-1] = 1.1 * self._value(start)
+        factor = 1.0 - DRAWN_IN
+        low, high = problem.least_ratio * factor, problem.greatest_ratio * factor
+        slope, jerk = problem.greatest_slope * factor, problem.greatest_jerk * factor
+        place = problem.drift * np.concatenate([[0.0], np.cumsum(self._h)])
+        lower = [np.full(n + 1, -slope), np.full(n + 1, low), problem.least_position - place, np.zeros(1)]
+        upper = [np.full(n + 1, slope), np.full(n + 1, high), problem.greatest_position - place, np.full(1, np.inf)]
+        ends = ((problem.start_slope, problem.end_slope), (0.0, problem.end_ratio), (0.0, problem.height))
+        for part, (first, last) in enumerate(ends):
+            lower[part][0] = upper[part][0] = first
+            lower[part][-1] = upper[part][-1] = last
+        equal, peaks, between, steps = self._counts
+        answer = self._solver(
+            x0=start,
+            p=units,
+            lbx=np.concatenate(lower),
+            ubx=np.concatenate(upper),
+            lbg=[0.0] * (equal + peaks) + [low] * between + [-jerk] * steps,
+            ubg=[0.0] * equal + [np.inf] * peaks + [high] * between + [jerk] * steps,
+        )
+        statistics = self._solver.stats()
+        flat: FloatArray = np.asarray(answer["x"], dtype=np.float64).ravel()
+        history = statistics.get("iterations", {})
+        residual = max(
+            (float(history[name][-1]) for name in ("inf_pr", "inf_du") if history.get(name)), default=math.nan
+        )
+        value = self._value(flat)
+        return TorqueAnswer(
+            Motion(self._h, flat[: n + 1], value),
+            value,
+            residual,
+            bool(statistics["success"]),
+            int(statistics["iter_count"]),
+        )

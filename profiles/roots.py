@@ -1,0 +1,85 @@
+"""Polynomials in rows, all at once: moved to other origins, and their roots in intervals."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+_Rows = NDArray[np.float64]
+
+_NONE = 1e-15
+"""Part of the greatest contribution on the interval below which the highest powers count as none."""
+
+_REAL = 1e-6
+"""Imaginary part up to which a root counts as real: a double root splits into a pair of about sqrt(eps) off."""
+
+
+def recentred(table: _Rows, offset: _Rows) -> _Rows:
+    """Taylor shift: coefficients about a new origin that lies ``offset`` to the right.
+
+    Parameters
+    ----------
+    table
+        Shape ``(n, m)``, ascending powers, one polynomial a row.
+    offset
+        Shape ``(n,)``.
+
+    Returns
+    -------
+    ndarray
+        Shape ``(n, m)``.
+    """
+    moved = np.array(table, dtype=np.float64)
+    rows = np.nonzero(offset)[0]
+    if len(rows):
+        part, by = moved[rows], offset[rows]
+        for k in range(part.shape[1] - 1):  # synthetic division, once for each power
+            for p in range(part.shape[1] - 2, k - 1, -1):
+                part[:, p] += by * part[:, p + 1]
+        moved[rows] = part
+    return moved
+
+
+def roots_between(table: _Rows, a: _Rows, b: _Rows) -> _Rows:
+    """Real roots of polynomials inside the open intervals ``(a, b)``, found on the unit interval for the sake of scaling.
+
+    Parameters
+    ----------
+    table
+        Shape ``(n, m)``, ascending powers, one polynomial a row.
+    a, b
+        Ends of each row's interval, shape ``(n,)``.
+
+    Returns
+    -------
+    ndarray
+        Shape ``(n, m - 1)``, in each row the roots in ascending order and then NaN; empty rows where ``b <= a``.
+    """
+    count, width = table.shape
+    found = np.full((count, width - 1), np.nan)
+    unit = recentred(table, a) * (b - a)[:, None] ** np.arange(width)
+    size = np.abs(unit)
+    significant = size > _NONE * size.max(axis=1, keepdims=True)
+    degree = np.where(b > a, width - 1 - significant[:, ::-1].argmax(axis=1), 0)  # 0 also for a polynomial that is zero
+    degree[~significant.any(axis=1)] = 0
+    linear = np.nonzero(degree == 1)[0]
+    if len(linear):
+        found[linear, 0] = -unit[linear, 0] / unit[linear, 1]
+    for each in range(2, width):
+        rows = np.nonzero(degree == each)[0]
+        if len(rows):
+            found[rows, :each] = _by_companion(unit[rows, : each + 1])
+    found = np.where((found > 0.0) & (found < 1.0), found, np.nan)
+    found.sort(axis=1)
+    return a[:, None] + (b - a)[:, None] * found
+
+
+def _by_companion(table: _Rows) -> _Rows:
+    """Real roots as eigenvalues of the companion matrices, turned so that the large coefficients come first; NaN for the others."""
+    count, degree = table.shape[0], table.shape[1] - 1
+    matrices = np.zeros((count, degree, degree))
+    inner = np.arange(degree - 1)
+    matrices[:, inner, inner + 1] = 1.0
+    matrices[:, :, 0] = (-table[:, :-1] / table[:, -1:])[:, ::-1]
+    values = np.linalg.eigvals(matrices)
+    return np.where(np.abs(values.imag) < _REAL, values.real, np.nan)

@@ -1,0 +1,324 @@
+"""A whole book: what it holds, against designs made one by one; going on with it; refusals."""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import json
+import re
+import shutil
+from collections.abc import Sequence
+from dataclasses import replace
+from html import unescape
+from pathlib import Path
+
+import openpyxl
+import pytest
+from books import JOB, contents, inline_crew, small_book
+
+from camwright.book.making import Made, make_chunk
+from camwright.book.plan import Book, plan_book
+from camwright.book.run import make_book
+from camwright.design_file import read_design
+from camwright.export import export
+from camwright.job import load_job
+from design.extremes import extremes
+from design.optimise import solve
+from profiles.errors import InfeasibleError, InputError, MissingExtraError, SolverError
+from validation.report import validate
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Give the folder of a small book that was made without interruption."""
+    root = tmp_path_factory.mktemp("book") / "done"
+    answer = make_book(small_book(), root, inline_crew())
+    assert (answer.counts.designs, answer.resumed, answer.exit_code) == (12, 0, 1)
+    return root
+
+
+def rows(root: Path, name: str = "index.csv") -> list[dict[str, str]]:
+    """Rows of a CSV of the book."""
+    lines = (root / name).read_text(encoding="utf-8").splitlines()
+    return list(csv.DictReader(line for line in lines if not line.startswith("#")))
+
+
+def test_the_index_says_what_designs_made_one_by_one_say(done: Path) -> None:
+    """The same numbers by solver, validation and ``camwright.export``, each called for itself with the job's own objects."""
+    book, job = small_book(), load_job(JOB)
+    found = rows(done)
+    assert len(found) == len(book) == 12
+    ends = set()
+    for number, row in enumerate(found, start=1):
+        of = book.combination(number)
+        cut = replace(job.cut, length=float(of.length), line_speed=float(of.line_speed))
+        own = replace(job, cut=cut, objective=of.objective)
+        assert (float(row["length_mm"]), float(row["line_speed_m_per_min"])) == (
+            float(of.length * 1000),
+            float(of.line_speed * 60),
+        )
+        ends.add(row["status"])
+        if row["status"] == "infeasible":
+            with pytest.raises(InfeasibleError) as caught:
+                solve(own.machine, cut, own.limits, own.objective)
+            assert row["binding"] == caught.value.binding
+            assert str(caught.value).startswith(row["reason"])
+            assert not row["folder"]
+            continue
+        solution = solve(own.machine, cut, own.limits, own.objective)
+        report = validate(solution.profile, own.machine, cut, own.limits, own.servo)
+        (table,) = export(solution.profile, own, ["csv"])
+        assert (row["status"] == "passed") == (report.passed and table.passed)
+        failed = [check.name for check in report.checks if not check.passed]
+        failed += [f"csv: {check.name}" for check in table.judgement.checks if not check.passed]
+        assert row["failed_checks"] == "; ".join(failed)
+        assert float(row["value"]) == solution.objective
+        assert float(row["rms_acceleration_m_per_s2"]) == report.tool.rms_acceleration
+        assert report.servo is not None
+        assert float(row["following_error_mm"]) == report.servo.peak_following_error * 1e3
+        assert row["tables"] == (f"csv:{table.table.points}" if table.passed else "")
+        stored = read_design(done / row["folder"] / "design.json")
+        assert (stored.profile.coefficients == solution.profile.coefficients).all()
+        assert stored.job.cut == cut
+        files = sorted(path.name for path in (done / row["folder"]).iterdir())
+        assert [name for name in files if name not in ("design.json", "report.json")] == (
+            [f"C{number:05d}_L{row['length_mm'][:-2]}_V{row['line_speed_m_per_min'][:-2]}_paper_600"[:24] + "_cam.csv"]
+            if table.passed
+            else []
+        )
+    assert ends == {"passed", "check_failed", "infeasible"}
+
+
+def test_the_limit_table_gives_the_highest_speed_and_what_forbids_the_next(done: Path) -> None:
+    """A naive twin: look through the index for each length and objective."""
+    job, index = load_job(JOB), rows(done)
+    limits = rows(done, "limits.csv")
+    assert len(limits) == 6
+    for row in limits:
+        own = [
+            entry for entry in index if (entry["length_mm"], entry["objective"]) == (row["length_mm"], row["objective"])
+        ]
+        works = [float(entry["line_speed_m_per_min"]) for entry in own if entry["status"] == "passed"]
+        highest = max(works, default=None)
+        assert row["highest_line_speed_m_per_min"] == ("" if highest is None else str(highest))
+        beyond = [entry for entry in own if float(entry["line_speed_m_per_min"]) > (highest or 0.0)]
+        assert row["next_line_speed_m_per_min"] == (beyond[0]["line_speed_m_per_min"] if beyond else "")
+        if beyond and beyond[0]["status"] == "infeasible":
+            assert row["binding"] == beyond[0]["binding"]
+        elif beyond:
+            assert set(row["binding"].split()) <= set(re.split("; (?:csv: )?|csv: ", beyond[0]["failed_checks"]))
+        far = extremes(job.machine, replace(job.cut, length=float(row["length_mm"]) / 1e3), job.limits)
+        assert far.max_line_speed is not None
+        found = float(row["physical_line_speed_m_per_min"])
+        assert far.max_line_speed * 60 * (1 - 1e-6) <= found <= far.max_line_speed * 60
+        assert row["physical_binding"] == far.line_speed_binding
+
+
+def test_all_three_indexes_say_the_same(done: Path) -> None:
+    index, limits = rows(done), rows(done, "limits.csv")
+    workbook = openpyxl.load_workbook(done / "index.xlsx")
+    assert workbook.sheetnames == ["designs", "limits", "about"]
+    for sheet, expected in (("designs", index), ("limits", limits)):
+        head, *lines = workbook[sheet].iter_rows(values_only=True)
+        assert list(head) == list(expected[0])
+        for line, row in zip(lines, expected, strict=True):
+            for cell, text in zip(line, row.values(), strict=True):
+                if isinstance(cell, int | float):
+                    assert cell == pytest.approx(float(text), rel=1e-15)
+                else:
+                    assert (cell or "") == text
+    page = (done / "index.html").read_text(encoding="utf-8")
+    assert "://" not in page  # nothing from a network
+    for row in index:
+        if row["folder"]:
+            assert f'href="{row["folder"]}/"' in page
+            assert (done / row["folder"] / "design.json").exists()
+        else:
+            assert row["reason"] in unescape(page)
+
+
+def test_the_list_of_files_is_complete_and_true(done: Path) -> None:
+    listed = json.loads((done / "book.json").read_text(encoding="utf-8"))
+    found = contents(done)
+    assert {file["path"]: file["sha256"] for file in listed["files"]} == {
+        path: hashlib.sha256(data).hexdigest() for path, data in found.items() if path != "book.json"
+    }
+    assert listed["counts"]["designs"] == 12
+    assert not (done / ".book").exists()
+
+
+def stopping(after: int) -> object:
+    """Make a work function that is interrupted after some chunks."""
+    left = after
+
+    def work(book: Book, numbers: Sequence[int]) -> list[Made]:
+        nonlocal left
+        left -= 1
+        if left < 0:
+            raise KeyboardInterrupt
+        return make_chunk(book, numbers)
+
+    return work
+
+
+@pytest.mark.parametrize("after", [0, 1, 4])
+def test_a_book_that_was_interrupted_ends_with_the_same_bytes(done: Path, tmp_path: Path, after: int) -> None:
+    book, root = small_book(), tmp_path / "book"
+    with pytest.raises(KeyboardInterrupt):
+        make_book(book, root, inline_crew(stopping(after)))
+    assert (root / ".book" / "journal.sqlite").exists()
+    assert not (root / "book.json").exists()
+    with pytest.raises(InputError, match="holds a book that is not complete; go on with it by --resume"):
+        make_book(book, root, inline_crew())
+    told: list[int] = []
+    answer = make_book(book, root, inline_crew(), resume=True, told=told.append)
+    # two chunks of two designs are in flight at a time
+    assert answer.resumed == told[0] == 2 * (after - after % 2)
+    assert told == list(range(told[0], 13))
+    assert contents(root) == contents(done)
+
+
+def test_what_was_done_is_not_done_again_unless_its_files_differ(done: Path, tmp_path: Path) -> None:
+    book, root = small_book(), tmp_path / "book"
+    with pytest.raises(KeyboardInterrupt):
+        make_book(book, root, inline_crew(stopping(5)))
+    folders = [root / book.combination(number).folder for number in (5, 6, 7)]
+    shutil.rmtree(folders[0])
+    damaged = folders[1] / "design.json"
+    damaged.write_bytes(damaged.read_bytes().replace(b"1", b"2", 1))
+    made: list[int] = []
+
+    def work(book: Book, numbers: Sequence[int]) -> list[Made]:
+        made.extend(numbers)
+        return make_chunk(book, numbers)
+
+    answer = make_book(book, root, inline_crew(work), resume=True)
+    assert sorted(made) == [5, 6, 9, 10, 11, 12]
+    assert answer.resumed == 6
+    assert contents(root) == contents(done)
+
+
+def test_files_without_a_line_in_the_journal_are_made_again(done: Path, tmp_path: Path) -> None:
+    """What a process leaves that is killed between moving the files and writing the journal."""
+    book, root = small_book(), tmp_path / "book"
+    with pytest.raises(KeyboardInterrupt):
+        make_book(book, root, inline_crew(stopping(2)))
+    place = root / book.combination(9).folder
+    place.mkdir(parents=True)
+    (place / "design.json").write_text("half")
+    (root / ".book" / "new" / "10").mkdir(parents=True)
+    assert make_book(book, root, inline_crew(), resume=True).resumed == 4
+    assert contents(root) == contents(done)
+
+
+def test_a_complete_book_is_answered_for(done: Path, tmp_path: Path) -> None:
+    book, root = small_book(), tmp_path / "book"
+    shutil.copytree(done, root)
+    (root / ".book").mkdir()  # killed while clearing away
+    answer = make_book(book, root, inline_crew(), resume=True)
+    assert (answer.resumed, answer.rate, answer.exit_code) == (12, 0.0, 1)
+    assert not (root / ".book").exists()
+    with pytest.raises(InputError, match="holds a complete book; choose another --out"):
+        make_book(book, root, inline_crew())
+    with pytest.raises(InputError, match="--targets csv there, codesys now"):
+        make_book(small_book(targets="codesys"), root, inline_crew(), resume=True)
+    file = root / "designs/650mm/60m-per-min/peak_acceleration/report.json"
+    file.write_bytes(file.read_bytes() + b" ")
+    with pytest.raises(
+        InputError, match=f"1 of its files are missing or were changed, the first {file.relative_to(root)}"
+    ):
+        make_book(book, root, inline_crew(), resume=True)
+    (root / "book.json").write_text("{}")
+    with pytest.raises(InputError, match=r"not the list of a book's files"):
+        make_book(book, root, inline_crew(), resume=True)
+
+
+def test_resume_begins_a_book_that_is_not_there(done: Path, tmp_path: Path) -> None:
+    (tmp_path / "book" / ".book").mkdir(parents=True)  # killed before the journal was there
+    assert make_book(small_book(), tmp_path / "book", inline_crew(), resume=True).resumed == 0
+    assert contents(tmp_path / "book") == contents(done)
+
+
+def test_a_folder_with_other_files_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "notes.txt").write_text("mine")
+    for resume, advice in ((False, "choose another --out"), (True, "leave out --resume")):
+        with pytest.raises(InputError, match=f"not empty, and holds no book to go on with; {advice}"):
+            make_book(small_book(), tmp_path, inline_crew(), resume=resume)
+    assert [file.name for file in tmp_path.iterdir()] == ["notes.txt"]
+
+
+def test_a_folder_that_cannot_be_made_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("in the way")
+    with pytest.raises(InputError, match="the folder of the book cannot be made"):
+        make_book(small_book(), tmp_path / "file" / "book", inline_crew())
+
+
+def test_a_solver_that_fails_is_listed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    import design.optimise
+
+    def solve(machine: object, cut: object, *rest: object, **named: object) -> None:
+        raise SolverError("the solver ended without an answer")
+
+    monkeypatch.setattr(design.optimise, "solve", solve)
+    book = plan_book(load_job(JOB), "600", "60:80:20", [])
+    answer = make_book(book, tmp_path / "book", inline_crew())
+    assert (answer.counts.failed, answer.exit_code) == (2, 4)
+    assert [row["status"] for row in rows(tmp_path / "book")] == ["failed", "failed"]
+    assert {row["reason"] for row in rows(tmp_path / "book")} == {"the solver ended without an answer"}
+    assert rows(tmp_path / "book", "limits.csv")[0]["binding"] == "solver"
+
+
+def test_combinations_that_are_no_job_are_listed(tmp_path: Path) -> None:
+    book = plan_book(load_job(JOB), "150:600:450", "80:220:140", [])
+    answer = make_book(book, tmp_path / "book", inline_crew())
+    found = rows(tmp_path / "book")
+    assert [row["status"] for row in found] == ["infeasible", "infeasible", "passed", "infeasible"]
+    assert "[cut] sync_zone = 200 mm: not below [cut] length = 150 mm" in found[0]["reason"]
+    assert [row["binding"] for row in found] == ["sync_zone", "sync_zone", "", "speed"]
+    assert answer.exit_code == 0
+
+
+def test_a_book_of_nothing_that_works_is_infeasible(tmp_path: Path) -> None:
+    book = plan_book(load_job(JOB), "250", "120", [])
+    assert make_book(book, tmp_path / "book", inline_crew()).exit_code == 3
+
+
+def test_targets_that_cannot_take_a_cam_are_listed(tmp_path: Path) -> None:
+    job = tmp_path / "job.toml"
+    job.write_text(JOB.read_text(encoding="utf-8").replace('"400 mm"', '"400.00003 mm"'), encoding="utf-8")
+    book = plan_book(load_job(job), "600", "80", [], "csv,br")
+    make_book(book, tmp_path / "book", inline_crew())
+    (row,) = rows(tmp_path / "book")
+    assert row["status"] == "check_failed"
+    assert row["failed_checks"] == "br: refused"
+    assert "br: this drive takes whole periods" in row["reason"]
+    assert row["tables"].startswith("csv:")
+
+
+def test_names_are_escaped_and_no_cell_is_a_formula(tmp_path: Path) -> None:
+    job = tmp_path / "job.toml"
+    text = JOB.read_text(encoding="utf-8")
+    job.write_text(text.replace('name = "paper-600"', 'name = "=1+1&\'SUM(A1) {script} @x"'), encoding="utf-8")
+    make_book(plan_book(load_job(job), "600", "80", []), tmp_path / "book", inline_crew())
+    page = (tmp_path / "book" / "index.html").read_text(encoding="utf-8")
+    assert "=1+1&amp;&#x27;SUM(A1)" in page
+    workbook = openpyxl.load_workbook(tmp_path / "book" / "index.xlsx")
+    types = {cell.data_type for sheet in workbook for line in sheet.iter_rows() for cell in line}
+    assert types <= {"s", "n", "inlineStr"}
+    assert workbook["about"]["B2"].value == "=1+1&'SUM(A1) {script} @x"
+    for name in ("index.csv", "limits.csv"):
+        for row in rows(tmp_path / "book", name):
+            assert not any(cell and cell[0] in "=+@" for cell in row.values())
+
+
+def test_without_the_library_for_workbooks_the_extra_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr("camwright.book.index_xlsx.find_spec", lambda _: None)
+    with pytest.raises(MissingExtraError, match=r"xlsxwriter is not installed.*camwright\[recipe\]"):
+        make_book(small_book(), tmp_path / "book", inline_crew())
+    assert not (tmp_path / "book").exists()
+
+
+def test_workers_of_another_version_are_refused(tmp_path: Path) -> None:
+    book = replace(small_book(), versions=(("camwright", "9.9.9"),))
+    with pytest.raises(InputError, match=r"a worker runs camwright \S+, but this book is made with 9\.9\.9"):
+        make_book(book, tmp_path / "book", inline_crew())

@@ -1,0 +1,266 @@
+"""The commands ``camwright recipe`` and ``camwright verify``: files, exit codes, messages."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from camwright.cli import main
+from camwright.recipe import fonts
+from camwright.recipe.compare import compare_recipes, position_difference, read_recipe
+from camwright.recipe.verify import verify
+from profiles.tables.targets import TARGETS
+
+Say = Callable[..., tuple[int, str, str]]
+
+
+@pytest.fixture
+def say(capsys: pytest.CaptureFixture[str]) -> Say:
+    def run(*arguments: object) -> tuple[int, str, str]:
+        code = main([str(argument) for argument in arguments])
+        captured = capsys.readouterr()
+        return code, captured.out, captured.err
+
+    return run
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {file.relative_to(folder).as_posix(): file.read_bytes() for file in folder.rglob("*") if file.is_file()}
+
+
+def test_the_folder_holds_what_the_answer_lists(say: Say, paper_job: Path, tmp_path: Path) -> None:
+    out = tmp_path / "a" / "b"
+    code, said, _ = say("recipe", paper_job, "--targets", "codesys,logix,csv", "--out", out, "--json")
+    assert code == 0
+    listed = {entry["path"]: entry["sha256"] for entry in json.loads(said)["files"]}
+    found = contents(out)
+    assert listed == {path: hashlib.sha256(data).hexdigest() for path, data in found.items()}
+    assert set(found) >= {"recipe.json", "recipe.pdf", "recipe.html", "recipe.xlsx", "manifest.json"}
+    assert sum(path.startswith("tables/") for path in found) == 4
+    assert not list(tmp_path.rglob(".camwright-*"))
+    code, said, _ = say("verify", out, "--json")
+    assert (code, json.loads(said)) == (0, {"ok": True, "faults": []})
+
+
+def test_a_job_its_design_and_a_second_run_give_the_same_bytes(say: Say, paper_job: Path, tmp_path: Path) -> None:
+    assert say("design", paper_job, "--no-figures", "--out", tmp_path / "design", "--quiet")[0] == 0
+    for source, out in (
+        (paper_job, "one"),
+        (paper_job, "two"),
+        (tmp_path / "design" / "design.json", "three"),
+    ):
+        assert say("recipe", source, "--targets", "csv", "--out", tmp_path / out, "--language", "zh", "--quiet")[0] == 0
+    assert contents(tmp_path / "one") == contents(tmp_path / "two") == contents(tmp_path / "three")
+
+
+def test_a_recipe_is_replaced_as_a_whole(say: Say, paper_job: Path, tmp_path: Path) -> None:
+    out = tmp_path / "recipe"
+    say("recipe", paper_job, "--targets", "codesys,logix", "--out", out)
+    (out / "tables" / "stray.txt").write_text("x")
+    code, _, _ = say("recipe", paper_job, "--targets", "csv", "--out", out, "--note", "second")
+    assert code == 0
+    assert [path for path in contents(out) if path.startswith("tables/")] == ["tables/paper_600_cam.csv"]
+    assert verify(out) == []
+
+
+def test_anything_else_is_left_alone(say: Say, paper_job: Path, tmp_path: Path) -> None:
+    out = tmp_path / "mine"
+    out.mkdir()
+    (out / "letter.txt").write_text("dear")
+    (tmp_path / "file").write_text("x")
+    for place in (out, tmp_path / "file"):
+        code, _, complaint = say("recipe", paper_job, "--targets", "csv", "--out", place)
+        assert code == 2
+        assert "something else is there, which is not overwritten; choose another --out" in complaint
+    assert contents(tmp_path) == {"mine/letter.txt": b"dear", "file": b"x"}
+    code, _, complaint = say("recipe", paper_job, "--targets", "csv", "--out", tmp_path / "file" / "below")
+    assert code == 2
+    assert "the folder cannot be written" in complaint
+
+
+def test_a_failure_while_writing_leaves_the_old_recipe(
+    say: Say, paper_job: Path, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = contents(folder)
+    from camwright.recipe import folder as module
+
+    def full(_: Path) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(module, "_flush", full)
+    code, _, complaint = say("recipe", paper_job, "--targets", "csv", "--out", folder)
+    assert code == 2
+    assert "No space left on device; what was there is unchanged" in complaint
+    assert contents(folder) == before
+    assert not list(folder.parent.glob(".camwright-*"))
+
+
+def test_an_empty_directory_is_taken(say: Say, paper_job: Path, tmp_path: Path) -> None:
+    (tmp_path / "empty").mkdir()
+    assert say("recipe", paper_job, "--targets", "csv", "--out", tmp_path / "empty", "--quiet")[0] == 0
+    assert verify(tmp_path / "empty") == []
+
+
+def test_all_targets(say: Say, paper_job: Path, tmp_path: Path) -> None:
+    out = tmp_path / "all"
+    code, _, _ = say("recipe", paper_job, "--targets", "all", "--out", out, "--language", "de")
+    recipe = read_recipe(out)
+    assert {table.target for table in recipe.tables} | {each.target for each in recipe.refused} == set(TARGETS)
+    assert code == (0 if recipe.released else 1)
+    assert verify(out) == []
+
+
+def test_a_failed_check_is_not_released_and_ends_with_1(
+    say: Say, job_with: Callable[..., Path], tmp_path: Path
+) -> None:
+    out = tmp_path / "failed"
+    job = job_with(sync_tolerance='"0.001 mm"')
+    code, said, _ = say("recipe", job, "--targets", "csv", "--out", out)
+    assert code == 1
+    assert "NOT RELEASED: a check failed" in said
+    recipe = read_recipe(out)
+    assert not recipe.released
+    assert [table.files for table in recipe.tables] == [()]
+    assert "NOT RELEASED: a check failed. Do not run this cam." in (out / "recipe.html").read_text(encoding="utf-8")
+    assert verify(out) == []
+
+
+def test_an_infeasible_job_ends_with_3(say: Say, job_with: Callable[..., Path], tmp_path: Path) -> None:
+    code, said, _ = say("recipe", job_with(length='"300 mm"'), "--targets", "csv", "--out", tmp_path / "none", "--json")
+    assert code == 3
+    assert json.loads(said)["binding"] == "jerk"
+    assert not (tmp_path / "none").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ([], "JOB or DESIGN, --targets, --out missing"),
+        (["JOB", "--targets", "csv"], "--out missing"),
+        (["JOB", "--targets", "cvs", "--out", "x"], "there is no target 'cvs'"),
+        (["JOB", "--targets", " , ", "--out", "x"], "--targets names no target"),
+        (["none.toml", "--targets", "csv", "--out", "x"], "there is no such job or design file"),
+        (["JOB", "--compare", "a", "b"], "--compare takes two recipe folders and nothing else"),
+        (["--compare", "a", "b"], "a: there is no such directory"),
+        (["--compare", ".", "."], "not a recipe: there is no recipe.json"),
+        (
+            ["JOB", "--targets", "csv", "--out", "x", "--note", "n" * 2001],
+            "--note has 2001 characters; it may have 2000",
+        ),
+        (["JOB", "--targets", "csv", "--out", "x", "--language", "fr"], "fr"),
+        (["JOB", "--targets", "csv", "--out", "a\0b"], "null byte"),
+    ],
+)
+def test_faults_end_with_2(
+    say: Say, paper_job: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: list[str], said: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    code, _, complaint = say("recipe", *(paper_job if each == "JOB" else each for each in arguments))
+    assert code == 2
+    assert said in complaint
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_missing_library_is_told_before_anything_is_designed(
+    say: Say, paper_job: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found = fonts.find_spec
+    for library in ("jinja2", "typst", "xlsxwriter", "pylopdf_fonts_zh_cn"):
+        monkeypatch.setattr(fonts, "find_spec", lambda name, hidden=library: None if name == hidden else found(name))
+        code, _, complaint = say("recipe", paper_job, "--targets", "csv", "--out", tmp_path / "out")
+        assert code == 2
+        assert "pip install 'camwright[recipe]'" in complaint
+        assert library.replace("_", "-") in complaint
+
+
+def test_verify_tells_the_file_and_ends_with_1(say: Say, folder: Path) -> None:
+    with (folder / "recipe.html").open("ab") as file:
+        file.write(b"\n")
+    code, said, _ = say("verify", folder)
+    assert code == 1
+    assert "recipe.html" in said
+    code, said, _ = say("verify", folder, "--json")
+    answer = json.loads(said)
+    assert (code, answer["ok"], [fault["file"] for fault in answer["faults"]]) == (1, False, ["recipe.html"])
+    assert "SHA-256 is" in answer["faults"][0]["what"]
+
+
+def test_verify_of_no_recipe_ends_with_2(say: Say, tmp_path: Path) -> None:
+    assert say("verify", tmp_path)[0] == 2
+    assert say("verify", tmp_path / "none")[0] == 2
+
+
+def test_compare_tells_what_changes(say: Say, folder: Path, job_with: Callable[..., Path], tmp_path: Path) -> None:
+    other = tmp_path / "other"
+    job = job_with(line_speed='"70 m/min"', jerk='"2000 m/s^3"')
+    assert say("recipe", job, "--targets", "csv,trio", "--out", other, "--quiet")[0] == 0
+    code, said, _ = say("recipe", "--compare", folder, other, "--json")
+    assert code == 0
+    answer = json.loads(said)
+    assert answer["same"] is False
+    changes = {(change["group"], change["name"]): change for change in answer["changes"]}
+    assert changes["product", "line_speed"] | {"group": "", "name": ""} == {
+        "group": "", "name": "", "unit": "m/min", "before": pytest.approx(80.0), "after": pytest.approx(70.0),
+    }  # fmt: skip
+    assert (changes["limits", "jerk"]["before"], changes["limits", "jerk"]["after"]) == (3000.0, 2000.0)
+    assert ("limits", "acceleration") not in changes
+    assert changes["reached", "acceleration"]["after"] < changes["reached", "acceleration"]["before"]
+    assert changes["tables", "trio: files"]["before"] is None
+    assert changes["tables", "codesys: files"]["after"] is None
+    assert ("tables", "csv: files") in changes
+    off = changes["cam", "largest position difference over the master"]
+    assert off["unit"] == "mm"
+    assert off["after"] == pytest.approx(1e3 * position_difference(read_recipe(folder), read_recipe(other))[0])
+    assert 0.0 < off["after"] < 5.0
+    code, said, _ = say("recipe", "--compare", folder, other)
+    assert code == 0
+    assert "What changes on the machine" in said
+
+
+def test_compare_of_a_recipe_with_itself_finds_nothing(say: Say, folder: Path) -> None:
+    code, said, _ = say("recipe", "--compare", folder, folder, "--json")
+    assert (code, json.loads(said)["changes"], json.loads(said)["same"]) == (0, [], True)
+    assert "nothing changes" in say("recipe", "--compare", folder, folder)[1]
+
+
+def test_recipes_of_different_machines_can_be_compared(made, saw) -> None:
+    changes = {(change.group, change.name): change for change in compare_recipes(made.recipe, saw.recipe)}
+    assert changes["machine", "kind"].after == "linear_carriage"
+    assert changes["machine", "stroke"].before is None
+    assert changes["machine", "circumference"].after is None
+
+
+NAMES = [
+    "=cmd+A1",
+    "@SUM(A1)",
+    "#panic()",
+    "$x$ @a",
+    "{{7}} {% %}",
+    "& ' ;",
+    "-- +1",
+    "飞剪 切刀",
+    "مقص",
+    "🦊 emoji",
+    "é\u0301 ﬁ",
+]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_any_allowed_name_makes_a_sound_recipe(
+    say: Say, job_with: Callable[..., Path], tmp_path: Path, name: str
+) -> None:
+    out = tmp_path / "out"
+    job = job_with(name=json.dumps(name, ensure_ascii=False))
+    code, _, complaint = say(
+        "recipe", job, "--targets", "codesys,twincat,logix", "--out", out, "--note", f"{name}\n*) (* //"
+    )
+    assert code == 0, complaint
+    assert verify(out) == []
+    assert read_recipe(out).name == name
+    for path in contents(out):
+        assert path.isascii()
+        assert not set(path) & set(' *?<>|:"\\')

@@ -1,0 +1,101 @@
+"""The message catalogue: the same keys and placeholders in every language, nothing left untranslated, every word with a glyph."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from camwright import load_job
+from camwright.design_file import job_numbers
+from camwright.recipe.build import MadeRecipe
+from camwright.recipe.catalogue import LANGUAGES, catalogue
+from camwright.recipe.facts import MACHINE, PRODUCT, SERVO
+from camwright.recipe.fonts import covered
+from camwright.recipe.model import Language
+from camwright.recipe.sheet import sheet
+from profiles.tables.targets import TARGETS
+
+ROOT = Path(__file__).parents[2]
+PLACEHOLDER = re.compile(r"\{(\w+)\}")
+SAME_IN_GERMAN = {
+    "nothing", "binding.none", "binding.not_found", "section.servo", "section.import", "head.camwright", "figure.master",
+    "figure.position", "column.slave", "column.master", "record.name", "sheet.parameters",
+}  # fmt: skip
+SAME_IN_CHINESE = {"nothing", "binding.none", "binding.not_found"}
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_every_language_has_the_same_keys_and_placeholders(language: Language) -> None:
+    english, other = catalogue("en").messages, catalogue(language).messages
+    assert list(other) == list(english)
+    for key, text in other.items():
+        assert text.strip() == text != ""
+        assert sorted(PLACEHOLDER.findall(text)) == sorted(PLACEHOLDER.findall(english[key])), key
+
+
+@pytest.mark.parametrize(("language", "same"), [("de", SAME_IN_GERMAN), ("zh", SAME_IN_CHINESE)])
+def test_nothing_is_left_untranslated(language: Language, same: set[str]) -> None:
+    english, other = catalogue("en").messages, catalogue(language).messages
+    assert {key for key, text in other.items() if text == english[key]} <= same
+
+
+@pytest.mark.parametrize("language", ["de", "zh"])
+def test_titles_and_import_steps_of_all_targets_are_translated(language: Language) -> None:
+    said = {text for target in TARGETS.values() for text in (target.title, *target.steps)}
+    assert set(catalogue(language).phrases) == said
+    untranslated = {text for text in said if catalogue(language).phrase(text) == text}
+    assert all(text in {target.title for target in TARGETS.values()} for text in untranslated)
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_every_character_of_the_catalogue_has_a_glyph(language: Language) -> None:
+    words = catalogue(language)
+    letters = set("".join([*words.messages.values(), *words.phrases.values()]))
+    assert {letter for letter in letters if ord(letter) not in covered()} == set()
+
+
+def test_chinese_is_written_in_chinese() -> None:
+    words = catalogue("zh")
+    for key, text in {**words.messages, **words.phrases}.items():
+        if key not in SAME_IN_CHINESE and "EasyMotion" not in text and "Cam Loader" not in text and "IDE" not in text:
+            assert re.search(r"[\u4e00-\u9fff]|，", text), key
+
+
+def test_every_key_is_used_and_every_used_key_exists() -> None:
+    code = "\n".join(file.read_text(encoding="utf-8") for file in sorted((ROOT / "camwright/recipe").glob("*.py")))
+    literal = set(re.findall(r'words\(\s*"([\w.]+)"', code))
+    assert literal <= set(catalogue("en").messages)
+    groups = ("column", "word", "binding", "before", "check", "record")  # put together from a group and a name
+    for key in catalogue("en").messages:
+        assert key.partition(".")[0] in groups or f'"{key}"' in code, key
+
+
+@pytest.mark.parametrize("name", ["paper-600", "flying-saw", "chasing-shear", "thick-product", "cross-cutter"])
+def test_every_number_of_a_job_has_a_name(name: str) -> None:
+    numbers = job_numbers(load_job(ROOT / "examples" / f"{name}.toml"))
+    assert set(numbers["machine"]) - {"kind"} <= set(MACHINE)
+    assert set(numbers["cut"]) <= set(PRODUCT)
+    assert set(numbers["servo"]) <= set(SERVO)
+    assert numbers["machine"]["kind"] in ("rotary_knife", "linear_carriage", "crank_slider")
+    for key in (*numbers["machine"], *numbers["cut"], *numbers["servo"]):
+        assert key in catalogue("en").messages, key
+
+
+@pytest.mark.parametrize("language", ["de", "zh"])
+def test_a_set_recipe_shows_no_english_sentence(made: MadeRecipe, saw: MadeRecipe, language: Language) -> None:
+    english = catalogue("en")
+    known = {text for text in english.messages.values() if len(text) > 12 and "{" not in text}
+    known |= {step for target in TARGETS.values() for step in target.steps}
+    for recipe in (made.recipe, saw.recipe):
+        shown = str(sheet(replace(recipe, language=language), catalogue(language)))
+        assert [text for text in known if text in shown] == []
+        assert "{" not in "".join(re.findall(r"'text': '([^']*)'", shown))
+
+
+def test_every_check_has_a_name(made: MadeRecipe, saw: MadeRecipe) -> None:
+    checks = {check.name for each in (made, saw) for check in each.recipe.checks}
+    checks |= {check.name for each in (made, saw) for table in each.recipe.tables for check in table.checks}
+    assert {f"check.{name}" for name in checks} <= set(catalogue("en").messages)

@@ -1,0 +1,217 @@
+"""Verifying a recipe folder: nothing passes that was not written, and a fault is told by file and value."""
+
+from __future__ import annotations
+
+import json
+import random
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from camwright.recipe.build import MadeRecipe
+from camwright.recipe.manifest import manifest_text
+from camwright.recipe.recipe_file import canonical
+from camwright.recipe.verify import Fault, verify
+from camwright.recipe.write import recipe_files, write_folder
+from profiles.errors import InputError
+
+
+def rebuild(folder: Path) -> None:
+    """Write the manifest anew, as someone would who wants a change to pass."""
+    from camwright.recipe.recipe_file import parse_recipe
+
+    files = {
+        file.relative_to(folder).as_posix(): file.read_bytes()
+        for file in folder.rglob("*")
+        if file.is_file() and file.name != "manifest.json"
+    }
+    origin = parse_recipe(files["recipe.json"].decode(), "recipe.json").provenance
+    (folder / "manifest.json").write_bytes(manifest_text(files, origin).encode())
+
+
+def edit(folder: Path, change: Callable[[dict], object]) -> None:
+    """Change recipe.json, and the manifest with it."""
+    file = folder / "recipe.json"
+    data = json.loads(file.read_text(encoding="utf-8"))
+    change(data)
+    file.write_bytes(canonical(data).encode())
+    rebuild(folder)
+
+
+def replace_in(file: Path, old: str, new: str) -> None:
+    text = file.read_text(encoding="utf-8")
+    assert old in text
+    file.write_bytes(text.replace(old, new, 1).encode())
+
+
+def test_a_recipe_as_it_was_written_has_no_fault(folder: Path) -> None:
+    assert verify(folder) == []
+
+
+def test_a_carriage_with_chords_has_no_fault(saw: MadeRecipe, tmp_path: Path) -> None:
+    write_folder(recipe_files(saw), tmp_path / "saw")
+    assert verify(tmp_path / "saw") == []
+
+
+def changed_bytes(folder: Path, count: int) -> None:
+    """Change one byte at random, so often: each change must be told of the file that it was made in."""
+    rng = random.Random(20240607)  # noqa: S311 - no secret
+    files = sorted(file for file in folder.rglob("*") if file.is_file())
+    sizes = [file.stat().st_size for file in files]
+    for i in range(count):
+        file = files[i] if i < len(files) else rng.choices(files, sizes)[0]  # every file once, then every byte alike
+        whole = file.read_bytes()
+        at, flip = rng.randrange(len(whole)), rng.randrange(1, 256)
+        file.write_bytes(whole[:at] + bytes([whole[at] ^ flip]) + whole[at + 1 :])
+        faults = verify(folder)
+        path = file.relative_to(folder).as_posix()
+        assert any(fault.file == path for fault in faults), (path, at, flip)
+        file.write_bytes(whole)
+    assert verify(folder) == []
+
+
+def test_each_of_some_single_byte_changes_is_found(folder: Path) -> None:
+    changed_bytes(folder, 30)
+
+
+@pytest.mark.slow
+def test_each_of_200_single_byte_changes_is_found(folder: Path) -> None:
+    changed_bytes(folder, 200)
+
+
+def test_every_byte_of_the_manifest_counts(folder: Path) -> None:
+    from camwright.recipe.manifest import read_manifest
+
+    whole = (folder / "manifest.json").read_bytes()
+    assert read_manifest(whole)[1] == []
+    for at in range(len(whole)):
+        for flip in (1, 32, 128):
+            assert read_manifest(whole[:at] + bytes([whole[at] ^ flip]) + whole[at + 1 :])[1], at
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "[]", "1", '"x"', "{}", '{"files": [1], "sha256": NaN}', '{"files": {}}', "[" * 100_000, '{"a": "\\ud800"}'],
+)
+def test_any_manifest_can_be_told_of(folder: Path, text: str) -> None:
+    (folder / "manifest.json").write_text(text, encoding="utf-8")
+    assert any(fault.file == "manifest.json" for fault in verify(folder))
+
+
+def test_other_white_space_in_the_manifest_is_found(folder: Path) -> None:
+    file = folder / "manifest.json"
+    data = json.loads(file.read_text(encoding="utf-8"))
+    file.write_text(json.dumps(data, indent=2) + "\n", encoding="utf-8")
+    assert Fault("manifest.json", "its bytes are not those that were written") in verify(folder)
+
+
+def test_missing_and_added_files_are_found(folder: Path) -> None:
+    (folder / "recipe.pdf").unlink()
+    (folder / "tables" / "other.st").write_text("x")
+    (folder / "link").symlink_to(folder / "recipe.html")
+    faults = verify(folder)
+    assert Fault("recipe.pdf", "missing") in faults
+    assert Fault("tables/other.st", "not in the manifest") in faults
+    assert any(fault.file == "link" for fault in faults)
+
+
+def test_a_file_that_became_a_link_or_a_directory_is_found(folder: Path, tmp_path: Path) -> None:
+    shutil.copy(folder / "recipe.html", tmp_path / "copy.html")
+    (folder / "recipe.html").unlink()
+    (folder / "recipe.html").symlink_to(tmp_path / "copy.html")
+    assert Fault("recipe.html", "not a readable file") in verify(folder)
+
+
+def test_without_manifest_or_recipe_the_rest_is_told(folder: Path) -> None:
+    (folder / "manifest.json").unlink()
+    assert Fault("manifest.json", "missing, or not a readable file") in verify(folder)
+    rebuild(folder)
+    (folder / "recipe.json").unlink()
+    assert Fault("recipe.json", "missing") in verify(folder)
+
+
+@pytest.mark.parametrize("place", ["nothing here", "file"])
+def test_what_is_no_recipe_is_refused(tmp_path: Path, place: str) -> None:
+    (tmp_path / "file").write_text("x")
+    with pytest.raises(InputError, match="there is no such directory"):
+        verify(tmp_path / place)
+    with pytest.raises(InputError, match="not a recipe: neither manifest"):
+        verify(tmp_path)
+
+
+def test_a_changed_point_is_told_by_its_value_although_all_checksums_fit(folder: Path) -> None:
+    file = next((folder / "tables").glob("*codesys.st"))
+    text = file.read_text(encoding="utf-8")
+    third = text.index("dY := ", text.index("dX := 195."))
+    file.write_bytes((text[:third] + "dY := 100.1" + text[text.index(",", third) :]).encode())
+    digest_of = {"path": f"tables/{file.name}"}
+
+    def stay(data: dict) -> None:
+        from camwright.recipe.manifest import sha256
+
+        for table in data["tables"]:
+            for entry in table["files"]:
+                if entry["path"] == digest_of["path"]:
+                    entry["sha256"] = sha256(file.read_bytes())
+
+    edit(folder, stay)
+    faults = [fault for fault in verify(folder) if fault.file == digest_of["path"]]
+    assert any("is 100.1, recorded" in fault.what for fault in faults)
+    assert any("check acceleration" in fault.what for fault in faults)
+    assert len(faults) == len(verify(folder))
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (
+            lambda data: data["job"]["si"]["cut"].update(length=0.61),
+            "job.si.cut.length is 0.61, the job's text says 0.6",
+        ),
+        (lambda data: data.update(name="other"), "name is 'other', the job's text says 'paper-600'"),
+        (lambda data: data.update(released=False), "released is False, its checks say True"),
+        (
+            lambda data: data["job"].update(toml=data["job"]["toml"] + "\n"),
+            "the stored job is not the one that was designed",
+        ),
+        (lambda data: data["tables"][0].update(target="none"), "there is no target 'none'"),
+        (lambda data: data["profile"]["breaks"].reverse(), "break"),
+    ],
+)
+def test_what_recipe_json_says_twice_must_agree(folder: Path, change: Callable[[dict], object], said: str) -> None:
+    edit(folder, change)
+    assert any(fault.file == "recipe.json" and said in fault.what for fault in verify(folder)), verify(folder)
+
+
+def test_a_promise_that_the_table_does_not_keep_is_told(folder: Path) -> None:
+    def better(data: dict) -> None:
+        data["tables"][1]["position_error"] = 1e-12
+        data["tables"][1]["checks"][4]["value"] = 0.0
+        data["tables"][1]["points"]["slave"][3] += 1e-9
+
+    edit(folder, better)
+    faults = verify(folder)
+    assert {fault.file for fault in faults} == {"tables/paper_600_Cam.L5X"}
+    assert any(
+        fault.what.startswith("position error (m): ") and fault.what.endswith("recorded 1e-12") for fault in faults
+    )
+    assert any(fault.what.startswith("point 4: slave is ") for fault in faults)
+
+
+def test_a_changed_profile_is_told_by_all_tables(folder: Path) -> None:
+    def bend(data: dict) -> None:
+        data["profile"]["coefficients"][2][3] *= 1.001
+
+    edit(folder, bend)
+    assert len({fault.file for fault in verify(folder)}) == 3
+
+
+def test_a_table_that_cannot_be_read_is_told(folder: Path) -> None:
+    file = next((folder / "tables").glob("*.csv"))
+    file.write_bytes(b"x [mm],y [mm]\n0,\x00\n")
+    rebuild(folder)
+    faults = [fault for fault in verify(folder) if fault.file == f"tables/{file.name}"]
+    assert any("SHA-256" in fault.what for fault in faults)
+    assert any("control character" in fault.what for fault in faults)

@@ -1,0 +1,108 @@
+"""Choosing points: what is skipped must not change what is chosen."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from knives import KNIVES, UNITS, chosen, knife
+
+import validation.tables
+from camwright import load_job
+from camwright.export import export
+from profiles.polynomial import CamProfile
+from profiles.returns import baseline
+from profiles.tables.deviation import Deviation, deviation, glance
+from profiles.tables.knots import Accuracy, Choice, _rebuilt, choose, table_units
+from profiles.tables.placing import _evenly, candidates, required_points, zone_ends
+from profiles.tables.targets import TARGETS
+
+FINE = Accuracy(1e-9, 1e-6, 1e-4)
+"""More than most targets reach: the nearest is chosen then."""
+
+
+def naive(profile: CamProfile, target: str, accuracy: Accuracy) -> Choice:
+    """Look at every candidate closely, one after the other."""
+    units = table_units(TARGETS[target], profile, UNITS)
+    required = required_points(profile, zone_ends(profile))
+    peak = max(abs(extremum.value) for extremum in profile.extrema(2))
+    allowed = np.array([accuracy.position, accuracy.ratio, accuracy.acceleration * peak])
+    best: tuple[float, Choice] | None = None
+    for x in candidates(profile, TARGETS[target], required, allowed, None):
+        table, rebuilt = _rebuilt(profile, TARGETS[target], units, x)
+        found = deviation(profile, rebuilt)
+        parts = [found.position / accuracy.position, found.ratio / accuracy.ratio]
+        parts += [] if found.acceleration is None else [found.acceleration / accuracy.acceleration]
+        if best is None or max(parts) < best[0]:
+            best = max(parts), Choice(table, rebuilt, found)
+        if max(parts) <= 1:
+            break
+    assert best is not None
+    return best[1]
+
+
+@pytest.mark.parametrize("accuracy", [Accuracy(), FINE])
+@pytest.mark.parametrize("name", ["jerk-limited", "of degree 15"])
+@pytest.mark.parametrize(
+    "target", ["br", "logix", "sew", "s7-1500t-points", "twincat-cnc", "pacdrive", "schneider-asc"]
+)
+def test_the_choice_is_that_of_looking_at_every_candidate(target: str, name: str, accuracy: Accuracy) -> None:
+    profile = knife(name)
+    found = choose(profile, TARGETS[target], table_units(TARGETS[target], profile, UNITS), accuracy)
+    expected = naive(profile, target, accuracy)
+    assert np.array_equal(found.table.x, expected.table.x)
+    assert found.deviation == expected.deviation
+
+
+@pytest.mark.parametrize("name", KNIVES)
+@pytest.mark.parametrize("target", TARGETS)
+def test_a_glance_is_a_lower_bound_of_the_deviation(target: str, name: str) -> None:
+    profile = knife(name)
+    choice = chosen(target, name)
+    peak = max(abs(extremum.value) for extremum in profile.extrema(2))
+    low, true = glance(profile, choice.rebuilt, peak), choice.deviation
+    assert 0 <= low.position <= true.position
+    assert 0 <= low.ratio <= true.ratio
+    assert (low.acceleration is None) == (true.acceleration is None)
+    if low.acceleration is not None and true.acceleration is not None:
+        assert low.acceleration <= true.acceleration
+
+
+def test_deviation_in_closed_form() -> None:
+    # the chord of x² on [0, 1]: off by 1/4 in the middle, the ratio by 1 at the ends, and it jumps at the seam
+    parabola = CamProfile.from_arrays([0.0, 1.0], [[0.0, 0.0, 1.0]])
+    chord = CamProfile.from_arrays([0.0, 1.0], [[0.0, 1.0]])
+    assert deviation(parabola, chord) == Deviation(0.25, 1.0, 1.0)
+    assert glance(parabola, chord, 2.0).ratio == 1.0
+    halves = CamProfile.from_arrays([0.0, 0.5, 1.0], [[0.0, 0.5], [0.25, 1.5]])
+    assert deviation(parabola, halves) == Deviation(0.0625, 0.5, None)
+
+
+@given(st.lists(st.tuples(st.floats(1e-3, 2.0), st.integers(1, 50)), min_size=1, max_size=12), st.floats(-5.0, 5.0))
+def test_even_points_are_those_of_linspace(pieces: list[tuple[float, int]], start: float) -> None:
+    breaks = start + np.concatenate([[0.0], np.cumsum([width for width, _ in pieces])])
+    counts = np.array([count for _, count in pieces])
+    expected = [
+        np.linspace(left, right, count + 1)[1:]
+        for left, right, count in zip(breaks[:-1], breaks[1:], counts, strict=True)
+    ]
+    assert np.array_equal(_evenly(breaks[:-1], breaks[1:], counts), np.concatenate(expected))
+
+
+def test_the_same_motion_is_judged_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    judge, calls = validation.tables.judge_table, []
+
+    def counted(rebuilt: CamProfile, *rest: object) -> object:
+        calls.append((rebuilt.breaks.tobytes(), rebuilt.coefficients.tobytes()))
+        return judge(rebuilt, *rest)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(validation.tables, "judge_table", counted)
+    job = load_job()
+    results = export(
+        baseline("double_s", job.machine, job.cut), job, ["codesys", "twincat", "pacdrive", "csv", "logix"]
+    )
+    assert len(results) == 5
+    assert len(calls) == len(set(calls)) < 2 * len(results)
+    alone = export(baseline("double_s", job.machine, job.cut), job, ["pacdrive"])[0]
+    assert alone.judgement.checks == results[2].judgement.checks

@@ -1,0 +1,386 @@
+"""The servo's parameters from a recorded trace: least squares between what the sampled servo does and what was measured."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from profiles.errors import InputError
+from profiles.polynomial import FloatArray
+from profiles.servo import Servo
+from validation.sampled_axis import axis_response
+from validation.trace import Trace, require_usable
+
+Origin = Literal["trace", "assumed", "given"]
+"""Where the velocity feed-forward comes from."""
+
+RANGES: dict[str, tuple[float, float]] = {
+    "bandwidth": (10.0, 3000.0),
+    "damping": (0.1, 3.0),
+    "position_gain": (0.5, 1000.0),
+    "sample_time": (1e-4, 2e-2),
+    "dead_time": (-0.02, 0.05),
+    "velocity_feedforward": (-0.1, 1.2),
+}
+"""Ranges that are searched, in SI units. A negative dead time is found where the controller leads, and refused."""
+
+_UNITS = {
+    "bandwidth": (1.0, " rad/s"),
+    "damping": (1.0, ""),
+    "position_gain": (1.0, " 1/s"),
+    "sample_time": (1e3, " ms"),
+    "dead_time": (1e3, " ms"),
+    "velocity_feedforward": (1.0, ""),
+}
+_LOGARITHMIC = frozenset({"bandwidth", "damping", "position_gain", "sample_time"})
+
+_RUN_IN = 0.06
+"""Beginning of the trace that is not judged (s): the greatest dead time and some samples, whose commands must be known."""
+
+_START_TIMES = (0.0007, 0.0015, 0.003, 0.006, 0.012)
+"""Sample times from which the search starts (s)."""
+
+_START_GAINS = (12.0, 35.0)
+_COARSE_ROWS = 2000
+_CONFIDENCE = 1.96
+"""Standard deviations to both sides that hold 95 %."""
+
+_SEEN = 10.0
+"""Weight of evidence from which on the sampling phase counts as seen: squared difference over squared noise."""
+
+_CLOCKS = 6
+"""Sampling phases tried, and parts of a sample by which the clock may be off at the end of the trace between two sample times tried."""
+
+_MOST_TRIALS = 3000
+_WORST_FIT = 0.5
+
+
+@dataclass(frozen=True)
+class Identified:
+    """What a trace tells of a servo.
+
+    Parameters
+    ----------
+    servo
+        The servo, no lead in it.
+    confidence
+        Least and greatest value of each fitted parameter by name, 95 % confidence, in SI units.
+    feedforward_from
+        Where the velocity feed-forward comes from: fitted to the trace, assumed to be 0 or 1, which the trace does not contradict, or given.
+    fit
+        ``1 - |residual| / |actual - mean|``: 1 where the model is the axis.
+    residual
+        Rms of what the model leaves over (unit of the trace).
+    rows
+        Rows that were judged.
+    """
+
+    servo: Servo
+    confidence: dict[str, tuple[float, float]]
+    feedforward_from: Origin
+    fit: float
+    residual: float
+    rows: int
+
+
+def identify(trace: Trace, place: str, velocity_feedforward: float | None = None) -> Identified:
+    """Find the servo that makes of the recorded command what was recorded of the axis.
+
+    The axis' state at the beginning is not known and fitted too (three numbers, linear). The sampling clock's phase is not known either:
+    where the trace shows it, it is fitted; where it does not, the model is the mean of two opposite phases.
+
+    The velocity feed-forward is a number that was set; the trace often tells it from the sample time only poorly. Unless given it is
+    fitted, and taken as 1 or as 0 where the fit does not contradict this.
+
+    Parameters
+    ----------
+    trace
+        The trace.
+    place
+        What messages begin with.
+    velocity_feedforward
+        Share of the command's velocity that is fed forward, if known.
+
+    Raises
+    ------
+    InputError
+        The trace cannot be used (`validation.trace.require_usable`), does not tell a parameter, or no servo of this kind does what it
+        shows.
+    """
+    require_usable(trace, place)
+    problem = _Problem.of(trace)
+    origin: Origin = "given"
+    if velocity_feedforward is None:
+        solution = problem.solve(None)
+        alpha, origin = solution.values["velocity_feedforward"], "trace"
+        whole = min((0.0, 1.0), key=lambda value: abs(value - alpha))
+        if abs(whole - alpha) <= solution.spread("velocity_feedforward"):
+            solution, origin = problem.solve(whole), "assumed"
+    else:
+        solution = problem.solve(velocity_feedforward)
+    solution = problem.with_clock(solution)
+    fit = 1.0 - math.sqrt(solution.cost / float(np.sum((problem.actual - problem.actual.mean()) ** 2)))
+    faults = list(_faults(solution, fit))
+    if faults:
+        raise InputError(*(f"{place}: {fault}" for fault in faults))
+    values = solution.values
+    confidence = {
+        name: (values[name] - solution.spread(name), values[name] + solution.spread(name)) for name in solution.names
+    }
+    return Identified(
+        servo=_servo({**values, "dead_time": max(0.0, values["dead_time"])}),
+        confidence=confidence,
+        feedforward_from=origin,
+        fit=fit,
+        residual=math.sqrt(solution.cost / len(problem.times)),
+        rows=len(problem.times),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Solution:
+    """A minimum: all parameters by name, those fitted, and how well they are known.
+
+    ``clock`` is the sampling phase as a part of the sample time, nothing where it is not fitted.
+    """
+
+    values: dict[str, float]
+    names: tuple[str, ...]
+    clock: float | None
+    cost: float
+    deviations: dict[str, float]
+    """Standard deviations."""
+
+    def spread(self, name: str) -> float:
+        """Half the width of the 95 % confidence."""
+        return _CONFIDENCE * self.deviations[name]
+
+
+@dataclass(frozen=True, eq=False)
+class _Problem:
+    """A trace's fit: the rows that are judged, and the command between the rows."""
+
+    times: FloatArray
+    actual: FloatArray
+    command: Callable[[FloatArray], FloatArray]
+
+    @classmethod
+    def of(cls, trace: Trace) -> _Problem:
+        from scipy.interpolate import CubicSpline
+
+        times = trace.times
+        curve = CubicSpline(times, trace.command)
+        judged = times >= times[0] + _RUN_IN
+
+        def command(at: FloatArray) -> FloatArray:
+            return np.asarray(curve(np.clip(at, times[0], times[-1])))
+
+        return cls(times[judged], trace.actual[judged], command)
+
+    @property
+    def lag(self) -> float:
+        """Time by which the actual position runs after the command, at the rows, on average (s)."""
+        ahead = 1e-3
+        command = self.command(self.times)
+        velocity = (command - self.command(self.times - ahead)) / ahead
+        return float(velocity @ (command - self.actual) / (velocity @ velocity))
+
+    def thinned(self) -> _Problem:
+        """Give the problem with no more rows than a search needs."""
+        every = max(1, len(self.times) // _COARSE_ROWS)
+        return _Problem(self.times[::every], self.actual[::every], self.command)
+
+    def residual(self, servo: Servo, clock: float | None) -> FloatArray:
+        """What is left of the actual position without the best beginning; without clock, for the mean of two opposite phases."""
+        clocks = (0.0, 0.5) if clock is None else (clock,)
+        with np.errstate(
+            over="ignore", invalid="ignore"
+        ):  # an unstable servo runs away: not finite, and refused by the search
+            positions, frees = zip(
+                *(
+                    axis_response(servo, float(self.times[0]) + part * servo.sample_time, self.command, self.times)
+                    for part in clocks
+                ),
+                strict=True,
+            )
+            free = sum(frees) / len(clocks)
+            left = self.actual - sum(positions) / len(clocks)
+            free = free / np.sqrt((free**2).sum(axis=0))
+            if not np.isfinite(free).all():
+                return np.full(len(self.times), np.inf)
+            basis = np.linalg.qr(free)[0]
+            return np.asarray(left - basis @ (basis.T @ left))
+
+    def solve(self, alpha: float | None) -> _Solution:
+        """Fit all parameters without the clock, the velocity feed-forward too if not given, from many starts."""
+        coarse = self.thinned()
+        names = tuple(name for name in RANGES if name != "velocity_feedforward" or alpha is None)
+        lag = coarse.lag
+        starts = []
+        for ahead in (1.0, 0.0) if alpha is None else (alpha,):
+            for step in _START_TIMES:
+                for gain in _START_GAINS:
+                    late = lag - step - (1.0 - ahead) / gain
+                    start = {
+                        "bandwidth": 110.0,
+                        "damping": 0.8,
+                        "position_gain": gain,
+                        "sample_time": step,
+                        "dead_time": min(max(late, 0.0), 0.04),
+                        "velocity_feedforward": ahead,
+                    }
+                    starts.append(
+                        coarse.minimum(start, tuple(name for name in names if name != "sample_time"), None, 12)
+                    )
+        starts.sort(key=lambda found: found.cost)
+        found = [coarse.minimum(start.values, names, None, 40) for start in starts[:3]]
+        return self.minimum(min(found, key=lambda each: each.cost).values, names, None, 40)
+
+    def with_clock(self, found: _Solution) -> _Solution:
+        """Fit the clock too where the trace shows it, the sample time scanned so finely that no tooth of its comb is missed."""
+        step, lasts = found.values["sample_time"], float(self.times[-1] - self.times[0])
+        mean = self.residual(_servo(found.values), None)
+        noise = found.cost / len(self.times)
+        phases = [self.residual(_servo(found.values), part / _CLOCKS) for part in range(_CLOCKS)]
+        if max(float(np.sum((each - mean) ** 2)) for each in phases) < _SEEN * noise:
+            return found
+        tooth = step * step / (_CLOCKS * lasts)
+        reach = min(2.0 * found.spread("sample_time"), 0.5 * step, 0.5 * tooth * _MOST_TRIALS / _CLOCKS)
+        others = [name for name in found.names if name != "sample_time"]
+        slopes = self.slopes(found.values, tuple(others), None)
+        basis = np.linalg.qr(slopes)[0]
+        trials = []
+        for sample_time in step + np.arange(-math.ceil(reach / tooth), math.ceil(reach / tooth) + 1) * tooth:
+            values = {**found.values, "sample_time": float(sample_time)}
+            for part in range(_CLOCKS):
+                left = self.residual(_servo(values), part / _CLOCKS)
+                left = left - basis @ (basis.T @ left)
+                trials.append((float(left @ left), float(sample_time), part / _CLOCKS))
+        trials.sort()
+        best = [
+            self.minimum({**found.values, "sample_time": sample_time}, found.names, clock, 40)
+            for _, sample_time, clock in trials[:3]
+        ]
+        return min([found, *best], key=lambda each: each.cost)
+
+    def slopes(self, values: dict[str, float], names: tuple[str, ...], clock: float | None) -> FloatArray:
+        """Derivatives of the residual by parameters (log of those above zero) and, last, the clock; central differences."""
+        columns = []
+        for name in (*names, *(("clock",) if clock is not None else ())):
+            step = _difference(name)
+            sides = []
+            for side in (step, -step):
+                if name == "clock":
+                    sides.append(self.residual(_servo(values), (clock or 0.0) + side))
+                else:
+                    sides.append(self.residual(_servo({**values, name: _moved(name, values[name], side)}), clock))
+            columns.append((sides[0] - sides[1]) / (2.0 * step))
+        return np.stack(columns, axis=1)
+
+    def minimum(self, start: dict[str, float], names: tuple[str, ...], clock: float | None, rounds: int) -> _Solution:
+        """Least squares over some parameters, and the clock if one is given, from a start; ranges are kept."""
+        from scipy.optimize import least_squares
+
+        low, high = (np.array([_coordinate(name, RANGES[name][end]) for name in names]) for end in (0, 1))
+        begin = np.array([_coordinate(name, start[name]) for name in names])
+        if clock is not None:
+            low, high, begin = np.append(low, clock - 2.0), np.append(high, clock + 2.0), np.append(begin, clock)
+
+        def read(point: FloatArray) -> tuple[dict[str, float], float | None]:
+            values = {name: _value(name, float(x)) for name, x in zip(names, point, strict=False)}
+            return {**start, **values}, None if clock is None else float(point[-1])
+
+        def left(point: FloatArray) -> FloatArray:
+            values, phase = read(point)
+            return self.residual(_servo(values), phase)
+
+        def slopes(point: FloatArray) -> FloatArray:
+            values, phase = read(point)
+            return self.slopes(values, names, phase)
+
+        edge = 1e-9 * (high - low)
+        begin = np.clip(begin, low + edge, high - edge)
+        size = float(np.abs(self.actual).max()) or 1.0
+        found = least_squares(
+            lambda point: left(point) / size,
+            begin,
+            jac=lambda point: slopes(point) / size,
+            bounds=(low, high),
+            x_scale="jac",
+            max_nfev=rounds,
+            ftol=1e-9,
+            xtol=1e-9,
+            gtol=1e-15,
+        )
+        values, phase = read(found.x)
+        jacobian = found.jac * size
+        rows, width = jacobian.shape
+        scale = np.sqrt((jacobian**2).sum(axis=0))
+        cost = 2.0 * found.cost * size * size
+        inverse = np.linalg.pinv((jacobian / scale).T @ (jacobian / scale))
+        spread = np.sqrt(np.diag(inverse) * cost / (rows - width - 3)) / scale
+        deviations = {
+            name: float(each) * (values[name] if name in _LOGARITHMIC else 1.0)
+            for name, each in zip(names, spread, strict=False)
+        }
+        return _Solution(values, names, phase, cost, deviations)
+
+
+def _servo(values: dict[str, float]) -> Servo:
+    """Servo of some values; a negative dead time is a lead, of which the simulation knows."""
+    return Servo(**values)
+
+
+def _coordinate(name: str, value: float) -> float:
+    """Where the search puts a value: the logarithm of what is above zero."""
+    return math.log(value) if name in _LOGARITHMIC else value
+
+
+def _value(name: str, coordinate: float) -> float:
+    return math.exp(coordinate) if name in _LOGARITHMIC else coordinate
+
+
+def _moved(name: str, value: float, by: float) -> float:
+    return _value(name, _coordinate(name, value) + by)
+
+
+def _difference(name: str) -> float:
+    """Step of a difference: of a logarithm, of the dead time (s), of a part."""
+    return {"dead_time": 1e-6, "clock": 1e-2}.get(name, 1e-4)
+
+
+def _faults(solution: _Solution, fit: float) -> Iterator[str]:
+    """Say what the trace does not tell, or tells of no servo of this kind."""
+    if not fit > _WORST_FIT:
+        yield (
+            f"no servo of this kind does what the trace shows: the best leaves {100 * (1 - fit):.3g} % of the motion over; check the units, "
+            "the columns, and that it is one axis in position control"
+        )
+        return
+    values = solution.values
+    for name in solution.names:
+        factor, unit = _UNITS[name]
+        words, value, spread = name.replace("_", " "), values[name], solution.spread(name)
+        low, high = RANGES[name]
+        shown = f"{words} {value * factor:.4g}{unit}"
+        if name == "dead_time" and value < -spread and value < -1e-5:
+            yield (
+                f"the actual position runs ahead of the command ({shown}); switch the controller's lead off for the recording, and give "
+                "command and actual in their own columns"
+            )
+        elif not low * (1 + 1e-6) < value < high * (1 - 1e-6) and name != "dead_time":
+            yield f"{shown} is the end of the range that is searched, {low * factor:g} to {high * factor:g}{unit}; record a livelier motion"
+        elif 2 * spread > (max(value, values["sample_time"]) if name == "dead_time" else abs(value)):
+            yield (
+                f"the trace does not tell the {words}: {value * factor:.4g}{unit}, give or take {spread * factor:.2g}{unit} (95 %); record "
+                "a livelier motion, e.g. a sweep up to the axis' bandwidth, or longer"
+                + (
+                    ""
+                    if name == "velocity_feedforward" or "velocity_feedforward" not in solution.names
+                    else "; or give the velocity feed-forward"
+                )
+            )

@@ -1,0 +1,85 @@
+"""The sampled servo at any times: what it makes of a command that is known as a curve, from an unknown beginning."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from profiles.polynomial import FloatArray
+from profiles.servo import Servo, closed_loop, sample_plant
+
+
+def axis_response(
+    servo: Servo, clock: float, command: Callable[[FloatArray], FloatArray], times: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Position of the axis at given times, and what an unknown beginning can add to it.
+
+    Exact at any time: the samples by the closed loop's recursion, between them the plant under its held input. At the last sample before
+    the first time the axis stands on its command; every other state there adds a combination of the columns returned.
+
+    Parameters
+    ----------
+    servo
+        The servo, dead time and lead included.
+    clock
+        Time of one of its samples (s).
+    command
+        The command over time (m or rad).
+    times
+        Ascending times (s), shape ``(n,)``.
+
+    Returns
+    -------
+    (position, free)
+        Shapes ``(n,)`` and ``(n, 3)``.
+    """
+    from scipy.signal import lfilter
+
+    step, gain = servo.sample_time, servo.position_gain
+    first, last = (math.floor((float(time) - clock) / step) for time in (times[0], times[-1]))
+    seen = command(clock - servo.delay + step * np.arange(first - 1, last + 1))
+    base = float(seen[1])
+    drive = gain * (seen[1:] - base) + servo.velocity_feedforward / step * (seen[1:] - seen[:-1])
+
+    # states from rest: (adj(q - A) b) / det(q - A), q the shift by a sample, by Faddeev and LeVerrier
+    loop, held = closed_loop(servo)[0], sample_plant(servo, step).input
+    square = loop @ loop
+    c2 = -float(np.trace(loop))
+    c1 = 0.5 * (c2 * c2 - float(np.trace(square)))
+    c0 = -float(np.trace(square @ loop) + c2 * np.trace(square) + c1 * np.trace(loop)) / 3
+    ahead = np.stack([held, loop @ held + c2 * held, square @ held + c2 * (loop @ held) + c1 * held])
+    state = [lfilter([0.0, *ahead[:, i]], [1.0, c2, c1, c0], drive) for i in range(3)]
+    # a state that can be reached is a combination of b, A b and A² b: three shifts of one decay
+    decay, power = held[:, None], loop
+    while decay.shape[1] < len(drive) + 2:
+        decay, power = np.concatenate([decay, power @ decay], axis=1), power @ power
+
+    place = (times - clock) / step
+    whole = np.floor(place)
+    sample = whole.astype(np.intp) - first
+    slope, velocity, reference = _position_rows(servo, (place - whole) * step)
+    held_still = 1.0 - gain * reference  # the reference is f - K p
+    position = base + slope * state[0][sample] + velocity * state[1][sample] + held_still * state[2][sample]
+    position += reference * drive[sample]
+    free = np.empty((len(times), 3))
+    for shift in range(3):
+        later = decay[:, sample + shift]
+        free[:, shift] = slope * later[0] + velocity * later[1] + held_still * later[2]
+    return position, free
+
+
+def _position_rows(servo: Servo, times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Position of the plant after some times, by the velocity's derivative, the velocity and the held reference at their beginning.
+
+    The last row of `profiles.servo.sample_plant`, for many times.
+    """
+    w = servo.bandwidth
+    sigma = servo.damping * w
+    root = np.emath.sqrt((servo.damping**2 - 1.0) * w * w)
+    decay = np.exp(-sigma * times)
+    c = decay * np.cosh(root * times).real
+    s = decay * (np.sinh(root * times) / root).real if root else decay * times
+    velocity = (w * w * s + 2 * sigma * (1.0 - c - sigma * s)) / (w * w)
+    return (1.0 - c - sigma * s) / (w * w), velocity, times - velocity
