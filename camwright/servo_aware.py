@@ -5,18 +5,23 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from camwright.job import Job
+from profiles.polynomial import CamProfile, FloatArray
 from profiles.servo import Servo
 
 if TYPE_CHECKING:
     from design.optimise import Solution
-    from profiles.polynomial import CamProfile
 
 DRAWS = 10_000
 """Servos drawn from the ranges of a job's ``[servo.tolerance]``."""
 
 SEED = 20160
 """Seed of the draws: the same job, the same servos."""
+
+_BAND_DRAWS, _BAND_POINTS = 200, 81
+"""Servos drawn for a `RobustBand`, and its places."""
 
 
 @dataclass(frozen=True)
@@ -73,6 +78,11 @@ def servos_of(job: Job) -> tuple[Servo, ...]:
     return (job.servo, *job.servo_tolerance.vertices(job.servo))
 
 
+def between_of(job: Job) -> tuple[Servo, ...]:
+    """Servos between the corners of a job's ranges, which a servo-aware design looks at too."""
+    return () if job.servo_tolerance is None else job.servo_tolerance.between(job.servo)
+
+
 def solve_job(job: Job, *, suggest: bool = True) -> Solution:
     """Design the cycle of a job, servo-aware if it says so.
 
@@ -94,7 +104,7 @@ def solve_job(job: Job, *, suggest: bool = True) -> Solution:
         from design.axis_design import solve_axis
 
         objective = "sync_error" if job.minimise_sync_error else job.objective
-        return solve_axis(job.machine, job.cut, job.limits, objective, job.command, servos_of(job))
+        return solve_axis(job.machine, job.cut, job.limits, objective, job.command, servos_of(job), between_of(job))
     from design.optimise import solve
 
     return solve(job.machine, job.cut, job.limits, job.objective, suggest=suggest)
@@ -122,3 +132,48 @@ def robustness(job: Job, profile: CamProfile, solution: Solution | None = None) 
     worst = float(shear_zone_errors(profile, job.machine, job.cut, drawn).max())
     designed = solution.axis.error if solution is not None and solution.axis is not None else None
     return Robustness(len(ranges.vertices(job.servo)), designed, worst, DRAWS)
+
+
+@dataclass(frozen=True, eq=False)
+class RobustBand:
+    """Sync error over the ranges of a servo, by place in the shear zone.
+
+    Parameters
+    ----------
+    master
+        Master from the start of the sync zone (m).
+    low, high
+        Least and greatest sync error at every sampling phase of every servo (m).
+    nominal
+        Sync error of the job's own servo, mean over its phases (m).
+    servos
+        Servos drawn at random, beside those at the corners.
+    """
+
+    master: FloatArray
+    low: FloatArray
+    high: FloatArray
+    nominal: FloatArray
+    servos: int
+
+
+def robust_band(job: Job, profile: CamProfile) -> RobustBand | None:
+    """Simulate servos drawn from a job's ranges and those at the corners; ``None`` if the job gives no ranges."""
+    from validation.response import shear_zone_error
+    from validation.simulation import simulate
+
+    ranges, cut = job.servo_tolerance, job.cut
+    if ranges is None or not ranges.varying:
+        return None
+    start = cut.return_start + cut.return_zone
+    master = cut.shear_zone_at + np.linspace(0.0, cut.shear_zone, _BAND_POINTS)
+    low, high = np.full(_BAND_POINTS, np.inf), np.full(_BAND_POINTS, -np.inf)
+
+    def errors(servo: Servo) -> FloatArray:
+        place, error, _ = shear_zone_error(simulate(profile, cut, servo), profile, job.machine, cut)
+        return np.array([np.interp(master, x - start, y) for x, y in zip(place, error, strict=True)])
+
+    for servo in (*ranges.vertices(job.servo), *ranges.draw(job.servo, _BAND_DRAWS, SEED)):
+        found = errors(servo)
+        low, high = np.minimum(low, found.min(axis=0)), np.maximum(high, found.max(axis=0))
+    return RobustBand(master, low, high, errors(job.servo).mean(axis=0), _BAND_DRAWS)

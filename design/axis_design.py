@@ -7,11 +7,12 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Literal
 
-from design.axis_programme import AxisProblem, AxisProgramme, Cost
+from design.axis_programme import RATIO, AxisProblem, AxisProgramme, Cost
 from design.command_basis import Command
 from design.ipopt import SolveStatus
 from design.optimise import MOTION_OBJECTIVES, Objective, Solution, motion_objective, solve
-from design.servo_aware import AxisMotion, design_axis, least_error
+from design.refusal import require_feasible
+from design.servo_aware import AxisMotion, design_axis
 from profiles.cycle import Cut
 from profiles.errors import InfeasibleError, InputError, SolverError, Suggestion
 from profiles.limits import Limits
@@ -29,7 +30,13 @@ LONGEST, SLOWEST = 8.0, 0.02
 
 
 def solve_axis(
-    machine: Machine, cut: Cut, limits: Limits, objective: AxisObjective, command: Command, servos: tuple[Servo, ...]
+    machine: Machine,
+    cut: Cut,
+    limits: Limits,
+    objective: AxisObjective,
+    command: Command,
+    servos: tuple[Servo, ...],
+    between: tuple[Servo, ...] = (),
 ) -> Solution:
     """Design the cycle of a cutting machine whose axis keeps to the material in the shear zone.
 
@@ -46,6 +53,8 @@ def solve_axis(
         the shear zone (``"shaped"``).
     servos
         Servos with which the tolerance must be kept, the nominal one first.
+    between
+        Servos between the corners of the ranges, which must keep the tolerance too, or be hardly worse than the corners.
 
     Raises
     ------
@@ -62,7 +71,7 @@ def solve_axis(
         blind = solve(machine, cut, limits, "peak_acceleration" if cost == "sync_error" else cost)
         machine = blind.machine
     structure = None if blind is None or command == "shaped" else blind.back
-    problem = AxisProblem(machine, cut, limits, command, servos, True, structure)
+    problem = AxisProblem(machine, cut, limits, command, servos, True, structure, between)
     motion = _either(problem, cost)
     if motion is None:
         raise _infeasible(replace(problem, axis_limits=False))
@@ -95,7 +104,7 @@ def _either(problem: AxisProblem, cost: Cost) -> AxisMotion | None:
         strict = design_axis(problem, cost)
     except SolverError:
         strict = None
-    if strict is not None and strict.error <= problem.cut.sync_tolerance:
+    if strict is not None and strict.axis_limits and strict.error <= problem.cut.sync_tolerance:
         return strict
     return design_axis(replace(problem, axis_limits=False), cost)
 
@@ -111,17 +120,19 @@ def _from_mid_sync(profile: CamProfile, machine: Machine, cut: Cut) -> CamProfil
 def _infeasible(problem: AxisProblem) -> InfeasibleError:
     """Say by how much the tolerance is missed, and what would keep it, each solved."""
     tolerance, cut = problem.cut.sync_tolerance, problem.cut
-    reached = least_error(problem)
-    if reached is None:
+    share = AxisProgramme(problem).least_share()
+    if share is None:
+        require_feasible(problem.machine, cut, problem.limits)
         raise SolverError(
             "a servo-aware design found no command that keeps the limits although the job allows one; report this job"
         )
+    needed = max(1.0, share) * tolerance
     suggestions = []
     wider = _nearest(
-        lambda share: _works(replace(problem, cut=replace(cut, sync_tolerance=share * tolerance))), reached / tolerance
+        lambda factor: _works(replace(problem, cut=replace(cut, sync_tolerance=factor * needed))), 1.0, 1.5
     )
     if wider is not None:
-        suggestions.append(Suggestion("sync_tolerance", wider * tolerance * 1e3, "mm"))
+        suggestions.append(Suggestion("sync_tolerance", wider * needed * 1e3, "mm"))
     slower = _nearest(
         lambda share: _works(replace(problem, cut=replace(cut, line_speed=cut.line_speed / share), structure=None)),
         1.0,
@@ -137,15 +148,22 @@ def _infeasible(problem: AxisProblem) -> InfeasibleError:
     if longer is not None:
         suggestions.append(Suggestion("length", cut.length * longer * 1e3, "mm"))
     ways = "; ".join(f"{each.change} {each.value:.6g} {each.unit}" for each in suggestions)
+    excess = (needed - tolerance) * 1e3
     return InfeasibleError(
-        f"[cut] sync_tolerance = {tolerance * 1e3:g} mm: the axis is {reached * 1e3:.4g} mm off the material in the shear zone with the "
-        f"best {problem.command} command within the limits, {(reached - tolerance) * 1e3:.4g} mm too much"
+        f"[cut] sync_tolerance = {tolerance * 1e3:g} mm: no {problem.command} command within the limits holds the axis to it in the shear "
+        f"zone and the ratio of the axis to {_percent(cut, tolerance)} (twice the tolerance over the shear zone); the least that one holds "
+        f"is {needed * 1e3:.6g} mm and {_percent(cut, needed)}, {excess:.4g} mm too much"
         + (f"; what works: {ways}" if ways else ""),
         "sync_tolerance",
-        (reached - tolerance) * 1e3,
+        excess,
         "mm",
         tuple(suggestions),
     )
+
+
+def _percent(cut: Cut, tolerance: float) -> str:
+    """Error of the ratio that goes with a tolerance."""
+    return f"{100 * RATIO * tolerance / cut.shear_zone:.3g} %" if cut.shear_zone else "any"
 
 
 def _works(problem: AxisProblem) -> bool:
@@ -156,12 +174,12 @@ def _works(problem: AxisProblem) -> bool:
         return False
 
 
-def _nearest(works: Callable[[float], bool], least: float, most: float = math.inf) -> float | None:
+def _nearest(works: Callable[[float], bool], least: float, most: float) -> float | None:
     """Least share above ``least`` found to work: grown until it does, then bisected; ``None`` if none up to ``most`` works."""
     low, high = least, least * (1.0 + ASIDE)
     while not works(high):
         low, high = high, least + (high - least) * 2.0
-        if high > (most if math.isfinite(most) else least * 1.5):
+        if high > most:
             return None
     while high - low > ASIDE * high:
         middle = 0.5 * (low + high)

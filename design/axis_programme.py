@@ -41,7 +41,13 @@ AXIS_MARGIN = 1e-3
 # Places in the shear zone that have rows from the start, and times after a sample.
 PLACES, TIMES = 6, 2
 # Rounds of adding rows, most rows of each kind added in a round, and the share by which a band may be missed without another round.
-ROUNDS, MOST_ROWS, NEARLY = 8, 12, 1e-3
+ROUNDS, MOST_ROWS, NEARLY = 12, 12, 1e-3
+# Most rows of the axis' own motion added in a round: it runs along its limits where the tool only touches its band.
+MOST_OWN = 48
+# A peak that later programmes keep is taken as this share of its limit at least: the peak of a steady motion is rounding.
+LEAST_PEAK = 1e-6
+# Most servos between the corners that get rows in a round.
+MOST_SERVOS = 12
 # Least band that is asked for (share of the tolerance): below it the motion matters more.
 LEAST_ERROR = 5e-3
 _ORDER = {"peak_acceleration": 2, "rms_acceleration": 2, "peak_jerk": 3, "rms_jerk": 3}
@@ -68,6 +74,8 @@ class AxisProblem:
         Whether the nominal axis, too, must keep the limits of speed, acceleration and reversal.
     structure
         A return whose breaks the command may share.
+    between
+        Servos between the corners of the ranges, whose error must not be much larger than that of the others.
     """
 
     machine: Machine
@@ -77,6 +85,7 @@ class AxisProblem:
     servos: tuple[Servo, ...]
     axis_limits: bool
     structure: CamProfile | None = None
+    between: tuple[Servo, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,13 +106,19 @@ class _Rows:
 class AxisProgramme:
     """The programmes of one `AxisProblem`; rows found by one answer serve the next.
 
-    Unknowns are in units of the slave's travel per cycle. The programmes count what they solve in `solved`.
+    Unknowns are in units of the slave's travel per cycle. The programmes count what they solve in `solved`. Servos between the corners get
+    rows only where they prove worse, and a band wider than the others' by a factor.
     """
 
-    def __init__(self, problem: AxisProblem) -> None:
+    def __init__(self, problem: AxisProblem, wider: float = 1.0) -> None:
         self.problem = problem
+        self._wider = wider
+        self._unseen = [Axis(problem.machine, problem.cut, servo) for servo in problem.between]
+        self._seen: list[Axis] = []
         self.axes = tuple(Axis(problem.machine, problem.cut, servo) for servo in problem.servos)
-        self.basis = command_basis(problem.machine, problem.cut, problem.command, problem.structure)
+        self.basis = command_basis(
+            problem.machine, problem.cut, problem.command, problem.structure, robust=len(problem.servos) > 1
+        )
         self.scale = max(abs(problem.machine.pitch), abs(problem.machine.sync_profile(problem.cut).advance))
         self.solved = 0
         self._bands = [self._band(axis, *_first_rows(axis)) for axis in self.axes]
@@ -147,6 +162,18 @@ class AxisProgramme:
                 return True
         return False
 
+    def least_share(self) -> float | None:
+        """Least share of the tolerance that a command keeps with every axis, in position and ratio; ``None`` if none keeps the limits."""
+        share = None
+        for _ in range(ROUNDS + 1):
+            found = self._solve_rows("sync_error", None, {}, elastic=True)
+            if found is None:
+                return None
+            share = found[1] / (1.0 - BAND_MARGIN)
+            if not self._add_worst(found[0], found[1], ratio=True):
+                break
+        return share
+
     def _feasible(self, cost: Cost, caps: dict[int, float]) -> tuple[FloatArray, float] | None:
         """Solve within the tolerance; at its very edge, where the solver cannot tell, by how far it would have to be widened."""
         try:
@@ -165,6 +192,13 @@ class AxisProgramme:
         """Largest sync error of the tool in the shear zone (m), by servo."""
         return tuple(float(np.abs(axis.zone_errors(profile)[2]).max()) for axis in self.axes)
 
+    def keeps_axis_limits(self, profile: CamProfile) -> bool:
+        """Whether the nominal axis keeps its limits, to the share that rows of it are drawn in by."""
+        return all(
+            float(self._own_excess(profile, order).max()) <= AXIS_MARGIN * high
+            for order, (_, high) in self._own_limits().items()
+        )
+
     def _solve_rows(
         self, cost: Cost, band: float | None, caps: dict[int, float], *, elastic: bool = False
     ) -> tuple[FloatArray, float] | None:
@@ -175,7 +209,7 @@ class AxisProgramme:
         programme = ConvexProgramme(count + peak)
         bounds = self._limits()
         for order, (low, high) in bounds.items():
-            peak_allowed = caps.get(order, math.inf)
+            peak_allowed = max(caps.get(order, math.inf), LEAST_PEAK * high)
             size = min(max(abs(low), abs(high)), peak_allowed)
             room = LIMIT_MARGIN * size if order else 0.0
             least, most = max(low, -peak_allowed) + room, min(high, peak_allowed) - room
@@ -200,7 +234,7 @@ class AxisProgramme:
             matrix, constant = self.basis.differences[_ORDER[cost]]
             programme.add_peak(matrix * (self.scale / unit), constant / unit, -1.0, 1.0)
         answer = programme.solve(np.append(np.zeros(count), 1.0))
-        return None if answer is None else (answer[:-1], float(answer[-1]) * unit)
+        return None if answer is None else (answer[:-1], max(0.0, float(answer[-1])) * unit)
 
     def _mean_square(self, programme: ConvexProgramme, order: int, *, sure: bool) -> tuple[FloatArray, float] | None:
         """Least mean square of a derivative: linear between the nodes (order 2) or constant on the intervals (order 3)."""
@@ -234,10 +268,10 @@ class AxisProgramme:
             found[0] = (machine.home - end, machine.home + machine.stroke - end)
         return found
 
-    def _band(self, axis: Axis, places: FloatArray, times: FloatArray) -> _Rows:
+    def _band(self, axis: Axis, places: FloatArray, times: FloatArray, wider: float = 1.0) -> _Rows:
         """Rows that keep the axis in its band."""
         matrix, constant = axis.rows(self.basis, places, times)
-        low, high = axis.band(places, self.problem.cut.sync_tolerance)
+        low, high = axis.band(places, wider * self.problem.cut.sync_tolerance)
         return _Rows(matrix, constant - axis.ideal(places)[0], low, high)
 
     def _ratio(self, places: FloatArray, times: FloatArray) -> _Rows:
@@ -266,38 +300,67 @@ class AxisProgramme:
                 self._bands.append(self._band(axis, places[worst], times[worst]))
                 added = True
         if ratio and self.problem.cut.shear_zone:
-            added |= self._add_ratio(profile)
-        return (self.problem.axis_limits and self._add_own(profile)) or added
+            added |= self._add_ratio(profile, max(1.0, band))
+        if self.problem.axis_limits:
+            added |= self._add_own(profile)
+        return self._add_between(profile, self._wider * limit, unseen=not added) or added
 
-    def _add_ratio(self, profile: CamProfile) -> bool:
-        """Add rows where the ratio of the nominal axis leaves its band."""
+    def _add_between(self, profile: CamProfile, limit: float, *, unseen: bool) -> bool:
+        """Add rows where a servo between the corners is worse than its limit; those without rows are looked at last."""
+        over = []
+        for axis in self._seen + (self._unseen if unseen else []):
+            places, times, errors = axis.zone_errors(profile)
+            worst = _peaks(np.abs(errors) - limit)
+            if len(worst):
+                over.append((float(np.abs(errors).max()), axis, places[worst], times[worst]))
+        over.sort(key=lambda each: -each[0])
+        for _, axis, places, times in over[:MOST_SERVOS]:
+            self._bands.append(self._band(axis, places, times, self._wider))
+            if axis in self._unseen:
+                self._unseen.remove(axis)
+                self._seen.append(axis)
+        return bool(over)
+
+    def _add_ratio(self, profile: CamProfile, band: float) -> bool:
+        """Add rows where the ratio of the nominal axis leaves its band, widened to a share of itself."""
         axis, cut = self.axes[0], self.problem.cut
         places, times, ratios = axis.zone_ratios(profile)
         _, ratio, coordinate = axis.ideal(places)
         error = np.abs((ratios - ratio) * self.problem.machine.tool_ratio(coordinate))
-        worst = _peaks(error - RATIO * cut.sync_tolerance / cut.shear_zone)
+        worst = _peaks(error - band * RATIO * cut.sync_tolerance / cut.shear_zone)
         if len(worst):
             self._ratios.append(self._ratio(places[worst], times[worst]))
         return bool(len(worst))
 
     def _add_own(self, profile: CamProfile) -> bool:
-        """Add rows where the nominal axis breaks a limit of speed or acceleration."""
+        """Add rows where the nominal axis breaks a limit by half of what rows are drawn in by; whether there were any."""
         axis, added = self.axes[0], False
-        step = axis.sample / PHASES
-        count = math.ceil(self.problem.cut.length / step)
-        for order, (low, high) in self._limits().items():
-            if order not in (1, 2):
-                continue
-            values = axis.on_grid(profile, 0, count, order)
-            worst = _peaks(np.maximum(values - high, low - values).ravel())
-            if len(worst):
-                sub, place = np.divmod(worst, count)
-                times = np.asarray(sub * (axis.servo.sample_time / SUBSTEPS), dtype=np.float64)
-                matrix, constant = axis.rows(self.basis, np.asarray(place * step, dtype=np.float64), times, order)
+        for order, (low, high) in self._own_limits().items():
+            excess = self._own_excess(profile, order)
+            worst = _peaks(excess.max(axis=0) - 0.5 * AXIS_MARGIN * high, MOST_OWN)
+            if len(worst):  # what is pressed down there rises a sample aside, so that gets rows too
+                worst = np.unique((worst[:, None] + PHASES * np.arange(-1, 2)) % excess.shape[1])
+                times = np.asarray(
+                    excess[:, worst].argmax(axis=0) * (axis.servo.sample_time / SUBSTEPS), dtype=np.float64
+                )
+                places = np.asarray(worst * (axis.sample / PHASES), dtype=np.float64)
+                matrix, constant = axis.rows(self.basis, places, times, order)
                 room, ones = high * AXIS_MARGIN, np.ones(len(matrix))
                 self._own.append(_Rows(matrix, constant, (low + room) * ones, (high - room) * ones))
                 added = True
         return added
+
+    def _own_limits(self) -> dict[int, tuple[float, float]]:
+        """Limits that the axis' own motion is held to: speed, reversal and acceleration."""
+        return {order: limits for order, limits in self._limits().items() if order in (1, 2)}
+
+    def _own_excess(self, profile: CamProfile, order: int) -> FloatArray:
+        """By how much the nominal axis breaks a limit over the cycle, by time after a sample and place; negative within it."""
+        low, high = self._own_limits()[order]
+        axis = self.axes[0]
+        count = math.ceil(self.problem.cut.length / (axis.sample / PHASES))
+        values = axis.on_grid(profile, 0, count, order)
+        return np.maximum(values - high, low - values)
 
 
 def _first_rows(axis: Axis) -> tuple[FloatArray, FloatArray]:
@@ -309,8 +372,8 @@ def _first_rows(axis: Axis) -> tuple[FloatArray, FloatArray]:
     return np.tile(places, TIMES), np.repeat(times, count)
 
 
-def _peaks(excess: FloatArray) -> NDArray[np.intp]:
+def _peaks(excess: FloatArray, most: int = MOST_ROWS) -> NDArray[np.intp]:
     """Find the local maxima above zero, the worst first."""
     padded = np.concatenate([[-_EVERYWHERE], excess, [-_EVERYWHERE]])
     found = np.nonzero((excess > 0.0) & (excess >= padded[:-2]) & (excess > padded[2:]))[0]
-    return np.asarray(found[np.argsort(-excess[found], kind="stable")][:MOST_ROWS])
+    return np.asarray(found[np.argsort(-excess[found], kind="stable")][:most])

@@ -18,6 +18,9 @@ Command = Literal["in_sync", "shaped"]
 INTERVALS: dict[Command, int] = {"in_sync": 48, "shaped": 64}
 """Intervals of the free part, if it has no structure of its own."""
 
+ROBUST_SHARE = 1.25
+"""Times as many for several servos."""
+
 # Arcs of a structure shorter than this share of an interval get no node of their own.
 _SHORTEST = 0.1
 _DEGREE = 3
@@ -163,7 +166,9 @@ def _times(powers: FloatArray) -> FloatArray:
     return np.concatenate([np.zeros((len(powers), 1)), powers[:, :-1]], axis=1)
 
 
-def command_basis(machine: Machine, cut: Cut, command: Command, structure: CamProfile | None = None) -> CommandBasis:
+def command_basis(
+    machine: Machine, cut: Cut, command: Command, structure: CamProfile | None = None, *, robust: bool = False
+) -> CommandBasis:
     """Basis of the commands that a servo-aware design may choose from.
 
     Slave zero is the machine at the end of its sync zone, master zero the start of the return.
@@ -172,8 +177,10 @@ def command_basis(machine: Machine, cut: Cut, command: Command, structure: CamPr
     ----------
     structure
         A return whose breaks become nodes, so that it is among the commands; of use with ``"in_sync"``.
+    robust
+        Whether the command is for several servos, and needs more freedom.
     """
-    count = INTERVALS[command]
+    count = round(INTERVALS[command] * (ROBUST_SHARE if robust else 1.0))
     if command == "shaped":
         step = cut.length / count
         knots = np.asarray(step * np.arange(-_DEGREE, count + _DEGREE + 1), dtype=np.float64)

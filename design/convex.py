@@ -52,6 +52,10 @@ _IPOPT: dict[str, Any] = {
 }
 # Added to the diagonal of a quadratic cost, relative to its mean: directions that cost nothing are left where they are.
 _STEADY = 1e-11
+# A linear answer that breaks rows by rounding is refined: what is missing is solved for, with the room that is left magnified by at most
+# this factor, so that the solver's tolerance shrinks by it.
+_REFINEMENTS = 2
+_GREATEST_FACTOR = 1e6
 # Coefficients below this share of the largest of their row are rounding.
 _ROUNDING = 1e-13
 
@@ -120,7 +124,7 @@ class ConvexProgramme:
         """
         matrix = np.vstack(self._matrices)
         matrix[np.abs(matrix) < _ROUNDING * np.abs(matrix).max(axis=1, keepdims=True)] = 0.0
-        low, high = np.concatenate(self._low), np.concatenate(self._high)
+        low, high, accepted = (np.concatenate(parts) for parts in (self._low, self._high, self._accepted))
         if square is None:
             rows, quadratic = ca.DM(csc_matrix(matrix)), ca.DM(self.unknowns, self.unknowns)
             roads = [("highs", {"highs": _HIGHS | road}) for road in _HIGHS_ROADS]
@@ -130,24 +134,33 @@ class ConvexProgramme:
             roads = [("qpoases", _QPOASES), ("nlpsol", _IPOPT)][: 1 + sure]
         form = {"h": quadratic.sparsity(), "a": rows.sparsity()}
         for plugin, options in roads:
-            with _silenced():
-                solver = ca.conic("camwright", plugin, form, options | {"error_on_fail": False})
-                answer = solver(h=quadratic, g=cost, a=rows, lba=low, uba=high, lbx=-np.inf, ubx=np.inf)
-            statistics = solver.stats()
-            status = str(statistics.get("return_status", ""))
-            found = np.asarray(answer["x"], dtype=np.float64).ravel()
-            if statistics["success"] and _kept(matrix @ found, low, high, np.concatenate(self._accepted)):
-                return found
-            if "infeasible" in status.lower():
+            found, factor = np.zeros(self.unknowns), 1.0
+            for _ in range(1 + (square is None) * _REFINEMENTS):
+                with _silenced():
+                    solver = ca.conic("camwright", plugin, form, options | {"error_on_fail": False})
+                    shifted = [factor * (side - matrix @ found) for side in (low, high)]
+                    answer = solver(
+                        h=quadratic, g=cost, a=rows, lba=shifted[0], uba=shifted[1], lbx=-np.inf, ubx=np.inf
+                    )
+                statistics = solver.stats()
+                status = str(statistics.get("return_status", ""))
+                if not statistics["success"]:
+                    break
+                found = found + np.asarray(answer["x"], dtype=np.float64).ravel() / factor
+                missed = _missed(matrix @ found, low, high, accepted)
+                if missed <= 0.0:
+                    return found
+                factor = min(_GREATEST_FACTOR, 1.0 / missed)
+            if factor == 1.0 and "infeasible" in status.lower():
                 return None
         raise SolverError(
             f"{'HiGHS' if square is None else 'IPOPT'} ended a servo-aware design with {status!r}; report this job"
         )
 
 
-def _kept(values: FloatArray, low: FloatArray, high: FloatArray, accepted: FloatArray) -> bool:
-    """Whether all rows are kept."""
-    return bool(np.all((values <= high + accepted) & (values >= low - accepted)))
+def _missed(values: FloatArray, low: FloatArray, high: FloatArray, accepted: FloatArray) -> float:
+    """By how much the rows are broken beyond what is accepted; 0 or less where all are kept."""
+    return float(np.maximum(values - high - accepted, low - accepted - values).max())
 
 
 @contextlib.contextmanager

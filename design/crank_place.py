@@ -26,7 +26,10 @@ ANGLES = 721
 
 
 def place_for(
-    machine: CrankSlider, cut: Cut, limits: Limits, objective: Objective | Literal["rms_torque", "peak_torque", "energy"]
+    machine: CrankSlider,
+    cut: Cut,
+    limits: Limits,
+    objective: Objective | Literal["rms_torque", "peak_torque", "energy"],
 ) -> Placement:
     """Place the sync zone where an objective is least, or, where the limits are not enough at any place, where least is missing.
 

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Literal, get_args
 from design.crank_place import place_for
 from design.feasibility import is_feasible
 from design.ipopt import SolveStatus
-from design.motor import motor_limits, moves_something
+from design.motor import motor_limits, motor_speed_limits, moves_something
 from design.problem import Objective as MotionObjective
 from design.problem import ReturnProblem, return_problem
-from design.refusal import require_feasible
+from design.refusal import infeasible, require_feasible
 from design.solver import objective_value, smoothest, solve_return
 from design.transcription import PEAKS
 from profiles.cycle import Cut
@@ -131,9 +131,9 @@ def solve(machine: Machine, cut: Cut, limits: Limits, objective: Objective, *, s
     if isinstance(machine, CrankSlider) and math.isnan(machine.sync_at):
         return _solve_free_crank(machine, cut, limits, objective, suggest)
     machine.sync_start(cut)
-    require_feasible(machine, cut, limits, suggest=suggest)
     if limits.motor is not None:
-        return _solve_for_motor(machine, cut, limits, objective)
+        return _solve_for_motor(machine, cut, limits, objective, suggest)
+    require_feasible(machine, cut, limits, suggest=suggest)
     if objective in TORQUE_OBJECTIVES and not moves_something(machine):
         raise InputError(
             f"[objective] minimise = {objective!r} needs to know what the motor moves: give the machine's inertia or mass, or minimise "
@@ -146,18 +146,52 @@ def solve(machine: Machine, cut: Cut, limits: Limits, objective: Objective, *, s
     back, status, iterations = solve_return(problem)
     if decisive in PEAKS and not _unique(problem):
         back = _smoothest(problem, back)
-    order = 2 if decisive.endswith("acceleration") else 3
-    value = objective_value(back, decisive) * cut.line_speed**order
+    value = _over_time(back, decisive, cut)
     return Solution(machine, assemble(back, machine, cut), back, status, objective, value, iterations)
 
 
-def _solve_for_motor(machine: Machine, cut: Cut, limits: Limits, objective: Objective) -> Solution:
-    """Solve within each rectangle of the motor's curve that allows it, and take the best."""
+def _over_time(back: CamProfile, objective: MotionObjective, cut: Cut) -> float:
+    """Objective of a return over time, at the line speed."""
+    return objective_value(back, objective) * cut.line_speed ** (2 if objective.endswith("acceleration") else 3)
+
+
+def _solve_for_motor(machine: Machine, cut: Cut, limits: Limits, objective: Objective, suggest: bool) -> Solution:
+    """Solve without the motor's torque, which is the answer if it keeps to the curve; else within the curve, and take the best.
+
+    Within the curve are its rectangles, each an optimum of its own, and what a programme finds that knows the whole curve.
+
+    Raises
+    ------
+    InfeasibleError
+        The motor is too weak, as far as the programme's starts tell.
+    """
+    from design.motor_curve import keeps_curve, least_load, solve_within_curve
+
+    curve, plain = limits.motor, motor_speed_limits(machine, limits)
+    assert curve is not None  # noqa: S101 - that is what this function is for
+    if not is_feasible(machine, cut, plain):
+        raise infeasible(machine, cut, limits, suggest=suggest)
+    free = solve(machine, cut, plain, objective)
+    if keeps_curve(free.profile, machine, cut, curve):
+        return free
     found = [
         solve(machine, cut, each, objective)
         for each in motor_limits(machine, limits)
         if is_feasible(machine, cut, each)
     ]
+    easiest = least_load(machine, cut, limits)
+    starts = [solution.back for solution in found] + ([easiest.back] if easiest is not None else [])
+    decisive = motion_objective(machine, objective)
+    within = solve_within_curve(machine, cut, limits, decisive or objective, starts)
+    if within is not None:
+        value = within.value if decisive is None else _over_time(within.back, decisive, cut)
+        profile = assemble(within.back, machine, cut)
+        agreed = Starts(within.starts, within.agreeing, within.spread, within.residual, 1)
+        found.append(
+            Solution(machine, profile, within.back, SolveStatus.ON_GRID, objective, value, within.iterations, agreed)
+        )
+    if not found:
+        raise infeasible(machine, cut, limits, suggest=suggest, load=None if easiest is None else easiest.value)
     return min(found, key=lambda solution: solution.objective)
 
 
@@ -193,9 +227,7 @@ def _solve_torque(machine: Machine, cut: Cut, limits: Limits, objective: Objecti
     from design.torque import solve_torque
 
     problem = return_problem(machine, cut, limits, "peak_acceleration")
-    sync = machine.sync_profile(cut)
-    start = machine.sync_start(cut) + float(sync(sync.end))
-    found = solve_torque(machine, cut, problem, start, objective)  # type: ignore[arg-type]
+    found = solve_torque(machine, cut, problem, objective)
     starts = Starts(found.starts, found.agreeing, found.spread, found.residual, valleys)
     profile = assemble(found.back, machine, cut)
     return Solution(machine, profile, found.back, SolveStatus.ON_GRID, objective, found.value, found.iterations, starts)

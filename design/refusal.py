@@ -57,11 +57,24 @@ def require_feasible(machine: Machine, cut: Cut, limits: Limits, *, suggest: boo
         raise infeasible(machine, cut, limits, suggest=suggest)
 
 
-def infeasible(machine: Machine, cut: Cut, limits: Limits, *, suggest: bool = True) -> InfeasibleError:
-    """Say why a job is infeasible and, if asked, what would work; every suggestion has been checked."""
+def infeasible(
+    machine: Machine, cut: Cut, limits: Limits, *, suggest: bool = True, load: float | None = None
+) -> InfeasibleError:
+    """Say why a job is infeasible and, if asked, what would work; every suggestion has been checked.
+
+    Parameters
+    ----------
+    machine, cut, limits
+        The job.
+    suggest
+        Whether to look for what would work.
+    load
+        Least share of the motor's torque that a motion needs, if that is known; else the motor's rectangles tell
+        (`design.motor.motor_limits`).
+    """
     need = needed_limits(machine, cut, limits)
     binding = binding_limit(machine, cut, limits, need)
-    torque = _torque_needed(machine, cut, limits)
+    torque = _torque_needed(machine, cut, limits) if load is None else load
     excess, unit, words = _words(binding, need, torque, machine, limits, cut)
     message = (
         f"no motion returns the slave in time: {words} ([cut] length {cut.length * 1e3:g} mm at [cut] line_speed "
@@ -158,12 +171,7 @@ def _suggestions(
         factor, unit = _UNITS[machine.slave_unit][name]
         yield from _written(name, need[name], factor, unit, True, with_value)
     if limits.motor is not None and 1.0 < torque < math.inf:
-        curve = limits.motor
-
-        def with_torque(factor: float) -> bool:
-            return is_feasible(machine, cut, replace(limits, motor=_stronger(curve, factor)))
-
-        yield from _written("motor", torque, 100.0, "%", True, with_torque)
+        yield from _written("motor", torque, 100.0, "%", True, lambda factor: factor > torque)
     if not (limits.reversal or machine.turns_back) and is_feasible(machine, cut, replace(limits, reversal=True)):
         yield Suggestion("reversal", 1.0, "")
 

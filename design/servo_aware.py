@@ -13,6 +13,8 @@ from design.axis_programme import BAND_MARGIN, LEAST_ERROR, AxisProblem, AxisPro
 from profiles.errors import SolverError
 from profiles.polynomial import CamProfile, FloatArray
 
+# By this factor the sync error of a servo between the corners may be above that at the corners.
+BETWEEN = 1.105
 # By this share a sync error may be above the least, and by this share a peak, for the sake of what comes after them.
 KEPT_ERROR = 1e-3
 KEPT_PEAK = 1e-5
@@ -71,7 +73,7 @@ def design_axis(problem: AxisProblem, objective: Cost) -> AxisMotion | None:
     SolverError
         A solver ended without an answer.
     """
-    programme = AxisProgramme(problem)
+    programme = AxisProgramme(problem, BETWEEN if objective == "sync_error" else 1.0)
     if objective != "sync_error":
         found = programme.solve(objective, 1.0)
         if found is None:
@@ -92,13 +94,6 @@ def design_axis(problem: AxisProblem, objective: Cost) -> AxisMotion | None:
     if softer is not None:
         found = _smoothest(programme, softer, band, 2)
     return _motion(programme, found[0])
-
-
-def least_error(problem: AxisProblem) -> float | None:
-    """Least sync error (m) that some command reaches with every servo of a problem; ``None`` if none keeps the limits."""
-    programme = AxisProgramme(problem)
-    found = programme.solve("sync_error", None)
-    return None if found is None else max(programme.errors(programme.profile(found[0])))
 
 
 def _softest(programme: AxisProgramme, band: float) -> tuple[FloatArray, float] | None:
@@ -124,4 +119,5 @@ def _motion(programme: AxisProgramme, unknowns: FloatArray, value: float | None 
     profile = programme.profile(unknowns)
     errors = programme.errors(profile)
     least = max(errors) if value is None else value
-    return AxisMotion(profile, errors, least, programme.solved, programme.problem.axis_limits)
+    axis_limits = programme.problem.axis_limits and programme.keeps_axis_limits(profile)
+    return AxisMotion(profile, errors, least, programme.solved, axis_limits)

@@ -170,9 +170,7 @@ _ARC_OF_LIMIT: dict[str, Arc] = {
 }
 
 
-def _active(
-    paces: FloatArray, rows: FloatArray, steps: FloatArray, problem: ScaledProblem, touched: bool
-) -> list[str]:
+def _active(paces: FloatArray, rows: FloatArray, steps: FloatArray, problem: ScaledProblem, touched: bool) -> list[str]:
     """Name the limit that each interval reaches: all along it, or if ``touched`` somewhere on it. One row an interval."""
     reached = np.any if touched else np.all
     kinds = np.full(len(rows), "none", dtype="<U6")

@@ -105,7 +105,9 @@ def solve_torque(
             found.append((answer.value, back, answer.residual))
     converged = len(found)
     # the starts keep the limits themselves: the answer is at least as good as the best of them
-    kept = [(guess, unscale_profile(guess, problem, scale)) for guess in guesses if excess(guess, scaled) <= ALLOWED_EXCESS]
+    kept = [
+        (guess, unscale_profile(guess, problem, scale)) for guess in guesses if excess(guess, scaled) <= ALLOWED_EXCESS
+    ]
     found += [(programme.value(guess), back, math.nan) for guess, back in kept if accepted(back)]
     if not found:
         raise SolverError(

@@ -16,7 +16,7 @@ import numpy as np
 from design.ipopt import QUIET
 from design.problem import Objective, ReturnProblem
 from design.scaling import ScaledProblem
-from design.transcription import Motion, dynamics
+from design.transcription import Motion
 from profiles.cycle import Cut
 from profiles.machines import Machine
 from profiles.motor import MotorCurve
@@ -31,13 +31,16 @@ Aim = TorqueObjective | Objective | Literal["load"]
 
 INTERVALS = 80
 GAUSS_POINTS = 3
-# A step in the power's sign is rounded over this share of the largest power; a peak also pays this share of the mean square, so that of
-# all motions with that peak the smoothest is taken.
+# A peak, and the energy, also pay this share of the mean square, so that of all motions with that peak the smoothest is taken.
 ROUNDING = 1e-4
 DRAWN_IN = 3e-8
 """Share by which limits are drawn in here: the solver answers this programme to about 1e-8, the contract says 1e-9."""
 CURVE_DRAWN_IN = 2e-3
 """The same for the motor's torque, which is looked at in Gauss points only."""
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(GAUSS_POINTS)
+_GAUSS = (0.5 * (_NODES + 1), 0.5 * _WEIGHTS)
+"""Gauss points on the unit interval, and their weights."""
 
 _OPTIONS: dict[str, Any] = QUIET | {"ipopt.tol": 1e-8, "ipopt.max_iter": 500, "ipopt.mu_strategy": "adaptive"}
 
@@ -103,79 +106,79 @@ class TorqueProgramme:
         n = INTERVALS
         self._task = task
         self._h = np.full(n, 1.0 / n)
-        a, v, q, t = ca.SX.sym("a", n + 1), ca.SX.sym("v", n + 1), ca.SX.sym("q", n + 1), ca.SX.sym("t")
-        equations, between = dynamics({"a": a, "v": v, "q": q}, ca.DM(self._h), 1)
-        jerk = [(a[i + 1] - a[i]) / self._h[i] for i in range(n)]
-        torques, powers, available, shares = self._at_gauss_points(a, v, q)
-        self._shares = np.array(shares)
-        unknown = ca.vertcat(a, v, q, t)
-        self._measure = ca.Function(
-            "measure", [unknown], [ca.vertcat(*torques), ca.vertcat(*powers), ca.vertcat(*available)]
+        h = 1.0 / n
+        self._drawn = GAUSS_POINTS * n if task.aim == "energy" else 0
+        x = ca.MX.sym("x", 3 * (n + 1) + 1 + self._drawn)
+        a, v, q, t, drawn = ca.vertsplit(x, list(np.cumsum([0, n + 1, n + 1, n + 1, 1, self._drawn])))
+        rise, jerk = a[1:] - a[:-1], (a[1:] - a[:-1]) / h
+        equations = [
+            v[:-1] + h * (a[:-1] + a[1:]) / 2 - v[1:],
+            q[:-1] + h * v[:-1] + h * h * (a[:-1] / 3 + a[1:] / 6) - q[1:],
+        ]
+        between = v[:-1] + h * a[:-1] / 2
+        interval = self._interval().map(n)
+        torque, power, available = (
+            ca.vec(part) for part in interval(a[:-1].T, rise.T, v[:-1].T, q[:-1].T, ca.DM(np.arange(n) * h).T)
         )
-        units = ca.SX.sym("u", 2)  # of the torque or motion, and of the power
-        mean_square = ca.dot(ca.DM(shares), (ca.vertcat(*torques) / units[0]) ** 2)
+        self._shares = np.tile(h * _GAUSS[1], n)
+        self._measure = ca.Function("measure", [x], [torque, power, available])
+        units = ca.MX.sym("u", 2)  # of the torque or motion, and of the power
+        shares = ca.DM(self._shares)
+        mean_square = ca.dot(shares, (torque / units[0]) ** 2)
         peaks: list[Any] = []
         match task.aim:
             case "rms_torque":
                 cost = mean_square
             case "energy":
-                power = ca.vertcat(*powers) / units[1]
-                cost = ca.dot(ca.DM(shares), (power + ca.sqrt(power**2 + ROUNDING**2)) / 2) + ROUNDING * mean_square
+                peaks = [drawn - power / units[1]]  # what is drawn is the power or, as its bound says, nothing
+                cost = ca.dot(shares, drawn) + ROUNDING * mean_square
             case "rms_acceleration":
-                cost = sum(self._h[i] * (a[i] ** 2 + a[i] * a[i + 1] + a[i + 1] ** 2) for i in range(n)) / 3 / units[0] ** 2
+                cost = h * ca.sum1(a[:-1] ** 2 + a[:-1] * a[1:] + a[1:] ** 2) / 3 / units[0] ** 2
             case "rms_jerk":
-                cost = sum(self._h[i] * jerk[i] ** 2 for i in range(n)) / units[0] ** 2
+                cost = h * ca.sumsqr(jerk / units[0])
             case _:
-                shown = {
-                    "peak_torque": [torque / units[0] for torque in torques],
-                    "load": [torque / most for torque, most in zip(torques, available, strict=True)],
-                    "peak_acceleration": [a[i] / units[0] for i in range(n + 1)],
-                    "peak_jerk": [step / units[0] for step in jerk],
+                values = {
+                    "peak_torque": torque / units[0],
+                    "load": torque / available,
+                    "peak_acceleration": a / units[0],
+                    "peak_jerk": jerk / units[0],
                 }[task.aim]
-                peaks = [bound for value in shown for bound in (t - value, t + value)]
-                smooth = mean_square if task.aim in ("peak_torque", "load") else 0.0
-                cost = t + ROUNDING * smooth
+                peaks = [t - values, t + values]
+                cost = t + (ROUNDING * mean_square if task.aim in ("peak_torque", "load") else 0.0)
         if task.curve is not None and task.aim != "load":
-            strongest = task.curve.points[0][1] * task.machine.motor_ratio
-            for torque, most in zip(torques, available, strict=True):
-                allowed = most * (1 - CURVE_DRAWN_IN)
-                peaks += [(allowed - torque) / strongest, (allowed + torque) / strongest]
-        self._counts = (2 * n, len(peaks), len(between), n)
-        nlp = {"x": unknown, "p": units, "f": cost, "g": ca.vertcat(*equations, *peaks, *between, *jerk)}
+            allowed, strongest = available * (1 - CURVE_DRAWN_IN), task.curve.points[0][1] * task.machine.motor_ratio
+            peaks += [(allowed - torque) / strongest, (allowed + torque) / strongest]
+        self._counts = (2 * n, sum(part.numel() for part in peaks), n, n)
+        nlp = {"x": x, "p": units, "f": cost, "g": ca.vertcat(*equations, *peaks, between, jerk)}
         self._solver = ca.nlpsol("camwright_torque", "ipopt", nlp, _OPTIONS)
 
-    def _at_gauss_points(self, a: Any, v: Any, q: Any) -> tuple[list[Any], list[Any], list[Any], list[float]]:
-        """Torque or force and power at the slave, what the motor gives there, and the weights."""
-        task = self._task
+    def _interval(self) -> Any:
+        """Make the function of one interval: torque or force and power at the slave, and what the motor gives, at its Gauss points.
+
+        It takes the acceleration at the interval's start and its rise, ratio and position at the start, and where the interval begins.
+        """
+        task, machine, h = self._task, self._task.machine, 1.0 / INTERVALS
         drift = task.problem.start_ratio * task.problem.length / task.scale
         per_time = task.cut.line_speed * task.scale / task.problem.length
-        node, weight = np.polynomial.legendre.leggauss(GAUSS_POINTS)
-        node, weight = 0.5 * (node + 1), 0.5 * weight
-        torques, powers, available, shares = [], [], [], []
-        for i, h in enumerate(self._h.tolist()):
-            rise = a[i + 1] - a[i]
-            for s, w in zip(node, weight, strict=True):
-                pace = v[i] + h * s * (a[i] + rise * s / 2)
-                place = q[i] + h * s * (v[i] + h * s * (a[i] / 2 + rise * s / 6))
-                y = task.start + task.scale * (place + drift * (i + s) * h)
-                velocity = per_time * (pace + drift)
-                acceleration = per_time * task.cut.line_speed / task.problem.length * (a[i] + rise * s)
-                machine = task.machine
-                force = machine.inertia(y) * acceleration + machine.inertia_slope(y) * velocity**2 / 2
-                turning = ca.tanh(velocity / (0.01 * task.cut.line_speed)) if machine.turns_back else 1.0
-                force += machine.friction * turning
-                torques.append(force)
-                powers.append(force * velocity)
-                shares.append(h * w)
-                if task.curve is not None:
-                    speeds, most = (ca.DM(list(column)) for column in zip(*task.curve.points, strict=True))
-                    given = ca.pw_lin(ca.fabs(velocity) * machine.motor_ratio, speeds, most)
-                    available.append(given * machine.motor_ratio)
-        return torques, powers, available, shares
+        a, rise, v, q, x = (ca.SX.sym(name) for name in ("a", "r", "v", "q", "x"))
+        s = ca.DM(_GAUSS[0])
+        pace = v + h * s * (a + rise * s / 2)
+        y = task.start + task.scale * (q + h * s * (v + h * s * (a / 2 + rise * s / 6)) + drift * (x + s * h))
+        velocity = per_time * (pace + drift)
+        acceleration = per_time * task.cut.line_speed / task.problem.length * (a + rise * s)
+        force = machine.inertia(y) * acceleration + machine.inertia_slope(y) * velocity**2 / 2
+        # a slave that does not turn back has friction against it all the time
+        force += machine.friction * (ca.tanh(velocity / (0.01 * task.cut.line_speed)) if machine.turns_back else 1.0)
+        available = ca.DM.inf(GAUSS_POINTS)
+        if task.curve is not None:
+            speeds, torques = (ca.DM(list(column)) for column in zip(*task.curve.points, strict=True))
+            speed = ca.vertsplit(ca.fabs(velocity) * machine.motor_ratio)
+            available = ca.vertcat(*[ca.pw_lin(each, speeds, torques) for each in speed]) * machine.motor_ratio
+        return ca.Function("interval", [a, rise, v, q, x], [force, force * velocity, available])
 
     def _state(self, guess: CamProfile, bound: float) -> FloatArray:
         x = np.clip(np.concatenate([[0.0], np.cumsum(self._h)]), guess.start, guess.end)
-        return np.concatenate([guess(x, 2), guess(x, 1), guess(x), [bound]])
+        return np.concatenate([guess(x, 2), guess(x, 1), guess(x), [bound], np.zeros(self._drawn)])
 
     def value(self, guess: CamProfile) -> float:
         """Objective of a scaled profile: at the slave for torques and power, over the scaled master for motions; the load as a share."""
@@ -209,17 +212,20 @@ class TorqueProgramme:
         n = INTERVALS
         start = self._state(guess, 1.5)
         torque, power, _ = (np.asarray(part).ravel() for part in self._measure(start))
-        unit = float(np.sqrt(np.mean(torque**2))) if "torque" in self._task.aim or self._task.aim == "energy" else 1.0
-        unit = self._value(start) if self._task.aim.endswith(("acceleration", "jerk")) else unit
+        motion = self._task.aim.endswith(("acceleration", "jerk"))
+        unit = self._value(start) if motion else float(np.sqrt(np.mean(torque**2)))
         units = [max(unit, 1e-300), max(float(np.abs(power).max()), 1e-300)]
+        if self._drawn:
+            start[-self._drawn :] = np.maximum(power / units[1], 0.0) + 0.1
         if self._task.aim == "load":
-            start[-1] = 1.1 * self._value(start)
+            start[3 * (n + 1)] = 1.1 * self._value(start)
         factor = 1.0 - DRAWN_IN
         low, high = problem.least_ratio * factor, problem.greatest_ratio * factor
         slope, jerk = problem.greatest_slope * factor, problem.greatest_jerk * factor
         place = problem.drift * np.concatenate([[0.0], np.cumsum(self._h)])
-        lower = [np.full(n + 1, -slope), np.full(n + 1, low), problem.least_position - place, np.zeros(1)]
-        upper = [np.full(n + 1, slope), np.full(n + 1, high), problem.greatest_position - place, np.full(1, np.inf)]
+        lower = [np.full(n + 1, -slope), np.full(n + 1, low), problem.least_position - place, np.zeros(1 + self._drawn)]
+        upper = [np.full(n + 1, slope), np.full(n + 1, high), problem.greatest_position - place]
+        upper.append(np.full(1 + self._drawn, np.inf))
         ends = ((problem.start_slope, problem.end_slope), (0.0, problem.end_ratio), (0.0, problem.height))
         for part, (first, last) in enumerate(ends):
             lower[part][0] = upper[part][0] = first

@@ -253,11 +253,11 @@ class Programme:
         hull = np.full(m * p + 1, slope if self._hull and not margin else np.inf)
         if not margin:
             hull[::p] = slope  # at the nodes the coefficients are values
-        lower = {"a": -hull, "v": np.full(m + 1, low), "q": [-np.inf] * (m + 1)}
+        lower: dict[str, Any] = {"a": -hull, "v": np.full(m + 1, low), "q": [-np.inf] * (m + 1)}
         pace = np.full(m * p, jerk if self._hull else np.inf)
         pace[::p] = pace[p - 1 :: p] = jerk
         lower |= {"j": -pace, "h": [0.0] * m, "t": [0.0]}
-        upper = {"a": hull.copy(), "v": np.full(m + 1, high), "q": [np.inf] * (m + 1)}
+        upper: dict[str, Any] = {"a": hull.copy(), "v": np.full(m + 1, high), "q": [np.inf] * (m + 1)}
         upper |= {
             "j": pace.copy(),
             "h": [1.0] * m,

@@ -9,6 +9,9 @@ import numpy as np
 
 from profiles.servo import Servo
 
+_STEPS, _GRIDDED = 5, 3
+"""Steps of a range, corners included, and most ranges that are stepped through; see `ServoTolerance.between`."""
+
 Range = tuple[float, float]
 """Least and greatest value of a parameter, equal where it is known."""
 
@@ -60,6 +63,22 @@ class ServoTolerance:
         """
         corners = product(*((low, high) if low < high else (low,) for low, high in self.ranges.values()))
         return tuple(replace(servo, **dict(zip(self.ranges, corner, strict=True))) for corner in corners)
+
+    def between(self, servo: Servo) -> tuple[Servo, ...]:
+        """Servos between the corners: five steps of each range where at most three vary, else draws of the same number.
+
+        Parameters
+        ----------
+        servo
+            Gives what has no range here: velocity feed-forward and lead.
+        """
+        varying = len(self.varying)
+        if varying > _GRIDDED:
+            return self.draw(servo, _STEPS**_GRIDDED, 0)
+        levels = (np.linspace(low, high, _STEPS if low < high else 1).tolist() for low, high in self.ranges.values())
+        corners = set(self.vertices(servo))
+        every = (replace(servo, **dict(zip(self.ranges, point, strict=True))) for point in product(*levels))
+        return tuple(each for each in every if each not in corners)
 
     def draw(self, servo: Servo, count: int, seed: int) -> tuple[Servo, ...]:
         """Draw servos uniformly from the ranges, each parameter by itself.

@@ -101,6 +101,25 @@ def test_crossing_settling_overshoot_and_shear_zone_error_of_a_straight_error() 
     assert measure_response(run, profile, KNIFE, CUT, tolerance=0.25e-3).settling is None
 
 
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("left", [1e-7, 1e-5, 2e-4])
+def test_crossing_is_the_end_of_the_swing_and_not_of_what_was_left_over(side: float, left: float) -> None:
+    """Off by a little to the one side at first, then a swing to the other that ends at 100 mm, then 0.2 mm to spare."""
+    zeros = np.polynomial.Polynomial.fromroots([left, 0.1, 0.19])
+    run, profile = made([side * zeros.coef * (1e-3 / 1e-4)])
+    response = measure_response(run, profile, KNIFE, CUT)
+    assert response.crossing == pytest.approx(0.1, abs=1e-9)
+    assert 0 < response.overshoot < 1e-2
+
+
+@pytest.mark.parametrize("length", [0.26, 0.275, 0.3, 0.35, 0.39, 0.45, 0.5, 0.6, 0.8])
+def test_crossing_takes_as_long_whatever_the_cut_length(length: float) -> None:
+    """The servo is linear: the jump of the ratio decides the time to the crossing, whether the knife lags or runs ahead."""
+    cut = replace(CUT, length=length, sync_zone=0.6 * min(length, 1 / 3), shear_zone=0.0, shear_zone_at=0.0)
+    crossing = servo_response(linear(cut), KNIFE, cut, PAPER).crossing
+    assert crossing == pytest.approx(81.47e-3, abs=1e-3)
+
+
 def test_settling_is_the_last_leaving_and_that_of_the_worst_phase() -> None:
     # parabolas with their zero beyond the end of the zone: |e| <= tolerance beyond 0.21 - sqrt(tolerance / a)
     run, profile = made([[a * 0.0441, -a * 0.42, a] for a in (0.05, 0.1)])

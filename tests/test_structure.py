@@ -7,12 +7,23 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from design import solver
 from design.scaling import ScaledProblem
-from design.solver import _on_grid, excess
-from design.structure import SEVEN_ARCS, extreme_motion, from_extreme, read_cubic, read_quintic, subdivide, tidy
+from design.solver import _on_grid, excess, objective_value
+from design.starts import known_start
+from design.structure import (
+    SEVEN_ARCS,
+    extreme_motion,
+    from_extreme,
+    read_cubic,
+    read_quintic,
+    readings_of,
+    subdivide,
+    tidy,
+)
 from design.transcription import Motion, piece_coefficients
 from profiles.reach import greatest_reach, least_acceleration, least_jerk
 
@@ -72,6 +83,65 @@ def test_subdivision_keeps_the_ends_of_the_arcs(raw: list[float], count: int) ->
         assert np.abs(nodes - end).min() <= 1e-12
 
 
+# -- starts in closed form ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("objective", ["peak_acceleration", "rms_acceleration", "peak_jerk"])
+@settings(max_examples=15)
+@given(st.floats(1.03, 3.0), st.floats(0.05, 2.0), st.floats(0.05, 4.0))
+def test_programme_confirms_the_closed_form_and_the_grid_comes_to_the_same(
+    objective: str, speed: float, acceleration: float, jerk: float
+) -> None:
+    problem = replace(
+        PEAK,
+        objective=objective,  # type: ignore[arg-type]
+        greatest_ratio=speed,
+        least_ratio=-speed,
+        greatest_slope=4 * np.exp(acceleration),
+        greatest_jerk=32 * np.exp(jerk),
+    )
+    assume(greatest_reach(1.0, speed, problem.greatest_slope, problem.greatest_jerk) > 1.001)
+    known, iterations = solver._confirmed(problem)
+    assert known is not None
+    assert iterations < 20
+    assert excess(known, problem) <= 5e-10
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(solver, "known_start", lambda _: None)
+        by_grid, status, _ = solver._solve_scaled(problem)
+    assert status is solver.SolveStatus.OPTIMAL
+    assert objective_value(known, problem.objective) == pytest.approx(
+        objective_value(by_grid, problem.objective), rel=1e-7
+    )
+
+
+@pytest.mark.parametrize(
+    ("change", "arcs"),
+    [
+        ({"objective": "peak_acceleration"}, ("free", "hold", "fall", "free", "hold", "free")),
+        ({"objective": "peak_jerk"}, ("free", "fall", "free", "free")),
+        ({"objective": "rms_acceleration"}, ("free", "fall", "free", "free")),
+        ({"objective": "rms_acceleration", "greatest_slope": 5.0}, ("free", "hold", "fall", "free", "hold", "free")),
+        ({"objective": "rms_acceleration", "greatest_ratio": 1.4}, ("free", "free", "cruise", "free", "free")),
+        ({"objective": "peak_acceleration", "greatest_ratio": 1.4}, SEVEN_ARCS),
+    ],
+)
+def test_a_start_has_the_arcs_that_do_not_vanish(change: dict[str, object], arcs: tuple[str, ...]) -> None:
+    problem = replace(PEAK, greatest_jerk=200.0, **change)  # type: ignore[arg-type]
+    known = known_start(problem)
+    assert known is not None
+    motion, found = known
+    assert found == arcs
+    profile = motion.profile()
+    assert float(profile(1.0)) == pytest.approx(1.0, rel=1e-9)
+    value = objective_value(profile, problem.objective)
+    assert value ** (2 if problem.objective == "rms_acceleration" else 1) == pytest.approx(motion.objective, rel=1e-9)
+
+
+@pytest.mark.parametrize("change", [{"objective": "rms_jerk"}, {"end_ratio": 0.1}, {"start_slope": 1.0}])
+def test_no_start_without_a_closed_form(change: dict[str, object]) -> None:
+    assert known_start(replace(PEAK, **change)) is None  # type: ignore[arg-type]
+
+
 # -- quintic structure ----------------------------------------------------------------------------------------------------
 
 JERK = replace(PEAK, objective="rms_jerk", greatest_slope=4.0, greatest_jerk=50.0, greatest_ratio=0.9, least_ratio=-0.9)
@@ -105,6 +175,22 @@ def test_a_touched_limit_ends_a_piece() -> None:
     problem = replace(JERK, greatest_ratio=9.0, least_ratio=-9.0)
     assert read_quintic(motion, problem, touched=False)[1] == ("free",)
     assert read_quintic(motion, problem, touched=True)[1] == ("free", "hold", "free", "hold", "free")
+
+
+def test_a_short_cruise_may_be_a_touched_speed() -> None:
+    """The speed reaches 0.9 on one interval of ten: read as a cruise and as a point between two free arcs."""
+    x = np.linspace(0, 1, 11)
+    a = np.interp(np.arange(31) / 30, x, [0, 4, 4, 1, 0.1, 0, 0, -0.1, -1, -4, 0])
+    motion = Motion(np.full(10, 0.1), a, 0.0)
+    top = float(motion.nodes()[1].max())
+    readings = readings_of(
+        motion, replace(JERK, greatest_ratio=top, least_ratio=-9.0, greatest_slope=9.0, greatest_jerk=999.0)
+    )
+    found = {arcs: start for start, arcs in readings}
+    assert ("free", "cruise", "free") in found
+    start = found["fall", "free"]
+    assert start.lengths == pytest.approx([0.55, 0.45])
+    assert start.degree == 3
 
 
 def test_a_quintic_is_read_without_loss() -> None:

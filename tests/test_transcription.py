@@ -12,7 +12,16 @@ from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
 from design.scaling import ScaledProblem
-from design.transcription import Motion, Programme, Shape, _gram, _power_basis, piece_coefficients, subdivision
+from design.transcription import (
+    Motion,
+    Programme,
+    Shape,
+    _gram,
+    _inner,
+    _power_basis,
+    piece_coefficients,
+    subdivision,
+)
 
 FloatArray = NDArray[np.float64]
 QUIET = {"print_time": False, "ipopt.print_level": 0, "ipopt.sb": "yes"}
@@ -67,6 +76,14 @@ def test_subdivision_gives_the_same_polynomial_on_each_part(degree: int, parts: 
     # the hull holds the polynomial, and shrinks
     assert rows.max() >= whole(np.linspace(0, 1, 1001)).max() - 1e-12
     assert rows.max() <= coefficients.max() + 1e-12
+
+
+@pytest.mark.parametrize("degree", range(1, 5))
+@pytest.mark.parametrize("parts", [1, 2, 8])
+def test_parts_that_meet_share_a_coefficient(degree: int, parts: int) -> None:
+    rows = _inner(degree, parts)
+    assert rows.shape == (parts * degree + 1, degree + 1)
+    assert {tuple(row) for row in subdivision(degree, parts).round(12)} == {tuple(row) for row in rows.round(12)}
 
 
 @given(motions())
@@ -158,3 +175,19 @@ def test_known_arcs_are_what_they_say() -> None:
     assert np.abs(np.diff(ramp, 2)).max() <= 1e-6
     assert np.ptp(hold) <= 1e-6
     assert np.abs(cruise).max() <= 1e-6
+
+
+def test_limits_at_the_nodes_put_arcs_on_them_and_keep_the_jerk_continuous() -> None:
+    """Least RMS jerk with the speed held at 1.3: free, cruise, free, without a row for the speed between the nodes."""
+    shape = Shape(("free", "cruise", "free"), 3, True, "rms_jerk", at_nodes=True)
+    problem = ScaledProblem(1.0, 0.0, 0.0, 0.0, -9.0, 1.3, 1e4, 1e6, "rms_jerk")
+    a = np.array([0.0, 12.0, 3.0, 0.0, 0.0, 0.0, 0.0, -3.0, -12.0, 0.0])
+    motion, statistics = Programme(shape, QUIET).solve(problem, Motion(np.array([0.3, 0.4, 0.3]), a, 3000.0))
+    assert statistics["success"]
+    profile = motion.profile()
+    assert profile.extrema(1)[1].value == pytest.approx(1.3, rel=1e-6)
+    assert np.abs(profile.jumps(3, seam=False)).max() <= 1e-4 * math.sqrt(motion.objective)
+    # to 1.3 in the time h and over 0.65 h in it, the half that is a quintic: a jerk that ends at zero
+    h = float(motion.lengths[0])
+    assert 1.3 * (1 - 2 * h) + 2 * float(profile(h)) == pytest.approx(1.0, rel=1e-6)
+    assert float(profile(h, 3, side="left")) == pytest.approx(0.0, abs=1e-4 * math.sqrt(motion.objective))

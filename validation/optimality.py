@@ -12,6 +12,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from profiles.cycle import Cut
 from profiles.errors import InputError
@@ -143,13 +144,13 @@ def _dual_bound(motion: CamProfile, job: _Return) -> float:
     """
     x = _half_grid(motion)
     slope_price, speed_price, (turn, way), constant = _multipliers(x, job, math.sqrt(motion.mean_square(3)))
-    cell = np.arange(len(x) - 1)
-    later = [_beyond(values)[cell + 1] for values in (speed_price, speed_price * x)]
+    cell: NDArray[np.intp] = np.arange(len(x) - 1)
+    lever, later = (_beyond(values)[cell + 1] for values in (speed_price, speed_price * x))
     atoms, spread = _spread(slope_price)
 
     def price(s: FloatArray) -> FloatArray:
         ahead = _beyond(atoms)[cell + 1] + _spread_ahead(spread, x, cell, s)
-        return np.asarray(ahead + later[1] - s * later[0] - turn - way * (0.5 - s) ** 2 / 2)
+        return np.asarray(ahead + later - s * lever - turn - way * (0.5 - s) ** 2 / 2)
 
     # three values on each interval make the quadratic that the price is there
     h = np.diff(x)
@@ -176,7 +177,7 @@ def _spread(price: FloatArray) -> tuple[FloatArray, FloatArray]:
     return np.where(inner, 0.0, price), np.where(inner, price, 0.0)
 
 
-def _spread_ahead(spread: FloatArray, x: FloatArray, cell: FloatArray, s: FloatArray) -> FloatArray:
+def _spread_ahead(spread: FloatArray, x: FloatArray, cell: NDArray[np.intp], s: FloatArray) -> FloatArray:
     """Integral beyond ``s`` of densities that rise from the node before and fall to the node after, one for each price."""
     h = np.concatenate([[0.0], np.diff(x), [0.0]])  # h[k + 1] is the cell after node k
     width = h[:-1] + h[1:]  # the two cells at each node

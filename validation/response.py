@@ -18,6 +18,9 @@ ON_THE_LINE = 1e-9
 """Part of the cut length within which the axis counts as lying on the ideal sync line; well above rounding, well
 below what a drive resolves."""
 
+_AS_GREAT = 1.0 - 1e-6
+"""Share of the greatest error that counts as it; the first such point is taken."""
+
 _ZERO = 1e-12
 """Accuracy of a zero between two points of the axis, as a part of the step between them."""
 
@@ -32,9 +35,9 @@ class ServoResponse:
     Parameters
     ----------
     crossing
-        Where the sync error first changes its sign (the paper's criterion for the transition length), at the phase
-        where that is latest; 0 if the axis lies on the line throughout, ``None`` if at some phase it meets the line
-        nowhere in the zone.
+        Where the sync error first changes its sign after it was greatest (the paper's criterion for the transition length), at
+        the phase where that is latest; 0 if the axis lies on the line throughout, ``None`` if at some phase it meets
+        the line nowhere in the zone.
     settling
         Beyond this distance the sync error stays within the tolerance, at every phase; 0 if it never leaves it,
         ``None`` if at some phase it is outside at the end of the zone.
@@ -151,12 +154,17 @@ def _following_error(run: ServoRun, profile: CamProfile, machine: Machine, cut: 
 
 
 def _crossing(distance: FloatArray, error: FloatArray, slope: FloatArray, floor: float) -> tuple[float | None, float]:
-    """Latest first change of sign over the phases, and the greatest error beyond it."""
-    off = np.abs(error) > floor
-    rows = np.nonzero(off.any(axis=1))[0]
+    """Latest over the phases of the first change of sign after the greatest error, and the greatest error beyond it.
+
+    What is left of the return before may have put the axis on the other side of the line by a little: it crosses the line at once, only
+    then to swing out. The transition is over when it meets the line again.
+    """
+    size = np.abs(error)
+    greatest = size.max(axis=1)
+    rows = np.nonzero(greatest > floor)[0]
     if len(rows) == 0:
         return 0.0, 0.0
-    first = off[rows].argmax(axis=1)
+    first = (size[rows] >= _AS_GREAT * greatest[rows, None]).argmax(axis=1)
     side = np.sign(error[rows, first])[:, None]
     before = np.arange(error.shape[1]) <= first[:, None]
     met = (side * error[rows] <= 0.0) & ~before

@@ -6,9 +6,12 @@ import math
 from collections.abc import Callable
 
 import numpy as np
+from numpy.typing import NDArray
 
 from profiles.polynomial import FloatArray
 from profiles.servo import Servo, closed_loop, sample_plant
+
+ComplexArray = NDArray[np.complex128]
 
 
 def axis_response(
@@ -39,7 +42,7 @@ def axis_response(
 
     step, gain = servo.sample_time, servo.position_gain
     first, last = (math.floor((float(time) - clock) / step) for time in (times[0], times[-1]))
-    seen = command(clock - servo.delay + step * np.arange(first - 1, last + 1))
+    seen = command(clock - servo.delay + step * np.arange(first - 1, last + 1, dtype=np.float64))
     base = float(seen[1])
     drive = gain * (seen[1:] - base) + servo.velocity_feedforward / step * (seen[1:] - seen[:-1])
 
@@ -77,9 +80,48 @@ def _position_rows(servo: Servo, times: FloatArray) -> tuple[FloatArray, FloatAr
     """
     w = servo.bandwidth
     sigma = servo.damping * w
-    root = np.emath.sqrt((servo.damping**2 - 1.0) * w * w)
+    root = np.emath.sqrt((servo.damping**2 - 1.0) * w * w).item()
     decay = np.exp(-sigma * times)
     c = decay * np.cosh(root * times).real
     s = decay * (np.sinh(root * times) / root).real if root else decay * times
     velocity = (w * w * s + 2 * sigma * (1.0 - c - sigma * s)) / (w * w)
     return (1.0 - c - sigma * s) / (w * w), velocity, times - velocity
+
+
+def mean_response(servo: Servo, rates: FloatArray) -> ComplexArray:
+    """Frequency response of the axis to its command, mean over all phases of the sampling clock.
+
+    For a command ``exp(j w t)`` the samples of the reference are those of the closed loop at ``z = exp(j w dT)``; of what the hold makes
+    of them, only the part at ``w`` is the same for all phases.
+
+    Parameters
+    ----------
+    rates
+        Angular frequencies (rad/s), the first of them 0.
+    """
+    step, gain, w = servo.sample_time, servo.position_gain, servo.bandwidth
+    plant = sample_plant(servo, step)
+    (a, b, _), (c, d, _), (e, f, _) = plant.transition.tolist()
+    p, q, r = plant.input.tolist()
+    s = 1j * rates[1:]
+    z = np.exp(s * step)
+    # position of the sampled plant: (z - 1) x3 = e x1 + f x2 + r u with the velocity loop's (z - M) (x1, x2) = (p, q) u
+    loop = (z - a) * (z - d) - b * c
+    sampled = (e * ((z - d) * p + b * q) + f * ((z - a) * q + c * p)) / loop + r
+    reference = (gain + servo.velocity_feedforward / step * (1.0 - 1.0 / z)) * (z - 1.0) / (z - 1.0 + gain * sampled)
+    hold = (1.0 - 1.0 / z) / (s * step)
+    found = np.ones(len(rates), dtype=np.complex128)
+    found[1:] = (
+        np.exp(-s * servo.delay) * reference * hold * (w * w / (s * (s * s + 2 * servo.damping * w * s + w * w)))
+    )
+    return found
+
+
+def decays(servo: Servo, times: FloatArray) -> FloatArray:
+    """How the closed loop forgets its beginning at the first of some times: a column for each pole, shape ``(n, 3)``."""
+    poles = np.linalg.eigvals(closed_loop(servo)[0]).astype(np.complex128)
+    poles = poles[np.argsort(poles.imag)]
+    rates = np.log(np.maximum(np.abs(poles), 1e-300)) + 1j * np.angle(poles)
+    found = np.exp(np.multiply.outer((times - times[0]) / servo.sample_time, rates))
+    pair = poles[2].imag > 0.0  # the two of a pair share its real and its imaginary part
+    return np.stack([found[:, 2].imag if pair else found[:, 0].real, found[:, 1].real, found[:, 2].real], axis=1)

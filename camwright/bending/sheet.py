@@ -13,7 +13,6 @@ import numpy as np
 
 from camwright.bending.answer import BentDrawing
 from camwright.bending.bend_list import BendRow, bend_rows
-from camwright.bending.figures import MOST_VECTORS, drawn_as_pixels
 from camwright.bending.program_file import ROUNDING, BentOutline
 from camwright.provenance import camwright_version
 from profiles.errors import MissingExtraError
@@ -80,7 +79,6 @@ def _outline_data(outline: BentOutline, result: BentDrawing) -> dict[str, Any]:
             ["Cycle time", f"{outline.times.total:.2f} s; {sequential} ({-100 * gain:+.1f} %)"],
             ["Overshoot", f"feed {1e3 * outline.feed_overshoot[0]:.4f} mm, mould {over:.4f}°"],
             ["Collisions", str(len(outline.collisions)) if outline.collisions else "none"],
-            *([["Figure", f"pixels, for more than {MOST_VECTORS} sides"]] if drawn_as_pixels(outline) else []),
         ],
         "bends": [_row(row) for row in rows],
         "left_out": outline.plan.bends - len(rows),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import json
 import platform
+import sqlite3
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -119,7 +120,8 @@ def make_book(book: Book, root: Path, crew: Crew, *, resume: bool = False, told:
         known = journal.numbers()
         told(len(known))
         memory = _make_missing(book, folder, journal, crew, known, told)
-        counts = write_index(book, journal, folder)
+        with _writing(root):
+            counts = write_index(book, journal, folder)
     folder.finish()
     rate = (len(book) - len(known)) / (time.perf_counter() - begun)
     return BookAnswer(book, counts, rate, peak_rss() + memory, len(known), files)
@@ -131,13 +133,25 @@ def _make_missing(book: Book, folder: BookFolder, journal: Journal, crew: Crew, 
     missing: Iterator[int] = (number for number in range(1, len(book) + 1) if number not in known)
     with contextlib.closing(make_all(book, missing, crew)) as results:
         for made in results:
-            folder.place(made.entry, made.texts)
-            journal.add(made.entry)
+            with _writing(folder.root):
+                folder.place(made.entry, made.texts)
+                journal.add(made.entry)
             done += 1
             told(done)
             if made.worker.startswith(here):
                 peaks[made.worker] = made.peak_rss
     return sum(peaks.values())
+
+
+@contextlib.contextmanager
+def _writing(root: Path) -> Iterator[None]:
+    """Tell of a disk that is full, or gone."""
+    try:
+        yield
+    except (OSError, sqlite3.Error) as error:
+        raise InputError(
+            f"{root}: the book cannot be written: {error}; what is done is kept, --resume goes on with it"
+        ) from error
 
 
 def _complete(book: Book, folder: BookFolder, *, resume: bool) -> Counts:

@@ -12,6 +12,8 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from camwright.comparison import Comparison
 from camwright.plots.audit import audit_figure
+from camwright.plots.axis import AXES as SHOWN_AXES
+from camwright.plots.axis import axis_figure
 from camwright.plots.comparison import bars_figure
 from camwright.plots.crank import crank_figure
 from camwright.plots.profile import profile_figure
@@ -27,7 +29,8 @@ if TYPE_CHECKING:
 
 
 def design_figures(design: Design, directory: Path) -> list[Path]:
-    """Write the figures of a design: ``profile``, ``servo``, ``comparison`` and for a crank ``crank``, each as SVG and PNG.
+    """Write the figures of a design, each as SVG and PNG: ``profile``, ``servo``, ``comparison``, of a crank ``crank``, of a servo-aware one
+    ``axis``.
 
     Parameters
     ----------
@@ -54,7 +57,19 @@ def design_figures(design: Design, directory: Path) -> list[Path]:
             if isinstance(job.machine, CrankSlider)
             else []
         ),
+        *(_axis_figures(design, directory) if design.axis is not None else []),
     ]
+
+
+def _axis_figures(design: Design, directory: Path) -> list[Path]:
+    """Write the figure of a servo-aware design's axis."""
+    from camwright.servo_aware import robust_band
+    from validation.simulation import simulate
+
+    job, names = design.job, {row.name for row in design.comparison.rows}
+    runs = {name: simulate(design.comparison[name].profile, job.cut, job.servo) for name in SHOWN_AXES if name in names}
+    band = robust_band(job, design.profile)
+    return written(lambda: axis_figure(design, runs, band), directory, "axis")
 
 
 def comparison_figure(comparison: Comparison, directory: Path) -> list[Path]:

@@ -82,6 +82,7 @@ def write_program(program: NcProgram, flavour: Flavour, numbering: Numbering, sp
 
 
 _FED = "N%03d G01 G91 X%d.%03d"
+_ANGLE = "G90 Y"
 _MOTION = re.compile(r"N\d{3,8} G01 (G91 X|G90 Y)(-?)(\d{1,9})\.(\d{1,3})")
 _END = re.compile(r"N\d{3,8} M30")
 _HEAD = re.compile(r"N\d{3,8}(?: (?:G71|G21|G07|G61|G94|F\d+\.\d{3}))+")
@@ -99,36 +100,41 @@ def read_program(text: str, place: str = "program") -> NcProgram:
     name, ended = "", False
     feeds, bends, fed, bent = [], [], 0, False
     faults: list[str] = []
+    motion = _MOTION.fullmatch
     for row, line in enumerate(text.splitlines(), start=1):
-        if line.startswith(("%", "(")):
-            name = name or line.strip("%()")
-            continue
-        what = _line(line)
-        if what is None or ended:
-            why = "stands after the end of the program" if ended else "is not a header, feed, bend, return or end line"
-            faults.append(f"{place}, line {row}: {line[:60]!r} {why}")
-            continue
-        kind, value = what
-        if bent and not (kind == "angle" and value == 0):
-            faults.append(f"{place}, line {row}: the mould must return to zero after a bend; found {line[:60]!r}")
-            bent = False
-        elif kind == "feed":
-            if value <= 0:
-                faults.append(f"{place}, line {row}: feed {value / 1e3:.3f} mm; the rule is fed forwards only")
-            fed += value
-        elif kind == "angle" and bent:
-            bent = False
-        elif kind == "angle":
-            if not 0 < value < FULL_TURN or value == FULL_TURN // 2:
-                faults.append(
-                    f"{place}, line {row}: mould angle {value / 1e3:.3f}°; a bend lies between 0 and 360°, not at 180°"
-                )
-                continue
-            feeds.append(fed)
-            bends.append(value if value < FULL_TURN // 2 else value - FULL_TURN)
-            fed, bent = 0, True
-        elif kind == "end":
-            ended = True
+        found = None if ended else motion(line)
+        if found is None:
+            if line.startswith(("%", "(")):
+                name = name or line.strip("%()")
+            elif ended:
+                faults.append(f"{place}, line {row}: {line[:60]!r} stands after the end of the program")
+            elif bent:
+                faults.append(_no_return(place, row, line))
+                bent = False
+            elif _END.fullmatch(line):
+                ended = True
+            elif not _HEAD.fullmatch(line):
+                faults.append(f"{place}, line {row}: {line[:60]!r} is not a header, feed, bend, return or end line")
+        else:
+            word, sign, whole, part = found.groups()
+            value = int(f"{sign}{whole}{part:0<3}")
+            if bent:
+                if value or word != _ANGLE:
+                    faults.append(_no_return(place, row, line))
+                bent = False
+            elif word == _ANGLE:
+                if 0 < value < FULL_TURN and value != FULL_TURN // 2:
+                    feeds.append(fed)
+                    bends.append(value if value < FULL_TURN // 2 else value - FULL_TURN)
+                    fed, bent = 0, True
+                else:
+                    faults.append(
+                        f"{place}, line {row}: mould angle {value / 1e3:.3f}°; a bend lies between 0 and 360°, not at 180°"
+                    )
+            else:
+                if value <= 0:
+                    faults.append(f"{place}, line {row}: feed {value / 1e3:.3f} mm; the rule is fed forwards only")
+                fed += value
         if len(faults) == _MOST_FAULTS:
             break
     if not faults and not ended:
@@ -139,11 +145,5 @@ def read_program(text: str, place: str = "program") -> NcProgram:
     return NcProgram(name, np.array(feeds, dtype=np.int64), np.array(bends, dtype=np.int64))
 
 
-def _line(line: str) -> tuple[Literal["header", "feed", "angle", "end"], int] | None:
-    """Read a numbered line: its kind and its value in thousandths; nothing if it is of no known kind."""
-    found = _MOTION.fullmatch(line)
-    if found is None:
-        return ("end", 0) if _END.fullmatch(line) else ("header", 0) if _HEAD.fullmatch(line) else None
-    word, sign, whole, part = found.groups()
-    value = int(whole) * 1000 + int(part.ljust(3, "0"))
-    return ("feed" if word == "G91 X" else "angle"), (-value if sign else value)
+def _no_return(place: str, row: int, line: str) -> str:
+    return f"{place}, line {row}: the mould must return to zero after a bend; found {line[:60]!r}"

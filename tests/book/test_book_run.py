@@ -16,6 +16,8 @@ import openpyxl
 import pytest
 from books import JOB, contents, inline_crew, small_book
 
+from camwright.book.entry import Entry
+from camwright.book.folder import BookFolder
 from camwright.book.making import Made, make_chunk
 from camwright.book.plan import Book, plan_book
 from camwright.book.run import make_book
@@ -251,6 +253,23 @@ def test_a_folder_that_cannot_be_made_is_refused(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("in the way")
     with pytest.raises(InputError, match="the folder of the book cannot be made"):
         make_book(small_book(), tmp_path / "file" / "book", inline_crew())
+
+
+def test_a_disk_that_is_full_keeps_what_is_done(done: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    book, root = small_book(), tmp_path / "book"
+    placed = BookFolder.place
+
+    def place(folder: BookFolder, entry: Entry, texts: dict[str, str]) -> None:
+        if entry.number > 8:
+            raise OSError(28, "No space left on device")
+        placed(folder, entry, texts)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(BookFolder, "place", place)
+        with pytest.raises(InputError, match=r"cannot be written: .*No space left on device; what is done is kept"):
+            make_book(book, root, inline_crew())
+    assert make_book(book, root, inline_crew(), resume=True).resumed == 8
+    assert contents(root) == contents(done)
 
 
 def test_a_solver_that_fails_is_listed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -35,7 +35,7 @@ def test_a_recipe_is_read_back_as_it_was_written(made: MadeRecipe, saw: MadeReci
 
 def test_the_shipped_schema_is_that_of_the_model_and_holds_for_recipes(made: MadeRecipe, saw: MadeRecipe) -> None:
     shipped = json.loads((BUNDLED_JOB.parents[1] / "schemas" / "recipe.schema.json").read_text(encoding="utf-8"))
-    assert shipped == recipe_schema()
+    assert shipped == recipe_schema(), "write it anew: json.dumps(recipe_schema(), indent=1) and a line end"
     jsonschema.Draft202012Validator.check_schema(shipped)
     for recipe in (made.recipe, saw.recipe):
         jsonschema.validate(json.loads(recipe_text(recipe)), shipped)
