@@ -9,6 +9,7 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_args
 
+from camwright.axis_answers import axis_answer, robust_answer
 from camwright.files import read_text
 from camwright.job import Job, parse_job
 from camwright.job_file import Objective
@@ -16,6 +17,7 @@ from camwright.provenance import SCHEMA_VERSION, provenance
 from profiles.errors import InputError
 from profiles.machines import CrankSlider, LinearCarriage, Machine, RotaryKnife
 from profiles.polynomial import CamProfile
+from profiles.servo_tolerance import ServoTolerance
 
 if TYPE_CHECKING:
     from camwright.results import Design
@@ -73,7 +75,10 @@ def job_numbers(job: Job) -> dict[str, Any]:
         "cut": asdict(job.cut),
         "limits": asdict(job.limits),
         "servo": asdict(job.servo),
-        "objective": job.objective,
+        "objective": "sync_error" if job.minimise_sync_error else job.objective,
+        "servo_aware": job.servo_aware,
+        "command": job.command,
+        "servo_tolerance": None if job.servo_tolerance is None else asdict(job.servo_tolerance),
         "points": job.output.points,
     }
 
@@ -116,6 +121,8 @@ def design_text(design: Design) -> str:
         "objective": objective_answer(design),
         "lower_bound_method": design.bound.method,
         "starts": starts_answer(design),
+        "servo_aware": axis_answer(design.axis),
+        "robust": robust_answer(design.robust),
         "profile": design.profile.to_dict(),
         "job": {"toml": design.job.text, "si": job_numbers(design.job)},
         "provenance": provenance(design.job.sha256),
@@ -190,12 +197,13 @@ def design_schema() -> dict[str, Any]:
     """Make the JSON Schema of a design.json."""
     number, whole, text = {"type": "number"}, {"type": "integer"}, {"type": "string"}
     maybe = {"type": ["number", "null"]}
-    objectives = list(get_args(Objective))
+    objectives = [*get_args(Objective), "sync_error"]
     numbers = {"type": "array", "items": number, "minItems": 1}
 
     def table(**entries: Any) -> dict[str, Any]:
         return {"type": "object", "properties": entries, "required": list(entries), "additionalProperties": False}
 
+    ends = {"type": "array", "items": number, "minItems": 2, "maxItems": 2}
     pairs = {"type": "array", "items": {"type": "array", "items": number, "minItems": 2, "maxItems": 2}}
     curve = {"oneOf": [{"type": "null"}, table(points=pairs)], "description": "motor speed (rad/s) and torque (N m)"}
     machines = [
@@ -226,7 +234,7 @@ def design_schema() -> dict[str, Any]:
         objective=table(
             name={"enum": objectives},
             value=number,
-            unit={"enum": ["m/s^2", "m/s^3", "rad/s^2", "rad/s^3", "N m", "J"]},
+            unit={"enum": ["m/s^2", "m/s^3", "rad/s^2", "rad/s^3", "N m", "J", "m"]},
             lower_bound=maybe,
             gap={**maybe, "description": "(value - lower_bound) / value; null without a bound"},
         ),
@@ -237,6 +245,26 @@ def design_schema() -> dict[str, Any]:
                 table(converged=whole, agreeing=whole, spread=number, residual=number, valleys=whole),
             ],
             "description": "agreement of several starts; null where the problem is convex",
+        },
+        servo_aware={
+            "oneOf": [
+                {"type": "null"},
+                table(
+                    mode={"enum": ["in_sync", "shaped"]},
+                    designed_error_mm=number,
+                    simulated_error_mm=number,
+                    phases=whole,
+                    axis_limits={"type": "boolean"},
+                ),
+            ],
+            "description": "sync error of the axis in the shear zone; null for a servo-blind design",
+        },
+        robust={
+            "oneOf": [
+                {"type": "null"},
+                table(worst_error_mm=number, draws=whole, designed_worst_error_mm=maybe, vertices=whole),
+            ],
+            "description": "sync error over the ranges of the servo; null where the job gives none",
         },
         profile=table(
             breaks={**numbers, "minItems": 2, "description": "ends of the pieces on the master (m)"},
@@ -261,6 +289,7 @@ def design_schema() -> dict[str, Any]:
                     sync_tolerance=number,
                     origin={"enum": ["return", "cut"]},
                     sync_ratio=number,
+                    shaped={"type": "boolean"},
                 ),
                 limits=table(speed=number, acceleration=number, jerk=number, reversal={"type": "boolean"}, motor=curve),
                 servo=table(
@@ -273,6 +302,15 @@ def design_schema() -> dict[str, Any]:
                     lead_time=number,
                 ),
                 objective={"enum": objectives},
+                servo_aware={"type": "boolean"},
+                command={"enum": ["in_sync", "shaped"]},
+                servo_tolerance={
+                    "oneOf": [
+                        {"type": "null"},
+                        table(**dict.fromkeys(ServoTolerance.__dataclass_fields__, ends)),
+                    ],
+                    "description": "least and greatest value of each parameter of the servo",
+                },
                 points={"type": "integer", "minimum": 2},
             ),
         ),

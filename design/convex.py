@@ -50,6 +50,7 @@ _IPOPT: dict[str, Any] = {
         "ipopt.hessian_constant": "yes",
     },
 }
+_NAMES = {"highs": "HiGHS", "qpoases": "qpOASES", "nlpsol": "IPOPT"}
 # Added to the diagonal of a quadratic cost, relative to its mean: directions that cost nothing are left where they are.
 _STEADY = 1e-11
 # A linear answer that breaks rows by rounding is refined: what is missing is solved for, with the room that is left magnified by at most
@@ -151,11 +152,11 @@ class ConvexProgramme:
                 if missed <= 0.0:
                     return found
                 factor = min(_GREATEST_FACTOR, 1.0 / missed)
-            if factor == 1.0 and "infeasible" in status.lower():
+            if square is None and factor == 1.0 and "infeasible" in status.lower():
                 return None
-        raise SolverError(
-            f"{'HiGHS' if square is None else 'IPOPT'} ended a servo-aware design with {status!r}; report this job"
-        )
+            if square is not None and self.solve(np.zeros(self.unknowns)) is None:  # HiGHS tells sooner than IPOPT
+                return None
+        raise SolverError(f"{_NAMES[plugin]} ended a servo-aware design with {status!r}; report this job")
 
 
 def _missed(values: FloatArray, low: FloatArray, high: FloatArray, accepted: FloatArray) -> float:

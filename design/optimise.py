@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal, get_args
 
+import numpy as np
+
 from design.crank_place import place_for
 from design.feasibility import is_feasible
 from design.ipopt import SolveStatus
@@ -13,7 +15,7 @@ from design.motor import motor_limits, motor_speed_limits, moves_something
 from design.problem import Objective as MotionObjective
 from design.problem import ReturnProblem, return_problem
 from design.refusal import infeasible, require_feasible
-from design.solver import objective_value, smoothest, solve_return
+from design.solver import grid_objective, objective_value, smoothest, solve_return
 from design.transcription import PEAKS
 from profiles.cycle import Cut
 from profiles.errors import InputError
@@ -158,7 +160,7 @@ def _over_time(back: CamProfile, objective: MotionObjective, cut: Cut) -> float:
 def _solve_for_motor(machine: Machine, cut: Cut, limits: Limits, objective: Objective, suggest: bool) -> Solution:
     """Solve without the motor's torque, which is the answer if it keeps to the curve; else within the curve, and take the best.
 
-    Within the curve are its rectangles, each an optimum of its own, and what a programme finds that knows the whole curve.
+    Within the curve are its rectangles, of which the grid tells the best, and what a programme finds that knows the whole curve.
 
     Raises
     ------
@@ -174,14 +176,16 @@ def _solve_for_motor(machine: Machine, cut: Cut, limits: Limits, objective: Obje
     free = solve(machine, cut, plain, objective)
     if keeps_curve(free.profile, machine, cut, curve):
         return free
-    found = [
-        solve(machine, cut, each, objective)
-        for each in motor_limits(machine, limits)
-        if is_feasible(machine, cut, each)
-    ]
+    found: list[Solution] = []
+    decisive = motion_objective(machine, objective)
+    rectangles = [each for each in motor_limits(machine, limits) if is_feasible(machine, cut, each)]
+    if rectangles:
+        rough = [
+            grid_objective(return_problem(machine, cut, each, decisive or "rms_acceleration")) for each in rectangles
+        ]
+        found.append(solve(machine, cut, rectangles[int(np.argmin(rough))], objective))
     easiest = least_load(machine, cut, limits)
     starts = [solution.back for solution in found] + ([easiest.back] if easiest is not None else [])
-    decisive = motion_objective(machine, objective)
     within = solve_within_curve(machine, cut, limits, decisive or objective, starts)
     if within is not None:
         value = within.value if decisive is None else _over_time(within.back, decisive, cut)

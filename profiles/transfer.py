@@ -95,7 +95,8 @@ class Transfer:
     def corners(self) -> tuple[FloatArray, FloatArray]:
         """Give the times at which the jerk may change, from zero to the end, and the accelerations there; linear in between."""
         times = np.cumsum([0.0, *(t for t, _ in self.phases)])
-        return times, np.array([a for _, _, a in self._ends()])
+        kept = np.concatenate([[True], np.diff(times) > 0])
+        return times[kept], np.array([a for _, _, a in self._ends()])[kept]
 
 
 def farthest(time: float, start: State, end: State, bounds: Bounds) -> Transfer | None:

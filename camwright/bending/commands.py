@@ -131,7 +131,7 @@ def _bent(
 def _write(
     result: BentDrawing, names: list[str], directory: Path, *, figures: bool, step: Step
 ) -> tuple[BentDrawing, list[Path]]:
-    """Write programs, bend lists, figures and sheets, all or none; a missing library leaves the sheets out, noted."""
+    """Write programs, bend lists, figures and sheets, all or none; a missing library leaves figures or sheets out, noted."""
     from camwright.bending.bend_list import csv_text
     from camwright.files import staged
 
@@ -147,13 +147,15 @@ def _write(
 
             step("drawing figures")
             shown = names[:_MOST_FIGURES]
-            for name, outline in zip(shown, result.outlines, strict=False):
-                draw(outline, aside, name)
-            step("typesetting the sheet")
+            missing = "no figures and no sheet"
             try:
+                for name, outline in zip(shown, result.outlines, strict=False):
+                    draw(outline, aside, name)
+                step("typesetting the sheet")
+                missing = "no sheet"
                 write_sheet(result, aside, [aside / f"{name}-proof.svg" for name in shown])
             except MissingExtraError as error:
-                notes = (f"no sheet: {error}",)
+                notes = (f"{missing}: {error}",)
         files = [directory / name for name in sorted(file.name for file in aside.iterdir())]
     return replace(result, notes=result.notes + notes), files
 

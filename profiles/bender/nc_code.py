@@ -108,13 +108,13 @@ def read_program(text: str, place: str = "program") -> NcProgram:
                 name = name or line.strip("%()")
             elif ended:
                 faults.append(f"{place}, line {row}: {line[:60]!r} stands after the end of the program")
+            elif not (_END.fullmatch(line) or _HEAD.fullmatch(line)):
+                faults.append(f"{place}, line {row}: {line[:60]!r} is not a header, feed, bend, return or end line")
             elif bent:
                 faults.append(_no_return(place, row, line))
                 bent = False
-            elif _END.fullmatch(line):
-                ended = True
-            elif not _HEAD.fullmatch(line):
-                faults.append(f"{place}, line {row}: {line[:60]!r} is not a header, feed, bend, return or end line")
+            else:
+                ended = _END.fullmatch(line) is not None
         else:
             word, sign, whole, part = found.groups()
             value = int(f"{sign}{whole}{part:0<3}")

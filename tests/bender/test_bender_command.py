@@ -1,5 +1,6 @@
 """``camwright bend`` from the command line: programs, JSON keys, exit codes, calibration, sheets, the serial line."""
 
+import importlib.util
 import json
 import math
 import os
@@ -109,16 +110,28 @@ def test_same_input_same_bytes(drawing: Make, tmp_path: Path, capsys: pytest.Cap
         assert file.read_bytes() == (tmp_path / "b" / file.name).read_bytes(), file.name
 
 
-def test_without_the_typesetting_libraries_there_is_no_sheet(
-    drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(("library", "missing"), [("typst", "no figures and no sheet"), ("jinja2", "no sheet")])
+def test_without_a_typesetting_library_there_is_no_sheet(
+    library: str,
+    missing: str,
+    drawing: Make,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
 ):
-    monkeypatch.setattr("importlib.util.find_spec", lambda _: None)
+    find = importlib.util.find_spec
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None if name == library else find(name))
     path = drawing(lambda m, _: m.add_line((0, 0), (9, 0)))
     code, answer, _ = run(capsys, path, "--out", tmp_path / "out")
     assert code == 0
     assert answer["bends"] == 0
-    assert any("no sheet: typst is not installed" in text and "camwright[bend]" in text for text in answer["warnings"])
-    assert not [file for file in answer["files"] if "sheet" in file]
+    assert any(
+        text.startswith(f"{missing}: {library} is not installed") and "camwright[bend]" in text
+        for text in answer["warnings"]
+    )
+    names = [Path(file).name for file in answer["files"]]
+    assert not [name for name in names if "sheet" in name]
+    assert ("drawing-proof.svg" in names) == (library == "jinja2")
 
 
 def test_without_the_drawing_library(
@@ -202,20 +215,6 @@ def test_curves_count_in_the_deviation(drawing: Make, tmp_path: Path, capsys: py
     _, answer, _ = run(capsys, path, "--out", tmp_path / "out", "--no-figures")
     assert 0.002 < answer["chord_error_mm"] <= 0.010
     assert answer["chord_error_mm"] < answer["deviation_mm"] <= answer["chord_error_mm"] + 0.005
-
-
-def test_long_outlines_are_drawn_as_pixels(
-    drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-):
-    path = drawing(lambda m, _: m.add_lwpolyline([(10 * i, 5 * (i % 2)) for i in range(60)]))
-    run(capsys, path, "--out", tmp_path / "a")
-    monkeypatch.setattr("camwright.bending.figures.MOST_VECTORS", 50)
-    run(capsys, path, "--out", tmp_path / "b")
-    first, second = ((tmp_path / name / "drawing-proof.svg").read_text() for name in "ab")
-    assert "data:image/png" not in first
-    assert "data:image/png" in second
-    assert "pixels, for more than" not in (tmp_path / "a" / "sheet.html").read_text()
-    assert "pixels, for more than" in (tmp_path / "b" / "sheet.html").read_text()
 
 
 @pytest.mark.parametrize(
