@@ -123,7 +123,7 @@ def design(job: Job, step: Step = ignore) -> Design:
     else:
         bound = lower_bound(solution.profile, placed.machine, job.cut, job.limits, job.objective)
     step("checking")
-    report = judge(solution.profile, placed.machine, job.cut, job.limits, job.servo, axis_limits=job.servo_aware)
+    report = judge(solution.profile, placed.machine, job.cut, job.limits, job.servo, servo_aware=job.servo_aware)
     aware, robust = axis_study(placed, solution), robustness(placed, solution.profile, solution)
     comparison = with_screw(compare(placed, solution.profile, step=step))
     step("finding minimum cut lengths")
@@ -157,6 +157,6 @@ def validate(profile: CamProfile | str | Path, job: Job) -> ValidationReport:
     from validation.report import validate as judge
 
     if isinstance(profile, CamProfile):
-        return judge(profile, job.machine, job.cut, job.limits, job.servo, axis_limits=job.servo_aware)
+        return judge(profile, job.machine, job.cut, job.limits, job.servo, servo_aware=job.servo_aware)
     cycle, machine = read_cycle(Path(profile), job)
-    return judge(cycle, machine, job.cut, job.limits, job.servo, axis_limits=job.servo_aware)
+    return judge(cycle, machine, job.cut, job.limits, job.servo, servo_aware=job.servo_aware)

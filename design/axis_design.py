@@ -10,6 +10,7 @@ from typing import Literal
 from design.axis_programme import RATIO, AxisProblem, AxisProgramme, Cost
 from design.command_basis import Command
 from design.ipopt import SolveStatus
+from design.motor import motor_limits, motor_speed_limits
 from design.optimise import MOTION_OBJECTIVES, Objective, Solution, motion_objective, solve
 from design.refusal import require_feasible
 from design.servo_aware import AxisMotion, design_axis
@@ -72,9 +73,11 @@ def solve_axis(
         machine = blind.machine
     structure = None if blind is None or command == "shaped" else blind.back
     problem = AxisProblem(machine, cut, limits, command, servos, True, structure, between)
-    motion = _either(problem, cost)
-    if motion is None:
-        raise _infeasible(replace(problem, axis_limits=False))
+    found = [_either(replace(problem, limits=each), cost) for each in motor_limits(machine, limits)]
+    motions = [motion for motion in found if motion is not None]
+    if not motions:
+        raise _infeasible(replace(problem, limits=motor_speed_limits(machine, limits), axis_limits=False))
+    motion = min(motions, key=lambda each: each.value)
     order = {"sync_error": 0, "peak_acceleration": 2, "rms_acceleration": 2, "peak_jerk": 3, "rms_jerk": 3}[cost]
     value = motion.value * cut.line_speed**order
     profile = motion.profile

@@ -144,7 +144,7 @@ class ConvexProgramme:
                         h=quadratic, g=cost, a=rows, lba=shifted[0], uba=shifted[1], lbx=-np.inf, ubx=np.inf
                     )
                 statistics = solver.stats()
-                status = str(statistics.get("return_status", ""))
+                status = str(statistics.get("solver_stats", statistics).get("return_status", ""))
                 if not statistics["success"]:
                     break
                 found = found + np.asarray(answer["x"], dtype=np.float64).ravel() / factor

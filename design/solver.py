@@ -94,6 +94,10 @@ def _solve_scaled(problem: ScaledProblem) -> tuple[CamProfile, SolveStatus, int]
         free = _quintic(problem)
         if excess(free, problem) <= ALLOWED_EXCESS:
             return free, SolveStatus.OPTIMAL, 0
+        if problem.confined:
+            profile, status, used = _solve_scaled(_unconfined(problem))
+            if excess(profile, problem) <= ALLOWED_EXCESS:
+                return profile, status, used
     extreme = extreme_motion(problem)
     safe: CamProfile | None = None
     if extreme is not None and _room(problem) < NO_ROOM:
@@ -135,6 +139,10 @@ def _solve_scaled(problem: ScaledProblem) -> tuple[CamProfile, SolveStatus, int]
     return safe, SolveStatus.OPTIMAL if _extreme_is_optimal(problem) else SolveStatus.ON_GRID, iterations
 
 
+def _unconfined(problem: ScaledProblem) -> ScaledProblem:
+    return replace(problem, least_position=-math.inf, greatest_position=math.inf)
+
+
 def _possible(problem: ScaledProblem) -> Motion | None:
     """Give a motion that keeps the limits, from a closed form; None if there is none."""
     found = possible_motion(problem)
@@ -146,7 +154,7 @@ def _confirmed(problem: ScaledProblem) -> tuple[CamProfile | None, int]:
 
     A slave that keeps to a stroke of its own accord needs no limits of the position.
     """
-    known = known_start(replace(problem, least_position=-math.inf, greatest_position=math.inf))
+    known = known_start(_unconfined(problem))
     if known is None:
         return None, 0
     start, arcs = known
@@ -328,6 +336,11 @@ def _grids(problem: ScaledProblem, witness: Motion | None) -> Iterator[tuple[Flo
         yield fine, 0.0, True
         return
     medium = np.full(MEDIUM, 1.0 / MEDIUM)
+    if problem.confined and arcs is not None:
+        yield subdivide(arcs, MEDIUM), 0.0, False
+        yield fine, 0.0, False
+        yield subdivide(arcs, FINE[degree]), 0.0, False
+        return
     if arcs is None or not little:
         yield coarse, 0.0, False
         yield medium, 0.0, False
@@ -359,15 +372,18 @@ def _polish(problem: ScaledProblem, grid: Motion, thorough: bool) -> tuple[Motio
     """Solve for few pieces of unknown length, starting from the structure of a grid solution.
 
     A quintic grid can be read in several ways. They are tried in turn, with limits at the nodes alone and then, if ``thorough``, with
-    limits everywhere, until one ends with something as good as the grid.
+    limits everywhere, until one ends with something as good as the grid. A stroke that is touched in points shows in no arc, so there is
+    nothing to read.
     """
     if grid.degree == 1:
         return _polish_arcs(problem, *read_cubic(grid, problem))
+    if problem.confined:
+        return grid, False, 0
     enough = grid.objective * (1 + GRID_ERROR[grid.degree])
     best, success, iterations = grid, False, 0
     readings = readings_of(grid, problem)
     for at_nodes in (True, False):
-        if (at_nodes and problem.confined) or not (at_nodes or thorough or problem.confined):
+        if not (at_nodes or thorough):
             continue
         for start, arcs in readings if at_nodes else readings[-2:]:
             motion, also, used = _polish_arcs(problem, start, arcs, at_nodes)

@@ -91,7 +91,7 @@ def validate(
     servo: Servo,
     *,
     sweep: bool = True,
-    axis_limits: bool = False,
+    servo_aware: bool = False,
 ) -> ValidationReport:
     """Judge a profile, whoever made it.
 
@@ -110,8 +110,9 @@ def validate(
     sweep
         Whether to run the servos of the published ranges, and lower line speeds, too, which no check needs and which takes most of the
         time.
-    axis_limits
-        Whether the axis, too, must keep the limits of speed, acceleration and reversal: what a servo-aware design is asked for.
+    servo_aware
+        Whether to judge it as a servo-aware design: the axis, too, must keep the limits of speed, acceleration and reversal, and is in sync
+        in the shear zone by design, so that there is no transition to judge.
 
     Raises
     ------
@@ -128,9 +129,9 @@ def validate(
         *_stroke(profile, machine, cut),
         *_motor(profile, machine, cut, limits, motor),
         Check("servo_stability", radius < 1.0, radius, 1.0, "1", None, "largest closed-loop pole in the z-plane (S1)"),
-        *_servo(response, cut),
-        *(_axis(profile, machine, cut, limits, servo) if axis_limits and response is not None else ()),
-        *_minimum_lengths(response, machine, cut, limits),
+        *_servo(response, cut, transition=not servo_aware),
+        *(_axis(profile, machine, cut, limits, servo) if servo_aware and response is not None else ()),
+        *(_minimum_lengths(response, machine, cut, limits) if not servo_aware else ()),
     )
     return ValidationReport(
         checks=checks,
@@ -292,7 +293,7 @@ def _motor(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits, moto
     return checks
 
 
-def _servo(response: ServoResponse | None, cut: Cut) -> list[Check]:
+def _servo(response: ServoResponse | None, cut: Cut, *, transition: bool) -> list[Check]:
     """Check what the axis makes of the profile, at the worst phase; without a response all fail."""
     shear = cut.shear_zone
     settling = response.settling if response else None
@@ -311,7 +312,7 @@ def _servo(response: ServoResponse | None, cut: Cut) -> list[Check]:
         None,
         "tool against material in the shear zone, at every sampling phase",
     )
-    if cut.shaped:  # it has no transition: its axis is in sync where the shear zone begins
+    if not transition:
         return [in_shear]
     return [
         Check(
@@ -356,7 +357,7 @@ def _minimum_lengths(response: ServoResponse | None, machine: Machine, cut: Cut,
 
     With a sync ratio ``s`` the knife moves as with a line ``s`` times as fast whose lengths are ``s`` times as long.
     """
-    if cut.shaped or not (isinstance(machine, RotaryKnife) and machine.sync == "tangential"):
+    if not (isinstance(machine, RotaryKnife) and machine.sync == "tangential"):
         return []
     s, v = cut.sync_ratio, cut.sync_ratio * cut.line_speed
     settling = response.settling if response else None

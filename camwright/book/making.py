@@ -133,7 +133,7 @@ def _designed(job: Job) -> Design:
     solution = solve_job(job, suggest=False)
     placed = replace(job, machine=solution.machine)
     report = validate(
-        solution.profile, placed.machine, job.cut, job.limits, job.servo, sweep=False, axis_limits=job.servo_aware
+        solution.profile, placed.machine, job.cut, job.limits, job.servo, sweep=False, servo_aware=job.servo_aware
     )
     if report.servo is None:
         raise InputError("the servo is unstable")

@@ -59,7 +59,7 @@ def axis_figure(design: Design, runs: Mapping[str, ServoRun], band: RobustBand |
     _meeting(axes[0], design, runs["optimised"], first, last)
     study = design.axis
     found = "" if study is None else f": at most {study.simulated_error * 1e6:.3g} µm off in the shear zone"
-    axes[0].set_title(f"command and axis, {job.command.replace('_', ' ')}{found}")
+    axes[0].set_title(f"command and axis, {job.command.replace('_', ' ')}{found}; logarithmic beyond the tolerance")
     for name in AXES:
         if name in runs:
             _errors(axes[1], design, name, runs[name], first, last)

@@ -51,6 +51,36 @@ def test_double_s_against_its_profile(distance: float):
     assert float(move.distance[0]) == pytest.approx(distance, rel=1e-11)
 
 
+@given(st.lists(st.tuples(st.floats(1e-5, 3.0), st.floats(0.0, 1.2)), min_size=1, max_size=8))
+def test_reaching_inverts_the_position(pairs: list[tuple[float, float]]):
+    distances, shares = np.array(pairs).T
+    moves = double_s_moves(distances, DRIVE.feed)
+    t = moves.reaching(shares * distances)
+    at = moves.position(t[:, None])[:, 0]
+    inside = shares < 1
+    assert at[inside] == pytest.approx((shares * distances)[inside], abs=1e-9 * float(distances.max()))
+    # never early: what must have been covered by then has been, but for rounding
+    assert (at >= np.minimum(shares, 1.0) * distances * (1 - 1e-9) - 1e-15).all()
+    assert t[shares > 1 + 1e-9] == pytest.approx(moves.time[shares > 1 + 1e-9])
+
+
+def test_bends_alike_share_their_delay_and_others_do_not():
+    # the same table whether bends are told apart one by one, or by what they have in common
+    random = np.random.default_rng(1)
+    kinds = random.integers(0, 3, (40, 3))
+    feeds = np.concatenate([[0.02], np.array([2e-3, 8e-3, 0.05])[kinds[:, 0]]])
+    moulds = np.radians(np.array([20.0, -60.0, 110.0])[kinds[:, 1]])
+    turns = moulds * np.array([0.9, 0.95, 1.0])[kinds[:, 2]]
+    table = overlapped_table(feeds, moulds, turns, DRIVE, NONE)
+    for k in range(40):
+        feed, bend = (
+            double_s_moves(feeds[k + 1 : k + 2], DRIVE.feed),
+            double_s_moves(np.abs(moulds[k : k + 1]), DRIVE.mould),
+        )
+        wait = float(feed_delay(feed, bend, np.abs(turns[k : k + 1]), DRIVE)[0])
+        assert table.feed_start[k + 1] - table.return_start[k] == pytest.approx(wait, abs=1e-9)
+
+
 @given(st.floats(1e-6, 3.0))
 def test_trapezoid_against_closed_form(distance: float):
     v, a = DRIVE.feed.speed, DRIVE.feed.acceleration

@@ -13,20 +13,22 @@ from camwright.bending.pictures import FINEST, Line, Marks, Panel, Picture, simp
 from profiles.errors import MissingExtraError
 
 
-@given(st.floats(-1e5, 1e5), st.floats(1e-3, 1e5), st.integers(3, 20))
-def test_ticks_are_round_numbers_inside(low: float, width: float, most: int):
+@given(st.floats(-1e3, 1e3), st.floats(1e-3, 1e5), st.integers(3, 20))
+def test_ticks_are_round_numbers_inside(place: float, width: float, most: int):
+    low = place * width
     high = low + width
     values, labels = ticks(low, high, most)
     assert 1 <= len(values) <= most
     steps = np.diff(values)
-    assert (values[0] >= low - 1e-6 * width) and (values[-1] <= high + 1e-6 * width)
+    assert values[0] >= low - 1e-6 * width
+    assert values[-1] <= high + 1e-6 * width
     if len(values) > 1:
         step = float(steps[0])
         assert steps == pytest.approx(step)
-        leading = step / 10.0 ** math.floor(math.log10(step) + 1e-9)
-        assert min(abs(leading - digit) for digit in (1, 2, 5)) < 1e-6
+        leading = step / 10.0 ** math.floor(math.log10(step) + 1e-6)
+        assert min(abs(leading - digit) for digit in (1, 2, 5)) < 1e-4
         # with the next finer step there would be too many
-        finer = step / (2.5 if abs(leading - 5) < 1e-6 else 2)
+        finer = step / (2.5 if abs(leading - 5) < 1e-4 else 2)
         assert math.floor(high / finer + 1e-6) - math.ceil(low / finer - 1e-6) + 1 >= most
         assert [float(label.replace("\u2212", "-")) for label in labels] == pytest.approx(values, abs=1e-6 * step)
         assert len(set(labels)) == len(labels)
@@ -51,7 +53,8 @@ def test_a_simplified_line_is_the_same_line_for_the_eye(seed: int, count: int, s
     points = np.round(np.cumsum(random.normal(0, step, (count, 2)) * [1, 0.2], axis=0), 2)
     kept = simplified(points)
     assert len(kept) <= len(points)
-    assert (kept[0] == points[0]).all() and (kept[-1] == points[-1]).all()
+    assert (kept[0] == points[0]).all()
+    assert (kept[-1] == points[-1]).all()
     assert {tuple(p) for p in kept.tolist()} <= {tuple(p) for p in points.tolist()}
     if len(kept) > 1:
         assert distance(points, kept) <= 6 * FINEST + 1e-9

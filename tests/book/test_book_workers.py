@@ -63,7 +63,7 @@ def children(process: subprocess.Popen[bytes]) -> set[int]:
 def begun(root: Path, designs: int) -> subprocess.Popen[bytes]:
     """Start making a book and wait until some designs have their files."""
     process = subprocess.Popen([*COMMAND, *ASKED, "--out", str(root)], stderr=subprocess.DEVNULL)
-    until = time.monotonic() + 60
+    until = time.monotonic() + 180
     while process.poll() is None and len(list(root.glob("designs/*/*/*"))) < designs and time.monotonic() < until:
         time.sleep(0.01)
     return process
@@ -83,7 +83,7 @@ def test_a_book_that_was_killed_ends_with_the_same_bytes(whole: dict[str, bytes]
     process.kill()
     assert process.wait() == -signal.SIGKILL
     assert (root / ".book").exists()
-    until = time.monotonic() + 20
+    until = time.monotonic() + 60
     while any(Path(f"/proc/{worker}").exists() for worker in workers) and time.monotonic() < until:
         time.sleep(0.05)
     assert not [worker for worker in workers if Path(f"/proc/{worker}").exists()]
@@ -118,11 +118,11 @@ def test_an_interrupt_keeps_what_is_done(whole: dict[str, bytes], tmp_path: Path
     process = subprocess.Popen(
         [*COMMAND, *ASKED, "--out", str(root)], stderr=subprocess.PIPE, text=True, start_new_session=True
     )
-    until = time.monotonic() + 60
+    until = time.monotonic() + 180
     while len(list(root.glob("designs/*/*/*"))) < 3 and time.monotonic() < until:
         time.sleep(0.01)
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does it: to the workers, too
-    _, message = process.communicate(timeout=60)
+    _, message = process.communicate(timeout=180)
     assert process.returncode == 130
     assert f"interrupted; what is done lies in {root}, --resume goes on with it" in message
     assert "Traceback" not in message
