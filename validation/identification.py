@@ -41,11 +41,11 @@ _LOGARITHMIC = frozenset({"bandwidth", "damping", "position_gain", "sample_time"
 _RUN_IN = 0.06
 """Beginning of the trace that is not judged (s): the greatest dead time and some samples, whose commands must be known."""
 
-_START_TIMES = (0.0007, 0.0015, 0.003, 0.006, 0.012)
+_START_TIMES = (0.0015, 0.005)
 """Sample times from which the search starts (s)."""
 
 _START_GAINS = (12.0, 35.0)
-_COARSE_ROUNDS, _ROUNDS = 12, 40
+_COARSE_ROUNDS, _ROUNDS = 10, 40
 
 _CONFIDENCE = 1.96
 """Standard deviations to both sides that hold 95 %."""
@@ -58,6 +58,7 @@ _CLOCKS = 6
 """Sampling phases tried, and parts of a sample by which the clock may be off at the end of the trace between two sample times tried."""
 
 _MOST_TRIALS = 3000
+_BEST_TEETH = 3
 _WORST_FIT = 0.5
 
 
@@ -115,13 +116,11 @@ def identify(trace: Trace, place: str, velocity_feedforward: float | None = None
     """
     require_usable(trace, place)
     problem = _Problem.of(trace)
-    solution = problem.with_clock(problem.solve(velocity_feedforward))
     origin: Origin = "given"
     if velocity_feedforward is None:
-        alpha, origin = solution.values["velocity_feedforward"], "trace"
-        whole = min((0.0, 1.0), key=lambda value: abs(value - alpha))
-        if abs(whole - alpha) <= solution.spread("velocity_feedforward"):
-            solution, origin = problem.with_clock(problem.solve(whole)), "assumed"
+        solution, origin = problem.choose()
+    else:
+        solution = problem.with_clock(problem.solve(velocity_feedforward))
     fit = 1.0 - math.sqrt(solution.cost / float(np.sum((problem.actual - problem.actual.mean()) ** 2)))
     faults = list(_faults(solution, fit))
     if faults:
@@ -234,9 +233,7 @@ class _Problem:
             position, free = axis_response(
                 servo, float(self.times[0]) + clock * servo.sample_time, self.command, self.times
             )
-        left = self.actual - position
-        basis = np.linalg.qr(free / np.sqrt((free**2).sum(axis=0)))[0]
-        return np.asarray(left - basis @ (basis.T @ left))
+        return _without(self.actual - position, free)
 
     def mean(self, servo: Servo) -> FloatArray:
         """Position at the rows, mean over all phases of the sampling clock."""
@@ -252,51 +249,105 @@ class _Problem:
         step = (self.times[-1] - self.times[0]) / (rows - 1)
         return np.asarray(found + begin + velocity * (step * (self.first + np.arange(rows)) - late))
 
-    def solve(self, alpha: float | None) -> _Solution:
-        """Fit all parameters without the clock, the velocity feed-forward too if not given, from many starts."""
-        names = tuple(name for name in RANGES if name != "velocity_feedforward" or alpha is None)
-        but_time = tuple(name for name in names if name != "sample_time")
+    def choose(self) -> tuple[_Solution, Origin]:
+        """Fit the velocity feed-forward too, or take it as 0 or 1 where this is about as good."""
+        from scipy.optimize import minimize_scalar
+
+        whole = min((self.solve(alpha) for alpha in (0.0, 1.0)), key=lambda each: each.cost)
+        names = whole.names
+        tried = [whole]
+
+        def cost(alpha: float) -> float:
+            near = min(tried, key=lambda each: abs(each.values["velocity_feedforward"] - alpha))
+            tried.append(self.minimum({**near.values, "velocity_feedforward": alpha}, names, None, _ROUNDS))
+            return tried[-1].cost
+
+        alpha = whole.values["velocity_feedforward"]
+        minimize_scalar(
+            cost, bracket=(alpha - 0.02, alpha, alpha + 0.02)[:: 1 if alpha == 0.0 else -1], options={"xtol": 1e-4}
+        )
+        best = min(tried, key=lambda each: each.cost)
+        free = (*names, "velocity_feedforward")
+        if self.about_as_good(whole, best):
+            assumed = self.with_clock(whole)
+            if assumed.clock is None:
+                return assumed, "assumed"
+            freed = self.minimum(assumed.values, free, assumed.clock, _ROUNDS)
+            return (assumed, "assumed") if self.about_as_good(assumed, freed) else (freed, "trace")
+        return self.with_clock(self.minimum(best.values, free, None, _ROUNDS)), "trace"
+
+    def about_as_good(self, simple: _Solution, free: _Solution) -> bool:
+        """Whether a fit of one parameter less is not significantly worse."""
+        noise = free.cost / len(self.times)
+        return simple.cost - free.cost <= _CONFIDENCE**2 * (noise + self.doubt(free))
+
+    def doubt(self, found: _Solution) -> float:
+        """Squared residual that the command between the rows may account for, which nobody knows: large where it has corners.
+
+        A spline through every second row misses the others; one through all rows misses a fourth of that, at a corner.
+        """
+        from scipy.fft import irfft, rfft
+        from scipy.interpolate import CubicSpline
+
+        rows = len(self.times)
+        every = self.command(self.times)
+        missed = every - CubicSpline(self.times[::2], every[::2])(self.times)
+        rates = 2.0 * math.pi * np.fft.rfftfreq(rows, (self.times[-1] - self.times[0]) / (rows - 1))
+        effect = np.asarray(irfft(rfft(missed) * mean_response(Servo(**found.values), rates), rows))
+        return float(np.sum((effect / 4.0) ** 2))
+
+    def solve(self, alpha: float) -> _Solution:
+        """Fit all parameters but the velocity feed-forward and the clock, from many starts."""
+        names = tuple(name for name in RANGES if name != "velocity_feedforward")
         lag, found = self.lag, []
-        for ahead in (1.0, 0.0) if alpha is None else (alpha,):
-            for step in _START_TIMES:
-                for gain in _START_GAINS:
-                    start = {
-                        "bandwidth": 110.0,
-                        "damping": 0.8,
-                        "position_gain": gain,
-                        "sample_time": step,
-                        "dead_time": min(max(lag - step - (1.0 - ahead) / gain, 0.0), 0.04),
-                        "velocity_feedforward": ahead,
-                    }
-                    found.append(self.minimum(start, but_time, None, _COARSE_ROUNDS))
+        for step in _START_TIMES:
+            for gain in _START_GAINS:
+                start = {
+                    "bandwidth": 110.0,
+                    "damping": 0.8,
+                    "position_gain": gain,
+                    "sample_time": step,
+                    "dead_time": min(max(lag - step - (1.0 - alpha) / gain, 0.0), 0.04),
+                    "velocity_feedforward": alpha,
+                }
+                found.append(self.minimum(start, names, None, _COARSE_ROUNDS))
         found.sort(key=lambda each: each.cost)
-        finer = [self.minimum(each.values, names, None, _ROUNDS) for each in found[:3]]
-        return min(finer, key=lambda each: each.cost)
+        return min((self.minimum(each.values, names, None, _ROUNDS) for each in found[:2]), key=lambda each: each.cost)
 
     def with_clock(self, found: _Solution) -> _Solution:
         """Fit the clock too where the trace shows it, the sample time scanned so finely that no tooth of its comb is missed."""
         step, lasts = found.values["sample_time"], float(self.times[-1] - self.times[0])
+        mean = self.residual(found.values, None)
+        noise = found.cost / len(self.times)
+        if float(np.sum((self.residual(found.values, 0.0) - mean) ** 2)) < _SEEN * noise:
+            return found
         tooth = step * step / (_CLOCKS * lasts)
         teeth = min(math.ceil(2.0 * found.spread("sample_time") / tooth), _MOST_TRIALS // (2 * _CLOCKS))
-        others = tuple(name for name in found.names if name != "sample_time")
-        slopes = self.slopes(found.values, others, None)
-        basis = np.linalg.qr(slopes)[0]
+        others = self.slopes(found.values, tuple(name for name in found.names if name != "sample_time"), None).T
         trials = []
-        for sample_time in step + np.arange(-teeth, teeth + 1) * tooth:
-            values = {**found.values, "sample_time": float(sample_time)}
+        for number in range(-teeth, teeth + 1):
+            values = {**found.values, "sample_time": step + number * tooth}
             for part in range(_CLOCKS):
-                left = self.residual(values, part / _CLOCKS)
-                left = left - basis @ (basis.T @ left)
-                trials.append((float(left @ left), float(sample_time), part / _CLOCKS))
+                left = _without(self.residual(values, part / _CLOCKS), others)
+                trials.append((float(left @ left), number, part / _CLOCKS))
         trials.sort()
-        best = min(
+        chosen: list[tuple[float, int, float]] = []
+        for trial in trials:
+            if all(abs(trial[1] - other[1]) > _CLOCKS for other in chosen):  # teeth of its comb, each once
+                chosen.append(trial)
+            if len(chosen) == _BEST_TEETH:
+                break
+        best, *next_best = sorted(
             (
-                self.minimum({**found.values, "sample_time": sample_time}, found.names, clock, _ROUNDS)
-                for _, sample_time, clock in trials[:3]
+                self.minimum({**found.values, "sample_time": step + number * tooth}, found.names, clock, _ROUNDS)
+                for _, number, clock in chosen
             ),
             key=lambda each: each.cost,
         )
-        return best if found.cost - best.cost > _SEEN * best.cost / len(self.times) else found
+        noise = best.cost / len(self.times)
+        lead = min((other.cost for other in next_best), default=math.inf) - best.cost
+        seen = found.cost - best.cost > _SEEN * noise and lead > _CONFIDENCE**2 * (noise + self.doubt(best))
+        return best if seen else found
 
     def slopes(self, values: dict[str, float], names: tuple[str, ...], clock: float | None) -> FloatArray:
         """Derivatives of the residual by parameters (log of those above zero) and, last, the clock; central differences."""
@@ -359,6 +410,21 @@ class _Problem:
             for name, each in zip(names, spread, strict=False)
         }
         return _Solution(values, names, phase, cost, deviations)
+
+
+def _without(signal: FloatArray, rows: FloatArray) -> FloatArray:
+    """Take off a signal what some rows can make of it, by Gram and Schmidt, each twice."""
+    basis: list[FloatArray] = []
+    for row in rows:
+        direction = row
+        for _ in range(2):
+            for other in basis:
+                direction = direction - float(other @ direction) * other
+        size = math.sqrt(float(direction @ direction))
+        if size > 1e-13 * math.sqrt(float(row @ row)):
+            basis.append(direction / size)
+            signal = signal - float(basis[-1] @ signal) * basis[-1]
+    return signal
 
 
 def _coordinate(name: str, value: float) -> float:

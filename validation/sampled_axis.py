@@ -20,7 +20,7 @@ def axis_response(
     """Position of the axis at given times, and what an unknown beginning can add to it.
 
     Exact at any time: the samples by the closed loop's recursion, between them the plant under its held input. At the last sample before
-    the first time the axis stands on its command; every other state there adds a combination of the columns returned.
+    the first time the axis stands on its command; every other state there adds a combination of the rows returned.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ def axis_response(
     Returns
     -------
     (position, free)
-        Shapes ``(n,)`` and ``(n, 3)``.
+        Shapes ``(n,)`` and ``(3, n)``.
     """
     from scipy.signal import lfilter
 
@@ -66,10 +66,10 @@ def axis_response(
     held_still = 1.0 - gain * reference  # the reference is f - K p
     position = base + slope * state[0][sample] + velocity * state[1][sample] + held_still * state[2][sample]
     position += reference * drive[sample]
-    free = np.empty((len(times), 3))
+    free = np.empty((3, len(times)))
     for shift in range(3):
         later = decay[:, sample + shift]
-        free[:, shift] = slope * later[0] + velocity * later[1] + held_still * later[2]
+        free[shift] = slope * later[0] + velocity * later[1] + held_still * later[2]
     return position, free
 
 
@@ -118,10 +118,13 @@ def mean_response(servo: Servo, rates: FloatArray) -> ComplexArray:
 
 
 def decays(servo: Servo, times: FloatArray) -> FloatArray:
-    """How the closed loop forgets its beginning at the first of some times: a column for each pole, shape ``(n, 3)``."""
+    """How the closed loop forgets its beginning at the first of some times: a row for each pole, shape ``(3, n)``."""
     poles = np.linalg.eigvals(closed_loop(servo)[0]).astype(np.complex128)
     poles = poles[np.argsort(poles.imag)]
-    rates = np.log(np.maximum(np.abs(poles), 1e-300)) + 1j * np.angle(poles)
-    found = np.exp(np.multiply.outer((times - times[0]) / servo.sample_time, rates))
-    pair = poles[2].imag > 0.0  # the two of a pair share its real and its imaginary part
-    return np.stack([found[:, 2].imag if pair else found[:, 0].real, found[:, 1].real, found[:, 2].real], axis=1)
+    samples = (times - times[0]) / servo.sample_time
+    sizes, angles = np.log(np.maximum(np.abs(poles), 1e-300)), np.angle(poles)
+    found = np.exp(np.multiply.outer(sizes, samples))
+    if poles[2].imag > 0.0:  # a pair: both have the same size, and share its sine and its cosine
+        found[0] *= np.sin(angles[2] * samples)
+        found[2] *= np.cos(angles[2] * samples)
+    return found

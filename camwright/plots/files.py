@@ -29,8 +29,9 @@ if TYPE_CHECKING:
 
 
 def design_figures(design: Design, directory: Path) -> list[Path]:
-    """Write the figures of a design, each as SVG and PNG: ``profile``, ``servo``, ``comparison``, of a crank ``crank``, of a servo-aware one
-    ``axis``.
+    """Write the figures of a design, each as SVG and PNG.
+
+    They are ``profile``, ``servo`` and ``comparison``; for a crank also ``crank``, for a servo-aware design ``axis``.
 
     Parameters
     ----------
