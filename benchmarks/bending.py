@@ -83,7 +83,7 @@ def main() -> int:
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         drawing, out = Path(folder) / "meander.dxf", Path(folder) / "out"
-        document = ezdxf.new("R2000", units=4)
+        document = ezdxf.new("R2000", units=4)  # type: ignore[attr-defined]
         document.modelspace().add_lwpolyline(meander(), format="xyb")
         document.saveas(drawing)
         runs = []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, cast
 
@@ -11,6 +12,7 @@ from camwright.job import Job
 from camwright.machine_checks import TORQUE_OBJECTIVES, sync_pace
 from camwright.progress import Step, ignore
 from camwright.provenance import provenance
+from profiles.machines import CrankSlider, Machine
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -30,7 +32,7 @@ class EnvelopeAnswer:
     Parameters
     ----------
     job
-        The job, its machine as the map has it.
+        The job.
     objective
         What was made least at every point.
     envelope
@@ -70,6 +72,7 @@ class EnvelopeAnswer:
                     "quintic_m_per_min": _per_minute(row.quintic),
                     "linear_m_per_min": _per_minute(row.linear),
                     "binding": row.binding,
+                    **_place(row.machine),
                 }
                 for row in self.envelope.rows
             ],
@@ -120,8 +123,6 @@ def envelope_answer(job: Job, points: int, step: Step = ignore) -> EnvelopeAnswe
     InputError
         The machine cannot be in sync over the zone.
     """
-    from dataclasses import replace
-
     from design.envelope import envelope
 
     shortest = max(SHORTEST * job.cut.length, LEAST_ZONE * job.cut.sync_zone)
@@ -130,7 +131,12 @@ def envelope_answer(job: Job, points: int, step: Step = ignore) -> EnvelopeAnswe
     speeds = np.linspace(fastest / points, fastest, points)
     objective = cast("Objective", "rms_acceleration" if job.objective in TORQUE_OBJECTIVES else job.objective)
     found = envelope(job.machine, job.cut, job.limits, objective, lengths.tolist(), speeds.tolist(), step)
-    return EnvelopeAnswer(replace(job, machine=found.machine), objective, found)
+    return EnvelopeAnswer(job, objective, found)
+
+
+def _place(machine: Machine) -> dict[str, float]:
+    """Where a crank has its sync zone; nothing for other machines."""
+    return {"sync_at_deg": math.degrees(machine.sync_at)} if isinstance(machine, CrankSlider) else {}
 
 
 def _per_minute(speed: float | None) -> float | None:

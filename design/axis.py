@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from design.command_basis import CommandBasis
-from design.servo_weights import memory, servo_weights
+from design.servo_weights import memory, sampled_response, servo_weights
 from profiles.cycle import Cut
 from profiles.machines import Machine
 from profiles.polynomial import CamProfile, FloatArray
@@ -171,12 +171,12 @@ class Axis:
             values.append(response.ravel())
         for edge in dict.fromkeys((start, end)):
             after = self._edge_times(edge)
-            weights = np.array([self._weights(time, order) for time in after.tolist()])
-            past = after[:, None] + self.servo.delay + self.servo.sample_time * np.arange(weights.shape[1])
+            samples = np.arange(memory(self.servo.loop) + 1)
+            past = after[:, None] + self.servo.delay + self.servo.sample_time * samples
             command = profile(edge - self.cut.line_speed * past, outside="repeat")
             places.append(np.full(len(after), edge))
             times.append(after)
-            values.append(np.einsum("ij,ij->i", weights, command))
+            values.append(sampled_response(self.servo, after, command, order) / self.cut.line_speed**order)
         return np.concatenate(places), np.concatenate(times), np.concatenate(values)
 
     def _weights(self, time: float, order: int) -> FloatArray:

@@ -43,7 +43,7 @@ PLACES, TIMES = 6, 2
 # Rounds of adding rows, most rows of each kind added in a round, and the share by which a band may be missed without another round.
 ROUNDS, MOST_ROWS, NEARLY = 12, 12, 1e-3
 # Most rows of the axis' own motion added in a round: it runs along its limits where the tool only touches its band.
-MOST_OWN = 48
+MOST_OWN = 24
 # A peak that later programmes keep is taken as this share of its limit at least: the peak of a steady motion is rounding.
 LEAST_PEAK = 1e-6
 # Most servos between the corners that get rows in a round.
@@ -142,10 +142,13 @@ class AxisProgramme:
         Returns
         -------
         (unknowns, value) or None
-            The value is a share of the tolerance, or the peak or root mean square over the master. ``None`` if no command will do.
+            The value is a share of the tolerance, or the peak or root mean square over the master. ``None`` if no command will do: with
+            limits of the axis none that misses the tolerance, which comes before them.
         """
         for _ in range(ROUNDS + 1):
             found = self._feasible(cost, caps or {}) if band == 1.0 else self._solve_rows(cost, band, caps or {})
+            if found is not None and band is None and self.problem.axis_limits and found[1] > 1.0:
+                return None
             if found is None or not self._add_worst(found[0], found[1] if band is None else band, ratio=band == 1.0):
                 break
         return found

@@ -10,7 +10,6 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-from scipy.sparse import csc_matrix
 
 from design.ipopt import QUIET
 from profiles.errors import SolverError
@@ -127,7 +126,7 @@ class ConvexProgramme:
         matrix[np.abs(matrix) < _ROUNDING * np.abs(matrix).max(axis=1, keepdims=True)] = 0.0
         low, high, accepted = (np.concatenate(parts) for parts in (self._low, self._high, self._accepted))
         if square is None:
-            rows, quadratic = ca.DM(csc_matrix(matrix)), ca.DM(self.unknowns, self.unknowns)
+            rows, quadratic = ca.sparsify(ca.DM(matrix)), ca.DM(self.unknowns, self.unknowns)
             roads = [("highs", {"highs": _HIGHS | road}) for road in _HIGHS_ROADS]
         else:
             steady = _STEADY * np.trace(square) / self.unknowns * np.eye(self.unknowns)

@@ -9,7 +9,8 @@ from typing import Literal
 import numpy as np
 
 from design.feasibility import is_feasible, least_limit, margin
-from design.motor import motor_limits
+from design.motor import motor_limits, motor_speed_limits
+from design.motor_curve import load
 from design.placement import Placement, place_sync
 from design.possible import possible_rms
 from design.problem import Objective, return_problem
@@ -21,6 +22,8 @@ from profiles.returns import baseline, slave_at_start
 
 MISSING = 1e30
 """Where limits are not enough the cost is this, far above any objective, times the factor on the limits that would be."""
+FAR = 1e30
+"""The same for limits of the slave over those of the motor."""
 ANGLES = 721
 """Places of the cycle at which the torque of a stand-in is taken."""
 
@@ -44,7 +47,7 @@ def place_for(
 
     def cost(placed: CrankSlider) -> float:
         if not is_feasible(placed, cut, limits):
-            return MISSING * margin(placed, cut, limits)
+            return MISSING * _missing(placed, cut, limits)
         match objective:
             case "peak_acceleration":
                 return least_limit(placed, cut, limits, "acceleration")
@@ -59,6 +62,14 @@ def place_for(
         least, greatest = machine.sync_range(cut)
         return Placement(replace(machine, sync_at=0.5 * (least + greatest)), math.inf, 1)
     return found
+
+
+def _missing(machine: CrankSlider, cut: Cut, limits: Limits) -> float:
+    """How much is missing at a place: torque of the motor, told by the quintic, or far worse, what the slave itself may do."""
+    plain = motor_speed_limits(machine, limits)
+    if limits.motor is not None and is_feasible(machine, cut, plain):
+        return load(baseline("poly_3_4_5", machine, cut), machine, cut, limits.motor)
+    return FAR * margin(machine, cut, plain)
 
 
 def _rms(machine: CrankSlider, cut: Cut, limits: Limits, objective: Objective) -> float:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from design.extremes import BEYOND, max_line_speed, roomiest
+from design.extremes import BEYOND, max_line_speed, placed_fastest
 from design.feasibility import binding_limit, needed_limits
 from design.problem import Objective, return_problem
 from design.solver import objective_value, solve_return
@@ -14,7 +14,7 @@ from profiles.cross_cutter import quintic_return
 from profiles.cycle import Cut
 from profiles.errors import InputError, SolverError
 from profiles.limits import Limits
-from profiles.machines import CrankSlider, Machine
+from profiles.machines import Machine
 from profiles.polynomial import CamProfile
 from profiles.returns import assemble, is_straight, quintic_between
 
@@ -55,9 +55,22 @@ class EnvelopePoint:
 
 @dataclass(frozen=True)
 class EnvelopeRow:
-    """One cut length: the highest line speeds (m/s) with each return, None where no speed works, and what binds the first."""
+    """One cut length.
+
+    Parameters
+    ----------
+    length
+        The cut length (m).
+    machine
+        The machine as placed for it.
+    optimised, quintic, linear
+        Highest line speeds with each return (m/s), None where no speed works.
+    binding
+        What binds the first of these.
+    """
 
     length: float
+    machine: Machine
     optimised: float | None
     quintic: float | None
     linear: float | None
@@ -66,9 +79,8 @@ class EnvelopeRow:
 
 @dataclass(frozen=True)
 class Envelope:
-    """The map: its machine as placed, its points by length and then speed, and a row for each length."""
+    """The map: its points by length and then speed, and a row for each length."""
 
-    machine: Machine
     points: tuple[EnvelopePoint, ...]
     rows: tuple[EnvelopeRow, ...]
 
@@ -87,8 +99,8 @@ def envelope(
     Parameters
     ----------
     machine, cut, limits, objective
-        The job; its cut length and line speed are replaced by those of the points. The sync zone of a crank stays at the place
-        that suits the job best.
+        The job; its cut length and line speed are replaced by those of the points. A crank whose sync zone is free has it, at each cut
+        length, where the line can run fastest.
     lengths, line_speeds
         Cut lengths (m), each above the sync zone, and line speeds (m/s).
     step
@@ -105,16 +117,14 @@ def envelope(
             f"the envelope cannot begin at a cut length of {min(short) * 1e3:.6g} mm: it must be above the sync zone, "
             f"[cut] sync_zone = {cut.sync_zone * 1e3:.6g} mm"
         )
-    if isinstance(machine, CrankSlider) and math.isnan(machine.sync_at):
-        machine = roomiest(machine, cut, limits)
     rows, points = [], []
     for length in lengths:
         step(f"cut length {length * 1e3:.4g} mm")
         at_length = replace(cut, length=length)
-        row = _row(machine, at_length, limits)
+        row = _row(placed_fastest(machine, at_length, limits), at_length, limits)
         rows.append(row)
-        points += list(_points(machine, at_length, limits, objective, line_speeds, row, step))
-    return Envelope(machine, tuple(points), tuple(rows))
+        points += list(_points(row.machine, at_length, limits, objective, line_speeds, row, step))
+    return Envelope(tuple(points), tuple(rows))
 
 
 def _row(machine: Machine, cut: Cut, limits: Limits) -> EnvelopeRow:
@@ -122,7 +132,7 @@ def _row(machine: Machine, cut: Cut, limits: Limits) -> EnvelopeRow:
     beyond = replace(cut, line_speed=(fastest or cut.line_speed) * (1 + BEYOND))
     binding = binding_limit(machine, beyond, limits, needed_limits(machine, beyond, limits))
     return EnvelopeRow(
-        cut.length, fastest, quintic_speed(machine, cut, limits), linear_speed(machine, cut, limits), binding
+        cut.length, machine, fastest, quintic_speed(machine, cut, limits), linear_speed(machine, cut, limits), binding
     )
 
 

@@ -57,10 +57,15 @@ def extremes(machine: Machine, cut: Cut, limits: Limits) -> Extremes:
 
 def fastest_line(machine: Machine, cut: Cut, limits: Limits) -> tuple[float | None, str]:
     """Highest line speed at the job's cut length (m/s), None if no line speed works, and what binds there."""
-    placed = _placed(machine, cut, limits, lambda there: -slowdown(there, cut, limits, COARSE) or math.inf)
+    placed = placed_fastest(machine, cut, limits)
     speed = max_line_speed(placed, cut, limits)
     beyond = replace(cut, line_speed=(speed or cut.line_speed) * (1 + BEYOND))
     return speed, _binding(placed, beyond, limits)
+
+
+def placed_fastest(machine: Machine, cut: Cut, limits: Limits) -> Machine:
+    """Place the sync zone of a crank that leaves it free where the line can run fastest."""
+    return _placed(machine, cut, limits, lambda there: -slowdown(there, cut, limits, COARSE) or math.inf)
 
 
 def _placed(machine: Machine, cut: Cut, limits: Limits, cost: Callable[[CrankSlider], float]) -> Machine:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -23,27 +22,27 @@ from profiles.returns import assemble, slave_at_start
 
 POINTS = 4001
 """Places of the cycle, besides its breaks, at which the torque is held against the curve."""
+ROUNDING = 1e-9
 SAMPLED = 1e-6
 """Share of the torque that is kept free, for what happens between these places."""
 
 
 def keeps_curve(profile: CamProfile, machine: Machine, cut: Cut, curve: MotorCurve) -> bool:
-    """Tell whether the motor gives the torque that a cycle needs, at each of its speeds."""
-    return load(profile, machine, cut, curve) <= 1.0 - SAMPLED
+    """Tell whether the motor reaches the speed of a cycle and gives the torque that it needs, at each of its speeds."""
+    fastest = cut.line_speed * machine.motor_ratio * max(abs(extremum.value) for extremum in profile.extrema(1))
+    return fastest <= curve.top_speed * (1 + ROUNDING) and load(profile, machine, cut, curve) <= 1.0 - SAMPLED
 
 
 def load(profile: CamProfile, machine: Machine, cut: Cut, curve: MotorCurve) -> float:
-    """Greatest share of the motor's torque at its speed that a cycle uses; infinite beyond the motor's top speed."""
+    """Greatest share of the motor's torque at its speed that a cycle uses; beyond the motor's top speed, of that which it gives there."""
     x = np.concatenate([np.linspace(profile.start, profile.end, POINTS), profile.breaks])
     v, worst = cut.line_speed, 0.0
     for side in ("left", "right"):
         y = slave_at_start(machine, cut) - float(profile(profile.start)) + profile(x)
         pace, bend = v * profile(x, 1), v**2 * profile(x, 2, side=side)
         force = machine.inertia(y) * bend + machine.inertia_slope(y) * pace**2 / 2 + machine.friction * np.sign(pace)
-        speed = np.abs(pace) * machine.motor_ratio
-        if float(speed.max()) > curve.top_speed * (1 + 1e-9):
-            return math.inf
-        given = curve.torque(np.minimum(speed, curve.top_speed)) * machine.motor_ratio
+        speed = np.minimum(np.abs(pace) * machine.motor_ratio, curve.top_speed)
+        given = curve.torque(speed) * machine.motor_ratio
         worst = max(worst, float((np.abs(force) / given).max()))
     return worst
 

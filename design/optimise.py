@@ -160,7 +160,8 @@ def _over_time(back: CamProfile, objective: MotionObjective, cut: Cut) -> float:
 def _solve_for_motor(machine: Machine, cut: Cut, limits: Limits, objective: Objective, suggest: bool) -> Solution:
     """Solve without the motor's torque, which is the answer if it keeps to the curve; else within the curve, and take the best.
 
-    Within the curve are its rectangles, of which the grid tells the best, and what a programme finds that knows the whole curve.
+    Within the curve are its rectangles, of which the grid tells the best. Where they do not do, or say little, a programme knows the whole
+    curve.
 
     Raises
     ------
@@ -184,16 +185,20 @@ def _solve_for_motor(machine: Machine, cut: Cut, limits: Limits, objective: Obje
             grid_objective(return_problem(machine, cut, each, decisive or "rms_acceleration")) for each in rectangles
         ]
         found.append(solve(machine, cut, rectangles[int(np.argmin(rough))], objective))
-    easiest = least_load(machine, cut, limits)
-    starts = [solution.back for solution in found] + ([easiest.back] if easiest is not None else [])
-    within = solve_within_curve(machine, cut, limits, decisive or objective, starts)
-    if within is not None:
-        value = within.value if decisive is None else _over_time(within.back, decisive, cut)
-        profile = assemble(within.back, machine, cut)
-        agreed = Starts(within.starts, within.agreeing, within.spread, within.residual, 1)
-        found.append(
-            Solution(machine, profile, within.back, SolveStatus.ON_GRID, objective, value, within.iterations, agreed)
-        )
+    easiest = None
+    if not found or isinstance(machine, CrankSlider):  # a rectangle says little where the torque depends on the place
+        easiest = least_load(machine, cut, limits)
+        starts = [solution.back for solution in found] + ([] if easiest is None else [easiest.back])
+        within = solve_within_curve(machine, cut, limits, decisive or objective, starts)
+        if within is not None:
+            value = within.value if decisive is None else _over_time(within.back, decisive, cut)
+            profile = assemble(within.back, machine, cut)
+            agreed = Starts(within.starts, within.agreeing, within.spread, within.residual, 1)
+            found.append(
+                Solution(
+                    machine, profile, within.back, SolveStatus.ON_GRID, objective, value, within.iterations, agreed
+                )
+            )
     if not found:
         raise infeasible(machine, cut, limits, suggest=suggest, load=None if easiest is None else easiest.value)
     return min(found, key=lambda solution: solution.objective)

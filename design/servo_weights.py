@@ -41,6 +41,7 @@ class ServoWeights:
     acceleration: FloatArray
 
 
+@lru_cache(maxsize=1024)
 def memory(servo: Servo) -> int:
     """Count the samples of the past that still move the axis.
 
@@ -76,6 +77,31 @@ def servo_weights(servo: Servo, time: float) -> ServoWeights:
     rows[0] += (gain + lead) * part.input
     rows[1] -= lead * part.input
     return ServoWeights(rows[:, 2].copy(), rows[:, 1].copy(), rows[:, 0].copy())
+
+
+def sampled_response(servo: Servo, times: FloatArray, samples: FloatArray, order: int) -> FloatArray:
+    """Axis, or a derivative over time, at several times after a sampling instant, each with samples of its own.
+
+    The same sums as with `servo_weights`, in less time where the weights are of use once only.
+
+    Parameters
+    ----------
+    servo
+        The servo; dead time and lead are the caller's.
+    times
+        Times ``0 <= time <= dT`` (s), shape ``(n,)``.
+    samples
+        The command's samples, newest first, shape ``(n, memory + 1)``.
+    order
+        0 for the position, 1 for the velocity (1/s), 2 for the acceleration (1/s²).
+    """
+    states = samples @ _past_states(servo.loop, samples.shape[1] - 1)
+    gain, lead = servo.position_gain, servo.velocity_feedforward / servo.sample_time
+    reference = (gain + lead) * samples[:, 0] - lead * samples[:, 1] - gain * states[:, 2]
+    parts = [sample_plant(servo.loop, time) for time in times.tolist()]
+    row = 2 - order
+    moved = np.einsum("ij,ij->i", np.array([part.transition[row] for part in parts]), states)
+    return moved + np.array([part.input[row] for part in parts]) * reference
 
 
 @lru_cache(maxsize=256)

@@ -264,18 +264,23 @@ def _room(problem: ScaledProblem) -> float:
 
 
 def smoothest(problem: ReturnProblem) -> CamProfile | None:
-    """Return of least RMS jerk among those that keep the problem's limits; None if one look at it finds none."""
+    """Return of least RMS jerk among those that keep the problem's limits; None if no look at it finds one."""
     scale = motion_scale(problem)
     scaled = replace(scale_problem(problem, scale), objective="rms_jerk")
-    grid, success, _ = _on_grid(scaled, np.full(COARSE[3], 1.0 / COARSE[3]), 0.0)
-    if not success:
-        return None
-    polished, success, _ = _polish(scaled, grid, thorough=True)
-    for motion in (polished, grid) if success else (grid,):
-        profile = tidy(motion, scaled).profile()
+    on_grid: CamProfile | None = None
+    for count in (COARSE[3], MEDIUM):
+        grid, success, _ = _on_grid(scaled, np.full(count, 1.0 / count), 0.0)
+        if not success:
+            continue
+        polished, success, _ = _polish(scaled, grid, thorough=count == MEDIUM)
+        if success:
+            profile = tidy(polished, scaled).profile()
+            if excess(profile, scaled) <= ALLOWED_EXCESS:
+                return unscale_profile(profile, problem, scale)
+        profile = tidy(grid, scaled).profile()
         if excess(profile, scaled) <= ALLOWED_EXCESS:
-            return unscale_profile(profile, problem, scale)
-    return None
+            on_grid = unscale_profile(profile, problem, scale)
+    return on_grid
 
 
 def limit_margin(problem: ReturnProblem) -> float:
@@ -400,6 +405,8 @@ def _polish_arcs(
 ) -> tuple[Motion, bool, int]:
     """Solve for arcs of unknown length; with limits at the nodes alone it is a success only if they are kept between, too."""
     shape = Shape(arcs, start.degree, True, problem.objective, problem.confined, at_nodes)
+    if shape.overdetermined:
+        return start, False, 0
     motion, statistics = programme(shape).solve(problem, start)
     success = bool(statistics["success"])
     if success and at_nodes:

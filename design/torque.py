@@ -60,7 +60,7 @@ def solve_torque(
     aim: Aim,
     curve: MotorCurve | None = None,
     keeps: Callable[[CamProfile], bool] | None = None,
-    more: Sequence[CamProfile] = (),
+    starts: Sequence[CamProfile] = (),
 ) -> TorqueSolution:
     """Find the return of least torque or energy, of least load, or the least of another objective within the motor's curve.
 
@@ -77,8 +77,8 @@ def solve_torque(
         What the motor can give, for the load and as a limit for all else.
     keeps
         What a return must fulfil besides its limits.
-    more
-        Further returns to start from.
+    starts
+        Returns to start from, beside the quintic; if there are none, the optima of the motion alone.
 
     Raises
     ------
@@ -93,7 +93,7 @@ def solve_torque(
     accepted = keeps or (lambda _: True)
     found: list[tuple[float, CamProfile, float]] = []
     iterations = 0
-    guesses = _starts(machine, cut, problem, scale, more)
+    guesses = _guesses(machine, cut, problem, scale, starts)
     for guess in guesses:
         answer = programme.solve(scaled, guess)
         iterations += answer.iterations
@@ -121,12 +121,14 @@ def solve_torque(
     return TorqueSolution(best[1], best[0], spread, converged, agreeing, best[2], iterations)
 
 
-def _starts(
-    machine: Machine, cut: Cut, problem: ReturnProblem, scale: float, more: Sequence[CamProfile]
+def _guesses(
+    machine: Machine, cut: Cut, problem: ReturnProblem, scale: float, starts: Sequence[CamProfile]
 ) -> list[CamProfile]:
-    """Scaled first guesses: the optima of the motion alone, the quintic, and others."""
-    profiles = [solve_return(replace(problem, objective=name))[0] for name in ("peak_acceleration", "rms_acceleration")]
-    profiles += [quintic_between(machine.sync_profile(cut), problem.length, problem.height), *more]
+    """Scaled first guesses: the quintic, and the given starts or the optima of the motion alone."""
+    profiles = list(starts) or [
+        solve_return(replace(problem, objective=name))[0] for name in ("peak_acceleration", "rms_acceleration")
+    ]
+    profiles.append(quintic_between(machine.sync_profile(cut), problem.length, problem.height))
     scaled = [
         profile.add_line(-problem.start_ratio).scale(master=1.0 / problem.length, slave=1.0 / scale)
         for profile in profiles

@@ -169,7 +169,7 @@ class TorqueProgramme:
         force = machine.inertia(y) * acceleration + machine.inertia_slope(y) * velocity**2 / 2
         # a slave that does not turn back has friction against it all the time
         force += machine.friction * (ca.tanh(velocity / (0.01 * task.cut.line_speed)) if machine.turns_back else 1.0)
-        available = ca.DM.inf(GAUSS_POINTS)
+        available: Any = ca.DM.inf(GAUSS_POINTS)
         if task.curve is not None:
             speeds, torques = (ca.DM(list(column)) for column in zip(*task.curve.points, strict=True))
             speed = ca.vertsplit(ca.fabs(velocity) * machine.motor_ratio)

@@ -76,6 +76,13 @@ class Shape:
         """Number of pieces ``M``."""
         return len(self.arcs)
 
+    @property
+    def overdetermined(self) -> bool:
+        """Whether arcs of the least RMS jerk leave less to choose than its ends need: no such motion, whatever the numbers."""
+        p = self.degree
+        known = {"free": 0, "ramp": p - 1, "hold": p, "fall": 1, "cruise": p + 1}
+        return self.free_lengths and p > 1 and p * (self.pieces - 1) < sum(known[arc] for arc in self.arcs)
+
 
 @dataclass(frozen=True, eq=False)
 class Motion:

@@ -46,7 +46,10 @@ def test_a_quadratic_programme_has_clarabels_value(seed: int) -> None:
 
     matrix, low, high = random_rows(seed, 12, 40)
     generator = np.random.default_rng(seed + 1)
-    factor, cost = generator.normal(size=(9, 12)), generator.normal(size=12)  # three directions cost nothing of the square
+    factor, cost = (
+        generator.normal(size=(9, 12)),
+        generator.normal(size=12),
+    )  # three directions cost nothing of the square
     square = factor.T @ factor
     programme = ConvexProgramme(12)
     programme.add(matrix, low, high)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from design.scaling import ScaledProblem
 from design.transcription import (
+    Arc,
     Motion,
     Programme,
     Shape,
@@ -191,3 +192,18 @@ def test_limits_at_the_nodes_put_arcs_on_them_and_keep_the_jerk_continuous() -> 
     h = float(motion.lengths[0])
     assert 1.3 * (1 - 2 * h) + 2 * float(profile(h)) == pytest.approx(1.0, rel=1e-6)
     assert float(profile(h, 3, side="left")) == pytest.approx(0.0, abs=1e-4 * math.sqrt(motion.objective))
+
+
+@pytest.mark.parametrize(
+    ("arcs", "too_many"),
+    [
+        (("free",), False),
+        (("free", "cruise", "free"), False),
+        (("ramp", "free", "hold", "free", "ramp"), False),
+        (("hold", "cruise"), True),
+        (("hold", "cruise", "ramp", "hold"), True),
+    ],
+)
+def test_arcs_that_leave_nothing_to_choose(arcs: tuple[Arc, ...], too_many: bool) -> None:
+    assert Shape(arcs, 3, True, "rms_jerk").overdetermined is too_many
+    assert not Shape(arcs, 3, False, "rms_jerk").overdetermined  # on a grid the arcs are not told

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -58,7 +58,10 @@ _CLOCKS = 6
 """Sampling phases tried, and parts of a sample by which the clock may be off at the end of the trace between two sample times tried."""
 
 _MOST_TRIALS = 3000
-_BEST_TEETH = 3
+_BEST_TEETH = 4
+_REACH = 0.1
+"""Part of the sample time by which the fit without clock may be off: where the clock is seen, that fit takes it for the axis' own."""
+
 _WORST_FIT = 0.5
 
 
@@ -73,7 +76,7 @@ class Identified:
     confidence
         Least and greatest value of each fitted parameter by name, 95 % confidence, in SI units.
     feedforward_from
-        Where the velocity feed-forward comes from: fitted to the trace, assumed to be 0 or 1, which the trace does not contradict, or given.
+        Where the velocity feed-forward comes from: fitted to the trace, assumed to be 0 or 1, which the trace allows, or given.
     fit
         ``1 - |residual| / |actual - mean|``: 1 where the model is the axis.
     residual
@@ -121,14 +124,13 @@ def identify(trace: Trace, place: str, velocity_feedforward: float | None = None
         solution, origin = problem.choose()
     else:
         solution = problem.with_clock(problem.solve(velocity_feedforward))
+    solution = problem.with_doubt(solution)
     fit = 1.0 - math.sqrt(solution.cost / float(np.sum((problem.actual - problem.actual.mean()) ** 2)))
     faults = list(_faults(solution, fit))
     if faults:
         raise InputError(*(f"{place}: {fault}" for fault in faults))
-    values = solution.values
-    confidence = {
-        name: (values[name] - solution.spread(name), values[name] + solution.spread(name)) for name in solution.names
-    }
+    values, spread = solution.values, solution.spreads
+    confidence = {name: (values[name] - spread[name], values[name] + spread[name]) for name in solution.names}
     return Identified(
         servo=Servo(**{**values, "dead_time": max(0.0, values["dead_time"])}),
         confidence=confidence,
@@ -143,19 +145,15 @@ def identify(trace: Trace, place: str, velocity_feedforward: float | None = None
 class _Solution:
     """A minimum: all parameters by name, those fitted, and how well they are known.
 
-    ``clock`` is the sampling phase as a part of the sample time, nothing where it is not fitted.
+    ``clock`` is the sampling phase as a part of the sample time, nothing where it is not fitted; ``spreads`` are half the widths of the
+    95 % confidence.
     """
 
     values: dict[str, float]
     names: tuple[str, ...]
     clock: float | None
     cost: float
-    deviations: dict[str, float]
-    """Standard deviations."""
-
-    def spread(self, name: str) -> float:
-        """Half the width of the 95 % confidence."""
-        return _CONFIDENCE * self.deviations[name]
+    spreads: dict[str, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -196,14 +194,14 @@ class _Problem:
         first = math.ceil(_RUN_IN / trace.step)
         begin, velocity = float(trace.command[0]), float(trace.command[-1] - trace.command[0]) / (times[-1] - times[0])
         beyond = trace.command - begin - velocity * (times - times[0])
-        whole = next_fast_len(math.ceil(1.25 * rows), real=True)
+        whole = 2 * next_fast_len(math.ceil(0.625 * rows), real=True)
         part = np.arange(1, whole - rows + 1) / (
             whole - rows + 1
         )  # a cubic from the last command's velocity to the first's
         width = trace.step * (whole - rows + 1)
         leaving, coming = (float(curve(times[row], 1)) - velocity for row in (-1, 0))
         back = width * part * (1.0 - part) * (leaving * (1.0 - part) - coming * part)
-        rates = 2.0 * math.pi * np.fft.rfftfreq(whole, trace.step)
+        rates = 2.0 * math.pi * np.arange(whole // 2 + 1) / (whole * trace.step)
 
         def command(at: FloatArray) -> FloatArray:
             return np.asarray(curve(np.clip(at, times[0], times[-1])))
@@ -254,7 +252,12 @@ class _Problem:
         from scipy.optimize import minimize_scalar
 
         whole = min((self.solve(alpha) for alpha in (0.0, 1.0)), key=lambda each: each.cost)
-        names = whole.names
+        names, free = whole.names, (*whole.names, "velocity_feedforward")
+        assumed = self.with_clock(whole)
+        if assumed.clock is not None:
+            freed = self.minimum(assumed.values, free, assumed.clock, _ROUNDS)
+            if self.about_as_good(assumed, freed):
+                return assumed, "assumed"
         tried = [whole]
 
         def cost(alpha: float) -> float:
@@ -263,17 +266,10 @@ class _Problem:
             return tried[-1].cost
 
         alpha = whole.values["velocity_feedforward"]
-        minimize_scalar(
-            cost, bracket=(alpha - 0.02, alpha, alpha + 0.02)[:: 1 if alpha == 0.0 else -1], options={"xtol": 1e-4}
-        )
+        minimize_scalar(cost, bracket=(alpha, alpha + (0.02 if alpha == 0.0 else -0.02)), options={"xtol": 1e-4})
         best = min(tried, key=lambda each: each.cost)
-        free = (*names, "velocity_feedforward")
-        if self.about_as_good(whole, best):
-            assumed = self.with_clock(whole)
-            if assumed.clock is None:
-                return assumed, "assumed"
-            freed = self.minimum(assumed.values, free, assumed.clock, _ROUNDS)
-            return (assumed, "assumed") if self.about_as_good(assumed, freed) else (freed, "trace")
+        if assumed.clock is None and self.about_as_good(whole, best):
+            return whole, "assumed"
         return self.with_clock(self.minimum(best.values, free, None, _ROUNDS)), "trace"
 
     def about_as_good(self, simple: _Solution, free: _Solution) -> bool:
@@ -292,9 +288,14 @@ class _Problem:
         rows = len(self.times)
         every = self.command(self.times)
         missed = every - CubicSpline(self.times[::2], every[::2])(self.times)
-        rates = 2.0 * math.pi * np.fft.rfftfreq(rows, (self.times[-1] - self.times[0]) / (rows - 1))
+        rates = 2.0 * math.pi / (self.times[-1] - self.times[0]) * np.arange(rows // 2 + 1)
         effect = np.asarray(irfft(rfft(missed) * mean_response(Servo(**found.values), rates), rows))
         return float(np.sum((effect / 4.0) ** 2))
+
+    def with_doubt(self, found: _Solution) -> _Solution:
+        """Widen the confidence by what the command between the rows may do."""
+        wider = math.sqrt(1.0 + self.doubt(found) * len(self.times) / found.cost)
+        return replace(found, spreads={name: wider * spread for name, spread in found.spreads.items()})
 
     def solve(self, alpha: float) -> _Solution:
         """Fit all parameters but the velocity feed-forward and the clock, from many starts."""
@@ -322,26 +323,29 @@ class _Problem:
         if float(np.sum((self.residual(found.values, 0.0) - mean) ** 2)) < _SEEN * noise:
             return found
         tooth = step * step / (_CLOCKS * lasts)
-        teeth = min(math.ceil(2.0 * found.spread("sample_time") / tooth), _MOST_TRIALS // (2 * _CLOCKS))
-        others = self.slopes(found.values, tuple(name for name in found.names if name != "sample_time"), None).T
+        teeth = min(math.ceil(_REACH * step / tooth), _MOST_TRIALS // (2 * _CLOCKS))
+        names = tuple(name for name in found.names if name != "sample_time")
+        others = self.slopes(found.values, names, None)
+        along = np.linalg.lstsq(others, -self.slopes(found.values, ("sample_time",), None)[:, 0])[0]
         trials = []
         for number in range(-teeth, teeth + 1):
             values = {**found.values, "sample_time": step + number * tooth}
+            by = math.log(values["sample_time"] / step)  # the others go along with the sample time
+            values |= {
+                name: _moved(name, values[name], by * float(way)) for name, way in zip(names, along, strict=True)
+            }
             for part in range(_CLOCKS):
-                left = _without(self.residual(values, part / _CLOCKS), others)
-                trials.append((float(left @ left), number, part / _CLOCKS))
-        trials.sort()
-        chosen: list[tuple[float, int, float]] = []
+                left = _without(self.residual(values, part / _CLOCKS), others.T)
+                trials.append((float(left @ left), number, part / _CLOCKS, values))
+        trials.sort(key=lambda trial: trial[0])
+        chosen: list[tuple[float, int, float, dict[str, float]]] = []
         for trial in trials:
             if all(abs(trial[1] - other[1]) > _CLOCKS for other in chosen):  # teeth of its comb, each once
                 chosen.append(trial)
             if len(chosen) == _BEST_TEETH:
                 break
         best, *next_best = sorted(
-            (
-                self.minimum({**found.values, "sample_time": step + number * tooth}, found.names, clock, _ROUNDS)
-                for _, number, clock in chosen
-            ),
+            (self.minimum(values, found.names, clock, _ROUNDS) for _, _, clock, values in chosen),
             key=lambda each: each.cost,
         )
         noise = best.cost / len(self.times)
@@ -350,7 +354,7 @@ class _Problem:
         return best if seen else found
 
     def slopes(self, values: dict[str, float], names: tuple[str, ...], clock: float | None) -> FloatArray:
-        """Derivatives of the residual by parameters (log of those above zero) and, last, the clock; central differences."""
+        """Take derivatives of the residual by parameters (log of those above zero) and, last, the clock; central differences."""
         columns = []
         for name in (*names, *(("clock",) if clock is not None else ())):
             step = _difference(name)
@@ -404,12 +408,12 @@ class _Problem:
         scale = np.sqrt((jacobian**2).sum(axis=0))
         cost = 2.0 * found.cost * size * size
         inverse = np.linalg.pinv((jacobian / scale).T @ (jacobian / scale))
-        spread = np.sqrt(np.diag(inverse) * cost / (rows - width - 3)) / scale
-        deviations = {
+        spread = _CONFIDENCE * np.sqrt(np.diag(inverse) * cost / (rows - width - 3)) / scale
+        spreads = {
             name: float(each) * (values[name] if name in _LOGARITHMIC else 1.0)
             for name, each in zip(names, spread, strict=False)
         }
-        return _Solution(values, names, phase, cost, deviations)
+        return _Solution(values, names, phase, cost, spreads)
 
 
 def _without(signal: FloatArray, rows: FloatArray) -> FloatArray:
@@ -456,7 +460,7 @@ def _faults(solution: _Solution, fit: float) -> Iterator[str]:
     values = solution.values
     for name in solution.names:
         factor, unit = _UNITS[name]
-        words, value, spread = name.replace("_", " "), values[name], solution.spread(name)
+        words, value, spread = name.replace("_", " "), values[name], solution.spreads[name]
         low, high = RANGES[name]
         shown = f"{words} {value * factor:.4g}{unit}"
         if name == "dead_time" and value < -spread and value < -1e-5:

@@ -60,7 +60,7 @@ def axis_response(
         decay, power = np.concatenate([decay, power @ decay], axis=1), power @ power
 
     place = (times - clock) / step
-    whole = np.floor(place)
+    whole: FloatArray = np.floor(place)
     sample = whole.astype(np.intp) - first
     slope, velocity, reference = _position_rows(servo, (place - whole) * step)
     held_still = 1.0 - gain * reference  # the reference is f - K p
@@ -123,7 +123,7 @@ def decays(servo: Servo, times: FloatArray) -> FloatArray:
     poles = poles[np.argsort(poles.imag)]
     samples = (times - times[0]) / servo.sample_time
     sizes, angles = np.log(np.maximum(np.abs(poles), 1e-300)), np.angle(poles)
-    found = np.exp(np.multiply.outer(sizes, samples))
+    found: FloatArray = np.exp(sizes[:, None] * samples)
     if poles[2].imag > 0.0:  # a pair: both have the same size, and share its sine and its cosine
         found[0] *= np.sin(angles[2] * samples)
         found[2] *= np.cos(angles[2] * samples)
