@@ -119,19 +119,20 @@ class Axis:
             Shape ``(SUBSTEPS, count)``: by the time since the sampling instant before, in 8ths of a sample, and by place.
         """
         samples = memory(self.servo.loop) + 1
-        back = (samples - 1) * PHASES + (SUBSTEPS - 1) * _STRIDE
+        rows = -(-count // PHASES)
+        ahead = (SUBSTEPS - 1) * _STRIDE
         step = self.sample / PHASES
-        v = self.cut.line_speed
-        places = (first - back + np.arange(back + count)) * step - v * self.servo.delay
-        command = profile(places, outside="repeat")
+        grid = first - (samples - 1) * PHASES - ahead + np.arange((samples - 1 + rows) * PHASES + ahead)
+        command = profile(grid * step - self.cut.line_speed * self.servo.delay, outside="repeat")
         found = np.empty((SUBSTEPS, count))
         for sub in range(SUBSTEPS):
-            row = self._weights(sub * self.servo.sample_time / SUBSTEPS, order)
-            newest = back - sub * _STRIDE
-            window = np.lib.stride_tricks.sliding_window_view(command[: newest + count], newest + 1)[
-                :, newest % PHASES :: PHASES
-            ]
-            found[sub] = window @ row[::-1][-window.shape[1] :]
+            start = ahead - sub * _STRIDE
+            by_phase = command[start : start + (samples - 1 + rows) * PHASES].reshape(-1, PHASES)
+            weights = self._weights(sub * self.servo.sample_time / SUBSTEPS, order)
+            # a place takes the weights, newest last, over the samples of its phase: one row of a Toeplitz matrix for each sample
+            padded = np.concatenate([np.zeros(rows - 1), weights[::-1], np.zeros(rows - 1)])
+            band = np.lib.stride_tricks.sliding_window_view(padded, samples - 1 + rows)[::-1]
+            found[sub] = (band @ by_phase).ravel()[:count]
         return found
 
     def zone_errors(self, profile: CamProfile) -> tuple[FloatArray, FloatArray, FloatArray]:
