@@ -13,6 +13,7 @@ import typer
 from camwright.bending.commands import bend
 from camwright.commands.book import book
 from camwright.commands.envelope import envelope
+from camwright.commands.identify import identify
 from camwright.commands.quick import quick
 from camwright.commands.recipe import register as register_recipes
 from camwright.commands.tables import register
@@ -234,6 +235,7 @@ def _check(job: _GivenJob, as_json: _Json = False, quiet: _Quiet = False) -> int
 
 app.command("quick")(quick)
 app.command("envelope")(envelope)
+app.command("identify")(identify)
 app.command("book")(book)
 register(app)
 register_recipes(app)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Literal
 
@@ -19,6 +19,7 @@ from profiles.errors import InfeasibleError, InputError, SolverError, Suggestion
 from profiles.limits import Limits
 from profiles.machines import CrankSlider, Machine
 from profiles.polynomial import CamProfile
+from profiles.returns import assemble
 from profiles.servo import Servo
 
 AxisObjective = Objective | Literal["sync_error"]
@@ -26,6 +27,10 @@ AxisObjective = Objective | Literal["sync_error"]
 
 # Suggested values are searched to this share, and stand aside by it from the edge.
 ASIDE = 2e-3
+# What works by a programme alone is designed; where that fails it is taken further by these factors.
+FURTHER = (1.0, 1.02, 1.1)
+# Shares of the least tolerance that a programme keeps, tried in turn.
+WIDER = (1.0 + ASIDE, 1.01, 1.1, 1.5)
 # Cuts up to so many times the asked length, and line speeds down to such a share, are looked at for a way out.
 LONGEST, SLOWEST = 8.0, 0.02
 
@@ -38,6 +43,8 @@ def solve_axis(
     command: Command,
     servos: tuple[Servo, ...],
     between: tuple[Servo, ...] = (),
+    *,
+    suggest: bool = True,
 ) -> Solution:
     """Design the cycle of a cutting machine whose axis keeps to the material in the shear zone.
 
@@ -56,6 +63,8 @@ def solve_axis(
         Servos with which the tolerance must be kept, the nominal one first.
     between
         Servos between the corners of the ranges, which must keep the tolerance too, or be hardly worse than the corners.
+    suggest
+        Whether an `InfeasibleError` says what would work; finding that takes longer than the design.
 
     Raises
     ------
@@ -69,23 +78,36 @@ def solve_axis(
     cost = _cost(machine, objective)
     blind = None
     if command == "in_sync" or (isinstance(machine, CrankSlider) and math.isnan(machine.sync_at)):
-        blind = solve(machine, cut, limits, "peak_acceleration" if cost == "sync_error" else cost)
-        machine = blind.machine
+        blind = solve(machine, cut, limits, "peak_acceleration" if cost == "sync_error" else cost, suggest=suggest)
+    placed = machine if blind is None else blind.machine
     structure = None if blind is None or command == "shaped" else blind.back
-    problem = AxisProblem(machine, cut, limits, command, servos, True, structure, between)
-    found = [_either(replace(problem, limits=each), cost) for each in motor_limits(machine, limits)]
+    problem = AxisProblem(placed, cut, limits, command, servos, True, structure, between)
+    found = [_either(replace(problem, limits=each), cost) for each in motor_limits(placed, limits)]
     motions = [motion for motion in found if motion is not None]
-    if not motions:
-        raise _infeasible(replace(problem, limits=motor_speed_limits(machine, limits), axis_limits=False))
-    motion = min(motions, key=lambda each: each.value)
     order = {"sync_error": 0, "peak_acceleration": 2, "rms_acceleration": 2, "peak_jerk": 3, "rms_jerk": 3}[cost]
+    if not motions and blind is not None and command == "in_sync":
+        motions = _without_choice(
+            problem, blind, None if cost == "sync_error" else blind.objective / cut.line_speed**order
+        )
+    if not motions:
+        loosest = replace(problem, limits=motor_speed_limits(placed, limits), axis_limits=False)
+
+        def settles(other: Cut) -> bool:
+            try:
+                solve_axis(machine, other, limits, objective, command, servos, between, suggest=False)
+            except (InfeasibleError, InputError, SolverError):
+                return False
+            return True
+
+        raise _infeasible(loosest, settles if suggest else None)
+    motion = min(motions, key=lambda each: each.value)
     value = motion.value * cut.line_speed**order
     profile = motion.profile
     back = profile.restrict(0.0, cut.return_zone)
     if cut.origin == "cut":
-        profile = _from_mid_sync(profile, machine, cut)
+        profile = _from_mid_sync(profile, placed, cut)
     name: Objective = "peak_acceleration" if objective == "sync_error" else objective
-    return Solution(machine, profile, back, SolveStatus.ON_GRID, name, value, motion.programmes, axis=motion)
+    return Solution(placed, profile, back, SolveStatus.ON_GRID, name, value, motion.programmes, axis=motion)
 
 
 def _cost(machine: Machine, objective: AxisObjective) -> Cost:
@@ -112,6 +134,19 @@ def _either(problem: AxisProblem, cost: Cost) -> AxisMotion | None:
     return design_axis(replace(problem, axis_limits=False), cost)
 
 
+def _without_choice(problem: AxisProblem, blind: Solution, value: float | None) -> list[AxisMotion]:
+    """Take the servo-blind command where the limits leave no other, if its axis will do; ``value`` as in `AxisMotion`."""
+    programme = AxisProgramme(replace(problem, axis_limits=False))
+    if programme.least_share() is not None:
+        return []
+    profile = assemble(blind.back, problem.machine, replace(problem.cut, origin="return"))
+    errors = programme.errors(profile)
+    if value is not None and max(errors) > problem.cut.sync_tolerance:
+        return []
+    kept = programme.keeps_axis_limits(profile)
+    return [AxisMotion(profile, errors, max(errors) if value is None else value, programme.solved, kept)]
+
+
 def _from_mid_sync(profile: CamProfile, machine: Machine, cut: Cut) -> CamProfile:
     """Count master and slave from mid sync zone, the slave from where the machine is in sync there."""
     at = cut.length - 0.5 * cut.sync_zone
@@ -120,36 +155,20 @@ def _from_mid_sync(profile: CamProfile, machine: Machine, cut: Cut) -> CamProfil
     return profile.roll(at).shift(slave=float(profile(at)) - in_sync)
 
 
-def _infeasible(problem: AxisProblem) -> InfeasibleError:
-    """Say by how much the tolerance is missed, and what would keep it, each solved."""
+def _infeasible(problem: AxisProblem, settles: Callable[[Cut], bool] | None) -> InfeasibleError:
+    """Say by how much the tolerance is missed, and, of a way to tell whether a cut can be designed, what would keep it."""
     tolerance, cut = problem.cut.sync_tolerance, problem.cut
     share = AxisProgramme(problem).least_share()
     if share is None:
-        require_feasible(problem.machine, cut, problem.limits)
-        raise SolverError(
-            "a servo-aware design found no command that keeps the limits although the job allows one; report this job"
-        )
+        if problem.structure is None:
+            require_feasible(problem.machine, cut, problem.limits, suggest=settles is not None)
+            raise SolverError(
+                "a servo-aware design found no command that keeps the limits although the job allows one; report this job"
+            )
+        only = assemble(problem.structure, problem.machine, replace(cut, origin="return"))
+        share = max(AxisProgramme(problem).errors(only)) / tolerance
     needed = max(1.0, share) * tolerance
-    suggestions = []
-    wider = _nearest(
-        lambda factor: _works(replace(problem, cut=replace(cut, sync_tolerance=factor * needed))), 1.0, 1.5
-    )
-    if wider is not None:
-        suggestions.append(Suggestion("sync_tolerance", wider * needed * 1e3, "mm"))
-    slower = _nearest(
-        lambda share: _works(replace(problem, cut=replace(cut, line_speed=cut.line_speed / share), structure=None)),
-        1.0,
-        1 / SLOWEST,
-    )
-    if slower is not None:
-        suggestions.append(Suggestion("line_speed", cut.line_speed / slower * 60.0, "m/min"))
-    longer = _nearest(
-        lambda share: _works(replace(problem, cut=replace(cut, length=cut.length * share), structure=None)),
-        1.0,
-        LONGEST,
-    )
-    if longer is not None:
-        suggestions.append(Suggestion("length", cut.length * longer * 1e3, "mm"))
+    suggestions = () if settles is None else tuple(_suggestions(problem, needed, settles))
     ways = "; ".join(f"{each.change} {each.value:.6g} {each.unit}" for each in suggestions)
     excess = (needed - tolerance) * 1e3
     return InfeasibleError(
@@ -160,8 +179,34 @@ def _infeasible(problem: AxisProblem) -> InfeasibleError:
         "sync_tolerance",
         excess,
         "mm",
-        tuple(suggestions),
+        suggestions,
     )
+
+
+def _suggestions(problem: AxisProblem, needed: float, settles: Callable[[Cut], bool]) -> Iterator[Suggestion]:
+    """Search a tolerance, a line speed and a cut length that work, each alone and each designed once."""
+    cut = problem.cut
+    for factor in WIDER:
+        if settles(replace(cut, sync_tolerance=factor * needed)):
+            yield Suggestion("sync_tolerance", factor * needed * 1e3, "mm")
+            break
+    changes: tuple[tuple[str, str, float, float, Callable[[float], Cut]], ...] = (
+        ("line_speed", "m/min", 60.0, 1 / SLOWEST, lambda share: replace(cut, line_speed=cut.line_speed / share)),
+        ("length", "mm", 1e3, LONGEST, lambda share: replace(cut, length=share * cut.length)),
+    )
+    for name, unit, per, most, changed in changes:
+
+        def works(share: float, changed: Callable[[float], Cut] = changed) -> bool:
+            return _works(replace(problem, cut=changed(share), structure=None))
+
+        found = _nearest(works, most)
+        if found is None:
+            continue
+        for factor in FURTHER:
+            other = changed(found * factor)
+            if settles(other):
+                yield Suggestion(name, getattr(other, name) * per, unit)
+                break
 
 
 def _percent(cut: Cut, tolerance: float) -> str:
@@ -177,11 +222,11 @@ def _works(problem: AxisProblem) -> bool:
         return False
 
 
-def _nearest(works: Callable[[float], bool], least: float, most: float) -> float | None:
-    """Least share above ``least`` found to work: grown until it does, then bisected; ``None`` if none up to ``most`` works."""
-    low, high = least, least * (1.0 + ASIDE)
+def _nearest(works: Callable[[float], bool], most: float) -> float | None:
+    """Least share above 1 found to work: grown until it does, then bisected; ``None`` if none up to ``most`` works."""
+    low, high = 1.0, 1.0 + ASIDE
     while not works(high):
-        low, high = high, least + (high - least) * 2.0
+        low, high = high, 2.0 * high - 1.0
         if high > most:
             return None
     while high - low > ASIDE * high:

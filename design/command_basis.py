@@ -171,7 +171,8 @@ def command_basis(
 ) -> CommandBasis:
     """Basis of the commands that a servo-aware design may choose from.
 
-    Slave zero is the machine at the end of its sync zone, master zero the start of the return.
+    Slave zero is the machine at the end of its sync zone, master zero the start of the return. The unknowns are what is added to an even
+    motion, so that they and their derivatives are small where the motion is gentle.
 
     Parameters
     ----------
@@ -188,8 +189,8 @@ def command_basis(
         places = np.arange(count + 3)
         matrix = np.zeros((count + 3, count))
         matrix[places, places % count] = 1.0
-        turned = np.asarray(machine.pitch * (places // count), dtype=np.float64)
-        return CommandBasis(cut.length, machine.pitch, knots, matrix, turned, None)
+        even = np.asarray(machine.pitch * (places - 1) / count, dtype=np.float64)  # the coefficients of a motion of even speed
+        return CommandBasis(cut.length, machine.pitch, knots, matrix, even, None)
     sync = machine.sync_profile(cut)
     nodes = _nodes(cut.return_zone, count, structure)
     placed = sync.shift(nodes[-1] - sync.start, machine.pitch - sync.advance - float(sync(sync.start)))
@@ -210,6 +211,8 @@ def command_basis(
     constant = np.zeros(count + 3)
     constant[:3] = np.linalg.solve(pieces[0, :3, :3], ends[0])  # the fourth spline of the first interval is flat there
     constant[count:] = np.linalg.solve(last[:3, 1:], ends[1])
+    averages = (spread[1:-3] + spread[2:-2] + spread[3:-1]) / 3  # where a straight line takes the values of its coefficients
+    constant[3:count] = np.interp(averages[3:count], averages[[2, count]], constant[[2, count]])
     matrix = np.zeros((count + 3, count - 3))
     matrix[3:count] = np.eye(count - 3)
     return CommandBasis(cut.length, machine.pitch, spread, matrix, constant, placed)

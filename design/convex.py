@@ -15,6 +15,9 @@ from design.ipopt import QUIET
 from profiles.errors import SolverError
 from profiles.polynomial import FloatArray
 
+# Loaded now: a HiGHS that another library of the process brings along would else be taken for CasADi's own, which crashes.
+ca.load_conic("highs")
+
 ACCEPTED = 1e-6
 """What a row of an answer may be broken by where nothing else is said; rows are scaled so that their bounds are about one."""
 

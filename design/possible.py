@@ -8,7 +8,7 @@ import numpy as np
 
 from design.problem import ReturnProblem
 from design.scaling import ScaledProblem, motion_scale, scale_problem
-from profiles.overshoot import least_overshoot
+from profiles.overshoot import least_overshoot, shortest_stop
 from profiles.polynomial import FloatArray
 from profiles.reach import greatest_reach
 from profiles.transfer import Bounds, State, farthest, nearest
@@ -49,8 +49,11 @@ def is_possible(problem: ReturnProblem) -> bool:
 
 
 def _keeps_stroke(problem: ReturnProblem) -> bool:
-    found = least_overshoot(problem.length, problem.start_ratio, -problem.height, _bounds(problem))
-    return found is not None and found.distance <= problem.greatest_position * (1 + ROUNDING)
+    room, bounds = problem.greatest_position * (1 + ROUNDING), _bounds(problem)
+    if shortest_stop(problem.start_ratio, bounds) > room:
+        return False
+    found = least_overshoot(problem.length, problem.start_ratio, -problem.height, bounds, room)
+    return found is not None and found.distance <= room
 
 
 def _bounds(problem: ReturnProblem) -> Bounds:

@@ -228,6 +228,8 @@ def excess(profile: CamProfile, problem: ScaledProblem) -> float:
         abs(float(profile(1.0)) - problem.height),
         _beyond(profile, problem),
         abs(float(profile(1.0, 1)) - problem.end_ratio),
+        abs(float(profile(0.0, 2)) - problem.start_slope) / max(slope, 1.0),
+        abs(float(profile(1.0, 2)) - problem.end_slope) / max(slope, 1.0),
     )
 
 

@@ -26,7 +26,7 @@ VANISHED = 1e-9
 # Intervals that even the shortest arc gets on a grid made from an extreme motion.
 LEAST_INTERVALS = 3
 # A node that lies this close to the chord of its neighbours (as a share of the peak acceleration) is no corner.
-NO_CORNER = 1e-10
+NO_CORNER = 5e-9
 
 
 def read_cubic(grid: Motion, problem: ScaledProblem) -> tuple[Motion, tuple[Arc, ...]]:

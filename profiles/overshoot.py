@@ -46,7 +46,7 @@ class Overshoot:
     share: float
 
 
-def least_overshoot(time: float, velocity: float, way: float, bounds: Bounds) -> Overshoot | None:
+def least_overshoot(time: float, velocity: float, way: float, bounds: Bounds, enough: float = 0.0) -> Overshoot | None:
     """Find the return that overshoots least; None if the limits do not let the carriage be back in time.
 
     Parameters
@@ -59,25 +59,25 @@ def least_overshoot(time: float, velocity: float, way: float, bounds: Bounds) ->
         Way back, a magnitude: the return ends that far behind its start.
     bounds
         Limits; the least velocity is negative.
+    enough
+        Overshoot at which the search ends: any return that overshoots no further will do.
     """
-    hardest = min(bounds.acceleration, math.sqrt(2 * bounds.jerk * velocity))
+    ends = State(velocity, 0.0)
+    quickest = nearest(time, ends, ends, bounds)
+    if quickest is None or quickest.distance > -way:
+        return None
+    hardest = _hardest(velocity, bounds)
 
     def at(share: float) -> Overshoot | None:
         return _with_turn(time, velocity, way, bounds, share * hardest)
 
-    found = at(1.0)
-    if found is not None:
-        return found
-    for step in range(1, TURNS + 1):
-        found = at(1.0 - step / TURNS)
-        if found is not None:
-            good, bad = 1.0 - step / TURNS, 1.0 - (step - 1) / TURNS
-            break
-    else:
-        return None
+    found, good, bad = at(1.0), 1.0, 1.0
+    while found is None and good > 0.5 / TURNS:
+        good, bad = good - 1.0 / TURNS, good
+        found = at(max(good, 0.0))
     for _ in range(_BISECTIONS):
         middle = 0.5 * (good + bad)
-        if middle in (good, bad):
+        if found is None or found.distance <= enough or middle in (good, bad):
             break
         here = at(middle)
         if here is None:
@@ -85,6 +85,16 @@ def least_overshoot(time: float, velocity: float, way: float, bounds: Bounds) ->
         else:
             good, found = middle, here
     return found
+
+
+def shortest_stop(velocity: float, bounds: Bounds) -> float:
+    """Distance within which a carriage turns that brakes as hard as it may: no return overshoots less."""
+    return _braking(velocity, _hardest(velocity, bounds), bounds).distance
+
+
+def _hardest(velocity: float, bounds: Bounds) -> float:
+    """Greatest deceleration at which a carriage can turn."""
+    return min(bounds.acceleration, math.sqrt(2 * bounds.jerk * velocity))
 
 
 def _with_turn(time: float, velocity: float, way: float, bounds: Bounds, turn: float) -> Overshoot | None:

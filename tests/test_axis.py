@@ -33,9 +33,8 @@ SERVOS = pytest.mark.parametrize("servo", [PAPER, LATE], ids=["paper", "late"])
 def some_command(machine: Machine, cut: Cut, command: Command) -> CamProfile:
     """Return a command near the motion of even speed, bent at random."""
     basis = command_basis(machine, cut, command)
-    even = machine.pitch * (np.arange(basis.matrix.shape[1]) / basis.matrix.shape[1])
     travel = machine.pitch or cut.sync_zone
-    return basis.profile(even + 0.01 * travel * np.random.default_rng(4).normal(size=len(even)))
+    return basis.profile(0.01 * travel * np.random.default_rng(4).normal(size=basis.matrix.shape[1]))
 
 
 def from_mid_sync(profile: CamProfile, machine: Machine, cut: Cut) -> CamProfile:

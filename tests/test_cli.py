@@ -65,6 +65,7 @@ def test_design_prints_the_promised_object(designed: tuple[Path, dict[str, Any]]
     assert answer.keys() == {
         "job", "status", "objective", "lower_bound_method", "starts", "pieces", "profiles", "checks", "passed",
         "minimum_cut_length_mm", "tangential_mismatch", "files",
+        "servo_aware", "robust", "lead_time_ms", "length_error_mm", "length_error_with_lead_mm", "length_variation_mm",
     }  # fmt: skip
     assert (answer["job"], answer["status"], answer["passed"]) == ("paper-600", "optimal", True)
     objective = answer["objective"]
@@ -393,7 +394,7 @@ def test_a_failure_of_the_solver_has_its_exit_code(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    def fail(*_arguments: object) -> None:
+    def fail(*_arguments: object, **_options: object) -> None:
         raise failure
 
     monkeypatch.setattr(design.optimise, "solve", fail)

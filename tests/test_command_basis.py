@@ -136,3 +136,21 @@ def test_arcs_of_next_to_no_length_get_no_node() -> None:
     basis = command_basis(machine, CUT, "in_sync", replace(back, breaks=sliver))
     assert np.diff(basis.nodes).min() > 0.1 * back.end / INTERVALS["in_sync"]
     assert math.isclose(float(basis.nodes[-1]), CUT.return_zone, rel_tol=1e-15)
+
+
+@EVERY
+def test_without_more_a_shaped_command_is_a_motion_of_even_speed(name: str) -> None:
+    machine, cut = MACHINES[name]
+    basis = command_basis(machine, cut, "shaped")
+    profile = basis.profile(np.zeros(basis.matrix.shape[1]))
+    at = np.linspace(0.0, cut.length, 50)
+    assert profile(at) == pytest.approx(machine.pitch * at / cut.length, abs=1e-13)
+    assert all(np.abs(basis.differences[order][1]).max() <= 1e-7 for order in (2, 3))
+
+
+@EVERY
+def test_without_more_a_command_in_sync_returns_along_a_line_but_for_its_ends(name: str) -> None:
+    machine, cut = MACHINES[name]
+    basis = command_basis(machine, cut, "in_sync")
+    inside = basis.profile(np.zeros(basis.matrix.shape[1]))(basis.nodes[4:-5] + 1e-6, 2)
+    assert np.abs(inside).max() <= 1e-6

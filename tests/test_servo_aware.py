@@ -5,22 +5,22 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import get_args
 
-import cvxpy as cp
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.optimize import linprog
 
 from design.axis import Axis
 from design.axis_design import solve_axis
-from design.axis_programme import BAND_MARGIN, LIMIT_MARGIN, RATIO, AxisProblem, AxisProgramme, Cost
+from design.axis_programme import BAND_MARGIN, LEAST_ERROR, RATIO, AxisProblem, AxisProgramme, Cost
 from design.command_basis import INTERVALS, Command, command_basis
 from design.servo_aware import design_axis
 from profiles.cycle import Cut
 from profiles.errors import InfeasibleError
 from profiles.limits import Limits
 from profiles.machines import CrankSlider, LinearCarriage, Machine, RotaryKnife
-from profiles.polynomial import CamProfile
+from profiles.polynomial import CamProfile, FloatArray
 from profiles.servo import Servo
 from validation.report import validate
 from validation.response import servo_response
@@ -37,77 +37,98 @@ def problem(command: Command, *, axis_limits: bool = False) -> AxisProblem:
     return AxisProblem(KNIFE, CUT, LIMITS, command, (PAPER,), axis_limits)
 
 
-def least_by_clarabel(command: Command, cost: Cost, places: int) -> float:
-    """Least cost with rows at evenly spread places and times, made once, by another solver: value over the master."""
+def rows_of_its_own(command: Command, places: int, *, banded: bool) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Rows ``matrix @ z <= high`` made once at evenly spread places and times, and those of the sync error over the tolerance."""
     basis, axis = command_basis(KNIFE, CUT, command), Axis(KNIFE, CUT, PAPER)
-    z = cp.Variable(basis.matrix.shape[1])
-    terms = [matrix @ (KNIFE.pitch * z) + constant for matrix, constant in basis.differences]
     v = CUT.line_speed
-    bounds = {1: (0.0, LIMITS.speed / v), 2: (-100.0 / v**2, 100.0 / v**2), 3: (-2e4 / v**3, 2e4 / v**3)}
-    rules = []
-    for order, (low, high) in bounds.items():
-        room = LIMIT_MARGIN * high
-        rules += [terms[order] / high <= (high - room) / high, terms[order] / high >= (low + room) / high]
+    matrices, highs = [], []
+
+    def between(matrix: FloatArray, constant: FloatArray, low: float, high: float) -> None:
+        size = max(abs(low), abs(high))
+        matrices.extend([matrix / size, -matrix / size])
+        highs.extend([(high - constant) / size, (constant - low) / size])
+
+    for order, low, high in ((1, 0.0, LIMITS.speed / v), (2, -100.0 / v**2, 100.0 / v**2), (3, -2e4 / v**3, 2e4 / v**3)):
+        between(*basis.differences[order], low, high)
     start, end = axis.shear_zone
     at, after = (part.ravel() for part in np.meshgrid(np.linspace(start, end, places), np.arange(16) * 0.004 / 16))
-    matrix, constant = axis.rows(basis, at, after)
-    error = (matrix @ (KNIFE.pitch * z) + (constant - axis.ideal(at)[0])) / CUT.sync_tolerance
-    if cost == "sync_error":
-        goal = cp.norm_inf(error)
-    else:
-        rules.append(cp.norm_inf(error) <= 1.0 - BAND_MARGIN)
+    if banded:
+        matrix, constant = axis.rows(basis, at, after)
+        room = CUT.sync_tolerance * (1 - BAND_MARGIN)
+        between(matrix, constant - axis.ideal(at)[0], -room, room)
         matrix, constant = axis.rows(basis, at, after, 1)
-        room = RATIO * CUT.sync_tolerance / CUT.shear_zone
-        rules.append(
-            cp.norm_inf((matrix @ (KNIFE.pitch * z) + (constant - 1.0)) / room) <= 1.0 - BAND_MARGIN
-        )
-        order = 2 if cost.endswith("acceleration") else 3
-        widths = np.diff(basis.nodes) / basis.nodes[-1]
-        if cost.startswith("peak"):
-            goal = cp.norm_inf(terms[order] / bounds[order][1])
-        elif order == 3:
-            goal = cp.norm2(cp.multiply(np.sqrt(widths), terms[3] / bounds[3][1]))
-        else:  # Simpson's rule, exact for the square of a straight line
-            a, b = terms[2][:-1], terms[2][1:]
-            weight = np.sqrt(widths / 6)
-            parts = [cp.multiply(weight, a), cp.multiply(weight, b), cp.multiply(2 * weight, (a + b) / 2)]
-            goal = cp.norm2(cp.hstack(parts) / bounds[2][1])
-        goal = goal * bounds[order][1]
-    programme = cp.Problem(cp.Minimize(goal), rules)
-    programme.solve(solver=cp.CLARABEL)
-    return float(programme.value)
+        room *= RATIO / CUT.shear_zone
+        between(matrix, constant - 1.0, -room, room)
+    return np.vstack(matrices), np.concatenate(highs), at
 
 
 @BOTH
-@pytest.mark.parametrize("cost", [cost for cost in COSTS if cost != "sync_error"])
-def test_the_objective_is_that_of_another_solver(command: Command, cost: Cost) -> None:
+@pytest.mark.parametrize(("cost", "order"), [("peak_acceleration", 2), ("peak_jerk", 3)])
+def test_the_least_peak_is_that_of_scipy(command: Command, cost: Cost, order: int) -> None:
     found = design_axis(problem(command), cost)
     assert found is not None
-    # its rows are a part of those of a design in the end, and more finely spread between
-    assert found.value == pytest.approx(least_by_clarabel(command, cost, 17), rel=2e-3)
+    matrix, high, _ = rows_of_its_own(command, 9, banded=True)
+    peak, constant = command_basis(KNIFE, CUT, command).differences[order]
+    ones = np.ones((len(peak), 1))
+    bounded = np.hstack([matrix, np.zeros((len(matrix), 1))])
+    goal = np.zeros(matrix.shape[1] + 1)
+    goal[-1] = 1.0
+    size = 100.0 / CUT.line_speed**order  # what the peak is counted in
+    answer = linprog(
+        goal,
+        A_ub=np.vstack([bounded, np.hstack([peak / size, -ones]), np.hstack([-peak / size, -ones])]),
+        b_ub=np.concatenate([high, -constant / size, constant / size]),
+        bounds=[(None, None)] * len(goal),
+        method="highs-ipm",
+    )
+    # its rows stand at other places than those of a design
+    assert found.value == pytest.approx(answer.fun * size, rel=5e-3)
 
 
-def test_the_least_sync_error_is_that_of_another_solver() -> None:
-    tight = replace(CUT, length=0.24, sync_zone=0.1, shear_zone_at=0.06)
-    case = AxisProblem(KNIFE, tight, LIMITS, "in_sync", (PAPER,), False)
-    programme = AxisProgramme(case)
-    found = programme.solve("sync_error", None)
+@BOTH
+@pytest.mark.parametrize(("cost", "order"), [("rms_acceleration", 2), ("rms_jerk", 3)])
+def test_the_least_mean_square_lies_on_its_own_tangent(command: Command, cost: Cost, order: int) -> None:
+    # of a convex function f at the answer p: f >= f(p) + f'(p) (z - p), whose least value is a linear programme
+    found = AxisProgramme(problem(command)).solve(cost, 1.0)
     assert found is not None
-    rows = [rows for rows in programme._bands]
-    z, t = cp.Variable(len(found[0])), cp.Variable()
-    rules = []
-    for row in rows:
-        error = (row.matrix @ (KNIFE.pitch * z) + row.constant) / tight.sync_tolerance
-        rules += [error <= t, error >= -t]
-    v = tight.line_speed
-    for order, high in ((1, LIMITS.speed / v), (2, 100.0 / v**2), (3, 2e4 / v**3)):
-        matrix, constant = programme.basis.differences[order]
-        value = (matrix @ (KNIFE.pitch * z) + constant) / high
-        rules += [value <= 1 - LIMIT_MARGIN, value >= (0.0 if order == 1 else -1.0) + LIMIT_MARGIN]
-    reference = cp.Problem(cp.Minimize(t), rules)
-    reference.solve(solver=cp.CLARABEL)
-    assert found[1] > 1.0
-    assert found[1] == pytest.approx(float(t.value), rel=1e-5)
+    at = found[0] * KNIFE.pitch
+    basis = command_basis(KNIFE, CUT, command)
+    matrix, constant = basis.differences[order]
+    values, widths = matrix @ at + constant, np.diff(basis.nodes) / basis.nodes[-1]
+    if order == 3:
+        square, slope = widths @ values**2, 2 * widths * values
+    else:  # Simpson's rule, exact for the square of a straight line
+        a, b = values[:-1], values[1:]
+        square = widths @ (a**2 + (a + b) ** 2 + b**2) / 6
+        slope = np.zeros(len(values))
+        slope[:-1] += widths * (2 * a + b) / 3
+        slope[1:] += widths * (a + 2 * b) / 3
+    assert found[1] == pytest.approx(np.sqrt(square), rel=1e-9)
+    rows, high, _ = rows_of_its_own(command, 9, banded=True)
+    gradient = (slope @ matrix) / square
+    least = linprog(gradient, A_ub=rows, b_ub=high, bounds=[(None, None)] * len(gradient), method="highs-ipm")
+    assert gradient @ at - least.fun <= 0.02  # of the square: a hundredth of the root
+
+
+@BOTH
+def test_the_least_sync_error_is_that_of_scipy(command: Command) -> None:
+    found = AxisProgramme(problem(command)).solve("sync_error", None)
+    assert found is not None
+    matrix, high, at = rows_of_its_own(command, 9, banded=False)
+    basis, axis = command_basis(KNIFE, CUT, command), Axis(KNIFE, CUT, PAPER)
+    error, constant = axis.rows(basis, at, np.repeat(np.arange(16) * 0.004 / 16, 9))
+    error, constant = error / CUT.sync_tolerance, (constant - axis.ideal(at)[0]) / CUT.sync_tolerance
+    ones = np.ones((len(error), 1))
+    answer = linprog(
+        np.append(np.zeros(matrix.shape[1]), 1.0),
+        A_ub=np.vstack(
+            [np.hstack([matrix, np.zeros((len(matrix), 1))]), np.hstack([error, -ones]), np.hstack([-error, -ones])]
+        ),
+        b_ub=np.concatenate([high, -constant, constant]),
+        bounds=[(None, None)] * (matrix.shape[1] + 1),
+        method="highs-ipm",
+    )
+    assert found[1] == pytest.approx(answer.fun, rel=0.01, abs=2 * LEAST_ERROR)
 
 
 def keeps_limits(profile: CamProfile, limits: Limits, v: float, *, back: bool) -> bool:
@@ -120,15 +141,17 @@ def keeps_limits(profile: CamProfile, limits: Limits, v: float, *, back: bool) -
     return True
 
 
-CASES: dict[str, tuple[Machine, Cut, Limits]] = {
-    "tangential": (KNIFE, CUT, LIMITS),
-    "two blades, from the cut": (RotaryKnife(0.8, blades=2), replace(CUT, origin="cut", sync_ratio=1.02), LIMITS),
-    "horizontal": (RotaryKnife(0.8, blades=2, sync="horizontal"), replace(CUT, length=0.5), LIMITS),
-    "carriage": (LinearCarriage(0.7), replace(CUT, length=1.2, line_speed=0.7), Limits(3.0, 30.0, 2000.0)),
+STIFF = Servo(600.0, 0.8, 150.0, 0.001, 1.0)
+CASES: dict[str, tuple[Machine, Cut, Limits, Servo]] = {
+    "tangential": (KNIFE, CUT, LIMITS, PAPER),
+    "two blades, from the cut": (RotaryKnife(0.8, blades=2), replace(CUT, origin="cut", sync_ratio=1.02), LIMITS, PAPER),
+    "horizontal": (RotaryKnife(0.8, blades=2, sync="horizontal"), replace(CUT, length=0.5, line_speed=0.4), LIMITS, STIFF),
+    "carriage": (LinearCarriage(0.7), replace(CUT, length=1.2, line_speed=0.7), Limits(3.0, 30.0, 2000.0), PAPER),
     "crank": (
         CrankSlider(0.15, 0.6, 0.02, sync_at=1.4),
         replace(CUT, length=0.9, line_speed=0.5, sync_zone=0.15),
         Limits(31.0, 400.0, 20_000.0),
+        STIFF,
     ),
 }
 
@@ -137,17 +160,17 @@ CASES: dict[str, tuple[Machine, Cut, Limits]] = {
 @BOTH
 @pytest.mark.parametrize("objective", ["sync_error", "peak_acceleration", "rms_jerk"])
 def test_every_machine_keeps_limits_closure_and_tolerance(name: str, command: Command, objective: Cost) -> None:
-    machine, cut, limits = CASES[name]
+    machine, cut, limits, servo = CASES[name]
     cut = replace(cut, shaped=command == "shaped")
-    solution = solve_axis(machine, cut, limits, objective, command, (PAPER,))
+    solution = solve_axis(machine, cut, limits, objective, command, (servo,))
     profile, axis = solution.profile, solution.axis
     assert axis is not None
     assert profile.advance == pytest.approx(machine.pitch, abs=1e-12)
     assert keeps_limits(profile, limits, cut.line_speed, back=machine.turns_back)
-    simulated = servo_response(profile, machine, cut, PAPER).shear_zone_error
+    simulated = servo_response(profile, machine, cut, servo).shear_zone_error
     assert axis.errors[0] == pytest.approx(simulated, abs=1e-9)
     assert simulated <= cut.sync_tolerance
-    report = validate(profile, machine, cut, limits, PAPER, sweep=False, servo_aware=True)
+    report = validate(profile, machine, cut, limits, servo, sweep=False, servo_aware=True)
     failed = {check.name for check in report.checks if not check.passed}
     assert failed <= (set() if axis.axis_limits else {"axis_speed", "axis_acceleration", "axis_reversal"})
 
@@ -164,7 +187,7 @@ def test_with_dead_time_and_lead_the_prediction_is_the_simulation(command: Comma
         assert simulated < 1e-6
 
 
-@settings(max_examples=15)
+@settings(max_examples=8)
 @given(
     st.floats(0.25, 1.2),
     st.floats(0.4, 2.0),
@@ -182,7 +205,7 @@ def test_random_knife_jobs_end_in_a_design_that_holds_or_in_a_way_out(
     cut = Cut(length, v, zone, min(shear, zone), zone - min(shear, zone), tolerance, shaped=command == "shaped")
     servo = replace(PAPER, sample_time=sample)
     try:
-        solution = solve_axis(KNIFE, cut, LIMITS, cost, command, (servo,))
+        solution = solve_axis(KNIFE, cut, LIMITS, cost, command, (servo,), suggest=False)
     except InfeasibleError as refused:
         assert refused.excess > 0
         return
@@ -217,19 +240,19 @@ def test_the_peak_is_softened_and_smoothed_in_turn() -> None:
 
 def test_a_motion_of_even_speed_is_found_where_it_will_do() -> None:
     even = replace(CUT, length=0.4, shaped=True)  # the cut length is the pitch
-    for objective in ("peak_acceleration", "peak_jerk", "rms_jerk"):
+    for objective, rounding in (("peak_acceleration", 1e-6), ("peak_jerk", 1e-6), ("rms_jerk", 1e-4 * LIMITS.jerk)):
         solution = solve_axis(KNIFE, even, LIMITS, objective, "shaped", (PAPER,))
-        assert solution.objective == pytest.approx(0.0, abs=1e-6)
-        assert float(solution.profile(0.2, 1)) == pytest.approx(1.0, abs=1e-5)
+        assert solution.objective == pytest.approx(0.0, abs=rounding)
+        assert float(solution.profile(0.2, 1)) == pytest.approx(1.0, abs=1e-4)
 
 
 def test_the_limits_of_the_axis_are_given_up_only_for_the_tolerance() -> None:
-    tight = replace(CUT, length=0.25, sync_zone=0.1, shear_zone_at=0.06, shaped=True)
+    tight = replace(CUT, length=0.206, sync_zone=0.1, shear_zone_at=0.06, sync_tolerance=1e-5, shaped=True)
     given_up = solve_axis(KNIFE, tight, LIMITS, "sync_error", "shaped", (PAPER,)).axis
     loose = solve_axis(KNIFE, replace(tight, length=0.35), LIMITS, "sync_error", "shaped", (PAPER,)).axis
     assert given_up is not None and loose is not None
     assert (given_up.axis_limits, loose.axis_limits) == (False, True)
-    assert given_up.error < 1e-6
+    assert given_up.error < 1e-5
     held = AxisProgramme(AxisProblem(KNIFE, tight, LIMITS, "shaped", (PAPER,), True))
     assert not held.reaches()
     assert INTERVALS["shaped"] == len(held.basis.nodes) - 1

@@ -18,6 +18,12 @@ from profiles.polynomial import CamProfile, FloatArray
 TOLERANCE = 1e-13
 """Error of a composed quantity, relative to its largest magnitude."""
 
+ROUNDING = 1e-12
+"""Error that is taken for rounding where halving a piece no longer makes it smaller; a smooth quantity's falls a thousandfold."""
+
+_FALLS = 8.0
+"""Factor by which it must fall to go on."""
+
 DEGREE = 9
 """Degree of the pieces. Chebyshev points lie inside a piece, so at a jump each piece answers for itself alone."""
 
@@ -32,7 +38,7 @@ _BETWEEN = 0.5 - 0.5 * np.cos(np.pi * np.arange(DEGREE + 2) / (DEGREE + 1))
 
 
 def compose(formula: Callable[[FloatArray, FloatArray, FloatArray], FloatArray], profile: CamProfile) -> CamProfile:
-    """Polynomials of a formula of ``y``, ``y'``, ``y''``, to 1e-13 of its largest magnitude.
+    """Polynomials of a formula of ``y``, ``y'``, ``y''``, to 1e-13 of its largest magnitude, or to its own rounding.
 
     Parameters
     ----------
@@ -56,7 +62,7 @@ def compose(formula: Callable[[FloatArray, FloatArray, FloatArray], FloatArray],
     origin = lower.copy()  # where the polynomial of each part is counted from
     sliver = _SLIVER * profile.length
     done: list[tuple[FloatArray, FloatArray]] = []
-    size = 0.0
+    size, before = 0.0, np.full(profile.pieces, np.inf)
     points, to_series, to_powers = interpolation(DEGREE)
     for halving in range(_MOST_HALVINGS + 1):
         values = formula(*_states(profile, piece, lower - origin, width, points))
@@ -70,7 +76,8 @@ def compose(formula: Callable[[FloatArray, FloatArray, FloatArray], FloatArray],
                 "a quantity along the cycle has no finite value: the machine cannot take all positions of this profile; "
                 "check the machine's lengths"
             )
-        good = (error <= TOLERANCE * size) | (width < sliver)
+        rounded = (error <= ROUNDING * size) & (error > before / _FALLS)
+        good = (error <= TOLERANCE * size) | rounded | (width < sliver)
         rows[width < sliver, 1:] = 0.0
         done.append((lower[good], rows[good] / np.maximum(width[good, None], sliver) ** np.arange(DEGREE + 1)))
         if good.all():
@@ -83,7 +90,7 @@ def compose(formula: Callable[[FloatArray, FloatArray, FloatArray], FloatArray],
         half = 0.5 * width[~good]
         origin, piece = np.repeat(origin[~good], 2), np.repeat(piece[~good], 2)
         lower = np.stack([lower[~good], lower[~good] + half], axis=1).ravel()
-        width = np.repeat(half, 2)
+        width, before = np.repeat(half, 2), np.repeat(error[~good], 2)
     starts = np.concatenate([start for start, _ in done])
     order = np.argsort(starts)
     return CamProfile(np.append(starts[order], profile.end), np.concatenate([rows for _, rows in done])[order])

@@ -8,12 +8,13 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from profiles.errors import InputError
 from profiles.polynomial import FloatArray
 from profiles.servo import Servo, spectral_radius
 from validation.sampled_axis import ComplexArray, axis_response, decays, mean_response
-from validation.trace import Trace, require_usable
+from validation.trace import Trace, noise_of, require_usable
 
 Origin = Literal["trace", "assumed", "given"]
 """Where the velocity feed-forward comes from."""
@@ -54,15 +55,22 @@ _SEEN = 40.0
 """Gain of the fit from which on the sampling clock counts as seen: squared residual over squared noise. The best of the thousands of
 teeth that are tried gains about 20 where there is nothing to see."""
 
-_CLOCKS = 6
+_CLOCKS = 4
 """Sampling phases tried, and parts of a sample by which the clock may be off at the end of the trace between two sample times tried."""
 
-_MOST_TRIALS = 3000
+_MOST_TRIALS = 2000
+_SEARCH_ROWS = 600
 _BEST_TEETH = 4
-_REACH = 0.1
-"""Part of the sample time by which the fit without clock may be off: where the clock is seen, that fit takes it for the axis' own."""
+_REACHES = (0.01, 0.1)
+"""Parts of the sample time by which the fit without clock may be off: little, and where the clock is seen plainly, which that fit takes
+for the axis' own, much."""
+
+_WHITE = 1.3
+"""Squared residual over the squared noise of the rows up to which nothing else is looked for."""
 
 _WORST_FIT = 0.5
+_LIVELIER = "record a livelier motion, e.g. a sweep up to the bandwidth of the axis, or a longer one"
+_UNSTABLE = 1e3
 
 
 @dataclass(frozen=True)
@@ -132,7 +140,13 @@ def identify(trace: Trace, place: str, velocity_feedforward: float | None = None
     values, spread = solution.values, solution.spreads
     confidence = {name: (values[name] - spread[name], values[name] + spread[name]) for name in solution.names}
     return Identified(
-        servo=Servo(**{**values, "dead_time": max(0.0, values["dead_time"])}),
+        servo=Servo(
+            **{
+                **values,
+                "dead_time": max(0.0, values["dead_time"]),
+                "velocity_feedforward": min(max(0.0, values["velocity_feedforward"]), 1.0),
+            }
+        ),
         confidence=confidence,
         feedforward_from=origin,
         fit=fit,
@@ -172,8 +186,12 @@ class _Problem:
         What the command is beyond that line, bent back smoothly to where it began, by frequency.
     rates
         These frequencies (rad/s).
-    first
-        Row of the trace that is judged first.
+    rows
+        Numbers of the rows that are judged.
+    step
+        Time between two rows of the trace (s).
+    noise
+        Noise of the actual position (rms).
     """
 
     times: FloatArray
@@ -182,7 +200,9 @@ class _Problem:
     line: tuple[float, float]
     spectrum: ComplexArray
     rates: FloatArray
-    first: int
+    rows: NDArray[np.intp]
+    step: float
+    noise: float
 
     @classmethod
     def of(cls, trace: Trace) -> _Problem:
@@ -207,7 +227,18 @@ class _Problem:
             return np.asarray(curve(np.clip(at, times[0], times[-1])))
 
         spectrum = np.asarray(rfft(np.concatenate([beyond, back])))
-        return cls(times[first:], trace.actual[first:], command, (begin, velocity), spectrum, rates, first)
+        judged = np.arange(first, rows)
+        return cls(
+            times[judged],
+            trace.actual[judged],
+            command,
+            (begin, velocity),
+            spectrum,
+            rates,
+            judged,
+            trace.step,
+            noise_of(trace.actual),
+        )
 
     @property
     def lag(self) -> float:
@@ -220,11 +251,11 @@ class _Problem:
     def residual(self, values: dict[str, float], clock: float | None) -> FloatArray:
         """Take the model and its best beginning off the actual position; without clock the model is the mean over all phases.
 
-        A servo that is unstable leaves infinity.
+        A servo that is unstable leaves far more than any other, so that the search turns back.
         """
         servo = Servo(**values)
         if not spectral_radius(servo) < 1.0:
-            return np.full(len(self.times), np.inf)
+            return np.full(len(self.times), _UNSTABLE * float(np.ptp(self.actual)))
         if clock is None:
             position, free = self.mean(servo), decays(servo, self.times)
         else:
@@ -238,14 +269,9 @@ class _Problem:
         from scipy.fft import irfft
 
         begin, velocity = self.line
-        whole = 2 * (len(self.rates) - 1)
-        rows = len(self.times)
-        found = np.asarray(irfft(self.spectrum * mean_response(servo, self.rates), whole))[
-            self.first : self.first + rows
-        ]
+        found = irfft(self.spectrum * mean_response(servo, self.rates), 2 * (len(self.rates) - 1))
         late = servo.delay + (1.0 - servo.velocity_feedforward) / servo.position_gain
-        step = (self.times[-1] - self.times[0]) / (rows - 1)
-        return np.asarray(found + begin + velocity * (step * (self.first + np.arange(rows)) - late))
+        return np.asarray(found[self.rows] + begin + velocity * (self.step * self.rows - late))
 
     def choose(self) -> tuple[_Solution, Origin]:
         """Fit the velocity feed-forward too, or take it as 0 or 1 where this is about as good."""
@@ -288,7 +314,7 @@ class _Problem:
         rows = len(self.times)
         every = self.command(self.times)
         missed = every - CubicSpline(self.times[::2], every[::2])(self.times)
-        rates = 2.0 * math.pi / (self.times[-1] - self.times[0]) * np.arange(rows // 2 + 1)
+        rates = 2.0 * math.pi / (rows * self.step) * np.arange(rows // 2 + 1, dtype=np.float64)
         effect = np.asarray(irfft(rfft(missed) * mean_response(Servo(**found.values), rates), rows))
         return float(np.sum((effect / 4.0) ** 2))
 
@@ -315,18 +341,47 @@ class _Problem:
         found.sort(key=lambda each: each.cost)
         return min((self.minimum(each.values, names, None, _ROUNDS) for each in found[:2]), key=lambda each: each.cost)
 
+    def thinned(self) -> _Problem:
+        """Give the problem with no more rows than a search needs."""
+        every = slice(None, None, max(1, len(self.times) // _SEARCH_ROWS))
+        return replace(self, times=self.times[every], actual=self.actual[every], rows=self.rows[every])
+
     def with_clock(self, found: _Solution) -> _Solution:
-        """Fit the clock too where the trace shows it, the sample time scanned so finely that no tooth of its comb is missed."""
-        step, lasts = found.values["sample_time"], float(self.times[-1] - self.times[0])
+        """Fit the clock too where the trace shows it."""
         mean = self.residual(found.values, None)
         noise = found.cost / len(self.times)
         if float(np.sum((self.residual(found.values, 0.0) - mean) ** 2)) < _SEEN * noise:
             return found
+        for reach in _REACHES:
+            best, lead = self.comb(found, reach)
+            if best.cost <= _WHITE * len(self.times) * self.noise**2:
+                break
+        noise = best.cost / len(self.times)
+        seen = found.cost - best.cost > _SEEN * noise and lead > _CONFIDENCE**2 * (noise + self.doubt(best))
+        return best if seen else found
+
+    def comb(self, found: _Solution, reach: float) -> tuple[_Solution, float]:
+        """Fit the clock, the sample time scanned so finely that no tooth of its comb is missed.
+
+        Parameters
+        ----------
+        found
+            The fit without clock.
+        reach
+            Part of the sample time by which it may be off.
+
+        Returns
+        -------
+        (best, lead)
+            The best fit, and by how much the best at another tooth is worse.
+        """
+        step, lasts = found.values["sample_time"], float(self.times[-1] - self.times[0])
         tooth = step * step / (_CLOCKS * lasts)
-        teeth = min(math.ceil(_REACH * step / tooth), _MOST_TRIALS // (2 * _CLOCKS))
+        teeth = min(math.ceil(reach * step / tooth), _MOST_TRIALS // (2 * _CLOCKS))
         names = tuple(name for name in found.names if name != "sample_time")
-        others = self.slopes(found.values, names, None)
-        along = np.linalg.lstsq(others, -self.slopes(found.values, ("sample_time",), None)[:, 0])[0]
+        thin = self.thinned()
+        others = thin.slopes(found.values, names, None)
+        along = np.linalg.lstsq(others, -thin.slopes(found.values, ("sample_time",), None)[:, 0])[0]
         trials = []
         for number in range(-teeth, teeth + 1):
             values = {**found.values, "sample_time": step + number * tooth}
@@ -335,7 +390,7 @@ class _Problem:
                 name: _moved(name, values[name], by * float(way)) for name, way in zip(names, along, strict=True)
             }
             for part in range(_CLOCKS):
-                left = _without(self.residual(values, part / _CLOCKS), others.T)
+                left = _without(thin.residual(values, part / _CLOCKS), others.T)
                 trials.append((float(left @ left), number, part / _CLOCKS, values))
         trials.sort(key=lambda trial: trial[0])
         chosen: list[tuple[float, int, float, dict[str, float]]] = []
@@ -344,14 +399,9 @@ class _Problem:
                 chosen.append(trial)
             if len(chosen) == _BEST_TEETH:
                 break
-        best, *next_best = sorted(
-            (self.minimum(values, found.names, clock, _ROUNDS) for _, _, clock, values in chosen),
-            key=lambda each: each.cost,
-        )
-        noise = best.cost / len(self.times)
-        lead = min((other.cost for other in next_best), default=math.inf) - best.cost
-        seen = found.cost - best.cost > _SEEN * noise and lead > _CONFIDENCE**2 * (noise + self.doubt(best))
-        return best if seen else found
+        fits = [self.minimum(values, found.names, clock, _ROUNDS) for _, _, clock, values in chosen]
+        best, *others_best = sorted(fits, key=lambda each: each.cost)
+        return best, min((other.cost for other in others_best), default=math.inf) - best.cost
 
     def slopes(self, values: dict[str, float], names: tuple[str, ...], clock: float | None) -> FloatArray:
         """Take derivatives of the residual by parameters (log of those above zero) and, last, the clock; central differences."""
@@ -453,8 +503,8 @@ def _faults(solution: _Solution, fit: float) -> Iterator[str]:
     """Say what the trace does not tell, or tells of no servo of this kind."""
     if not fit > _WORST_FIT:
         yield (
-            f"no servo of this kind does what the trace shows: the best leaves {100 * (1 - fit):.3g} % of the motion over; check the units, "
-            "the columns, and that it is one axis in position control"
+            f"no servo of this kind does what the trace shows: the best leaves {100 * (1 - fit):.3g} % of the motion over; check the "
+            "units and the columns, and that it is one axis in position control"
         )
         return
     values = solution.values
@@ -462,21 +512,19 @@ def _faults(solution: _Solution, fit: float) -> Iterator[str]:
         factor, unit = _UNITS[name]
         words, value, spread = name.replace("_", " "), values[name], solution.spreads[name]
         low, high = RANGES[name]
-        shown = f"{words} {value * factor:.4g}{unit}"
-        if name == "dead_time" and value < -spread and value < -1e-5:
+        about = f"{value * factor:.4g}{unit}, give or take {spread * factor:.2g}{unit} (95 %)"
+        known = max(value, values["sample_time"]) if name == "dead_time" else abs(value)
+        if name == "dead_time" and value + spread < 0.0:
             yield (
-                f"the actual position runs ahead of the command ({shown}); switch the controller's lead off for the recording, and give "
-                "command and actual in their own columns"
+                f"the actual position runs ahead of the command: {words} {about}; switch the controller's lead off for the recording, and "
+                "give command and actual in their own columns"
             )
-        elif not low * (1 + 1e-6) < value < high * (1 - 1e-6) and name != "dead_time":
-            yield f"{shown} is the end of the range that is searched, {low * factor:g} to {high * factor:g}{unit}; record a livelier motion"
-        elif 2 * spread > (max(value, values["sample_time"]) if name == "dead_time" else abs(value)):
+        elif name == "velocity_feedforward" and value - spread > 1.0:
+            yield f"{words} {about}: above 1, the axis would run ahead; give the share that is set in the drive, --velocity-feedforward"
+        elif not low + 1e-6 * abs(low) < value < high - 1e-6 * abs(high):
+            yield f"{words} {value * factor:.4g}{unit}: the end of the range that is searched; {_LIVELIER}"
+        elif 2 * spread > known and name != "velocity_feedforward":
             yield (
-                f"the trace does not tell the {words}: {value * factor:.4g}{unit}, give or take {spread * factor:.2g}{unit} (95 %); record "
-                "a livelier motion, e.g. a sweep up to the axis' bandwidth, or longer"
-                + (
-                    ""
-                    if name == "velocity_feedforward" or "velocity_feedforward" not in solution.names
-                    else "; or give the velocity feed-forward"
-                )
+                f"the trace does not tell the {words}: {about}; {_LIVELIER}"
+                + (", or give --velocity-feedforward" if "velocity_feedforward" in solution.names else "")
             )

@@ -18,8 +18,8 @@ SHORTEST = 0.3
 _FLAT_ROWS = 4
 """Rows of one and the same value from which a signal that moved before counts as held."""
 
-_BEYOND = 0.05
-"""Part of its range by which the other signal then moves on."""
+_MOVED = 0.05
+"""Part of its range by which the other signal then moves."""
 
 _STRAIGHT = 5.0
 """Deviation of the command from a straight line that counts as excitation, as a multiple of the noise of the actual position."""
@@ -56,7 +56,7 @@ class Trace:
     @property
     def times(self) -> FloatArray:
         """Times of the rows (s)."""
-        return self.start + self.step * np.arange(len(self.command))
+        return self.start + self.step * np.arange(len(self.command), dtype=np.float64)
 
 
 def require_usable(trace: Trace, place: str) -> None:
@@ -80,7 +80,8 @@ def require_usable(trace: Trace, place: str) -> None:
 
 def noise_of(signal: FloatArray) -> float:
     """Size of a signal's noise (rms, in its unit), from the third differences, to which its motion adds little."""
-    return float(np.sqrt(np.mean(np.diff(signal, 3) ** 2) / 20.0))
+    third = signal[3:] - 3.0 * signal[2:-1] + 3.0 * signal[1:-2] - signal[:-3]
+    return float(np.sqrt(np.mean(third**2) / 20.0))
 
 
 def _faults(trace: Trace) -> Iterator[str]:
@@ -97,50 +98,62 @@ def _faults(trace: Trace) -> Iterator[str]:
     if np.ptp(trace.actual) == 0.0:
         yield "the actual position stands still while the command moves; record an axis that follows"
         return
-    clipped = [
-        fault
-        for name, signal, other, others in (
-            ("actual position", trace.actual, trace.command, "command"),
-            ("command", trace.command, trace.actual, "actual position"),
-        )
-        if (fault := _clipped(name, signal, other, others, trace)) is not None
-    ]
+    clipped = [fault for fault in (_clipped_actual(trace), _clipped_command(trace)) if fault]
     yield from clipped
     held = _held(trace)
     if held is not None:
         yield held
-    bend = _bend(trace)
-    if bend <= _STRAIGHT * noise_of(trace.actual) or bend <= 1e-9 * np.ptp(trace.command):
+    bend, noise = _bend(trace), noise_of(trace.actual)
+    if bend <= 1e-9 * np.ptp(trace.command):
+        yield "the command runs straight, so the axis is not excited; record a motion with accelerations, e.g. some cycles of the cam"
+    elif bend <= _STRAIGHT * noise:
         yield (
-            f"the command runs straight to {bend:.2g} {trace.unit} rms, so the axis is not excited; record a motion with accelerations, "
-            "e.g. some cycles of the cam"
+            f"the command leaves its straight line by {bend:.2g} {trace.unit} rms only, in the noise of the actual position of "
+            f"{noise:.2g} {trace.unit} rms, so the axis is hardly excited; record a motion with accelerations, e.g. some cycles of the cam"
         )
     elif not clipped:
         yield from _scale(trace)
 
 
-def _clipped(name: str, signal: FloatArray, other: FloatArray, others: str, trace: Trace) -> str | None:
-    """Say where a signal stays at its extreme while the other moves on beyond it.
+def _clipped_actual(trace: Trace) -> str | None:
+    """Say where the actual position stays at its extreme while the command moves."""
+    reach = _MOVED * float(np.ptp(trace.command))
+    for first, end, _ in _flats(trace.actual):
+        if float(np.ptp(trace.command[first:end])) > reach:
+            return _clipped("actual position", "command", trace, trace.actual, first, end)
+    return None
 
-    A signal that turns round slowly may repeat its extreme too, but then it came slowly.
+
+def _clipped_command(trace: Trace) -> str | None:
+    """Say where the command stays at its extreme while the actual position moves beyond it; it may come up to it."""
+    reach = _MOVED * float(np.ptp(trace.actual))
+    for first, end, side in _flats(trace.command):
+        if float((side * (trace.actual[first:end] - trace.command[first])).max()) > reach:
+            return _clipped("command", "actual position", trace, trace.command, first, end)
+    return None
+
+
+def _clipped(name: str, other: str, trace: Trace, signal: FloatArray, first: int, end: int) -> str:
+    begins, ends = (trace.start + trace.step * row for row in (first, end - 1))
+    return (
+        f"the {name} is clipped: from {begins:.6g} s to {ends:.6g} s it stays at {signal[first]:.6g} {trace.unit}, the end of its range, "
+        f"while the {other} moves on; record it with a greater range"
+    )
+
+
+def _flats(signal: FloatArray) -> Iterator[tuple[int, int, float]]:
+    """Find where a signal stays at an extreme to which it came fast: first row, row after the last, and which extreme.
+
+    A signal that turns round slowly may repeat its extreme too, but then it came slowly; one that starts at rest did not come.
     """
-    beyond = _BEYOND * float(np.ptp(other))
     steps = np.abs(np.diff(signal))
     least = float(steps[steps > 0.0].min())  # a quantised signal moves by no less
     for side, extreme in ((1.0, signal.max()), (-1.0, signal.min())):
-        at = signal == extreme
-        edges = np.flatnonzero(np.diff(np.concatenate([[False], at, [False]])))
+        edges = np.flatnonzero(np.diff(np.concatenate([[False], signal == extreme, [False]])))
         for first, end in edges.reshape(-1, 2).tolist():
             came = steps[max(first - 2, 0) : max(first - 1, 0)]
-            if end - first < _FLAT_ROWS or not (came > 2.0 * least).any():
-                continue
-            if float((side * (other[first:end] - extreme)).max()) > beyond:
-                begins, ends = (trace.start + trace.step * row for row in (first, end - 1))
-                return (
-                    f"the {name} is clipped: from {begins:.6g} s to {ends:.6g} s it stays at {extreme:.6g} {trace.unit}, its "
-                    f"{'greatest' if side > 0 else 'least'}, while the {others} moves on; record it with a greater range"
-                )
-    return None
+            if end - first >= _FLAT_ROWS and (came > 2.0 * least).any():
+                yield first, end, side
 
 
 def _held(trace: Trace) -> str | None:

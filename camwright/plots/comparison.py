@@ -52,34 +52,49 @@ def bars_figure(comparison: Comparison) -> Figure:
     if any(torque is not None for torque in torques):
         columns.insert(2, ("RMS torque\n(N·m)", torques, None, "unbounded"))
     panels = figure.subplots(1, len(columns), sharey=True)
+    limits_drawn = False
     for axes, (heading, values, limit, without) in zip(panels, columns, strict=True):
-        _bars(axes, names, values, limit, without)
+        limits_drawn |= _bars(axes, names, values, limit, without)
         axes.set_title(heading)
     panels[0].set_yticks(range(len(rows)), [title(name).split(" (")[0].split(",")[0] for name in names])
     for label, name in zip(panels[0].get_yticklabels(), names, strict=True):
         label.set_fontweight("bold" if name == "optimised" else "normal")
     panels[0].invert_yaxis()
     figure.suptitle(f"{comparison.job.name}: all profiles, by peak acceleration", fontsize=9.5)
-    figure.legend(
-        handles=[
-            Patch(facecolor=LINES["optimised"]["color"], label="optimised"),
-            Patch(facecolor=_BASELINE, label="baseline"),
-            Patch(facecolor=_BASELINE, edgecolor="black", hatch=_BEYOND_HATCH, linewidth=0.0, label="beyond the limit"),
-            Patch(
-                facecolor="white", edgecolor="#777777", hatch=_UNBOUNDED_HATCH, linewidth=0.5, label="unbounded or none"
-            ),
-            Line2D([], [], label="limit of the drive", **LIMIT),
-        ],
-        loc="outside lower center",
-        ncols=5,
-    )
+    figure.legend(handles=_handles(columns, limits_drawn), loc="outside lower center", ncols=5)
     return figure
 
 
-def _bars(axes: Axes, names: Sequence[str], values: Sequence[float | None], limit: float | None, without: str) -> None:
-    """Draw one measure of all profiles, its numbers written beside the bars."""
+def _handles(
+    columns: Sequence[tuple[str, list[float | None], float | None, str]], limits_drawn: bool
+) -> list[Patch | Line2D]:
+    """Entries of the legend: what is there to be seen."""
+    handles: list[Patch | Line2D] = [
+        Patch(facecolor=LINES["optimised"]["color"], label="optimised"),
+        Patch(facecolor=_BASELINE, label="baseline"),
+    ]
+    if any(_is_beyond(value, limit) for _, values, limit, _ in columns for value in values):
+        handles.append(
+            Patch(facecolor=_BASELINE, edgecolor="black", hatch=_BEYOND_HATCH, linewidth=0.0, label="beyond the limit")
+        )
+    if any(value is None for _, values, _, _ in columns for value in values):
+        handles.append(
+            Patch(
+                facecolor="white", edgecolor="#777777", hatch=_UNBOUNDED_HATCH, linewidth=0.5, label="unbounded or none"
+            )
+        )
+    return [*handles, *([Line2D([], [], label="limit of the drive", **LIMIT)] if limits_drawn else [])]
+
+
+def _is_beyond(value: float | None, limit: float | None) -> bool:
+    return value is not None and limit is not None and value > limit * (1 + _BEYOND)
+
+
+def _bars(axes: Axes, names: Sequence[str], values: Sequence[float | None], limit: float | None, without: str) -> bool:
+    """Draw one measure of all profiles, its numbers written beside the bars; tell whether its limit is drawn."""
     longest = max((value for value in values if value is not None), default=0.0) or limit or 1.0
-    if limit is not None and limit <= _FAR * longest:
+    drawn = limit is not None and limit <= _FAR * longest
+    if limit is not None and drawn:
         axes.axvline(limit, **LIMIT)
         longest = max(longest, limit)
     elif limit is not None:
@@ -92,7 +107,7 @@ def _bars(axes: Axes, names: Sequence[str], values: Sequence[float | None], limi
             axes.text(0.5 * width, i, without, ha="center", va="center", fontsize=6.5,
                       bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8})  # fmt: skip
         else:
-            beyond = limit is not None and value > limit * (1 + _BEYOND)
+            beyond = _is_beyond(value, limit)
             colour = LINES["optimised"]["color"] if name == "optimised" else _BASELINE
             axes.barh(
                 i,
@@ -110,3 +125,4 @@ def _bars(axes: Axes, names: Sequence[str], values: Sequence[float | None], limi
     axes.locator_params(axis="x", nbins=3)
     for side in ("top", "right"):
         axes.spines[side].set_visible(False)
+    return drawn

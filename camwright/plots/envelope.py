@@ -23,7 +23,7 @@ BINDING: dict[str, tuple[str, str]] = {
     "acceleration": ("#e69f00", "////"),
     "jerk": ("#cc79a7", "...."),
     "reversal": ("#f0e442", "\\\\\\\\"),
-    "stroke": ("#999999", "xxxx"),
+    "stroke": ("#44aa99", "xxxx"),
     "motor": ("#d55e00", "++++"),
     "sync_zone": ("#bbbbbb", "----"),
 }
@@ -47,7 +47,7 @@ def draw_envelope(answer: EnvelopeAnswer) -> Figure:
     _cells(axes, found)
     _edges(axes, found)
     axes.set(xlabel="cut length (mm)", ylabel="line speed (m/min)")
-    axes.set_title(f"{answer.job.name}: what is possible, and the limit that binds")
+    axes.set_title(f"{answer.job.name}: the limit that binds, in strong colour where a cut is possible")
     axes.grid(visible=False)
     axes.plot(
         answer.job.cut.length * 1e3,
@@ -68,16 +68,10 @@ def draw_envelope(answer: EnvelopeAnswer) -> Figure:
             hatch=BINDING[name][1],
             edgecolor="#555555",
             linewidth=0.4,
-            label=f"{name.replace('_', ' ')} binds",
+            label=name.replace("_", " "),
         )
         for name in names
     ]
-    if any(row.optimised is not None for row in found.rows):
-        patches.append(Patch(facecolor="#999999", label="strong: possible"))
-    if any(not point.optimised for point in found.points):
-        patches.append(
-            Patch(facecolor=_pale("#999999"), edgecolor="#777777", linewidth=0.4, label="pale: not possible")
-        )
     lines = axes.get_legend_handles_labels()[0]
     figure.legend(handles=[*lines, *patches], loc="outside lower center", ncols=4)
     return figure
@@ -85,46 +79,47 @@ def draw_envelope(answer: EnvelopeAnswer) -> Figure:
 
 def _cells(axes: Axes, found: Envelope) -> None:
     """Colour each cell by what forbids it, and below the highest line speed each cut length by what would bind first."""
-    lengths = np.unique([point.length for point in found.points]) * 1e3
+    lengths = np.array([row.length for row in found.rows]) * 1e3
     speeds = np.unique([point.line_speed for point in found.points]) * 60
-    left, right = lengths[0], lengths[-1]
     across, up = _borders(lengths), _borders(speeds)
-    up[0] = 0.0
-    across[0], across[-1] = left, right
+    across[0], across[-1], up[0] = lengths[0], lengths[-1], 0.0
     fastest = np.array([np.nan if row.optimised is None else row.optimised * 60 for row in found.rows])
-    forbidden = [point for point in found.points if not point.optimised]
-    for point in forbidden:
-        i, j = (
-            int(np.argmin(np.abs(grid - at)))
-            for grid, at in ((lengths, point.length * 1e3), (speeds, point.line_speed * 60))
-        )
-        colour, hatch = BINDING[point.binding]
-        axes.fill_between(
-            [across[i], across[i + 1]],
-            # down into the cell that the edge crosses: what is possible covers it
-            0.0 if j == 0 else up[j - 1],
-            up[j + 1],
-            facecolor=_pale(colour),
-            hatch=hatch,
-            edgecolor="#777777",
-            linewidth=0.0,
-            zorder=1 - 1e-3 * j,
-        )
+    possible = np.isfinite(fastest)
     for i, row in enumerate(found.rows):
-        if not np.isfinite(fastest[i]):
-            continue
-        # the edge runs straight from one cut length to the next, where there is one
-        x = np.array([across[i], lengths[i], across[i + 1]])
-        near = np.isfinite(fastest)
-        y = np.interp(x, lengths[near], fastest[near])
-        axes.fill_between(x, 0.0, y, facecolor="white", linewidth=0.0, zorder=2)
-        axes.fill_between(x, 0.0, y, facecolor=BINDING[row.binding][0], alpha=POSSIBLE, linewidth=0.0, zorder=2)
-    axes.set(xlim=(left, right), ylim=(0.0, up[-1]))
+        column = [point for point in found.points if point.length == row.length]
+        lowest = 0.0  # the edge does not run along the cells: what forbids the lowest of them forbids all below it
+        for j, point in enumerate(column):
+            if point.optimised and j + 1 < len(column):
+                continue
+            colour, hatch = BINDING[row.binding if point.optimised else point.binding]
+            _fill(axes, across[i : i + 2], lowest, up[j + 1], _mixed(colour, BEYOND), 1, hatch)
+            lowest = up[j + 1]
+        if possible[i]:
+            # straight from one cut length to the next, where there is one
+            x = np.array([across[i], lengths[i], across[i + 1]])
+            y = np.interp(x, lengths[possible], fastest[possible])
+            _fill(axes, x, 0.0, y, _mixed(BINDING[row.binding][0], POSSIBLE), 2, "")
+    axes.set(xlim=(lengths[0], lengths[-1]), ylim=(0.0, up[-1]))
 
 
-def _pale(colour: str) -> tuple[float, float, float]:
+def _fill(
+    axes: Axes,
+    x: np.ndarray,
+    low: float,
+    high: float | np.ndarray,
+    colour: tuple[float, float, float],
+    order: int,
+    hatch: str,
+) -> None:
+    """Fill below a line; an edge of the same colour closes the seam to the next."""
+    axes.fill_between(x, low, high, facecolor=colour, edgecolor=colour, linewidth=0.5, zorder=order)
+    if hatch:
+        axes.fill_between(x, low, high, facecolor="none", edgecolor="#777777", linewidth=0.0, hatch=hatch, zorder=order)
+
+
+def _mixed(colour: str, strength: float) -> tuple[float, float, float]:
     """Mix a colour with white."""
-    red, green, blue = (1.0 - BEYOND * (1.0 - part) for part in to_rgb(colour))
+    red, green, blue = (1.0 - strength * (1.0 - part) for part in to_rgb(colour))
     return red, green, blue
 
 

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import numpy as np
-
-from profiles.polynomial import CamProfile
 from profiles.tables.cam_table import CamTable, PieceLaw, make_table
-from profiles.tables.interpolation import chords, quintics
+from profiles.tables.interpolation import by_law
 from profiles.tables.number_formats import literal
-from profiles.tables.splines import cyclic_spline
 from profiles.tables.st_program import Call, Declaration, Program, Struct, Value, number_of, only, structs_of
 from profiles.tables.structured_text import parse
 from profiles.tables.target import Header, Target, slash_comments, units_in
@@ -113,13 +109,6 @@ def _xy(program: Program, place: str) -> CamTable:
     return make_table(x, y, law=law)
 
 
-def rebuild(table: CamTable) -> CamProfile:
-    """Quintics between XYVA points; between XY points chords, or with cubic interpolation a spline."""
-    if all(law == "line" for law in table.laws) and np.isnan(table.ratio).all():
-        return chords(table)
-    return cyclic_spline(table.x, table.y) if "spline" in table.laws else quintics(table)
-
-
 def write_builder(table: CamTable, header: Header) -> dict[str, str]:
     """Write calls that append one quintic a piece to a ``SMCB.CamBuilder``, and the cam into an ``MC_CAM_REF``."""
     name = header.identifier
@@ -200,7 +189,7 @@ TARGET = Target(
     endings=("_codesys.st",),
     write=write,
     read=read,
-    rebuild=rebuild,
+    rebuild=by_law,
 )
 
 BUILDER = Target(
@@ -224,5 +213,5 @@ BUILDER = Target(
     endings=("_cambuilder.st",),
     write=write_builder,
     read=read_builder,
-    rebuild=rebuild,
+    rebuild=by_law,
 )

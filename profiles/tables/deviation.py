@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -52,6 +53,7 @@ def deviation(profile: CamProfile, rebuilt: CamProfile) -> Deviation:
     return Deviation(worst[0], worst[1], worst[2] / max(peak, 1e-300) if _bounded(profile, rebuilt) else None)
 
 
+@lru_cache(maxsize=64)  # of motions that several targets make of the same points
 def glance(profile: CamProfile, rebuilt: CamProfile, peak: float) -> Deviation:
     """Bound `deviation` from below, in a fifth of its time: by both ends and the middle of every piece.
 

@@ -10,6 +10,7 @@ from profiles.errors import InputError
 from profiles.polynomial import CamProfile
 from profiles.tables.cam_table import CamTable
 from profiles.tables.number_formats import NumberFormat, rounded
+from profiles.tables.splines import cyclic_spline
 
 
 def in_format(table: CamTable, number_format: NumberFormat) -> CamTable:
@@ -61,3 +62,17 @@ def chords(table: CamTable) -> CamProfile:
     """Straight lines between the points."""
     slope = np.diff(table.y) / np.diff(table.x)
     return CamProfile(table.x.copy(), np.column_stack([table.y[:-1], slope]))
+
+
+def counted_chords(table: CamTable) -> CamProfile:
+    """Straight lines between whole positions."""
+    return chords(in_format(table, "int32"))
+
+
+def by_law(table: CamTable) -> CamProfile:
+    """Do what the laws say: a cyclic spline, chords of a table without ratios, or lines and quintics."""
+    if "spline" in table.laws:
+        return cyclic_spline(table.x, table.y)
+    if all(law == "line" for law in table.laws) and np.isnan(table.ratio).all():
+        return chords(table)
+    return quintics(table)

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
 from profiles.errors import InputError
 from profiles.polynomial import CamProfile, FloatArray
-from profiles.tables.cam_table import CamTable, Unit, Units, sample_profile
+from profiles.tables.cam_table import CamTable, PieceLaw, Unit, Units, sample_profile
 from profiles.tables.deviation import Deviation, deviation, glance
-from profiles.tables.number_formats import rounded
+from profiles.tables.number_formats import NumberFormat, rounded
 from profiles.tables.placing import candidates, required_points, zone_ends
 from profiles.tables.target import Target
 
@@ -152,14 +153,25 @@ def _rebuilt(profile: CamProfile, target: Target, units: Units, x: FloatArray) -
     if target.placing == "equidistant" and target.number_format == "int32":  # the drive counts points
         finest = Unit("0.1um", 1e-7) if units.slave.si == "m" else Unit("1e-5deg", math.radians(1e-5), "rad")
         units = Units(Unit("step", profile.length / (len(x) - 1)), finest)
+    return _sampled(profile, target.law, target.number_format, target.rebuild, units, x.tobytes())
+
+
+@lru_cache(maxsize=64)  # many targets put the same law through the same points
+def _sampled(
+    profile: CamProfile,
+    law: PieceLaw,
+    number_format: NumberFormat,
+    rebuild: Callable[[CamTable], CamProfile],
+    units: Units,
+    places: bytes,
+) -> tuple[CamTable, CamProfile]:
     size = units.master.size
-    placed = rounded(x / size, target.number_format) * size
-    inner = np.clip(placed, profile.start, profile.end)
-    table = sample_profile(profile, inner, units, target.law)
-    if target.law == "quintic" and target.number_format == "float32":
+    placed = rounded(np.frombuffer(places) / size, number_format) * size
+    table = sample_profile(profile, np.clip(placed, profile.start, profile.end), units, law)
+    if law == "quintic" and number_format == "float32":
         # the chord between two rounded points has not quite the ratio that its neighbours end with
-        table = replace(table, laws=(target.law,) * len(table.laws))
-    return table, units.to_si(target.rebuild(table))
+        table = replace(table, laws=(law,) * len(table.laws))
+    return table, units.to_si(rebuild(table))
 
 
 def table_units(target: Target, profile: CamProfile, units: Units) -> Units:

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from profiles.errors import InputError
-from profiles.polynomial import CamProfile
 from profiles.tables.cam_table import CamTable, make_table
+from profiles.tables.interpolation import by_law
 from profiles.tables.number_formats import decimals
-from profiles.tables.splines import cyclic_spline
 from profiles.tables.target import Header, Target, companion
 from profiles.tables.text import check_ascending, check_count, lines_of, real, refuse, shown
 
@@ -70,11 +69,6 @@ def read(text: str, place: str) -> CamTable:
     return make_table(x, y, law="spline", periodic=cyclic)
 
 
-def rebuild(table: CamTable) -> CamProfile:
-    """Rebuild the cubic spline, smooth across the seam."""
-    return cyclic_spline(table.x, table.y)
-
-
 TARGET = Target(
     name="kollmorgen-kas",
     title="Kollmorgen KAS IDE, CSV",
@@ -99,6 +93,6 @@ TARGET = Target(
     endings=("_kas.csv", "_kas.txt"),
     write=write,
     read=read,
-    rebuild=rebuild,
+    rebuild=by_law,
     min_points=LEAST_POINTS,
 )

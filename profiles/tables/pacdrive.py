@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from itertools import pairwise
 
-from profiles.polynomial import CamProfile
 from profiles.tables.cam_table import CamTable, make_table
-from profiles.tables.interpolation import quintics
+from profiles.tables.interpolation import by_law
 from profiles.tables.number_formats import literal
 from profiles.tables.st_program import Value, Word, number_of
 from profiles.tables.structured_text import parse
@@ -74,11 +73,6 @@ def read(text: str, place: str) -> CamTable:
     return make_table(*columns, units=units_in(text))
 
 
-def rebuild(table: CamTable) -> CamProfile:
-    """Quintics through position, gradient and curvature."""
-    return quintics(table)
-
-
 TARGET = Target(
     name="pacdrive",
     title="Schneider PacDrive 3, ST_MultiCam",
@@ -104,5 +98,5 @@ TARGET = Target(
     endings=("_pacdrive.st",),
     write=write,
     read=read,
-    rebuild=rebuild,
+    rebuild=by_law,
 )

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from profiles.polynomial import CamProfile
 from profiles.tables.cam_table import CamTable, make_table
+from profiles.tables.interpolation import by_law
 from profiles.tables.number_formats import decimals
-from profiles.tables.splines import cyclic_spline
 from profiles.tables.target import Header, Target, companion
 from profiles.tables.text import check_ascending, check_count, integer, lines_of, real, refuse
 
@@ -48,11 +47,6 @@ def read(text: str, place: str) -> CamTable:
     return make_table(x, y, law="spline")
 
 
-def rebuild(table: CamTable) -> CamProfile:
-    """Rebuild the spline of ``ST_PointsListSpline``."""
-    return cyclic_spline(table.x, table.y)
-
-
 TARGET = Target(
     name="sew",
     title="SEW MOVI-C, points list with spline interpolation",
@@ -77,5 +71,5 @@ TARGET = Target(
     endings=("_sew.txt", "_sew_head.txt"),
     write=write,
     read=read,
-    rebuild=rebuild,
+    rebuild=by_law,
 )

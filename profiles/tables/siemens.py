@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from itertools import pairwise
 
-from profiles.polynomial import CamProfile
 from profiles.tables.cam_table import CamTable, make_table
-from profiles.tables.interpolation import quintics
+from profiles.tables.interpolation import by_law
 from profiles.tables.number_formats import literal
-from profiles.tables.splines import cyclic_spline
 from profiles.tables.st_program import Assignment, Program, Struct, Value, number_of, only, structs_of
 from profiles.tables.structured_text import parse
 from profiles.tables.target import Header, Target, slash_comments, units_in
@@ -107,11 +105,6 @@ def _assigned(assignments: tuple[Assignment, ...], known: set[str], place: str) 
     return [struct for _, struct in ordered]
 
 
-def rebuild(table: CamTable) -> CamProfile:
-    """Quintics between basic points; through point data a spline with equal slopes at both ends."""
-    return cyclic_spline(table.x, table.y) if "spline" in table.laws else quintics(table)
-
-
 _LOADING = (
     (
         "In operation: select with MC_CamIn, ApplicationMode 1 (cyclic) for a cam that comes back, 2 (cyclic "
@@ -142,7 +135,7 @@ TARGET = Target(
     endings=("_lcamhdl.st",),
     write=write,
     read=read,
-    rebuild=rebuild,
+    rebuild=by_law,
 )
 
 POINTS = Target(
@@ -170,5 +163,5 @@ POINTS = Target(
     endings=("_to_cam.st",),
     write=write_points,
     read=read,
-    rebuild=rebuild,
+    rebuild=by_law,
 )

@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from profiles.errors import InputError
-from profiles.polynomial import CamProfile
 from profiles.tables.cam_table import CamTable, make_table
-from profiles.tables.interpolation import chords, in_format
+from profiles.tables.interpolation import counted_chords, in_format
 from profiles.tables.target import Header, Target, companion
 from profiles.tables.text import check_count, integer, lines_of, refuse
 
@@ -61,11 +60,6 @@ def read(text: str, place: str) -> CamTable:
     return make_table(x, y, law="line")
 
 
-def rebuild(table: CamTable) -> CamProfile:
-    """Straight lines between whole positions."""
-    return chords(in_format(table, "int32"))
-
-
 TARGET = Target(
     name="technosoft",
     title="Technosoft EasyMotion Studio",
@@ -88,5 +82,5 @@ TARGET = Target(
     endings=("_technosoft.txt", "_technosoft_head.txt"),
     write=write,
     read=read,
-    rebuild=rebuild,
+    rebuild=counted_chords,
 )

@@ -7,9 +7,8 @@ import re
 import numpy as np
 
 from profiles.errors import InputError
-from profiles.polynomial import CamProfile
 from profiles.tables.cam_table import CamTable, make_table
-from profiles.tables.interpolation import chords, in_format
+from profiles.tables.interpolation import counted_chords, in_format
 from profiles.tables.target import Header, Target, companion
 from profiles.tables.text import check_count, integer, lines_of, real, refuse, shown
 
@@ -60,11 +59,6 @@ def read(text: str, place: str) -> CamTable:
     return make_table(range(len(values)), [values[a] for a in addresses], law="line", notes=(note,))
 
 
-def rebuild(table: CamTable) -> CamProfile:
-    """Straight lines between whole encoder edges."""
-    return chords(in_format(table, "int32"))
-
-
 TARGET = Target(
     name="trio",
     title="Trio Motion Coordinator, TABLE for CAMBOX",
@@ -88,5 +82,5 @@ TARGET = Target(
     endings=("_trio.bas", "_trio.txt"),
     write=write,
     read=read,
-    rebuild=rebuild,
+    rebuild=counted_chords,
 )

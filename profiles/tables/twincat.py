@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from profiles.polynomial import CamProfile
 from profiles.tables.cam_table import CamTable, PieceLaw, make_table
-from profiles.tables.interpolation import quintics
+from profiles.tables.interpolation import by_law
 from profiles.tables.number_formats import literal
-from profiles.tables.splines import cyclic_spline
 from profiles.tables.st_program import Program, Struct, Value, Word, number_of
 from profiles.tables.structured_text import parse
 from profiles.tables.target import Header, Target, slash_comments, units_in
@@ -176,11 +174,6 @@ def _point_type(value: Value | None, place: str, line: int) -> int:
     raise refuse(place, line, "PointType must be a number or a name")
 
 
-def rebuild(table: CamTable) -> CamProfile:
-    """Lines on POLYNOM1, quintics on POLYNOM5_MM; a spline through a position table."""
-    return cyclic_spline(table.x, table.y) if "spline" in table.laws else quintics(table)
-
-
 def write_positions(table: CamTable, header: Header) -> dict[str, str]:
     """Write a program that fills an ``ARRAY[0..n-1, 0..1] OF LREAL`` and its ``MC_CAM_REF``."""
     name = header.identifier
@@ -268,7 +261,7 @@ TARGET = Target(
     endings=("_twincat.st",),
     write=write,
     read=read,
-    rebuild=rebuild,
+    rebuild=by_law,
 )
 
 POSITIONS = Target(
@@ -292,5 +285,5 @@ POSITIONS = Target(
     endings=("_twincat_table.st",),
     write=write_positions,
     read=read,
-    rebuild=rebuild,
+    rebuild=by_law,
 )
