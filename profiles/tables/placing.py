@@ -116,7 +116,7 @@ def _pieces(
     if len(x) > most:
         return
     may = float(allowed[0]), float(allowed[1]), float(allowed[2])
-    missed = [_missed(profile, *span, may) for span in pairwise(x.tolist())]
+    missed = list(_missed(profile, tuple(x.tolist()), may))
     shown = 0
     while True:
         done = max(missed) <= 1.0 and points is None
@@ -127,7 +127,7 @@ def _pieces(
         if len(x) >= most or np.diff(x)[worst] <= 4.0 * least:
             return
         x = _inserted(profile, x, worst, least)
-        missed[worst : worst + 1] = [_missed(profile, *span, may) for span in pairwise(x[worst : worst + 3].tolist())]
+        missed[worst : worst + 1] = _missed(profile, tuple(x[worst : worst + 3].tolist()), may)
 
 
 def _inserted(profile: CamProfile, x: FloatArray, piece: int, least: float = 0.0) -> FloatArray:
@@ -138,14 +138,17 @@ def _inserted(profile: CamProfile, x: FloatArray, piece: int, least: float = 0.0
     return np.insert(x, piece + 1, at)
 
 
-@lru_cache(maxsize=2048)  # each target with quintics asks for the same spans
-def _missed(profile: CamProfile, left: float, right: float, allowed: tuple[float, float, float]) -> float:
-    """By how many times the quintic between two points misses the profile more than it may."""
-    rebuilt = quintics(sample_profile(profile, np.array([left, right]), _METRES))
-    inside = profile.breaks[(profile.breaks > left) & (profile.breaks < right)]
-    x = np.concatenate([left + (right - left) * _NODES, inside])
-    off = [np.abs(rebuilt(x, order) - profile(x, order)).max() / allowed[order] for order in range(3)]
-    return float(max(off))
+@lru_cache(maxsize=1024)  # each target with quintics asks for the same spans
+def _missed(profile: CamProfile, knots: tuple[float, ...], allowed: tuple[float, float, float]) -> tuple[float, ...]:
+    """By how many times the quintics between neighbouring points miss the profile more than they may, one a span."""
+    x = np.array(knots)
+    rebuilt = quintics(sample_profile(profile, x, _METRES))
+    inside = profile.breaks[(profile.breaks > x[0]) & (profile.breaks < x[-1]) & ~np.isin(profile.breaks, x)]
+    places = np.concatenate([(x[:-1, None] + np.diff(x)[:, None] * _NODES).ravel(), inside])
+    off = [np.abs(rebuilt(places, order) - profile(places, order)) / allowed[order] for order in range(3)]
+    worst = np.zeros(len(x) - 1)
+    np.maximum.at(worst, np.searchsorted(x, places, side="right") - 1, np.max(off, axis=0))
+    return tuple(worst.tolist())
 
 
 def _subdivided(
