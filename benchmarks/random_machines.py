@@ -1,8 +1,9 @@
-"""What becomes of many random jobs of every machine: a profile that passes its checks, or a way out that then works.
+"""What becomes of many random jobs of every machine: a profile that passes every check, or a refusal whose every way out then works.
 
-A job is drawn around what the quintic return needs: limits from below that to far above. An infeasible job is followed up: its first
-suggestion is applied and must give a profile. Writes one CSV row for each job and prints the ends; the exit code is 0 if none is
-another one:
+A job is drawn around what the quintic return needs: limits from below that to far above, with and without a motor's torque-speed curve. An
+infeasible job is followed up: each of its suggestions is applied and must give a profile that passes every check, and the quintic must
+not keep the limits. The servo is fast for the cut, so that its checks judge the profile and not the axis. Writes the counts of each
+machine to ``results/random_machines.csv`` and prints every job that ended otherwise; the exit code is 0 if there is none:
 
     python benchmarks/random_machines.py [--jobs 300] [--seed 1] [--machine crank_slider]
 """
@@ -14,30 +15,47 @@ import csv
 import math
 import sys
 from collections import Counter
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
-from time import perf_counter
+from time import process_time
 
 import numpy as np
 
-from design.optimise import OBJECTIVES, Objective, solve
+from design.feasibility import with_limit
+from design.optimise import MOTION_OBJECTIVES, OBJECTIVES, Objective, solve
 from profiles.cycle import Cut
 from profiles.errors import CamwrightError, InfeasibleError, Suggestion
 from profiles.limits import Limits
 from profiles.machines import CrankSlider, LinearCarriage, Machine, RotaryKnife
+from profiles.motor import MotorCurve
 from profiles.returns import baseline
 from profiles.servo import Servo
-from validation import measure_motion, validate
+from validation import measure_motion, measure_motor, validate
 
 RESULTS = Path(__file__).parent / "results"
 
-SERVO = Servo(bandwidth=1000.0, damping=0.8, position_gain=120.0, sample_time=0.0005, velocity_feedforward=1.0)
-SERVO_CHECKS = {"following_error", "crossing", "settling", "shear_zone_error", "servo_stability", "minimum_cut_length"}
-"""Checks on what the axis makes of the profile: the design does not know the axis, so they are counted apart."""
-
+PASSED, WAY_OUT = "passed", "infeasible, every suggestion works"
 TO_SI = {"m/min": 1 / 60, "mm": 1e-3, "rpm": math.pi / 30}
-Job = tuple[Machine, Cut, Limits, Objective]
+
+
+@dataclass(frozen=True)
+class RandomJob:
+    """A machine, its cut, limits and objective."""
+
+    machine: Machine
+    cut: Cut
+    limits: Limits
+    objective: Objective
+
+
+@dataclass(frozen=True)
+class End:
+    """How a job ended, what is to be said about it, and the processor time that it took (s)."""
+
+    end: str
+    note: str
+    seconds: float
 
 
 def spread(rng: np.random.Generator, low: float, high: float) -> float:
@@ -45,11 +63,18 @@ def spread(rng: np.random.Generator, low: float, high: float) -> float:
     return float(np.exp(rng.uniform(np.log(low), np.log(high))))
 
 
+def servo_for(cut: Cut) -> Servo:
+    """Servo that settles within a small part of the sync zone."""
+    time = cut.sync_zone / cut.line_speed
+    return Servo(200.0 / time, 0.8, 40.0 / time, time / 1000, velocity_feedforward=1.0)
+
+
 def cut_of(rng: np.random.Generator, length: float, sync_zone: float, sync_ratio: float) -> Cut:
     """Cut with its shear zone at the end of the sync zone."""
     shear = 0.2 * sync_zone
     origin = ("return", "cut")[int(rng.integers(2))]
-    return Cut(length, spread(rng, 0.1, 3.0), sync_zone, shear, sync_zone - shear, 5e-4, origin, sync_ratio)  # type: ignore[arg-type]
+    speed = spread(rng, 0.1, 3.0)
+    return Cut(length, speed, sync_zone, shear, sync_zone - shear, 0.02 * sync_zone, origin, sync_ratio)  # type: ignore[arg-type]
 
 
 def draw_ratio(rng: np.random.Generator) -> float:
@@ -59,19 +84,21 @@ def draw_ratio(rng: np.random.Generator) -> float:
 
 def draw_knife(rng: np.random.Generator, horizontal: bool) -> tuple[Machine, Cut]:
     """Draw a rotary knife and its cut."""
+    inertia = rng.integers(4) > 0
     machine = RotaryKnife(
         circumference=spread(rng, 0.2, 2.0),
         blades=int(rng.integers(1, 4)),
         gear_ratio=spread(rng, 1.0, 10.0),
         sync="horizontal" if horizontal else "tangential",
-        drum_inertia=spread(rng, 1e-3, 1.0),
-        drum_friction=float(rng.integers(2)) * spread(rng, 0.1, 10.0),
+        drum_inertia=float(inertia) * spread(rng, 1e-3, 1.0),
+        drum_friction=float(inertia) * float(rng.integers(2)) * spread(rng, 0.1, 10.0),
     )
     ratio = draw_ratio(rng)
     length = machine.pitch * spread(rng, 0.4, 3.0)
-    longest = min(
-        0.8 * length, 0.8 * machine.pitch / ratio, machine.greatest_sync_zone(ratio) * 0.95 if horizontal else math.inf
-    )
+    longest = 0.8 * min(length, machine.pitch / ratio)
+    if horizontal:
+        angle = min(math.radians(80.0), 0.4 * machine.pitch / machine.radius)
+        longest = min(0.8 * length, 2 * machine.radius * math.sin(angle) / ratio)
     return machine, cut_of(rng, length, longest * float(rng.uniform(0.1, 1.0)), ratio)
 
 
@@ -81,18 +108,19 @@ def draw_carriage(rng: np.random.Generator) -> tuple[Machine, Cut]:
     length = spread(rng, 0.2, 5.0)
     cut = cut_of(rng, length, length * float(rng.uniform(0.05, 0.7)), ratio)
     stroke = ratio * cut.sync_zone + length * spread(rng, 0.01, 1.0)
-    return LinearCarriage(stroke, float(rng.uniform(-1.0, 1.0)), spread(rng, 5.0, 200.0), spread(rng, 0.01, 0.2)), cut
+    mass = float(rng.integers(4) > 0) * spread(rng, 5.0, 200.0)
+    return LinearCarriage(stroke, float(rng.uniform(-1.0, 1.0)), mass, spread(rng, 0.01, 0.2)), cut
 
 
 def draw_crank(rng: np.random.Generator) -> tuple[Machine, Cut]:
     """Draw a crank-slider and its cut; the place of the sync zone is free in every other job."""
-    crank = spread(rng, 0.05, 0.4)
+    crank, inertia = spread(rng, 0.05, 0.4), float(rng.integers(4) > 0)
     machine = CrankSlider(
         crank=crank,
         rod=crank * spread(rng, 2.0, 6.0),
         offset=float(rng.integers(2)) * crank * float(rng.uniform(-0.5, 0.5)),
-        crank_inertia=spread(rng, 0.01, 2.0),
-        carriage_mass=spread(rng, 2.0, 60.0),
+        crank_inertia=inertia * spread(rng, 0.01, 2.0),
+        carriage_mass=inertia * spread(rng, 2.0, 60.0),
         gear_ratio=spread(rng, 1.0, 10.0),
     )
     ratio = draw_ratio(rng)
@@ -112,113 +140,154 @@ MACHINES: dict[str, Callable[[np.random.Generator], tuple[Machine, Cut]]] = {
 }
 
 
-def random_job(rng: np.random.Generator, kind: str) -> Job:
-    """Draw a job, its limits around what the quintic return needs."""
-    machine, cut = MACHINES[kind](rng)
-    placed = machine
+def placed(machine: Machine, cut: Cut) -> Machine:
+    """Put the sync zone of a crank that leaves it open into the middle of its range."""
     if isinstance(machine, CrankSlider) and math.isnan(machine.sync_at):
-        placed = replace(machine, sync_at=0.5 * sum(machine.sync_range(cut)))
-    quintic = measure_motion(baseline("poly_3_4_5", placed, cut), placed, cut)
+        return replace(machine, sync_at=0.5 * sum(machine.sync_range(cut)))
+    return machine
+
+
+def random_job(rng: np.random.Generator, kind: str) -> RandomJob:
+    """Draw a job, its limits around what the quintic return needs; one in three with little room, one in three with a motor."""
+    machine, cut = MACHINES[kind](rng)
+    there = placed(machine, cut)
+    profile = baseline("poly_3_4_5", there, cut)
+    quintic, motor = measure_motion(profile, there, cut), measure_motor(profile, there, cut)
+    acceleration, jerk = quintic.peak_acceleration or 1.0, quintic.peak_jerk or 1.0
+    if rng.integers(3) == 0:
+        speed, bend, rise = rng.uniform(0.9, 1.1), rng.uniform(0.6, 1.1), rng.uniform(0.4, 1.2)
+    else:
+        speed, bend, rise = rng.uniform(0.7, 2.0), spread(rng, 0.5, 20.0), spread(rng, 0.3, 100.0)
+    curve = None
+    with_motor, strong, fast, weak = (
+        rng.integers(3) == 0,
+        spread(rng, 0.5, 5.0),
+        rng.uniform(0.9, 2.5),
+        rng.uniform(0.2, 1.0),
+    )
+    if with_motor and motor.peak_torque:
+        torque, top = strong * motor.peak_torque, float(fast * motor.peak_speed)
+        friction = machine.friction / machine.motor_ratio
+        torque = max(torque, 1.5 * friction)
+        curve = MotorCurve(((0.0, torque), (0.6 * top, torque), (top, friction + weak * (torque - friction))))
     limits = Limits(
-        speed=quintic.peak_speed * float(rng.uniform(0.7, 2.0)),
-        acceleration=(quintic.peak_acceleration or 1.0) * spread(rng, 0.5, 20.0),
-        jerk=(quintic.peak_jerk or 1.0) * spread(rng, 0.3, 100.0),
-        reversal=bool(rng.integers(2)),
+        quintic.peak_speed * float(speed), acceleration * float(bend), jerk * float(rise), bool(rng.integers(2)), curve
     )
-    return machine, cut, limits, OBJECTIVES[int(rng.integers(len(OBJECTIVES)))]
+    names = OBJECTIVES if motor.peak_torque else MOTION_OBJECTIVES
+    return RandomJob(machine, cut, limits, names[int(rng.integers(len(names)))])
 
 
-def apply(job: Job, suggestion: Suggestion) -> Job:
+def apply(job: RandomJob, suggestion: Suggestion) -> RandomJob:
     """Follow a suggestion."""
-    machine, cut, limits, objective = job
     value = suggestion.value * TO_SI.get(suggestion.unit, 1.0)
-    if suggestion.change == "reversal":
-        return machine, cut, replace(limits, reversal=True), objective
-    if suggestion.change == "line_speed":
-        return machine, replace(cut, line_speed=value), limits, objective
-    if suggestion.change == "length":
-        return machine, replace(cut, length=value), limits, objective
-    speed, acceleration, jerk = (
-        value if suggestion.change == name else getattr(limits, name) for name in ("speed", "acceleration", "jerk")
-    )
-    return machine, cut, replace(limits, speed=speed, acceleration=acceleration, jerk=jerk), objective
+    match suggestion.change:
+        case "reversal":
+            return replace(job, limits=replace(job.limits, reversal=True))
+        case "motor":
+            points = job.limits.motor.points if job.limits.motor is not None else ()
+            points = tuple((speed, torque * suggestion.value / 100) for speed, torque in points)
+            return replace(job, limits=replace(job.limits, motor=MotorCurve(points)))
+        case "line_speed":
+            return replace(job, cut=replace(job.cut, line_speed=value))
+        case "length":
+            return replace(job, cut=replace(job.cut, length=value))
+        case "stroke":
+            return replace(job, machine=replace(job.machine, stroke=value))  # type: ignore[call-arg]
+        case "speed" | "acceleration" | "jerk":
+            return replace(job, limits=with_limit(job.limits, suggestion.change, value))
+        case _:
+            raise ValueError(f"unknown suggestion {suggestion!r}")
 
 
-def judge(job: Job) -> tuple[str, str]:
+def judge(job: RandomJob) -> tuple[str, str]:
     """Design a job and validate it; how it ended, and what failed with its numbers."""
-    machine, cut, limits, objective = job
-    solution = solve(machine, cut, limits, objective)
-    report = validate(solution.profile, solution.machine, cut, limits, SERVO)
+    solution = solve(job.machine, job.cut, job.limits, job.objective)
+    report = validate(solution.profile, solution.machine, job.cut, job.limits, servo_for(job.cut), sweep=False)
     failed = [check for check in report.checks if not check.passed]
     numbers = "; ".join(f"{check.name} {check.value!r} limit {check.limit!r} at {check.at!r}" for check in failed)
-    if not failed:
-        return "passed", ""
-    return ("passed but for the servo" if {check.name for check in failed} <= SERVO_CHECKS else "check failed"), numbers
+    return ("check failed" if failed else PASSED), numbers
 
 
-def measure(number: int, kind: str, job: Job) -> dict[str, object]:
-    """Design one job, follow its first suggestion if it is infeasible, and note the end."""
-    machine, cut, limits, objective = job
-    start = perf_counter()
-    suggestion = ""
+def quintic_passes(job: RandomJob) -> bool:
+    """Tell whether the quintic return passes every check of a job, a crank's sync zone in the middle of its range if it is free."""
+    machine, cut, limits = placed(job.machine, job.cut), job.cut, job.limits
+    profile = baseline("poly_3_4_5", machine, cut)
+    report = validate(profile, machine, cut, limits, servo_for(cut), sweep=False)
+    return report.passed
+
+
+def measure(job: RandomJob) -> End:
+    """Design one job, follow every suggestion if it is infeasible, and note the end."""
+    start = process_time()
     try:
-        end, numbers = judge(job)
+        end, note = judge(job)
     except InfeasibleError as error:
-        end, numbers = "infeasible, no suggestion", str(error)
-        if error.suggestions:
-            first = error.suggestions[0]
-            suggestion = f"{error.binding}: {first.change} {first.value!r} {first.unit}"
-            try:
-                then, numbers = judge(apply(job, first))
-                end = "infeasible, suggestion works" if then.startswith("passed") else f"infeasible, then {then}"
-            except CamwrightError as other:
-                end, numbers = f"infeasible, then {type(other).__name__}", str(other)
+        refused = process_time()
+        end, note = follow(job, error)
+        return End(end, note, refused - start)
     except CamwrightError as error:
-        end, numbers = type(error).__name__, str(error)
-    seconds = perf_counter() - start
-    return {
-        "machine": kind,
-        "job": number,
-        "objective": objective,
-        "end": end,
-        "suggestion": suggestion,
-        "numbers": numbers,
-        "seconds": f"{seconds:.2f}",
-        "data": f"{machine!r} {cut!r} {limits!r}",
-    }
+        end, note = type(error).__name__, str(error)
+    return End(end, note, process_time() - start)
 
 
-GOOD_ENDS = ("passed", "passed but for the servo", "infeasible, suggestion works")
+def follow(job: RandomJob, error: InfeasibleError) -> tuple[str, str]:
+    """Follow every suggestion of a refusal; how that ended."""
+    if not error.suggestions:
+        return "infeasible, no suggestion", str(error)
+    if quintic_passes(job):
+        return "infeasible, but the quintic is not", str(error)
+    for suggestion in error.suggestions:
+        named = f"{error.binding}: {suggestion.change} {suggestion.value!r} {suggestion.unit}"
+        try:
+            then, numbers = judge(apply(job, suggestion))
+        except CamwrightError as other:
+            return f"infeasible, then {type(other).__name__}", f"{named}: {other}"
+        if then != PASSED:
+            return f"infeasible, then {then}", f"{named}: {numbers}"
+    return WAY_OUT, f"{error.binding}: {', '.join(suggestion.change for suggestion in error.suggestions)}"
 
 
-def main() -> int:
-    """Run the jobs, write the rows, print the ends; the exit code tells whether every job ended well."""
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the jobs, write the counts, print all other ends; the exit code tells whether every job ended well."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--jobs", type=int, default=300)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--machine", choices=tuple(MACHINES), action="append")
-    options = parser.parse_args()
-    RESULTS.mkdir(exist_ok=True)
+    parser.add_argument("--out", type=Path, default=RESULTS / "random_machines.csv")
+    options = parser.parse_args(arguments)
+    head = [
+        "machine",
+        "seed",
+        "jobs",
+        "passed",
+        "infeasible_suggestions_work",
+        "other",
+        "suggestions",
+        "mean_s",
+        "longest_s",
+    ]
     others = 0
-    print("machine,end,jobs")
-    for kind in options.machine or MACHINES:
-        rng = np.random.default_rng(options.seed)
-        rows = []
-        with (RESULTS / f"random_{kind}.csv").open("w", newline="", encoding="utf-8") as file:
-            table = csv.writer(file, lineterminator="\n")
+    with options.out.open("w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(head)
+        for kind in options.machine or MACHINES:
+            rng = np.random.default_rng(options.seed)
+            ends: list[End] = []
             for number in range(options.jobs):
-                rows.append(measure(number, kind, random_job(rng, kind)))
-                table.writerows([list(rows[0])] * (number == 0) + [list(rows[-1].values())])
-                file.flush()
-        for end, count in sorted(Counter(str(row["end"]) for row in rows).items()):
-            print(f"{kind},{end},{count}", flush=True)
-        for row in rows:
-            if row["end"] not in GOOD_ENDS:
-                others += 1
-                print(
-                    f"  {kind} {row['job']} {row['objective']}: {row['end']}: {row['suggestion']} {row['numbers']} [{row['data']}]",
-                    flush=True,
-                )
+                job = random_job(rng, kind)
+                ends.append(measure(job))
+                if ends[-1].end not in (PASSED, WAY_OUT):
+                    print(f"{kind} {number}: {ends[-1].end}: {ends[-1].note}\n  {job!r}", flush=True)
+            count = Counter(end.end for end in ends)
+            offered = sum(end.note.count(",") + 1 for end in ends if end.end == WAY_OUT)
+            seconds = [end.seconds for end in ends]
+            good = count[PASSED] + count[WAY_OUT]
+            row = [kind, options.seed, len(ends), count[PASSED], count[WAY_OUT], len(ends) - good, offered]
+            row += [f"{np.mean(seconds):.2f}", f"{max(seconds):.2f}"]
+            table.writerow(row)
+            file.flush()
+            print(", ".join(f"{name} {value}" for name, value in zip(head, row, strict=True)), flush=True)
+            others += len(ends) - good
     return 0 if others == 0 else 1
 
 

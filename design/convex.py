@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import io
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import casadi as ca
@@ -30,7 +31,7 @@ _HIGHS: dict[str, Any] = {
     "primal_feasibility_tolerance": _TOLERANCE,
     "dual_feasibility_tolerance": _TOLERANCE,
 }
-# Roads to the vertex, tried in turn: where one ends with rows broken by rounding, another need not.
+# Roads to the vertex, tried in turn after the dual: where one ends with rows broken by rounding, another need not.
 _HIGHS_ROADS: tuple[dict[str, Any], ...] = ({}, {"presolve": "off"}, {"simplex_strategy": 4})
 _QPOASES: dict[str, Any] = {
     "printLevel": "none",
@@ -52,7 +53,8 @@ _IPOPT: dict[str, Any] = {
         "ipopt.hessian_constant": "yes",
     },
 }
-_NAMES = {"highs": "HiGHS", "qpoases": "qpOASES", "nlpsol": "IPOPT"}
+# HiGHS' words for a programme without an answer.
+_INFEASIBLE, _UNBOUNDED = "Infeasible", "Unbounded"
 # Added to the diagonal of a quadratic cost, relative to its mean: directions that cost nothing are left where they are.
 _STEADY = 1e-11
 # A linear answer that breaks rows by rounding is refined: what is missing is solved for, with the room that is left magnified by at most
@@ -127,43 +129,108 @@ class ConvexProgramme:
         """
         matrix = np.vstack(self._matrices)
         matrix[np.abs(matrix) < _ROUNDING * np.abs(matrix).max(axis=1, keepdims=True)] = 0.0
-        low, high, accepted = (np.concatenate(parts) for parts in (self._low, self._high, self._accepted))
-        if square is None:
-            rows, quadratic = ca.sparsify(ca.DM(matrix)), ca.DM(self.unknowns, self.unknowns)
-            roads = [("highs", {"highs": _HIGHS | road}) for road in _HIGHS_ROADS]
-        else:
-            steady = _STEADY * np.trace(square) / self.unknowns * np.eye(self.unknowns)
-            rows, quadratic = ca.DM(matrix), ca.DM(square + steady)
-            roads = [("qpoases", _QPOASES), ("nlpsol", _IPOPT)][: 1 + sure]
-        form = {"h": quadratic.sparsity(), "a": rows.sparsity()}
-        for plugin, options in roads:
-            found, factor = np.zeros(self.unknowns), 1.0
-            for _ in range(1 + (square is None) * _REFINEMENTS):
-                with _silenced():
-                    solver = ca.conic("camwright", plugin, form, options | {"error_on_fail": False})
-                    shifted = [factor * (side - matrix @ found) for side in (low, high)]
-                    answer = solver(
-                        h=quadratic, g=cost, a=rows, lba=shifted[0], uba=shifted[1], lbx=-np.inf, ubx=np.inf
-                    )
-                statistics = solver.stats()
-                status = str(statistics.get("solver_stats", statistics).get("return_status", ""))
-                if not statistics["success"]:
-                    break
-                found = found + np.asarray(answer["x"], dtype=np.float64).ravel() / factor
-                missed = _missed(matrix @ found, low, high, accepted)
-                if missed <= 0.0:
-                    return found
-                factor = min(_GREATEST_FACTOR, 1.0 / missed)
-            if square is None and factor == 1.0 and "infeasible" in status.lower():
-                return None
-            if square is not None and self.solve(np.zeros(self.unknowns)) is None:  # HiGHS tells sooner than IPOPT
-                return None
-        raise SolverError(f"{_NAMES[plugin]} ended a servo-aware design with {status!r}; report this job")
+        rows = _Rows(matrix, *(np.concatenate(parts) for parts in (self._low, self._high, self._accepted)))
+        return _linear(rows, cost) if square is None else _quadratic(rows, cost, square, sure)
 
 
-def _missed(values: FloatArray, low: FloatArray, high: FloatArray, accepted: FloatArray) -> float:
-    """By how much the rows are broken beyond what is accepted; 0 or less where all are kept."""
-    return float(np.maximum(values - high - accepted, low - accepted - values).max())
+@dataclass(frozen=True, eq=False)
+class _Rows:
+    """Rows ``low <= matrix @ x <= high``, and what an answer may break them by."""
+
+    matrix: FloatArray
+    low: FloatArray
+    high: FloatArray
+    accepted: FloatArray
+
+    def missed(self, found: FloatArray) -> float:
+        """By how much an answer breaks rows beyond what is accepted; 0 or less where it keeps them all."""
+        values = self.matrix @ found
+        return float((np.maximum(values - self.high, self.low - values) - self.accepted).max())
+
+
+_Road = Callable[[FloatArray, FloatArray, FloatArray, FloatArray], tuple[FloatArray | None, str]]
+"""What solves a linear programme of a matrix, bounds of its rows and a cost: the answer, or nothing, and the status."""
+
+
+def _linear(rows: _Rows, cost: FloatArray) -> FloatArray | None:
+    """Solve a linear programme; its answer is refined where it breaks rows by rounding."""
+    status = ""
+    roads: list[_Road] = [_by_its_dual, *(partial(_by_simplex, options=options) for options in _HIGHS_ROADS)]
+    for road in roads:
+        found, factor = np.zeros(len(cost)), 1.0
+        for _ in range(1 + _REFINEMENTS):
+            low, high = (factor * (side - rows.matrix @ found) for side in (rows.low, rows.high))
+            step, status = road(rows.matrix, low, high, cost)
+            if step is None:
+                break
+            found = found + step / factor
+            missed = rows.missed(found)
+            if missed <= 0.0:
+                return found
+            factor = min(_GREATEST_FACTOR, 1.0 / missed)
+        if factor == 1.0 and status == _INFEASIBLE:
+            return None
+    raise SolverError(f"HiGHS ended a servo-aware design with {status!r}; report this job")
+
+
+def _by_its_dual(
+    matrix: FloatArray, low: FloatArray, high: FloatArray, cost: FloatArray
+) -> tuple[FloatArray | None, str]:
+    """Ask HiGHS for the dual, whose basis is as small as the unknowns are few; its multipliers are the answer."""
+    above, below = np.isfinite(high), np.isfinite(low)
+    columns = ca.sparsify(ca.DM(np.vstack([-matrix[above], matrix[below]]).T))
+    prices = np.concatenate([high[above], -low[below]])
+    answer, status = _ask(
+        "highs", {"highs": _HIGHS | {"presolve": "off"}}, prices, columns, (cost, cost), (0.0, np.inf)
+    )
+    if answer is None:  # no answer of a programme is too much of its dual, and the other way round
+        return None, {_UNBOUNDED: _INFEASIBLE, _INFEASIBLE: _UNBOUNDED}.get(status, status)
+    return answer["lam_a"], status
+
+
+def _by_simplex(
+    matrix: FloatArray, low: FloatArray, high: FloatArray, cost: FloatArray, options: dict[str, Any]
+) -> tuple[FloatArray | None, str]:
+    """Ask HiGHS for the programme as it stands."""
+    rows = ca.sparsify(ca.DM(matrix))
+    answer, status = _ask("highs", {"highs": _HIGHS | options}, cost, rows, (low, high), (-np.inf, np.inf))
+    return None if answer is None else answer["x"], status
+
+
+def _quadratic(rows: _Rows, cost: FloatArray, square: FloatArray, sure: bool) -> FloatArray | None:
+    """Solve a quadratic programme by qpOASES, or by IPOPT where HiGHS finds that there is an answer."""
+    steady = _STEADY * np.trace(square) / len(cost) * np.eye(len(cost))
+    quadratic, matrix = ca.DM(square + steady), ca.DM(rows.matrix)
+    status = ""
+    for plugin, options in [("qpoases", _QPOASES), ("nlpsol", _IPOPT)][: 1 + sure]:
+        answer, status = _ask(plugin, options, cost, matrix, (rows.low, rows.high), (-np.inf, np.inf), quadratic)
+        if answer is not None and rows.missed(answer["x"]) <= 0.0:
+            return answer["x"]
+        if plugin == "qpoases" and _linear(rows, np.zeros(len(cost))) is None:
+            return None
+    raise SolverError(f"{'IPOPT' if sure else 'qpOASES'} ended a servo-aware design with {status!r}; report this job")
+
+
+def _ask(
+    plugin: str,
+    options: dict[str, Any],
+    cost: FloatArray,
+    rows: ca.DM,
+    between: tuple[FloatArray, FloatArray],
+    bounds: tuple[float, float],
+    quadratic: ca.DM | None = None,
+) -> tuple[dict[str, FloatArray] | None, str]:
+    """Minimise with one of CasADi's solvers; nothing and its status where it found no answer."""
+    square = ca.DM(len(cost), len(cost)) if quadratic is None else quadratic
+    form = {"h": square.sparsity(), "a": rows.sparsity()}
+    with _silenced():
+        solver = ca.conic("camwright", plugin, form, options | {"error_on_fail": False})
+        answer = solver(h=square, g=cost, a=rows, lba=between[0], uba=between[1], lbx=bounds[0], ubx=bounds[1])
+    statistics = solver.stats()
+    status = str(statistics.get("solver_stats", statistics).get("return_status", ""))
+    if not statistics["success"]:
+        return None, status
+    return {name: np.asarray(answer[name], dtype=np.float64).ravel() for name in ("x", "lam_a")}, status
 
 
 @contextlib.contextmanager

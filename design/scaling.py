@@ -60,23 +60,6 @@ class ScaledProblem:
         """Whether the slave must keep to a stroke."""
         return math.isfinite(self.least_position) or math.isfinite(self.greatest_position)
 
-    @property
-    def forward(self) -> bool:
-        """Whether the slave may not run backwards."""
-        return self.least_ratio >= -self.drift * (1 + 1e-12)
-
-    def eased(self, factor: float) -> ScaledProblem:
-        """Multiply the limits of speed, acceleration and jerk by a common factor."""
-        high = (self.greatest_ratio + self.drift) * factor - self.drift
-        low = self.least_ratio if self.forward else (self.least_ratio + self.drift) * factor - self.drift
-        return replace(
-            self,
-            greatest_ratio=high,
-            least_ratio=low,
-            greatest_slope=self.greatest_slope * factor,
-            greatest_jerk=self.greatest_jerk * factor,
-        )
-
 
 def motion_scale(problem: ReturnProblem) -> float:
     """Slave travel that becomes 1: the largest deviation from the line that the boundary values ask for; zero if the line will do.

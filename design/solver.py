@@ -285,32 +285,6 @@ def smoothest(problem: ReturnProblem) -> CamProfile | None:
     return on_grid
 
 
-def limit_margin(problem: ReturnProblem) -> float:
-    """Least common factor on the limits of speed, acceleration and jerk with which some motion returns the slave.
-
-    At most 1 if the job is feasible. There always is such a factor, so this programme, unlike the job itself, always has an answer.
-
-    Raises
-    ------
-    SolverError
-        The solver failed.
-    """
-    scale = motion_scale(problem)
-    if abs(scale) <= NO_MOTION * problem.length:
-        return problem.start_ratio / problem.greatest_ratio
-    scaled = scale_problem(problem, scale)
-    lengths = np.full(COARSE[1], 1.0 / COARSE[1])
-    nodes = np.concatenate([[0.0], np.cumsum(lengths)])
-    bend = scaled.height * (60 * nodes - 180 * nodes**2 + 120 * nodes**3)
-    shape = Shape(FREE * len(lengths), 1, False, "margin", scaled.confined)
-    grid, statistics = programme(shape).solve(scaled, Motion(lengths, bend, 2.0))
-    if not statistics["success"]:
-        raise SolverError(f"IPOPT did not find how far the limits are from enough: {statistics['return_status']}")
-    start, arcs = read_cubic(grid, scaled.eased(grid.objective))
-    polished, statistics = programme(Shape(arcs, 1, True, "margin", scaled.confined)).solve(scaled, start)
-    return min(polished.objective, grid.objective) if statistics["success"] else grid.objective
-
-
 def grid_objective(problem: ReturnProblem) -> float:
     """Objective on the coarse grid alone, over the master: a few per cent above the optimum, smooth in the problem's numbers.
 

@@ -29,9 +29,6 @@ from profiles.polynomial import CamProfile, FloatArray
 
 PEAKS: tuple[Objective, ...] = ("peak_acceleration", "peak_jerk")
 
-Cost = Objective | Literal["margin"]
-"""What a programme minimises: an objective of the motion, or the least common factor on all limits that some motion keeps."""
-
 Arc = Literal["free", "ramp", "hold", "fall", "cruise"]
 """What a piece is known to be: nothing, linear in the acceleration, of constant acceleration, without acceleration at its end, of constant
 speed."""
@@ -67,7 +64,7 @@ class Shape:
     arcs: tuple[Arc, ...]
     degree: int
     free_lengths: bool
-    objective: Cost
+    objective: Objective
     confined: bool = False
     at_nodes: bool = False
 
@@ -170,10 +167,10 @@ class Programme:
             "q": m + 1,
             "j": m * p if shape.objective == "rms_jerk" else 0,
             "h": m if shape.free_lengths else 0,
-            "t": 1 if shape.objective in (*PEAKS, "margin") else 0,
+            "t": 1 if shape.objective in PEAKS else 0,
         }
         unknown = {name: ca.SX.sym(name, size) for name, size in self._sizes.items()}
-        jerk_limit, drift, slope_limit, ratio_limit = (ca.SX.sym(name) for name in "JdAR")
+        jerk_limit, drift = (ca.SX.sym(name) for name in "Jd")
         lengths = unknown["h"] if shape.free_lengths else ca.SX.sym("h", m)
         self._equations, between = dynamics(unknown, lengths, p)
         equal, positive = list(self._equations), []
@@ -189,9 +186,6 @@ class Programme:
                 step = p * (unknown["a"][i * p + k + 1] - unknown["a"][i * p + k])
                 if shape.objective == "rms_jerk":
                     equal.append(lengths[i] * unknown["j"][i * p + k] - step)
-                elif shape.objective == "margin":
-                    bound = unknown["t"] * lengths[i]
-                    positive += [bound - step / jerk_limit, bound + step / jerk_limit]
                 elif shape.objective == "peak_jerk":
                     bound = unknown["t"] * lengths[i]
                     positive += [bound - step, bound + step]
@@ -201,13 +195,6 @@ class Programme:
             inner = unknown["a"]
             positive += [unknown["t"] - inner[k] for k in range(m * p + 1)]
             positive += [unknown["t"] + inner[k] for k in range(m * p + 1)]
-        elif shape.objective == "margin":
-            for k in range(m * p + 1):
-                share = unknown["a"][k] / slope_limit
-                positive += [unknown["t"] - share, unknown["t"] + share]
-            for pace in [*ca.vertsplit(unknown["v"]), *between]:
-                share = (pace + drift) / ratio_limit
-                positive += [unknown["t"] - share, unknown["t"] + share]
         # On a long piece the hull of a polynomial of higher degree is far too wide; halved often enough, it fits.
         bent: list[Any] = []
         paces: list[Any] = []
@@ -219,7 +206,7 @@ class Programme:
                 paces = _finer_jerk(shape, unknown["j"], jerk_limit, split)
         places = _places(unknown, lengths, p, drift, SPLIT if shape.free_lengths else 1) if shape.confined else []
         self._counts = (len(equal), len(positive), len(between), len(bent), len(paces), len(places))
-        parameters = ca.vertcat(jerk_limit, drift, slope_limit, ratio_limit)
+        parameters = ca.vertcat(jerk_limit, drift)
         if not shape.free_lengths:
             parameters = ca.vertcat(parameters, lengths)
         programme = {
@@ -254,12 +241,8 @@ class Programme:
         low, high = problem.least_ratio * factor, problem.greatest_ratio * factor
         steps = p * np.diff(start.accelerations) / np.repeat(np.maximum(start.lengths, 1e-12), p)
         guess = {"a": start.accelerations, "v": v, "q": q, "j": steps, "h": start.lengths, "t": [start.objective]}
-        margin = self.shape.objective == "margin"
-        if margin:  # the limits are rows of the programme; only standing still is a limit of its own
-            low, high = (low if problem.forward else -np.inf), np.inf
-        hull = np.full(m * p + 1, slope if self._hull and not margin else np.inf)
-        if not margin:
-            hull[::p] = slope  # at the nodes the coefficients are values
+        hull = np.full(m * p + 1, slope if self._hull else np.inf)
+        hull[::p] = slope  # at the nodes the coefficients are values
         lower: dict[str, Any] = {"a": -hull, "v": np.full(m + 1, low), "q": [-np.inf] * (m + 1)}
         pace = np.full(m * p, jerk if self._hull else np.inf)
         pace[::p] = pace[p - 1 :: p] = jerk
@@ -268,7 +251,7 @@ class Programme:
         upper |= {
             "j": pace.copy(),
             "h": [1.0] * m,
-            "t": [np.inf if margin else jerk if self.shape.objective == "peak_jerk" else slope],
+            "t": [jerk if self.shape.objective == "peak_jerk" else slope],
         }
         ends = {
             "a": (problem.start_slope, problem.end_slope),
@@ -286,8 +269,6 @@ class Programme:
             p=[
                 jerk,
                 problem.drift,
-                slope,
-                problem.greatest_ratio + problem.drift,
                 *([] if self.shape.free_lengths else start.lengths),
             ],
             lbx=self._pack(lower),
@@ -446,7 +427,7 @@ def _known_arcs(shape: Shape, a: Any) -> list[Any]:
 
 def _cost(shape: Shape, unknown: dict[str, Any], lengths: Any) -> Any:
     """Objective: the bound of a peak, or the mean square by the Gram matrix of the Bernstein polynomials."""
-    if shape.objective in (*PEAKS, "margin"):
+    if shape.objective in PEAKS:
         return unknown["t"]
     p = shape.degree
     cost = ca.SX(0)

@@ -32,6 +32,20 @@ def test_a_jump_of_the_profile_is_a_jump_of_the_formula() -> None:
     assert (float(found(0.5, side="left")), float(found(0.5))) == (pytest.approx(1.0), pytest.approx(3.0))
 
 
+def test_a_formula_that_rounds_is_taken_to_its_rounding() -> None:
+    """What is lost in a difference of large numbers no halving brings back."""
+
+    def rounded(y: np.ndarray, ratio: np.ndarray, _: np.ndarray) -> np.ndarray:
+        return (y + 2e3) - 2e3 + np.cos(ratio)
+
+    found = compose(rounded, WAVE)
+    x = np.linspace(0.0, 1.0, 3001)
+    truth = WAVE(x) + np.cos(WAVE(x, 1))
+    assert np.abs(found(x) - truth).max() <= 2e-12 * np.abs(truth).max()
+    with pytest.raises(InputError, match="not smooth"):
+        compose(lambda y, ratio, _: (y + 2e5) - 2e5 + np.cos(ratio), WAVE)
+
+
 def test_a_sliver_left_by_rounding_does_no_harm() -> None:
     breaks = np.array([0.0, 0.4, 0.4 + 1e-15, 1.0])
     sliver = CamProfile(breaks, WAVE.coefficients[[0, 1, 1]])

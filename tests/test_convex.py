@@ -89,7 +89,7 @@ def test_rows_that_contradict_each_other_have_no_answer() -> None:
 def test_a_cost_without_bound_is_the_solvers_failure() -> None:
     programme = ConvexProgramme(1)
     programme.add(np.ones((1, 1)), -np.inf, 1.0)
-    with pytest.raises(SolverError, match="HiGHS ended a servo-aware design with '.*'; report this job"):
+    with pytest.raises(SolverError, match=r"HiGHS ended a servo-aware design with '.*'; report this job"):
         programme.solve(np.ones(1))
 
 

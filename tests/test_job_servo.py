@@ -124,8 +124,8 @@ def test_the_gain_margin_of_a_fast_sampled_loop_is_that_of_routh() -> None:
         (changed(objective='servo_aware = "yes"'),
          "[objective] servo_aware = 'yes': neither true nor false; write true or false without quotes"),
         (changed(objective='minimise = "sync_error"'),
-         "[objective] minimise = 'sync_error': for servo-aware designs only; add servo_aware = true or minimise e.g. "
-         '"peak_acceleration"'),
+         ("[objective] minimise = 'sync_error': for servo-aware designs only; add servo_aware = true or minimise e.g. "
+         '"peak_acceleration"')),
         (changed(objective='servo_aware = false\ncommand = "shaped"'),
          "[objective] command = 'shaped': for servo-aware designs only; add servo_aware = true or leave command out"),
         (changed(objective='command = "in_sync"'), "[objective] command = 'in_sync': for servo-aware designs only"),
@@ -138,20 +138,20 @@ def test_the_gain_margin_of_a_fast_sampled_loop_is_that_of_routh() -> None:
         (changed(tolerance="damping = [0.8, 0.6]"),
          "[servo.tolerance] damping = [0.8, 0.6]: the range is upside down; give its lower end first"),
         (changed(tolerance='bandwidth = ["125 rad/s", "132 rad/s"]'),
-         "[servo.tolerance] bandwidth: the range from 125 rad/s to 132 rad/s does not contain [servo] bandwidth = 120 "
-         "rad/s; begin it lower, or correct [servo] bandwidth"),
+         ("[servo.tolerance] bandwidth: the range from 125 rad/s to 132 rad/s does not contain [servo] bandwidth = 120 "
+         "rad/s; begin it lower, or correct [servo] bandwidth")),
         (changed(tolerance='sample_time = ["1 ms", "2 ms"]'),
-         "[servo.tolerance] sample_time: the range from 1 ms to 2 ms does not contain [servo] sample_time = 4 ms; end it "
-         "higher, or correct [servo] sample_time"),
+         ("[servo.tolerance] sample_time: the range from 1 ms to 2 ms does not contain [servo] sample_time = 4 ms; end it "
+         "higher, or correct [servo] sample_time")),
         (changed(tolerance='dead_time = ["1 ms", "2 ms"]'),
          "[servo.tolerance] dead_time: the range from 1 ms to 2 ms does not contain [servo] dead_time = 0 ms; begin"),
         (changed(tolerance="damping = [0.8, 0.9]"), "does not contain [servo] damping = 0.7; begin it lower"),
         (changed(tolerance='dead_time = "10 %"'),
-         "[servo.tolerance] dead_time = 10 %: no range, since [servo] dead_time = 0 ms; write its ends, e.g. dead_time = "
-         '["0 ms", "1 ms"]'),
+         ("[servo.tolerance] dead_time = 10 %: no range, since [servo] dead_time = 0 ms; write its ends, e.g. dead_time = "
+         '["0 ms", "1 ms"]')),
         (changed(tolerance='bandwidth = "100 %"'),
-         "[servo.tolerance] bandwidth = '100 %': not a percentage above 0 % and below 100 %; write e.g. \"10 %\", to "
-         'both sides, or the ends of the range, ["108 rad/s", "132 rad/s"]'),
+         ("[servo.tolerance] bandwidth = '100 %': not a percentage above 0 % and below 100 %; write e.g. \"10 %\", to "
+         'both sides, or the ends of the range, ["108 rad/s", "132 rad/s"]')),
         (changed(tolerance='damping = "-5 %"'), "[servo.tolerance] damping = '-5 %': not a percentage above 0 %"),
         (changed(tolerance='damping = "12 rad/s"'), "[servo.tolerance] damping = '12 rad/s': not a percentage above"),
         (changed(tolerance="bandwidth = 10"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -17,8 +17,10 @@ from validation.motion import (
     Motion,
     greatest_jump,
     greatest_magnitude,
+    is_steady,
     measure_motion,
     measure_tool,
+    position_scale,
     slope_scale,
     sync_ratio_error,
 )
@@ -126,6 +128,25 @@ def test_jumps_and_scale_of_a_parabolic_return() -> None:
     assert (jump.value, jump.at) == (pytest.approx(2 * peak), pytest.approx(0.2))
     assert slope_scale(profile) == pytest.approx(peak)
     assert greatest_magnitude(profile, 2).value == pytest.approx(peak)
+
+
+@dataclass(frozen=True)
+class SwingingArm(CrankSlider):
+    """A slave counted in rad that comes back: none of the machines here, but one that anybody may write."""
+
+    @property
+    def pitch(self) -> float:
+        """Zero: it comes back."""
+        return 0.0
+
+
+def test_a_slave_in_rad_is_measured_against_a_turn() -> None:
+    """Whatever its pitch: rounding in an arm that comes back is no jump."""
+    arm = SwingingArm(0.15, 0.6)
+    out_and_back = CamProfile.from_arrays([0.0, 0.5, 1.0], [[0.0, 1.0, 0.0, -4.0], [1e-15, -2.0, -6.0, 12.0]])
+    assert position_scale(out_and_back, arm) == position_scale(out_and_back, CrankSlider(0.15, 0.6)) == 2 * math.pi
+    assert greatest_jump(out_and_back, 0).value > 0
+    assert is_steady(out_and_back, arm)
 
 
 def test_a_position_jump_makes_the_acceleration_unbounded() -> None:

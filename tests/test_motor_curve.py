@@ -7,8 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from design import solve
+from design import Objective, is_feasible, solve
 from design.motor import motor_limits
+from design.motor_curve import keeps_curve, least_load, load
 from profiles.cycle import Cut
 from profiles.errors import InfeasibleError, InputError
 from profiles.limits import Limits
@@ -100,6 +101,45 @@ def test_a_weak_motor_binds_and_the_suggestion_works() -> None:
     assert (
         solve(KNIFE, replace(CUT, line_speed=slower.value / 60), limits, "peak_acceleration").status.value == "optimal"
     )
+
+
+CRANK = CrankSlider(0.15, 0.6, 0.0, 0.5, 20.0, 5.0, 1.75)
+SHEAR = Cut(0.9, 1.0, 0.1, 0.04, 0.06, 1e-4)
+
+
+@pytest.mark.parametrize("objective", ["rms_torque", "peak_acceleration"])
+def test_a_crank_keeps_its_motors_curve_where_no_rectangle_does(objective: Objective) -> None:
+    """The curve falls: much torque at low speed, little at the speed of the quick return."""
+    limits = Limits(40.0, 400.0, 40000.0, motor=MotorCurve(((0.0, 30.0), (40.0, 20.0), (80.0, 7.0), (150.0, 4.0))))
+    cut = replace(SHEAR, length=0.5)
+    assert not any(is_feasible(CRANK, cut, each) for each in motor_limits(CRANK, limits))
+    found = solve(CRANK, cut, limits, objective)
+    speed, torque = used(found.profile, CRANK, cut)
+    assert limits.motor is not None
+    assert (np.abs(torque) <= limits.motor.torque(speed)).all()
+    assert keeps_curve(found.profile, CRANK, cut, limits.motor)
+    without = solve(CRANK, cut, replace(limits, motor=None), objective)
+    assert found.objective >= without.objective * (1 - 1e-3)
+    load = least_load(CRANK, cut, limits)
+    assert load is not None
+    assert load.value < 1.0
+
+
+def test_the_least_load_is_below_that_of_every_other_optimum() -> None:
+    limits = Limits(40.0, 400.0, 40000.0, motor=MotorCurve(((0.0, 18.0), (80.0, 12.0), (150.0, 4.0))))
+    easiest = least_load(CRANK, SHEAR, limits)
+    assert easiest is not None
+    assert limits.motor is not None
+    for objective in ("rms_torque", "rms_acceleration"):
+        other = solve(CRANK, SHEAR, replace(limits, motor=None), objective)
+        assert easiest.value <= load(other.profile, CRANK, SHEAR, limits.motor) * (1 + 1e-2)
+
+
+def test_low_speeds_have_rectangles_where_the_torque_grows_with_the_speed() -> None:
+    weak = Limits(40.0, 400.0, 40000.0, motor=MotorCurve(((0.0, 3.0), (150.0, 3.0))))
+    speeds = [each.speed for each in motor_limits(CRANK, weak)]
+    assert min(speeds) == pytest.approx(150.0 / 5.0 / 64)
+    assert is_feasible(CRANK, replace(SHEAR, line_speed=0.02), weak)
 
 
 def test_a_motor_that_cannot_overcome_friction_leaves_no_limits() -> None:
