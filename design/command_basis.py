@@ -189,7 +189,9 @@ def command_basis(
         places = np.arange(count + 3)
         matrix = np.zeros((count + 3, count))
         matrix[places, places % count] = 1.0
-        even = np.asarray(machine.pitch * (places - 1) / count, dtype=np.float64)  # the coefficients of a motion of even speed
+        even = np.asarray(
+            machine.pitch * (places - 1) / count, dtype=np.float64
+        )  # the coefficients of a motion of even speed
         return CommandBasis(cut.length, machine.pitch, knots, matrix, even, None)
     sync = machine.sync_profile(cut)
     nodes = _nodes(cut.return_zone, count, structure)
@@ -211,7 +213,9 @@ def command_basis(
     constant = np.zeros(count + 3)
     constant[:3] = np.linalg.solve(pieces[0, :3, :3], ends[0])  # the fourth spline of the first interval is flat there
     constant[count:] = np.linalg.solve(last[:3, 1:], ends[1])
-    averages = (spread[1:-3] + spread[2:-2] + spread[3:-1]) / 3  # where a straight line takes the values of its coefficients
+    averages = (
+        spread[1:-3] + spread[2:-2] + spread[3:-1]
+    ) / 3  # where a straight line takes the values of its coefficients
     constant[3:count] = np.interp(averages[3:count], averages[[2, count]], constant[[2, count]])
     matrix = np.zeros((count + 3, count - 3))
     matrix[3:count] = np.eye(count - 3)

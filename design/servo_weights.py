@@ -101,7 +101,7 @@ def sampled_response(servo: Servo, times: FloatArray, samples: FloatArray, order
     parts = [sample_plant(servo.loop, time) for time in times.tolist()]
     row = 2 - order
     moved = np.einsum("ij,ij->i", np.array([part.transition[row] for part in parts]), states)
-    return moved + np.array([part.input[row] for part in parts]) * reference
+    return np.asarray(moved + np.array([part.input[row] for part in parts]) * reference)
 
 
 @lru_cache(maxsize=256)

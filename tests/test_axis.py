@@ -34,7 +34,7 @@ def some_command(machine: Machine, cut: Cut, command: Command) -> CamProfile:
     """Return a command near the motion of even speed, bent at random."""
     basis = command_basis(machine, cut, command)
     travel = machine.pitch or cut.sync_zone
-    return basis.profile(np.random.default_rng(4).normal(0.0, 0.01 * travel, basis.matrix.shape[1]))
+    return basis.profile(np.random.default_rng(4).normal(0.0, 0.01 * travel, size=(basis.matrix.shape[1],)))
 
 
 def from_mid_sync(profile: CamProfile, machine: Machine, cut: Cut) -> CamProfile:
@@ -97,7 +97,7 @@ def test_rows_are_the_response(name: str, command: Command, order: int) -> None:
     machine, cut = MACHINES[name]
     basis = command_basis(machine, cut, command)
     axis = Axis(machine, cut, LATE)
-    unknowns = np.random.default_rng(5).normal(0.0, 0.1, basis.matrix.shape[1])
+    unknowns = np.random.default_rng(5).normal(0.0, 0.1, size=(basis.matrix.shape[1],))
     response = axis.on_grid(basis.profile(unknowns), 0, 60, order)
     steps = np.tile(np.arange(60.0), 8)
     subs = np.repeat(np.arange(8.0), 60)

@@ -125,7 +125,7 @@ def test_the_arcs_of_a_structure_become_nodes_and_its_return_is_among_the_comman
     collocation = np.array([basis.profile(column)(at) for column in np.eye(basis.matrix.shape[1])])
     constant = basis.profile(np.zeros(basis.matrix.shape[1]))(at)
     nearest, *_ = np.linalg.lstsq((collocation - constant).T, back(at) - constant, rcond=None)
-    assert basis.profile(nearest)(at) == pytest.approx(back(at), abs=1e-11)
+    assert basis.profile(np.asarray(nearest, dtype=np.float64))(at) == pytest.approx(back(at), abs=1e-11)
 
 
 def test_arcs_of_next_to_no_length_get_no_node() -> None:

@@ -52,7 +52,7 @@ def test_a_stroke_that_is_too_short_is_named_with_the_one_that_is_needed() -> No
     ("machine", "cut", "limits", "binding"),
     [
         pytest.param(CARRIAGE, SAW, Limits(2.0, 4.0, 300.0), "acceleration", id="carriage"),
-        pytest.param(THICK, Cut(0.2, 1.0, 0.08, 0.04, 0.04, 1e-4), Limits(8.0, 900.0, 2400.0), "jerk", id="thick"),
+        pytest.param(THICK, Cut(0.2, 1.0, 0.08, 0.04, 0.04, 1e-4), Limits(8.0, 900.0, 1800.0), "jerk", id="thick"),
         pytest.param(CRANK, replace(SHEAR, length=0.4), Limits(30.0, 80.0, 40000.0), "acceleration", id="crank"),
         pytest.param(CRANK, replace(SHEAR, length=0.4), Limits(18.0, 200.0, 20000.0), "speed", id="crank-speed"),
     ],

@@ -20,9 +20,10 @@ def always(value: float) -> Callable[[float], float]:
     return lambda _: value
 
 
-def search(
-    least: Callable[[float], float], fine: int = 64, lower: Callable[[float], float] = always(0.1)
-) -> ZoneSearch:
+ANY = always(0.1)
+
+
+def search(least: Callable[[float], float], fine: int = 64, lower: Callable[[float], float] = ANY) -> ZoneSearch:
     """Search where a cut holds if it is no shorter than a given least length beside its sync zone."""
     return ZoneSearch(CUT, PITCH, lower, lambda cut: cut.length >= least(cut.sync_zone), fine, 3e-6, 1e-5)
 

@@ -172,7 +172,9 @@ def _compare_view(before: Path, after: Path, changes: list[Change]) -> Renderabl
     last = ""
     for change in changes:
         values = [Text(_short(value)) for value in (change.before, change.after)]
-        table.add_row(change.group if change.group != last else "", Text(change.name.replace("_", " ")), change.unit, *values)
+        table.add_row(
+            change.group if change.group != last else "", Text(change.name.replace("_", " ")), change.unit, *values
+        )
         last = change.group
     return table
 
