@@ -32,7 +32,7 @@ from validation.monte_carlo import shear_zone_errors
 from validation.response import servo_response
 
 RESULTS = Path(__file__).parent / "results" / "servo_aware.csv"
-RUNS = 7
+RUNS = 15
 AGREEMENT = 1e-9
 """Greatest difference between predicted and simulated sync error (m) with which the two count as the same."""
 
@@ -54,15 +54,16 @@ COLUMNS = (
 )  # fmt: skip
 
 
-def shortest(run: Callable[[], object], runs: int = RUNS) -> float:
-    """Shortest processor time of several runs (s), after one that is not counted."""
-    run()
-    times = []
-    for _ in range(runs):
-        start = process_time()
-        run()
-        times.append(process_time() - start)
-    return min(times)
+def shortest(runs: int, *designs: Callable[[], object]) -> list[float]:
+    """Shortest processor times (s) of designs that take turns, after one round that is not counted."""
+    times: list[list[float]] = []
+    for _ in range(runs + 1):
+        times.append([])
+        for design in designs:
+            start = process_time()
+            design()
+            times[-1].append(process_time() - start)
+    return [min(column) for column in zip(*times[1:], strict=True)]
 
 
 def measure(
@@ -82,8 +83,7 @@ def measure(
         raise TypeError("a servo-aware design says nothing of its axis")
     simulated = servo_response(solution.profile, MACHINE, placed, SERVO).shear_zone_error
     plain: Objective = "peak_acceleration" if objective == "sync_error" else objective
-    before = shortest(lambda: solve(MACHINE, cut, LIMITS, plain))
-    after = shortest(aware, 1 if robust else RUNS)
+    before, after = shortest(1 if robust else RUNS, lambda: solve(MACHINE, cut, LIMITS, plain), aware)
     row: dict[str, object] = {
         "cut_mm": f"{cut.length * 1e3:g}",
         "command": command,
@@ -126,7 +126,7 @@ def main() -> int:
         return 1
     cut, drawn = replace(SHORT, shaped=True), RANGES.draw(SERVO, DRAWS, seed=1)
     worst = float(shear_zone_errors(last.profile, MACHINE, cut, drawn).max())
-    seconds = shortest(lambda: shear_zone_errors(last.profile, MACHINE, cut, drawn), 2)
+    (seconds,) = shortest(2, lambda: shear_zone_errors(last.profile, MACHINE, cut, drawn))
     print(
         f"monte_carlo: {DRAWS} simulations in {seconds:.2f} s of {MOST_SECONDS:g} s promised, worst {worst * 1e3:.5f} mm"
     )

@@ -10,7 +10,7 @@ from profiles.cycle import Cut
 from profiles.errors import SolverError
 from profiles.machines import RotaryKnife
 
-_FINE, _LENGTH_RESOLUTION, _ZONE_RESOLUTION = 16, 1e-4, 1e-3
+_FINE, _LENGTH_RESOLUTION, _ZONE_RESOLUTION = 8, 2e-4, 4e-3
 """How finely sync zones and cut lengths are searched; see `validation.zone_search.ZoneSearch`."""
 
 

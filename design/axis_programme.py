@@ -38,10 +38,10 @@ BAND_MARGIN = 1e-3
 BAND_ACCEPTED = 1e-5
 # Limits of the axis' own speed and acceleration are drawn in by this share, for the same reason.
 AXIS_MARGIN = 1e-3
-# Places in the shear zone that have rows from the start, and times after a sample.
-PLACES, TIMES = 6, 2
+# Places in the shear zone that have rows from the start: one for each sample in it, at least and at most so many; and times after a sample.
+PLACES, MOST_PLACES, TIMES = 6, 24, 2
 # Rounds of adding rows, most rows of each kind added in a round, and the share by which a band may be missed without another round.
-ROUNDS, MOST_ROWS, NEARLY = 12, 12, 1e-3
+ROUNDS, MOST_ROWS, NEARLY = 30, 12, 1e-3
 # Most rows of the axis' own motion added in a round: it runs along its limits where the tool only touches its band.
 MOST_OWN = 24
 # A peak that later programmes keep is taken as this share of its limit at least: the peak of a steady motion is rounding.
@@ -124,6 +124,9 @@ class AxisProgramme:
         self._bands = [self._band(axis, *_first_rows(axis)) for axis in self.axes]
         self._ratios = [self._ratio(*_first_rows(self.axes[0]))] if problem.cut.shear_zone else []
         self._own: list[_Rows] = []
+        self._answer: tuple[FloatArray, CamProfile] | None = None
+        self._judged: CamProfile | None = None
+        self._excess: dict[int, FloatArray] = {}
 
     def solve(
         self, cost: Cost, band: float | None, caps: dict[int, float] | None = None
@@ -188,8 +191,10 @@ class AxisProgramme:
             raise
 
     def profile(self, unknowns: FloatArray) -> CamProfile:
-        """Return the command of an answer, from the start of the return."""
-        return self.basis.profile(unknowns * self.scale)
+        """Return the command of an answer, from the start of the return; asked again, the same one."""
+        if self._answer is None or self._answer[0] is not unknowns:
+            self._answer = unknowns, self.basis.profile(unknowns * self.scale)
+        return self._answer[1]
 
     def errors(self, profile: CamProfile) -> tuple[float, ...]:
         """Largest sync error of the tool in the shear zone (m), by servo."""
@@ -359,17 +364,22 @@ class AxisProgramme:
 
     def _own_excess(self, profile: CamProfile, order: int) -> FloatArray:
         """By how much the nominal axis breaks a limit over the cycle, by time after a sample and place; negative within it."""
+        if self._judged is not profile:
+            self._judged, self._excess = profile, {}
+        if order in self._excess:
+            return self._excess[order]
         low, high = self._own_limits()[order]
         axis = self.axes[0]
         count = math.ceil(self.problem.cut.length / (axis.sample / PHASES))
         values = axis.on_grid(profile, 0, count, order)
-        return np.maximum(values - high, low - values)
+        self._excess[order] = np.maximum(values - high, low - values)
+        return self._excess[order]
 
 
 def _first_rows(axis: Axis) -> tuple[FloatArray, FloatArray]:
     """Places and times of the first rows: the ends of the shear zone and places between, at a few times after a sample."""
     start, end = axis.shear_zone
-    count = PLACES if end > start else 1
+    count = min(max(PLACES, math.ceil((end - start) / axis.sample)), MOST_PLACES) if end > start else 1
     places = start + (end - start) * (1.0 - np.cos(np.pi * np.arange(count) / max(1, count - 1))) / 2
     times = axis.servo.sample_time * np.arange(TIMES) / TIMES
     return np.tile(places, TIMES), np.repeat(times, count)

@@ -18,7 +18,7 @@ Command = Literal["in_sync", "shaped"]
 INTERVALS: dict[Command, int] = {"in_sync": 48, "shaped": 64}
 """Intervals of the free part, if it has no structure of its own."""
 
-ROBUST_SHARE = 1.25
+ROBUST_SHARE = 1.5
 """Times as many for several servos."""
 
 # Arcs of a structure shorter than this share of an interval get no node of their own.

@@ -14,7 +14,7 @@ from profiles.errors import SolverError
 from profiles.polynomial import CamProfile, FloatArray
 
 # By this factor the sync error of a servo between the corners may be above that at the corners.
-BETWEEN = 1.105
+BETWEEN = 1.1
 # By this share a sync error may be above the least, and by this share a peak, for the sake of what comes after them.
 KEPT_ERROR = 1e-3
 KEPT_PEAK = 1e-5
