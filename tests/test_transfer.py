@@ -70,7 +70,9 @@ def check_limits(transfer: Transfer, time: float, end: State, bounds: Bounds) ->
     assert v.min() >= bounds.least_velocity - 1e-8 * speed
     assert np.abs(a).max() <= bounds.acceleration * (1 + 1e-9)
     assert np.abs([j for _, j in transfer.phases]).max() <= bounds.jerk * (1 + 1e-12)
-    assert v.min() == pytest.approx(transfer.least_velocity(), abs=1e-6 * (speed + bounds.acceleration * time))
+    # the least of the samples lies above the least of all, by less than the jerk does in a step
+    missed = 0.5 * bounds.jerk * (times[-1] / 4_000) ** 2 + 1e-8 * (speed + bounds.acceleration * time)
+    assert v.min() == pytest.approx(transfer.least_velocity(), abs=missed)
 
 
 @settings(max_examples=60, deadline=None)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from profiles.tables.text import refuse, shown
 
-MOST_TOKENS = 250_000
+MOST_TOKENS = 200_000
 
 _WORD = re.compile(
     r"(?P<blank>(?:[\s\ufeff]+|//[^\n]*|\{[^{}\n]{0,2000}\})*)"

@@ -219,7 +219,7 @@ def corpus() -> Iterator[Corpus]:
         st_text.encode() + st_text.encode().replace(b"aKnife", b"bKnife"),
         "more than one array",
     )
-    yield "too many words", "codesys", b"a;" * 1_500_000, "goes on beyond 250000 words"
+    yield "too many words", "codesys", b"a;" * 1_500_000, "goes on beyond 200000 words"
     yield "array of a million", "codesys", b"x : ARRAY[0..99999999] OF SMC_CAMXYVA := [];", "up to 1000000"
     yield "no poly5", "codesys-cambuilder", b"b.Append(SMCB.Poly7(a, b));", r"one SMCB\.Poly5\(left, right\) only"
     yield "bound", "codesys-cambuilder", b"b.Append(SMCB.Poly5(SMCB.BoundImplicit(), 7));", "a segment's bound must be"
