@@ -42,6 +42,8 @@ AXIS_MARGIN = 1e-3
 PLACES, MOST_PLACES, TIMES = 6, 24, 2
 # Rounds of adding rows, most rows of each kind added in a round, and the share by which a band may be missed without another round.
 ROUNDS, MOST_ROWS, NEARLY = 30, 12, 1e-3
+# Share by which the value of one round may be that of the round before, where rows beyond the tolerance have no effect.
+STILL = 1e-7
 # Most rows of the axis' own motion added in a round: it runs along its limits where the tool only touches its band.
 MOST_OWN = 24
 # A peak that later programmes keep is taken as this share of its limit at least: the peak of a steady motion is rounding.
@@ -148,12 +150,16 @@ class AxisProgramme:
             The value is a share of the tolerance, or the peak or root mean square over the master. ``None`` if no command will do: with
             limits of the axis none that misses the tolerance, which comes before them.
         """
+        before = math.nan
         for _ in range(ROUNDS + 1):
             found = self._feasible(cost, caps or {}) if band == 1.0 else self._solve_rows(cost, band, caps or {})
             if found is not None and band is None and self.problem.axis_limits and found[1] > 1.0:
                 return None
-            if found is None or not self._add_worst(found[0], found[1] if band is None else band, ratio=band == 1.0):
+            if found is None or _stands_still(found[1], before, found[1] if band is None else band):
                 break
+            if not self._add_worst(found[0], found[1] if band is None else band, ratio=band == 1.0):
+                break
+            before = found[1]
         return found
 
     def reaches(self) -> bool:
@@ -170,14 +176,15 @@ class AxisProgramme:
 
     def least_share(self) -> float | None:
         """Least share of the tolerance that a command keeps with every axis, in position and ratio; ``None`` if none keeps the limits."""
-        share = None
+        share, before = None, math.nan
         for _ in range(ROUNDS + 1):
             found = self._solve_rows("sync_error", None, {}, elastic=True)
             if found is None:
                 return None
             share = found[1] / (1.0 - BAND_MARGIN)
-            if not self._add_worst(found[0], found[1], ratio=True):
+            if _stands_still(found[1], before, found[1]) or not self._add_worst(found[0], found[1], ratio=True):
                 break
+            before = found[1]
         return share
 
     def _feasible(self, cost: Cost, caps: dict[int, float]) -> tuple[FloatArray, float] | None:
@@ -374,6 +381,11 @@ class AxisProgramme:
         values = axis.on_grid(profile, 0, count, order)
         self._excess[order] = np.maximum(values - high, low - values)
         return self._excess[order]
+
+
+def _stands_still(value: float, before: float, band: float) -> bool:
+    """Whether more rows are of no use: beyond the tolerance bands are scaled, and the tool of a crank is off by more than that."""
+    return band > 1.0 and math.isclose(value, before, rel_tol=STILL)
 
 
 def _first_rows(axis: Axis) -> tuple[FloatArray, FloatArray]:
