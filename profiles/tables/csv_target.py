@@ -7,7 +7,7 @@ import re
 import numpy as np
 
 from profiles.errors import InputError
-from profiles.polynomial import CamProfile
+from profiles.polynomial import CamProfile, FloatArray
 from profiles.tables.cam_csv import read_cam_csv
 from profiles.tables.cam_csv import rebuild as rebuild_rows
 from profiles.tables.cam_table import CamTable, PieceLaw, Unit, Units, make_table
@@ -36,8 +36,8 @@ def write(table: CamTable, header: Header) -> dict[str, str]:
     master, slave = table.units.master.size, table.units.slave.size
     turned = table.units.slave.si == "rad"
     columns = (
-        table.x * (master * 1e3),
-        table.y * (slave if turned else slave * 1e3),
+        _millimetres(table.x * master),
+        table.y * slave if turned else _millimetres(table.y * slave),
         table.ratio * (slave / master),
         table.ratio_slope * (slave / master**2),
     )
@@ -90,11 +90,24 @@ def _plain(lines: list[str], place: str, *, heading: bool) -> CamTable:
     return make_table(x, y, law="spline", notes=(note,))
 
 
+def _millimetres(metres: FloatArray) -> FloatArray:
+    """Give millimetres of which the reader's thousandth part is as near as can be: the same bits if any number's is."""
+    value = metres * 1e3
+    for near in (np.nextafter(value, -np.inf), np.nextafter(value, np.inf)):
+        value = np.where((value / 1e3 != metres) & (near / 1e3 == metres), near, value)
+    return value
+
+
 def rebuild(table: CamTable) -> CamProfile:
-    """Quintics through position, ratio and ratio slope; without derivatives a cyclic spline."""
+    """Quintics through position, ratio and ratio slope, in millimetres of the file; without derivatives a cyclic spline."""
     if np.isnan(table.ratio).any():
         return cyclic_spline(table.x, table.y)
-    return rebuild_rows(table.x, table.y, table.ratio, table.ratio_slope)
+    x, y = table.x, table.y
+    if table.units is not None:
+        master, slave = table.units.master.size, table.units.slave.size
+        x = _millimetres(x * master) / (1e3 * master)
+        y = y if table.units.slave.si == "rad" else _millimetres(y * slave) / (1e3 * slave)
+    return rebuild_rows(x, y, table.ratio, table.ratio_slope)
 
 
 TARGET = Target(

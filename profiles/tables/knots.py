@@ -153,7 +153,9 @@ def _rebuilt(profile: CamProfile, target: Target, units: Units, x: FloatArray) -
     if target.placing == "equidistant" and target.number_format == "int32":  # the drive counts points
         finest = Unit("0.1um", 1e-7) if units.slave.si == "m" else Unit("1e-5deg", math.radians(1e-5), "rad")
         units = Units(Unit("step", profile.length / (len(x) - 1)), finest)
-    return _sampled(profile, target.law, target.number_format, target.rebuild, units, x.tobytes())
+    # the chord between two points in float32 has not quite the ratio that its neighbours end with
+    straight = target.states_laws and target.number_format == "float64"
+    return _sampled(profile, target.law, target.number_format, target.rebuild, units, x.tobytes(), straight)
 
 
 @lru_cache(maxsize=64)  # many targets put the same law through the same points
@@ -164,12 +166,12 @@ def _sampled(
     rebuild: Callable[[CamTable], CamProfile],
     units: Units,
     places: bytes,
+    straight: bool,
 ) -> tuple[CamTable, CamProfile]:
     size = units.master.size
     placed = rounded(np.frombuffer(places) / size, number_format) * size
     table = sample_profile(profile, np.clip(placed, profile.start, profile.end), units, law)
-    if law == "quintic" and number_format == "float32":
-        # the chord between two rounded points has not quite the ratio that its neighbours end with
+    if not straight:
         table = replace(table, laws=(law,) * len(table.laws))
     return table, units.to_si(rebuild(table))
 
@@ -196,7 +198,7 @@ def table_units(target: Target, profile: CamProfile, units: Units) -> Units:
         slave = Unit("1e-4deg", math.radians(1e-4), "rad") if turned else Unit("1e-4mm", 1e-7)
         return Units(Unit("1e-4deg", profile.length / 3_600_000), slave)
     if target.name == "csv":
-        return Units(Unit("mm", 1e-3), Unit("rad", 1.0, "rad") if turned else Unit("mm", 1e-3))
+        return Units(Unit("m", 1.0), Unit("rad", 1.0, "rad") if turned else Unit("m", 1.0))
     if target.name == "br":
         return Units(_whole(units.master, profile.length), _whole(units.slave, profile.advance))
     return units

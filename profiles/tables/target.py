@@ -159,6 +159,8 @@ class Target:
         Fewest points of a table.
     least_step
         Least distance of two points as a part of the master period.
+    states_laws
+        Whether its tables say of each piece what law it follows; else all follow `law`.
     """
 
     name: str
@@ -177,6 +179,7 @@ class Target:
     tested_on_controller: bool = False
     min_points: int = 2
     least_step: float = 0.0
+    states_laws: bool = False
 
     def file_names(self, header: Header) -> tuple[str, ...]:
         """Names of the files that `write` makes."""

@@ -262,6 +262,7 @@ TARGET = Target(
     write=write,
     read=read,
     rebuild=by_law,
+    states_laws=True,
 )
 
 POSITIONS = Target(
