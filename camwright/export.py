@@ -169,11 +169,11 @@ class _Judge:
 
     profile: CamProfile
     job: Job
-    _known: dict[tuple[bytes, bytes], tuple[Deviation, float, TableJudgement]] = field(default_factory=dict)
+    _known: dict[tuple[bytes, ...], tuple[Deviation, float, TableJudgement]] = field(default_factory=dict)
 
     def __call__(self, rebuilt: CamProfile) -> tuple[Deviation, float, TableJudgement]:
         """Deviation from the profile, `position_error`, and the checks."""
-        key = rebuilt.breaks.tobytes(), rebuilt.coefficients.tobytes()
+        key = tuple((numbers + 0.0).tobytes() for numbers in (rebuilt.breaks, rebuilt.coefficients))  # no negative zero
         if key not in self._known:
             from validation.tables import judge_table
 

@@ -40,7 +40,7 @@ _POLISH = {
 _FIRST_TRY = _POLISH | {"ipopt.max_iter": 60}
 
 # A start known in closed form is the answer but for the margin of the limits: a few steps confirm it.
-_CONFIRM = _POLISH | {"ipopt.mu_init": 1e-7, "ipopt.max_iter": 50}
+_CONFIRM = _POLISH | {"ipopt.mu_init": 1e-9, "ipopt.max_iter": 50}
 
 
 class SolveStatus(Enum):
