@@ -4,21 +4,24 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 
 import numpy as np
 
 from design.command_basis import CommandBasis
-from design.servo_weights import memory, sampled_response, servo_weights
+from design.servo_weights import greatest_gains, memory, sampled_states, servo_weights
 from profiles.cycle import Cut
 from profiles.machines import Machine
 from profiles.polynomial import CamProfile, FloatArray
-from profiles.servo import Servo
+from profiles.servo import Servo, sample_plant
 
 # Sampling phases, and points between two samples, on which a design is judged: those of the validation.
 PHASES = 16
 SUBSTEPS = 8
 _STRIDE = PHASES // SUBSTEPS
 _NEWTON = 12
+# Most samples of the past that are gathered at a time.
+_MOST_VALUES = 2**18
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,12 +96,15 @@ class Axis:
             Derivative over the master.
         """
         matrix, constant = np.empty((len(places), basis.matrix.shape[1])), np.empty(len(places))
-        v = self.cut.line_speed
-        for time in np.unique(times):
-            which = times == time
-            row = self._weights(float(time), order)
-            past = time + self.servo.delay + self.servo.sample_time * np.arange(len(row))
-            matrix[which], constant[which] = basis.rows(places[which, None] - v * past, row)
+        known, index = np.unique(times, return_inverse=True)
+        weights = np.array([self._weights(float(time), order) for time in known])
+        samples = self.servo.sample_time * np.arange(weights.shape[1])
+        step = max(1, _MOST_VALUES // len(samples))
+        for part in (slice(start, start + step) for start in range(0, len(places), step)):
+            past = (times[part] + self.servo.delay)[:, None] + samples
+            matrix[part], constant[part] = basis.rows(
+                places[part, None] - self.cut.line_speed * past, weights[index[part]]
+            )
         return matrix, constant
 
     def on_grid(self, profile: CamProfile, first: int, count: int, order: int = 0) -> FloatArray:
@@ -118,22 +124,19 @@ class Axis:
         ndarray
             Shape ``(SUBSTEPS, count)``: by the time since the sampling instant before, in 8ths of a sample, and by place.
         """
-        samples = memory(self.servo.loop) + 1
-        rows = -(-count // PHASES)
         ahead = (SUBSTEPS - 1) * _STRIDE
-        step = self.sample / PHASES
-        grid = first - (samples - 1) * PHASES - ahead + np.arange((samples - 1 + rows) * PHASES + ahead)
-        command = profile(grid * step - self.cut.line_speed * self.servo.delay, outside="repeat")
-        found = np.empty((SUBSTEPS, count))
-        for sub in range(SUBSTEPS):
-            start = ahead - sub * _STRIDE
-            by_phase = command[start : start + (samples - 1 + rows) * PHASES].reshape(-1, PHASES)
-            weights = self._weights(sub * self.servo.sample_time / SUBSTEPS, order)
-            # a place takes the weights, newest last, over the samples of its phase: one row of a Toeplitz matrix for each sample
-            padded = np.concatenate([np.zeros(rows - 1), weights[::-1], np.zeros(rows - 1)])
-            band = np.lib.stride_tricks.sliding_window_view(padded, samples - 1 + rows)[::-1]
-            found[sub] = (band @ by_phase).ravel()[:count]
-        return found
+        states, reference = _grid_states(self, profile, first - ahead, count + ahead)
+        times = np.arange(SUBSTEPS, dtype=np.float64) * (self.servo.sample_time / SUBSTEPS)
+        turned, pushed = self._after_sample(times, order)
+        values = states @ turned.T + reference[:, None] * pushed
+        # the sampling instants lie the more before the places the longer it is since
+        return np.stack([values[ahead - sub * _STRIDE :, sub][:count] for sub in range(SUBSTEPS)])
+
+    def keeps_within(self, profile: CamProfile, order: int, low: float, high: float) -> bool:
+        """Whether the command's own range already tells that the axis' ratio (1) or ratio slope (2) stays between two limits."""
+        up, down = greatest_gains(self.servo.loop, order, SUBSTEPS)
+        least, greatest = (extremum.value for extremum in profile.extrema(order))
+        return up * greatest - down * least <= high and up * least - down * greatest >= low
 
     def zone_errors(self, profile: CamProfile) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Sync error of the tool in the shear zone at every phase, the ends of the zone included.
@@ -148,44 +151,96 @@ class Axis:
         (places, times, errors)
             Master positions (m), times since the sampling instant before (s), errors (m).
         """
-        place, time, value = self._in_zone(profile, 0)
-        travel, _, coordinate = self.ideal(place)
-        errors = self.machine.tool(coordinate + (value - travel)) - self.machine.tool(coordinate)
-        return place, time, np.asarray(errors)
+        zone = self._zone
+        found = zone.coordinate + (self._in_zone(profile, 0) - zone.slave)
+        return zone.places, zone.times, np.asarray(self.machine.tool(found) - self.machine.tool(zone.coordinate))
 
     def zone_ratios(self, profile: CamProfile) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Places, times and ratio of the axis in the shear zone; as `zone_errors`."""
-        return self._in_zone(profile, 1)
+        """Error of the tool's ratio in the shear zone at every phase; as `zone_errors`."""
+        zone = self._zone
+        off = (self._in_zone(profile, 1) - zone.ratio) * self.machine.tool_ratio(zone.coordinate)
+        return zone.places, zone.times, np.asarray(off)
 
-    def _in_zone(self, profile: CamProfile, order: int) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Places, times and the axis or its ratio in the shear zone."""
+    @cached_property
+    def _zone(self) -> _Zone:
+        """Where the shear zone is looked at: on the common grid, and at its ends at the times that occur there."""
         start, end = self.shear_zone
         step = self.sample / PHASES
         first, last = math.ceil(start / step - 1e-9), math.floor(end / step + 1e-9)
-        places, times, values = [], [], []
-        if last >= first:
-            response = self.on_grid(profile, first, last - first + 1, order)
-            steps = np.arange(first, last + 1) * step
-            after = np.arange(SUBSTEPS)[:, None] * (self.servo.sample_time / SUBSTEPS)
-            places.append(np.broadcast_to(np.clip(steps, start, end), response.shape).ravel())
-            times.append(np.broadcast_to(after, response.shape).ravel())
-            values.append(response.ravel())
-        for edge in dict.fromkeys((start, end)):
-            after = self._edge_times(edge)
-            samples = np.arange(memory(self.servo.loop) + 1)
-            past = after[:, None] + self.servo.delay + self.servo.sample_time * samples
-            command = profile(edge - self.cut.line_speed * past, outside="repeat")
-            places.append(np.full(len(after), edge))
-            times.append(after)
-            values.append(sampled_response(self.servo, after, command, order) / self.cut.line_speed**order)
-        return np.concatenate(places), np.concatenate(times), np.concatenate(values)
+        steps = np.clip(np.arange(first, last + 1) * step, start, end)
+        after = np.arange(SUBSTEPS) * (self.servo.sample_time / SUBSTEPS)
+        edges = np.repeat(list(dict.fromkeys((start, end))), PHASES)
+        edge_times = (edges / self.cut.line_speed) % (self.servo.sample_time / PHASES)
+        edge_times += np.tile(np.arange(PHASES), len(edges) // PHASES) * (self.servo.sample_time / PHASES)
+        places = np.concatenate([np.tile(steps, SUBSTEPS), edges])
+        times = np.concatenate([np.repeat(after, len(steps)), edge_times])
+        return _Zone(first, len(steps), edges, edge_times, places, times, *self.ideal(places))
+
+    def _in_zone(self, profile: CamProfile, order: int) -> FloatArray:
+        """Axis, or a derivative of it over the master, where the shear zone is looked at."""
+        zone = self._zone
+        states, reference = _edge_states(self, profile)
+        turned, pushed = self._after_sample(zone.edge_times, order)
+        at_edges: FloatArray = np.einsum("ij,ij->i", turned, states) + pushed * reference
+        if not zone.count:
+            return at_edges
+        return np.concatenate([self.on_grid(profile, zone.first, zone.count, order).ravel(), at_edges])
+
+    def _after_sample(self, times: FloatArray, order: int) -> tuple[FloatArray, FloatArray]:
+        """Give what state and held reference at a sampling instant contribute to a derivative over the master, times (s) after it."""
+        turned, pushed = _sampled_plants(self.servo.loop, tuple(times.tolist()))
+        return turned[:, 2 - order] / self.cut.line_speed**order, pushed[:, 2 - order] / self.cut.line_speed**order
 
     def _weights(self, time: float, order: int) -> FloatArray:
         """Weights of the command's samples for the axis or a derivative over the master, a time (s) after a sample."""
         weights = servo_weights(self.servo.loop, time)
         return (weights.position, weights.velocity, weights.acceleration)[order] / self.cut.line_speed**order
 
-    def _edge_times(self, place: float) -> FloatArray:
-        """List the times since the sampling instant before (s) that occur at a place among the phases."""
-        sixteenth = self.servo.sample_time / PHASES
-        return np.asarray((place / self.cut.line_speed) % sixteenth + sixteenth * np.arange(PHASES))
+
+@dataclass(frozen=True, eq=False)
+class _Zone:
+    """Where the shear zone is looked at: ``count`` steps of the common grid at every time after a sample, then the ends.
+
+    ``edges`` and ``edge_times`` are the ends and the times since the sampling instant before (s) that occur there; ``places`` and ``times``
+    are all of them, and ``slave``, ``ratio`` and ``coordinate`` what `Axis.ideal` says there.
+    """
+
+    first: int
+    count: int
+    edges: FloatArray
+    edge_times: FloatArray
+    places: FloatArray
+    times: FloatArray
+    slave: FloatArray
+    ratio: FloatArray
+    coordinate: FloatArray
+
+
+@lru_cache(maxsize=4)  # the axis, its ratio and its ratio slope are asked for one after another
+def _grid_states(axis: Axis, profile: CamProfile, first: int, count: int) -> tuple[FloatArray, FloatArray]:
+    """States of the plant and held references as if each step of the common grid were a sampling instant."""
+    past = memory(axis.servo.loop)
+    grid = np.arange(first - past * PHASES, first + count) * (axis.sample / PHASES)
+    command = profile(grid - axis.cut.line_speed * axis.servo.delay, outside="repeat")
+    windows = np.lib.stride_tricks.sliding_window_view(command, past * PHASES + 1)[:, ::-PHASES]  # newest first
+    states, reference = np.empty((count, 3)), np.empty(count)
+    step = max(1, _MOST_VALUES // (past + 1))
+    for part in (slice(start, start + step) for start in range(0, count, step)):
+        states[part], reference[part] = sampled_states(axis.servo, windows[part])
+    return states, reference
+
+
+@lru_cache(maxsize=4)
+def _edge_states(axis: Axis, profile: CamProfile) -> tuple[FloatArray, FloatArray]:
+    """States of the plant and held references at the sampling instants before the ends of the shear zone."""
+    zone = axis._zone
+    samples = np.arange(memory(axis.servo.loop) + 1) * axis.servo.sample_time
+    past = (zone.edge_times + axis.servo.delay)[:, None] + samples
+    return sampled_states(axis.servo, profile(zone.edges[:, None] - axis.cut.line_speed * past, outside="repeat"))
+
+
+@lru_cache(maxsize=256)
+def _sampled_plants(servo: Servo, times: tuple[float, ...]) -> tuple[FloatArray, FloatArray]:
+    """Transitions and inputs of `profiles.servo.sample_plant` at several times, shapes ``(n, 3, 3)`` and ``(n, 3)``."""
+    parts = [sample_plant(servo, time) for time in times]
+    return np.array([part.transition for part in parts]), np.array([part.input for part in parts])

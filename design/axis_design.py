@@ -82,9 +82,9 @@ def solve_axis(
     placed = machine if blind is None else blind.machine
     structure = None if blind is None or command == "shaped" else blind.back
     problem = AxisProblem(placed, cut, limits, command, servos, True, structure, between)
+    order = {"sync_error": 0, "peak_acceleration": 2, "rms_acceleration": 2, "peak_jerk": 3, "rms_jerk": 3}[cost]
     found = [_either(replace(problem, limits=each), cost) for each in motor_limits(placed, limits)]
     motions = [motion for motion in found if motion is not None]
-    order = {"sync_error": 0, "peak_acceleration": 2, "rms_acceleration": 2, "peak_jerk": 3, "rms_jerk": 3}[cost]
     if not motions and blind is not None and command == "in_sync":
         motions = _without_choice(
             problem, blind, None if cost == "sync_error" else blind.objective / cut.line_speed**order
@@ -101,13 +101,21 @@ def solve_axis(
 
         raise _infeasible(loosest, settles if suggest else None)
     motion = min(motions, key=lambda each: each.value)
-    value = motion.value * cut.line_speed**order
+    status = blind.status if blind is not None and not motion.programmes else SolveStatus.ON_GRID
+    return _solution(motion, status, placed, cut, objective, order)
+
+
+def _solution(
+    motion: AxisMotion, status: SolveStatus, machine: Machine, cut: Cut, objective: AxisObjective, order: int
+) -> Solution:
+    """Put a motion as the cycle that was asked for."""
     profile = motion.profile
     back = profile.restrict(0.0, cut.return_zone)
     if cut.origin == "cut":
-        profile = _from_mid_sync(profile, placed, cut)
+        profile = _from_mid_sync(profile, machine, cut)
     name: Objective = "peak_acceleration" if objective == "sync_error" else objective
-    return Solution(placed, profile, back, SolveStatus.ON_GRID, name, value, motion.programmes, axis=motion)
+    value = motion.value * cut.line_speed**order
+    return Solution(machine, profile, back, status, name, value, motion.programmes, axis=motion)
 
 
 def _cost(machine: Machine, objective: AxisObjective) -> Cost:

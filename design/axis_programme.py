@@ -38,8 +38,9 @@ BAND_MARGIN = 1e-3
 BAND_ACCEPTED = 1e-5
 # Limits of the axis' own speed and acceleration are drawn in by this share, for the same reason.
 AXIS_MARGIN = 1e-3
-# Places in the shear zone that have rows from the start: one for each sample in it, at least and at most so many; and times after a sample.
-PLACES, MOST_PLACES, TIMES = 6, 24, 2
+# Places in the shear zone that have rows from the start, one for each sample in it, at least so many, and times after a sample: few where
+# rounds are cheap, more for the linear programmes of a single servo; and at most so many places.
+FEW, MORE, MOST_PLACES = (6, 2), (12, 4), 24
 # Rounds of adding rows, most rows of each kind added in a round, and the share by which a band may be missed without another round.
 ROUNDS, MOST_ROWS, NEARLY = 30, 12, 1e-3
 # Share by which the value of one round may be that of the round before, where rows beyond the tolerance have no effect.
@@ -123,9 +124,12 @@ class AxisProgramme:
         )
         self.scale = max(abs(problem.machine.pitch), abs(problem.machine.sync_profile(problem.cut).advance))
         self.solved = 0
-        self._bands = [self._band(axis, *_first_rows(axis)) for axis in self.axes]
-        self._ratios = [self._ratio(*_first_rows(self.axes[0]))] if problem.cut.shear_zone else []
+        self._bands: list[_Rows] = []
+        self._ratios: list[_Rows] = []
         self._own: list[_Rows] = []
+        self._begun: set[str] = set()
+        # a return alone comes near to its limits, a whole cycle has room: rows of its limits come when they matter
+        self._tight = set(range(4)) if problem.command == "in_sync" else set[int]()
         self._answer: tuple[FloatArray, CamProfile] | None = None
         self._judged: CamProfile | None = None
         self._excess: dict[int, FloatArray] = {}
@@ -157,7 +161,7 @@ class AxisProgramme:
                 return None
             if found is None or _stands_still(found[1], before, found[1] if band is None else band):
                 break
-            if not self._add_worst(found[0], found[1] if band is None else band, ratio=band == 1.0):
+            if not self._add_worst(self.profile(found[0]), found[1] if band is None else band, ratio=band == 1.0):
                 break
             before = found[1]
         return found
@@ -170,9 +174,18 @@ class AxisProgramme:
             )  # the gentlest command breaks the fewest limits between the rows
             if found is None:  # rows yet to come can only make it worse
                 return False
-            if not self._add_worst(found[0], 1.0, ratio=True):
+            if not self._add_worst(self.profile(found[0]), 1.0, ratio=True):
                 return True
         return False
+
+    def holds(self, profile: CamProfile) -> bool:
+        """Whether a command keeps its limits and the axes theirs; if not, later programmes begin with rows where it fails."""
+        for order, (low, high) in self._limits().items():
+            least, greatest = (extremum.value for extremum in profile.extrema(order))
+            room = LIMIT_MARGIN * max(abs(low), abs(high))
+            if least < low - room or greatest > high + room:
+                return False
+        return not self._add_worst(profile, 1.0, ratio=True)
 
     def least_share(self) -> float | None:
         """Least share of the tolerance that a command keeps with every axis, in position and ratio; ``None`` if none keeps the limits."""
@@ -182,7 +195,9 @@ class AxisProgramme:
             if found is None:
                 return None
             share = found[1] / (1.0 - BAND_MARGIN)
-            if _stands_still(found[1], before, found[1]) or not self._add_worst(found[0], found[1], ratio=True):
+            if _stands_still(found[1], before, found[1]) or not self._add_worst(
+                self.profile(found[0]), found[1], ratio=True
+            ):
                 break
             before = found[1]
         return share
@@ -210,20 +225,59 @@ class AxisProgramme:
     def keeps_axis_limits(self, profile: CamProfile) -> bool:
         """Whether the nominal axis keeps its limits, to the share that rows of it are drawn in by."""
         return all(
-            float(self._own_excess(profile, order).max()) <= AXIS_MARGIN * high
-            for order, (_, high) in self._own_limits().items()
+            self.axes[0].keeps_within(profile, order, low, high)
+            or float(self._own_excess(profile, order).max()) <= AXIS_MARGIN * high
+            for order, (low, high) in self._own_limits().items()
         )
 
     def _solve_rows(
         self, cost: Cost, band: float | None, caps: dict[int, float], *, elastic: bool = False
     ) -> tuple[FloatArray, float] | None:
         """Solve with the rows there are; ``elastic`` widens the ratio's band with that of the position."""
+        self._begin(cost, ratio=elastic or band == 1.0)
+        while True:
+            found = self._solve_once(cost, band, caps, elastic=elastic)
+            if found is None or not self._tighten(found[0]):
+                return found
+
+    def _begin(self, cost: Cost, *, ratio: bool) -> None:
+        """Make the first rows of a design, unless a mean square is made least of a command in sync, which may well need none."""
+        in_sync, mean = self.problem.command == "in_sync", cost.startswith("rms")
+        if in_sync and mean:
+            return
+        first = FEW if in_sync or mean or len(self.axes) > 1 else MORE
+        if "band" not in self._begun:
+            self._begun.add("band")
+            self._bands += [self._band(axis, *_first_rows(axis, *first)) for axis in self.axes]
+        if ratio and "ratio" not in self._begun and self.problem.cut.shear_zone:
+            self._begun.add("ratio")
+            self._ratios.append(self._ratio(*_first_rows(self.axes[0], *first)))
+
+    def _tighten(self, unknowns: FloatArray) -> bool:
+        """Ask from now on for the rows of limits that an answer without them breaks; whether there are any."""
+        broken = set()
+        for order, (low, high) in self._limits().items():
+            if order not in self._tight:
+                matrix, constant = self.basis.differences[order]
+                values = matrix @ (unknowns * self.scale) + constant
+                room = LIMIT_MARGIN * max(abs(low), abs(high)) if order else 0.0
+                if values.min() < low + room or values.max() > high - room:
+                    broken.add(order)
+        self._tight |= broken
+        return bool(broken)
+
+    def _solve_once(
+        self, cost: Cost, band: float | None, caps: dict[int, float], *, elastic: bool
+    ) -> tuple[FloatArray, float] | None:
+        """Solve with those rows of the limits that have been found to matter."""
         self.solved += 1
         count = self.basis.matrix.shape[1]
         peak = not cost.startswith("rms")
         programme = ConvexProgramme(count + peak)
         bounds = self._limits()
         for order, (low, high) in bounds.items():
+            if order not in self._tight and order not in caps:
+                continue
             peak_allowed = max(caps.get(order, math.inf), LEAST_PEAK * high)
             size = min(max(abs(low), abs(high)), peak_allowed)
             room = LIMIT_MARGIN * size if order else 0.0
@@ -302,9 +356,8 @@ class AxisProgramme:
         )
         return _Rows(matrix, constant - ratio, -room, room)
 
-    def _add_worst(self, unknowns: FloatArray, band: float, *, ratio: bool) -> bool:
-        """Add rows where an answer leaves its band, or the nominal axis breaks a limit; whether there were any."""
-        profile = self.profile(unknowns)
+    def _add_worst(self, profile: CamProfile, band: float, *, ratio: bool) -> bool:
+        """Add rows where a command leaves its band, or the nominal axis breaks a limit; whether there were any."""
         nearly = 1.0 if band == 1.0 else 1.0 + NEARLY
         limit = max(band, LEAST_ERROR) * self.problem.cut.sync_tolerance * nearly
         added = False
@@ -339,10 +392,8 @@ class AxisProgramme:
     def _add_ratio(self, profile: CamProfile, band: float) -> bool:
         """Add rows where the ratio of the nominal axis leaves its band, widened to a share of itself."""
         axis, cut = self.axes[0], self.problem.cut
-        places, times, ratios = axis.zone_ratios(profile)
-        _, ratio, coordinate = axis.ideal(places)
-        error = np.abs((ratios - ratio) * self.problem.machine.tool_ratio(coordinate))
-        worst = _peaks(error - band * RATIO * cut.sync_tolerance / cut.shear_zone)
+        places, times, errors = axis.zone_ratios(profile)
+        worst = _peaks(np.abs(errors) - band * RATIO * cut.sync_tolerance / cut.shear_zone)
         if len(worst):
             self._ratios.append(self._ratio(places[worst], times[worst]))
         return bool(len(worst))
@@ -351,6 +402,8 @@ class AxisProgramme:
         """Add rows where the nominal axis breaks a limit by half of what rows are drawn in by; whether there were any."""
         axis, added = self.axes[0], False
         for order, (low, high) in self._own_limits().items():
+            if axis.keeps_within(profile, order, low, high):
+                continue
             excess = self._own_excess(profile, order)
             worst = _peaks(excess.max(axis=0) - 0.5 * AXIS_MARGIN * high, MOST_OWN)
             if len(worst):  # what is pressed down there rises a sample aside, so that gets rows too
@@ -388,13 +441,13 @@ def _stands_still(value: float, before: float, band: float) -> bool:
     return band > 1.0 and math.isclose(value, before, rel_tol=STILL)
 
 
-def _first_rows(axis: Axis) -> tuple[FloatArray, FloatArray]:
+def _first_rows(axis: Axis, least: int, instants: int) -> tuple[FloatArray, FloatArray]:
     """Places and times of the first rows: the ends of the shear zone and places between, at a few times after a sample."""
     start, end = axis.shear_zone
-    count = min(max(PLACES, math.ceil((end - start) / axis.sample)), MOST_PLACES) if end > start else 1
+    count = min(max(least, math.ceil((end - start) / axis.sample)), MOST_PLACES) if end > start else 1
     places = start + (end - start) * (1.0 - np.cos(np.pi * np.arange(count) / max(1, count - 1))) / 2
-    times = axis.servo.sample_time * np.arange(TIMES) / TIMES
-    return np.tile(places, TIMES), np.repeat(times, count)
+    times = axis.servo.sample_time * np.arange(instants) / instants
+    return np.tile(places, instants), np.repeat(times, count)
 
 
 def _peaks(excess: FloatArray, most: int = MOST_ROWS) -> NDArray[np.intp]:

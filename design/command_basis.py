@@ -89,7 +89,7 @@ class CommandBasis:
         places
             Master positions (m), any cycle, shape ``(rows, samples)``.
         weights
-            Their weights, shape ``(samples,)``.
+            Their weights, shape ``(samples,)`` or one row for each.
 
         Returns
         -------
@@ -98,7 +98,7 @@ class CommandBasis:
         """
         turns = np.floor(places / self.length)
         local = places - turns * self.length
-        constant = self.pitch * (turns @ weights)
+        constant = self.pitch * (turns * weights).sum(axis=1)
         free = local < self.nodes[-1] if self.sync is not None else np.ones(local.shape, dtype=bool)
         inside = np.minimum(local, self.nodes[-1])
         index = np.clip(np.searchsorted(self.nodes, inside, side="right") - 1, 0, len(self.nodes) - 2)

@@ -1,4 +1,4 @@
-"""Linear and quadratic programmes with dense rows: HiGHS and qpOASES, both through CasADi, with IPOPT behind them."""
+"""Linear and quadratic programmes with dense rows: HiGHS for the former, least squares and qpOASES for the latter, IPOPT behind them."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ import casadi as ca
 import numpy as np
 
 from design.ipopt import QUIET
+from design.least_distance import least_distance
 from profiles.errors import SolverError
 from profiles.polynomial import FloatArray
 
@@ -178,7 +179,7 @@ def _by_its_dual(
 ) -> tuple[FloatArray | None, str]:
     """Ask HiGHS for the dual, whose basis is as small as the unknowns are few; its multipliers are the answer."""
     above, below = np.isfinite(high), np.isfinite(low)
-    columns = ca.sparsify(ca.DM(np.vstack([-matrix[above], matrix[below]]).T))
+    columns = _sparse(np.vstack([-matrix[above], matrix[below]]).T)
     prices = np.concatenate([high[above], -low[below]])
     answer, status = _ask(
         "highs", {"highs": _HIGHS | {"presolve": "off"}}, prices, columns, (cost, cost), (0.0, np.inf)
@@ -192,15 +193,17 @@ def _by_simplex(
     matrix: FloatArray, low: FloatArray, high: FloatArray, cost: FloatArray, options: dict[str, Any]
 ) -> tuple[FloatArray | None, str]:
     """Ask HiGHS for the programme as it stands."""
-    rows = ca.sparsify(ca.DM(matrix))
-    answer, status = _ask("highs", {"highs": _HIGHS | options}, cost, rows, (low, high), (-np.inf, np.inf))
+    answer, status = _ask("highs", {"highs": _HIGHS | options}, cost, _sparse(matrix), (low, high), (-np.inf, np.inf))
     return None if answer is None else answer["x"], status
 
 
 def _quadratic(rows: _Rows, cost: FloatArray, square: FloatArray, sure: bool) -> FloatArray | None:
-    """Solve a quadratic programme by qpOASES, or by IPOPT where HiGHS finds that there is an answer."""
-    steady = _STEADY * np.trace(square) / len(cost) * np.eye(len(cost))
-    quadratic, matrix = ca.DM(square + steady), ca.DM(rows.matrix)
+    """Solve a quadratic programme by least squares or by qpOASES, or by IPOPT where HiGHS finds that there is an answer."""
+    square = square + _STEADY * np.trace(square) / len(cost) * np.eye(len(cost))
+    nearest = least_distance(square, cost, rows.matrix, rows.low, rows.high)
+    if nearest is not None and rows.missed(nearest) <= 0.0:
+        return nearest
+    quadratic, matrix = _sparse(square), _sparse(rows.matrix)
     status = ""
     for plugin, options in [("qpoases", _QPOASES), ("nlpsol", _IPOPT)][: 1 + sure]:
         answer, status = _ask(plugin, options, cost, matrix, (rows.low, rows.high), (-np.inf, np.inf), quadratic)
@@ -209,6 +212,14 @@ def _quadratic(rows: _Rows, cost: FloatArray, square: FloatArray, sure: bool) ->
         if plugin == "qpoases" and _linear(rows, np.zeros(len(cost))) is None:
             return None
     raise SolverError(f"{'IPOPT' if sure else 'qpOASES'} ended a servo-aware design with {status!r}; report this job")
+
+
+def _sparse(matrix: FloatArray) -> ca.DM:
+    """Hand a matrix to CasADi without its zeros: in a fraction of the time that all its numbers would take."""
+    columns, rows = np.nonzero(matrix.T)
+    starts = np.searchsorted(columns, np.arange(matrix.shape[1] + 1))
+    pattern = ca.Sparsity(matrix.shape[0], matrix.shape[1], starts.tolist(), rows.tolist())
+    return ca.DM(pattern, matrix.T[columns, rows])
 
 
 def _ask(

@@ -6,12 +6,15 @@ mean squares quadratic ones, and both hold at every sampling phase and for every
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from design.axis import PHASES
 from design.axis_programme import BAND_MARGIN, LEAST_ERROR, AxisProblem, AxisProgramme, Cost
+from design.problem import Objective
+from design.solver import objective_value
 from profiles.errors import SolverError
 from profiles.polynomial import CamProfile, FloatArray
+from profiles.returns import assemble
 
 # By this factor the sync error of a servo between the corners may be above that at the corners.
 BETWEEN = 1.1
@@ -75,6 +78,9 @@ def design_axis(problem: AxisProblem, objective: Cost) -> AxisMotion | None:
     """
     programme = AxisProgramme(problem, BETWEEN if objective == "sync_error" else 1.0)
     if objective != "sync_error":
+        kept = _as_it_is(programme, objective)
+        if kept is not None:
+            return kept
         found = programme.solve(objective, 1.0)
         if found is None:
             return None
@@ -94,6 +100,18 @@ def design_axis(problem: AxisProblem, objective: Cost) -> AxisMotion | None:
     if softer is not None:
         found = _smoothest(programme, softer, band, 2)
     return _motion(programme, found[0])
+
+
+def _as_it_is(programme: AxisProgramme, objective: Objective) -> AxisMotion | None:
+    """Take the servo-blind optimum, which the problem's structure is, where its axis keeps to everything: then nothing is better."""
+    problem = programme.problem
+    if problem.structure is None:
+        return None
+    profile = assemble(problem.structure, problem.machine, replace(problem.cut, origin="return"))
+    if not programme.holds(profile):
+        return None
+    value = objective_value(problem.structure, objective)
+    return AxisMotion(profile, programme.errors(profile), value, programme.solved, problem.axis_limits)
 
 
 def _softest(programme: AxisProgramme, band: float) -> tuple[FloatArray, float] | None:

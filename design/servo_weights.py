@@ -95,13 +95,63 @@ def sampled_response(servo: Servo, times: FloatArray, samples: FloatArray, order
     order
         0 for the position, 1 for the velocity (1/s), 2 for the acceleration (1/s²).
     """
-    states = samples @ _past_states(servo.loop, samples.shape[1] - 1)
-    gain, lead = servo.position_gain, servo.velocity_feedforward / servo.sample_time
-    reference = (gain + lead) * samples[:, 0] - lead * samples[:, 1] - gain * states[:, 2]
+    states, reference = sampled_states(servo, samples)
     parts = [sample_plant(servo.loop, time) for time in times.tolist()]
     row = 2 - order
     moved = np.einsum("ij,ij->i", np.array([part.transition[row] for part in parts]), states)
     return np.asarray(moved + np.array([part.input[row] for part in parts]) * reference)
+
+
+def sampled_states(servo: Servo, samples: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """State of the plant at a sampling instant, and the velocity reference that is held from there.
+
+    Parameters
+    ----------
+    servo
+        The servo; dead time and lead are the caller's.
+    samples
+        The command's samples, newest first, shape ``(n, memory + 1)``.
+
+    Returns
+    -------
+    (states, reference)
+        Shapes ``(n, 3)`` and ``(n,)``, as in `profiles.servo.SampledPlant`.
+    """
+    states = samples @ _past_states(servo.loop, samples.shape[1] - 1)
+    gain, lead = servo.position_gain, servo.velocity_feedforward / servo.sample_time
+    return states, (gain + lead) * samples[:, 0] - lead * samples[:, 1] - gain * states[:, 2]
+
+
+@lru_cache(maxsize=256)
+def greatest_gains(servo: Servo, order: int, substeps: int) -> tuple[float, float]:
+    """Bound what the servo makes of the command's velocity (order 1) or acceleration (2).
+
+    With the command's between ``low`` and ``high`` the axis' stays between ``up low - down high`` and ``up high - down low``: summed by
+    parts, once or twice, the axis' derivative is a weighted sum of the command's mean velocities between samples, or of its second
+    differences, which lie within the command's own range. ``up`` and ``down`` are the sums of the positive and the negative weights.
+
+    Parameters
+    ----------
+    servo
+        The servo; dead time and lead only shift its response.
+    order
+        1 or 2.
+    substeps
+        Equally spaced times after a sampling instant for which the bounds hold.
+
+    Returns
+    -------
+    (up, down)
+        The greatest over these times.
+    """
+    up = down = 0.0
+    for time in np.arange(substeps) * (servo.sample_time / substeps):
+        weights = servo_weights(servo, float(time))
+        sums = np.cumsum(weights.velocity) if order == 1 else np.cumsum(np.cumsum(weights.acceleration))
+        sums *= servo.sample_time**order
+        up = max(up, float(sums[sums > 0.0].sum()))
+        down = max(down, -float(sums[sums < 0.0].sum()))
+    return up, down
 
 
 @lru_cache(maxsize=256)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -86,6 +87,7 @@ def plant_matrices(servo: Servo) -> tuple[FloatArray, FloatArray]:
     return a, np.array([w * w, 0.0, 0.0])
 
 
+@lru_cache(maxsize=4096)
 def sample_plant(servo: Servo, time: float) -> SampledPlant:
     """Discretise the plant exactly for an input held over ``time`` (s): closed form of the matrix exponential.
 
