@@ -15,12 +15,14 @@ from design.axis import Axis
 from design.axis_design import solve_axis
 from design.axis_programme import BAND_MARGIN, LEAST_ERROR, RATIO, AxisProblem, AxisProgramme, Cost
 from design.command_basis import INTERVALS, Command, command_basis
+from design.optimise import solve
 from design.servo_aware import design_axis
 from profiles.cycle import Cut
 from profiles.errors import InfeasibleError
 from profiles.limits import Limits
 from profiles.machines import CrankSlider, LinearCarriage, Machine, RotaryKnife
 from profiles.polynomial import CamProfile, FloatArray
+from profiles.returns import assemble
 from profiles.servo import Servo
 from validation.report import validate
 from validation.response import servo_response
@@ -272,3 +274,43 @@ def test_the_limits_of_the_axis_are_given_up_only_for_the_tolerance() -> None:
     held = AxisProgramme(AxisProblem(KNIFE, tight, LIMITS, "shaped", (PAPER,), True))
     assert not held.reaches()
     assert INTERVALS["shaped"] == len(held.basis.nodes) - 1
+
+
+LONG = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4)
+
+
+def test_the_blind_optimum_is_taken_where_its_axis_keeps_to_everything() -> None:
+    blind = solve(KNIFE, LONG, LIMITS, "rms_acceleration")
+    solution = solve_axis(KNIFE, LONG, LIMITS, "rms_acceleration", "in_sync", (PAPER,))
+    assert solution.axis is not None
+    assert solution.axis.programmes == 0
+    assert solution.status == blind.status
+    assert solution.objective == pytest.approx(blind.objective, rel=1e-12)
+    assert solution.axis.error <= LONG.sync_tolerance
+    x = np.linspace(0.0, LONG.length, 400)
+    np.testing.assert_allclose(solution.profile(x), blind.profile(x), atol=1e-12)
+
+
+def test_rows_begin_where_the_blind_optimum_fails() -> None:
+    # its axis swings back beyond standstill by a little, which it may not: one more programme, no more
+    blind = solve(KNIFE, LONG, LIMITS, "rms_jerk")
+    programme = AxisProgramme(AxisProblem(KNIFE, LONG, LIMITS, "in_sync", (PAPER,), True, blind.back))
+    assert not programme.holds(assemble(blind.back, KNIFE, LONG))
+    assert AxisProgramme(replace(programme.problem, axis_limits=False)).holds(assemble(blind.back, KNIFE, LONG))
+    found = programme.solve("rms_jerk", 1.0)
+    assert found is not None
+    assert programme.solved == 1
+    assert programme.holds(programme.profile(found[0]))
+
+
+def test_limits_of_a_shaped_command_hold_though_their_rows_come_late() -> None:
+    cut = replace(LONG, length=0.38, shaped=True)
+    free = solve_axis(KNIFE, cut, LIMITS, "rms_jerk", "shaped", (PAPER,))
+    reached = free.profile.extrema(1)[1].value * cut.line_speed
+    least = cut.line_speed * KNIFE.pitch / cut.length  # at even speed
+    tight = replace(LIMITS, speed=0.5 * (reached + least))
+    solution = solve_axis(KNIFE, cut, tight, "rms_jerk", "shaped", (PAPER,))
+    greatest = solution.profile.extrema(1)[1].value * cut.line_speed
+    # the hull of its coefficients keeps the limit, which its peak comes near to
+    assert tight.speed * (1 - 5e-3) <= greatest <= tight.speed * (1 + 1e-9)
+    assert solution.objective > free.objective

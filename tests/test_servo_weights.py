@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from design.servo_weights import MOST_SAMPLES, memory, sampled_response, servo_weights
+from design.servo_weights import MOST_SAMPLES, greatest_gains, memory, sampled_response, servo_weights
 from profiles.cycle import Cut
 from profiles.errors import InputError
 from profiles.machines import RotaryKnife
@@ -123,3 +123,27 @@ def test_the_response_at_several_times_is_that_of_the_weights(order: int) -> Non
         weights = servo_weights(servo.loop, time)
         expected = row @ (weights.position, weights.velocity, weights.acceleration)[order]
         assert value == pytest.approx(expected, abs=1e-12 * 120**order)
+
+
+@given(
+    st.integers(0, 10_000),
+    st.floats(0.0, 1.0),
+    st.sampled_from([PAPER, replace(PAPER, damping=0.4, position_gain=60.0)]),
+)
+def test_the_axis_stays_within_what_its_gains_allow(seed: int, feedforward: float, servo: Servo) -> None:
+    servo = replace(servo, velocity_feedforward=feedforward)
+    generator = np.random.default_rng(seed)
+    count = memory(servo) + 1
+    # accelerations between samples as they come; the first samples stand still
+    acceleration = np.where(np.arange(2 * count) < count, 0.0, generator.uniform(-3.0, 5.0, 2 * count))
+    velocity = np.cumsum(acceleration) * servo.sample_time
+    command = (np.cumsum(velocity) * servo.sample_time)[::-1]  # newest first
+    windows = np.lib.stride_tricks.sliding_window_view(command, count)
+    for order, demanded in ((1, velocity), (2, acceleration)):
+        up, down = greatest_gains(servo, order, 8)
+        least, greatest = float(demanded.min()), float(demanded.max())
+        for sub in range(8):
+            found = sampled_response(servo, np.full(len(windows), sub * servo.sample_time / 8), windows, order)
+            assert found.max() <= up * greatest - down * least + 1e-9
+            assert found.min() >= up * least - down * greatest - 1e-9
+        assert up - down == pytest.approx(1.0, abs=0.02 if order == 2 else 1e-9)
