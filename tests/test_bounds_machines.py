@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from design.optimise import solve
+from design.optimise import Objective, solve
 from profiles.cycle import Cut
 from profiles.errors import InputError
 from profiles.limits import Limits
@@ -34,10 +34,30 @@ def test_designs_reach_the_bound_with_over_speed(machine: Machine, objective: st
 
 
 def test_a_stroke_leaves_the_bound_below() -> None:
-    narrow = replace(WIDE, stroke=0.26)
-    found = solve(narrow, CUT, Limits(200 / 60, 200.0, 60_000.0), "rms_acceleration")
-    bound = lower_bound(found.profile, narrow, CUT, Limits(200 / 60, 200.0, 60_000.0), "rms_acceleration")
+    narrow, limits = replace(WIDE, stroke=0.25), Limits(200 / 60, 200.0, 60_000.0)
+    found = solve(narrow, CUT, limits, "rms_acceleration")
+    bound = lower_bound(found.profile, narrow, CUT, limits, "rms_acceleration")
     assert 0.0 < bound.value < 0.999 * found.objective
+
+
+@pytest.mark.parametrize("objective", ["peak_acceleration", "rms_acceleration", "peak_jerk"])
+@pytest.mark.parametrize("length", [3.4, 4.5, 7.0])
+def test_a_long_cut_is_as_good_as_braking_within_the_stroke_allows(objective: Objective, length: float) -> None:
+    saw = LinearCarriage(1.2)
+    cut, limits = Cut(length, 0.5, 0.7, 0.4, 0.2, 2e-4), Limits(100 / 60, 6.0, 200.0)
+    found = solve(saw, cut, limits, objective)
+    bound = lower_bound(found.profile, saw, cut, limits, objective)
+    assert bound.value <= found.objective * (1 + 1e-9)
+    if length == 7.0:  # there is time to spare: braking is all that counts
+        assert bound.method == "closed form, braking within the stroke"
+        assert bound.value == pytest.approx(found.objective, rel=2e-9 if objective != "rms_acceleration" else 0.03)
+
+
+def test_no_room_to_turn_round_in_has_no_bound_below_infinity() -> None:
+    # such a job has no design; a cycle of a longer stroke may still be held against it
+    saw, cut, limits = LinearCarriage(1.2), Cut(3.0, 0.5, 0.7, 0.4, 0.2, 2e-4), Limits(100 / 60, 6.0, 200.0)
+    found = solve(saw, cut, limits, "peak_acceleration")
+    assert lower_bound(found.profile, replace(saw, stroke=0.7), cut, limits, "peak_acceleration").value == math.inf
 
 
 @settings(deadline=None, max_examples=8)

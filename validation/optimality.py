@@ -17,11 +17,13 @@ from numpy.typing import NDArray
 from profiles.cycle import Cut
 from profiles.errors import InputError
 from profiles.limits import Limits
-from profiles.machines import Machine
+from profiles.machines import LinearCarriage, Machine
+from profiles.overshoot import shortest_stop
 from profiles.polynomial import CamProfile, FloatArray
 from profiles.reach import least_acceleration, least_jerk
 from profiles.returns import is_straight
 from profiles.softest import softest
+from profiles.transfer import Bounds
 from validation.motor import moves_something
 from validation.quadratic import multipliers
 
@@ -33,6 +35,7 @@ GREATEST = 1e3
 CLOSED_FORM = "closed form, double-S"
 SOFTEST = "closed form, softest motion"
 QUINTIC = "closed form, quintic"
+BRAKING = "closed form, braking within the stroke"
 DUAL = f"weak duality, multipliers by an interior point on {2 * INTERVALS} intervals"
 NONE = "none"
 
@@ -58,8 +61,8 @@ class _Return:
 def lower_bound(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits, objective: str) -> Bound:
     """Lower bound of what any return of this job can reach.
 
-    Bounds are known where the slave's ratio is constant in sync: then the return is a straight line plus a motion from rest to rest. The
-    stroke of a carriage is left out, which can only lower them. Elsewhere there is none.
+    Bounds are known where the slave's ratio is constant in sync: then the return is a straight line plus a motion from rest to rest. Of the
+    stroke of a carriage only that it must turn round within it is looked at, by itself, which can only lower them. Elsewhere there is none.
 
     Parameters
     ----------
@@ -85,6 +88,50 @@ def lower_bound(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits,
     length, v = cut.return_zone, cut.line_speed
     ratio = float(machine.sync_profile(cut)(0.0, 1))
     height = machine.pitch - ratio * cut.length  # of the motion over the line that sync zone and return zone share
+    time = length / v
+    if isinstance(machine, LinearCarriage):
+        room = 0.5 * (machine.stroke - machine.sync_profile(cut).advance)
+        braking = Bound(_braking(ratio * v, room, time, limits, objective), BRAKING)
+        free = _free_bound(profile, machine, cut, limits, objective, height)
+        return braking if braking.value > free.value else free
+    return _free_bound(profile, machine, cut, limits, objective, height)
+
+
+def _braking(velocity: float, room: float, time: float, limits: Limits, objective: str) -> float:
+    """Bound of a carriage that comes out of its sync zone at a velocity and must turn round within half of what the stroke leaves.
+
+    On one side of the zone there is no more room than that, and by mirroring the time both ends of the return are alike. The mean square
+    of the acceleration of one that stops after the way ``d`` is at least that of ``a = -2 v² / (3 d) (1 - t v / (3 d))``: ``4 v³ / (9 d)``
+    of its integral.
+    """
+    if room <= 0:
+        return math.inf
+    if objective == "rms_acceleration":
+        return math.sqrt(8 * velocity**3 / (9 * room) / time)
+    if objective not in ("peak_acceleration", "peak_jerk"):
+        return 0.0
+    peak = objective == "peak_acceleration"
+    given = limits.acceleration if peak else limits.jerk
+
+    def stops(limit: float) -> bool:
+        slope, jerk = (limit, limits.jerk) if peak else (limits.acceleration, limit)
+        return shortest_stop(velocity, Bounds(-limits.speed, limits.speed, slope, jerk)) <= room
+
+    low, high = 0.0, given
+    if not stops(given):
+        return given
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if stops(middle) else (middle, high)
+    return low
+
+
+def _free_bound(
+    profile: CamProfile, machine: Machine, cut: Cut, limits: Limits, objective: str, height: float
+) -> Bound:
+    """Bound without the stroke, of a motion over the line that covers a height."""
+    length, v = cut.return_zone, cut.line_speed
+    ratio = float(machine.sync_profile(cut)(0.0, 1))
     time = length / v
     if abs(height) <= 1e-13 * length:
         return Bound(0.0, CLOSED_FORM)

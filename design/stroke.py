@@ -1,0 +1,53 @@
+"""The least peak of a slave that keeps to a stroke: the least limit within which there is still a motion, and that motion."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from design.possible import possible_motion
+from design.scaling import ScaledProblem
+from design.transcription import PEAKS, Motion
+
+# The least limit is found to this share, far below what counts as the same objective.
+NARROW = 1e-12
+# A first guess at a limit that is too low is this share of the given one, and lowered by it again.
+STRIDE = 0.25
+MOST_STRIDES = 40
+
+
+def least_peak_motion(problem: ScaledProblem) -> Motion | None:
+    """Give the motion of least peak acceleration, or jerk, of a slave that must keep to a stroke.
+
+    Whether the limits leave any motion is known in closed form (`profiles.overshoot`), and a higher limit leaves more: the least limit
+    of the acceleration that leaves one, with the others as they are, is the least peak that any motion has.
+
+    Returns
+    -------
+    Motion or None
+        ``None`` for other objectives, without a stroke, and where not even the given limits leave a motion.
+    """
+    if problem.objective not in PEAKS or not problem.confined:
+        return None
+    name = "greatest_slope" if problem.objective == "peak_acceleration" else "greatest_jerk"
+    given = float(getattr(problem, name))
+    high, found = given, possible_motion(problem)
+    if found is None:
+        return None
+    low = STRIDE * high
+    for _ in range(MOST_STRIDES):
+        gentler = possible_motion(replace(problem, **{name: low}))
+        if gentler is None:
+            break
+        high, low, found = low, STRIDE * low, gentler
+    while high - low > NARROW * high:
+        middle = 0.5 * (low + high)
+        gentler = possible_motion(replace(problem, **{name: middle}))
+        if gentler is None:
+            low = middle
+        else:
+            high, found = middle, gentler
+    nodes, accelerations = found
+    return Motion(np.diff(nodes), accelerations, math.nan)
