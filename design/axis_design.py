@@ -71,7 +71,7 @@ def solve_axis(
     InfeasibleError
         No command keeps the limits, or none brings the axis into the tolerance.
     InputError
-        The objective cannot be made least with the servo in the problem; the servo is unstable.
+        The servo is unstable.
     SolverError
         The solver failed.
     """
@@ -82,7 +82,7 @@ def solve_axis(
     placed = machine if blind is None else blind.machine
     structure = None if blind is None or command == "shaped" else blind.back
     problem = AxisProblem(placed, cut, limits, command, servos, True, structure, between)
-    order = {"sync_error": 0, "peak_acceleration": 2, "rms_acceleration": 2, "peak_jerk": 3, "rms_jerk": 3}[cost]
+    order = 2 if cost.endswith("acceleration") else 3 if cost.endswith("jerk") else 0
     found = [_either(replace(problem, limits=each), cost) for each in motor_limits(placed, limits)]
     motions = [motion for motion in found if motion is not None]
     if not motions and blind is not None and command == "in_sync":
@@ -122,13 +122,7 @@ def _cost(machine: Machine, objective: AxisObjective) -> Cost:
     """Objective of the motion that a programme can minimise."""
     if objective == "sync_error" or objective in MOTION_OBJECTIVES:
         return objective
-    decisive = motion_objective(machine, objective)
-    if decisive is None:
-        raise InputError(
-            f"[objective] minimise = {objective!r}: a servo-aware design of this machine minimises "
-            f"{', '.join(MOTION_OBJECTIVES)} or sync_error; choose one of these, or servo_aware = false"
-        )
-    return decisive
+    return motion_objective(machine, objective) or objective
 
 
 def _either(problem: AxisProblem, cost: Cost) -> AxisMotion | None:

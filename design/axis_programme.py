@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from functools import cached_property
+from typing import Literal, cast, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from design.axis import PHASES, SUBSTEPS, Axis
+from design.axis_torque import AxisTorque, TorqueCost
 from design.command_basis import Command, command_basis
 from design.convex import ACCEPTED, ConvexProgramme
 from profiles.cycle import Cut
@@ -23,8 +25,19 @@ from profiles.machines import LinearCarriage, Machine
 from profiles.polynomial import CamProfile, FloatArray
 from profiles.servo import Servo
 
-Cost = Literal["sync_error", "peak_acceleration", "rms_acceleration", "peak_jerk", "rms_jerk"]
+Cost = Literal[
+    "sync_error",
+    "peak_acceleration",
+    "rms_acceleration",
+    "peak_jerk",
+    "rms_jerk",
+    "rms_torque",
+    "peak_torque",
+    "energy",
+]
 """What a programme minimises."""
+
+TORQUES = get_args(TorqueCost)
 
 RATIO = 2.0
 """Error of the axis' ratio allowed in the shear zone, times its length over the sync tolerance: along the zone the tool could at most go
@@ -54,6 +67,7 @@ MOST_SERVOS = 12
 # Least band that is asked for (share of the tolerance): below it the motion matters more.
 LEAST_ERROR = 5e-3
 _ORDER = {"peak_acceleration": 2, "rms_acceleration": 2, "peak_jerk": 3, "rms_jerk": 3}
+_LINEAR = ("sync_error", "peak_acceleration", "peak_jerk")
 _EVERYWHERE = 1e300
 
 
@@ -128,6 +142,7 @@ class AxisProgramme:
         self._ratios: list[_Rows] = []
         self._own: list[_Rows] = []
         self._begun: set[str] = set()
+        self._turned: FloatArray | None = None
         # a return alone comes near to its limits, a whole cycle has room: rows of its limits come when they matter
         self._tight = set(range(4)) if problem.command == "in_sync" else set[int]()
         self._answer: tuple[FloatArray, CamProfile] | None = None
@@ -235,6 +250,8 @@ class AxisProgramme:
     ) -> tuple[FloatArray, float] | None:
         """Solve with the rows there are; ``elastic`` widens the ratio's band with that of the position."""
         self._begin(cost, ratio=elastic or band == 1.0)
+        if cost in TORQUES:  # not so quickly solved that rows may come late
+            self._tight = set(range(4))
         while True:
             found = self._solve_once(cost, band, caps, elastic=elastic)
             if found is None or not self._tighten(found[0]):
@@ -242,7 +259,7 @@ class AxisProgramme:
 
     def _begin(self, cost: Cost, *, ratio: bool) -> None:
         """Make the first rows of a design, unless a mean square is made least of a command in sync, which may well need none."""
-        in_sync, mean = self.problem.command == "in_sync", cost.startswith("rms")
+        in_sync, mean = self.problem.command == "in_sync", cost not in _LINEAR
         if in_sync and mean:
             return
         first = FEW if in_sync or mean or len(self.axes) > 1 else MORE
@@ -272,7 +289,7 @@ class AxisProgramme:
         """Solve with those rows of the limits that have been found to matter."""
         self.solved += 1
         count = self.basis.matrix.shape[1]
-        peak = not cost.startswith("rms")
+        peak = cost in _LINEAR
         programme = ConvexProgramme(count + peak)
         bounds = self._limits()
         for order, (low, high) in bounds.items():
@@ -295,6 +312,8 @@ class AxisProgramme:
         for rows in self._own:
             matrix, constant = rows.matrix * (self.scale / rows.size)[:, None], rows.constant / rows.size
             programme.add(matrix, rows.low / rows.size - constant, rows.high / rows.size - constant, BAND_ACCEPTED)
+        if cost in TORQUES:
+            return self._least_torque(programme, cast(TorqueCost, cost))
         if not peak:
             return self._mean_square(programme, _ORDER[cost], sure=not caps)
         unit = 1.0
@@ -304,6 +323,20 @@ class AxisProgramme:
             programme.add_peak(matrix * (self.scale / unit), constant / unit, -1.0, 1.0)
         answer = programme.solve(np.append(np.zeros(count), 1.0))
         return None if answer is None else (answer[:-1], max(0.0, float(answer[-1])) * unit)
+
+    def _least_torque(self, programme: ConvexProgramme, cost: TorqueCost) -> tuple[FloatArray, float] | None:
+        """Least torque or energy, from the command of least mean square acceleration, and from the answer with fewer rows before."""
+        gentle = self._mean_square(programme, 2, sure=True)
+        if gentle is None:
+            return None
+        start = gentle[0] if self._turned is None else self._turned
+        self._turned = self.torque.minimise(cost, programme.rows(), start)
+        return self._turned, self.torque.value(self._turned, cost)
+
+    @cached_property
+    def torque(self) -> AxisTorque:
+        """Torque of the commands."""
+        return AxisTorque(self.problem.machine, self.problem.cut, self.basis, self.scale)
 
     def _mean_square(self, programme: ConvexProgramme, order: int, *, sure: bool) -> tuple[FloatArray, float] | None:
         """Least mean square of a derivative: linear between the nodes (order 2) or constant on the intervals (order 3)."""

@@ -108,6 +108,12 @@ class ConvexProgramme:
         self.add(np.hstack([matrix, -high]), -np.inf, -constant, accepted)
         self.add(np.hstack([matrix, -low]), -constant, np.inf, accepted)
 
+    def rows(self) -> Rows:
+        """Stack what was gathered."""
+        matrix = np.vstack(self._matrices)
+        matrix[np.abs(matrix) < _ROUNDING * np.abs(matrix).max(axis=1, keepdims=True)] = 0.0
+        return Rows(matrix, *(np.concatenate(parts) for parts in (self._low, self._high, self._accepted)))
+
     def solve(self, cost: FloatArray, square: FloatArray | None = None, *, sure: bool = True) -> FloatArray | None:
         """Minimise ``cost @ x``, plus ``x @ square @ x / 2``.
 
@@ -128,15 +134,23 @@ class ConvexProgramme:
         SolverError
             Every solver ended without an answer.
         """
-        matrix = np.vstack(self._matrices)
-        matrix[np.abs(matrix) < _ROUNDING * np.abs(matrix).max(axis=1, keepdims=True)] = 0.0
-        rows = _Rows(matrix, *(np.concatenate(parts) for parts in (self._low, self._high, self._accepted)))
+        rows = self.rows()
         return _linear(rows, cost) if square is None else _quadratic(rows, cost, square, sure)
 
 
 @dataclass(frozen=True, eq=False)
-class _Rows:
-    """Rows ``low <= matrix @ x <= high``, and what an answer may break them by."""
+class Rows:
+    """Rows ``low <= matrix @ x <= high``.
+
+    Parameters
+    ----------
+    matrix
+        Shape ``(rows, n)``.
+    low, high
+        Shape ``(rows,)``; infinite sides are no rows.
+    accepted
+        What an answer may break each by.
+    """
 
     matrix: FloatArray
     low: FloatArray
@@ -153,7 +167,7 @@ _Road = Callable[[FloatArray, FloatArray, FloatArray, FloatArray], tuple[FloatAr
 """What solves a linear programme of a matrix, bounds of its rows and a cost: the answer, or nothing, and the status."""
 
 
-def _linear(rows: _Rows, cost: FloatArray) -> FloatArray | None:
+def _linear(rows: Rows, cost: FloatArray) -> FloatArray | None:
     """Solve a linear programme; its answer is refined where it breaks rows by rounding."""
     status = ""
     roads: list[_Road] = [_by_its_dual, *(partial(_by_simplex, options=options) for options in _HIGHS_ROADS)]
@@ -179,7 +193,7 @@ def _by_its_dual(
 ) -> tuple[FloatArray | None, str]:
     """Ask HiGHS for the dual, whose basis is as small as the unknowns are few; its multipliers are the answer."""
     above, below = np.isfinite(high), np.isfinite(low)
-    columns = _sparse(np.vstack([-matrix[above], matrix[below]]).T)
+    columns = sparse(np.vstack([-matrix[above], matrix[below]]).T)
     prices = np.concatenate([high[above], -low[below]])
     answer, status = _ask(
         "highs", {"highs": _HIGHS | {"presolve": "off"}}, prices, columns, (cost, cost), (0.0, np.inf)
@@ -193,17 +207,17 @@ def _by_simplex(
     matrix: FloatArray, low: FloatArray, high: FloatArray, cost: FloatArray, options: dict[str, Any]
 ) -> tuple[FloatArray | None, str]:
     """Ask HiGHS for the programme as it stands."""
-    answer, status = _ask("highs", {"highs": _HIGHS | options}, cost, _sparse(matrix), (low, high), (-np.inf, np.inf))
+    answer, status = _ask("highs", {"highs": _HIGHS | options}, cost, sparse(matrix), (low, high), (-np.inf, np.inf))
     return None if answer is None else answer["x"], status
 
 
-def _quadratic(rows: _Rows, cost: FloatArray, square: FloatArray, sure: bool) -> FloatArray | None:
+def _quadratic(rows: Rows, cost: FloatArray, square: FloatArray, sure: bool) -> FloatArray | None:
     """Solve a quadratic programme by least squares or by qpOASES, or by IPOPT where HiGHS finds that there is an answer."""
     square = square + _STEADY * np.trace(square) / len(cost) * np.eye(len(cost))
     nearest = least_distance(square, cost, rows.matrix, rows.low, rows.high)
     if nearest is not None and rows.missed(nearest) <= 0.0:
         return nearest
-    quadratic, matrix = _sparse(square), _sparse(rows.matrix)
+    quadratic, matrix = sparse(square), sparse(rows.matrix)
     status = ""
     for plugin, options in [("qpoases", _QPOASES), ("nlpsol", _IPOPT)][: 1 + sure]:
         answer, status = _ask(plugin, options, cost, matrix, (rows.low, rows.high), (-np.inf, np.inf), quadratic)
@@ -214,7 +228,7 @@ def _quadratic(rows: _Rows, cost: FloatArray, square: FloatArray, sure: bool) ->
     raise SolverError(f"{'IPOPT' if sure else 'qpOASES'} ended a servo-aware design with {status!r}; report this job")
 
 
-def _sparse(matrix: FloatArray) -> ca.DM:
+def sparse(matrix: FloatArray) -> ca.DM:
     """Hand a matrix to CasADi without its zeros: in a fraction of the time that all its numbers would take."""
     columns, rows = np.nonzero(matrix.T)
     starts = np.searchsorted(columns, np.arange(matrix.shape[1] + 1))

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 from design.axis import PHASES
 from design.axis_programme import BAND_MARGIN, LEAST_ERROR, AxisProblem, AxisProgramme, Cost
+from design.axis_torque import TorqueCost
 from design.problem import Objective
 from design.solver import objective_value
 from profiles.errors import SolverError
@@ -85,7 +86,7 @@ def design_axis(problem: AxisProblem, objective: Cost) -> AxisMotion | None:
         if found is None:
             return None
         value = found[1]
-        if not objective.startswith("rms"):
+        if objective in ("peak_acceleration", "peak_jerk"):
             found = _smoothest(programme, found, 1.0, 2 if objective == "peak_acceleration" else 3)
         return _motion(programme, found[0], value)
     band = LEAST_ERROR
@@ -102,7 +103,7 @@ def design_axis(problem: AxisProblem, objective: Cost) -> AxisMotion | None:
     return _motion(programme, found[0])
 
 
-def _as_it_is(programme: AxisProgramme, objective: Objective) -> AxisMotion | None:
+def _as_it_is(programme: AxisProgramme, objective: Objective | TorqueCost) -> AxisMotion | None:
     """Take the servo-blind optimum, which the problem's structure is, where its axis keeps to everything: then nothing is better."""
     problem = programme.problem
     if problem.structure is None:
@@ -110,7 +111,10 @@ def _as_it_is(programme: AxisProgramme, objective: Objective) -> AxisMotion | No
     profile = assemble(problem.structure, problem.machine, replace(problem.cut, origin="return"))
     if not programme.holds(profile):
         return None
-    value = objective_value(problem.structure, objective)
+    if objective == "rms_torque" or objective == "peak_torque" or objective == "energy":
+        value = programme.torque.value_of(problem.structure, objective)
+    else:
+        value = objective_value(problem.structure, objective)
     return AxisMotion(profile, programme.errors(profile), value, programme.solved, problem.axis_limits)
 
 

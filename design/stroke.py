@@ -10,6 +10,7 @@ import numpy as np
 from design.possible import possible_motion
 from design.scaling import ScaledProblem
 from design.transcription import PEAKS, Motion
+from profiles.polynomial import FloatArray
 
 # The least limit is found to this share, far below what counts as the same objective.
 NARROW = 1e-12
@@ -31,20 +32,26 @@ def least_peak_motion(problem: ScaledProblem) -> Motion | None:
     """
     if problem.objective not in PEAKS or not problem.confined:
         return None
-    name = "greatest_slope" if problem.objective == "peak_acceleration" else "greatest_jerk"
-    given = float(getattr(problem, name))
-    high, found = given, possible_motion(problem)
+    slope = problem.objective == "peak_acceleration"
+
+    def within(limit: float) -> tuple[FloatArray, FloatArray] | None:
+        return possible_motion(
+            replace(problem, greatest_slope=limit) if slope else replace(problem, greatest_jerk=limit)
+        )
+
+    high = problem.greatest_slope if slope else problem.greatest_jerk
+    found = within(high)
     if found is None:
         return None
     low = STRIDE * high
     for _ in range(MOST_STRIDES):
-        gentler = possible_motion(replace(problem, **{name: low}))
+        gentler = within(low)
         if gentler is None:
             break
         high, low, found = low, STRIDE * low, gentler
     while high - low > NARROW * high:
         middle = 0.5 * (low + high)
-        gentler = possible_motion(replace(problem, **{name: middle}))
+        gentler = within(middle)
         if gentler is None:
             low = middle
         else:

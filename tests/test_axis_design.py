@@ -156,15 +156,6 @@ def test_a_motion_beyond_the_limits_is_the_servo_blind_refusal(command: Command)
         solve_axis(KNIFE, cut, LIMITS, "peak_acceleration", command, (PAPER,))
 
 
-def test_a_torque_of_a_crank_is_no_programme_of_this_kind() -> None:
-    crank = CrankSlider(0.15, 0.6, 0.0, 0.6, 60.0, 10.0, sync_at=1.4)
-    cut = replace(CUT, length=0.9, line_speed=0.5, sync_zone=0.15, shear_zone_at=0.1)
-    with pytest.raises(
-        InputError, match=r"'rms_torque': a servo-aware design of this machine minimises .* or sync_error"
-    ):
-        solve_axis(crank, cut, Limits(31.0, 400.0, 20_000.0), "rms_torque", "in_sync", (PAPER,))
-
-
 def test_the_torque_of_a_carriage_without_friction_is_its_acceleration() -> None:
     carriage = LinearCarriage(0.7, mass=100.0, travel_per_turn=0.04)
     cut = replace(CUT, length=1.2, line_speed=0.7, sync_zone=0.25, shear_zone_at=0.2)
