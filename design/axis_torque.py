@@ -11,6 +11,7 @@ import numpy as np
 from design.command_basis import CommandBasis
 from design.convex import Rows, sparse
 from design.ipopt import QUIET
+from design.torque_programme import LOBATTO, ROUNDING
 from profiles.cycle import Cut
 from profiles.errors import SolverError
 from profiles.machines import Machine
@@ -19,8 +20,6 @@ from profiles.polynomial import CamProfile, FloatArray
 TorqueCost = Literal["rms_torque", "peak_torque", "energy"]
 """What is minimised at the slave over the free part of the cycle: root mean square, peak, or mean power drawn."""
 
-# A peak, and the energy, also pay this share of the mean square, so that of all motions with that peak the smoothest is taken.
-ROUNDING = 1e-4
 # A slave that turns back has its friction smoothed over this share of the line speed.
 SMOOTH = 0.01
 _OPTIONS: dict[str, Any] = QUIET | {
@@ -30,12 +29,7 @@ _OPTIONS: dict[str, Any] = QUIET | {
     "ipopt.max_iter": 500,
     "ipopt.mu_strategy": "adaptive",
 }
-# NumPy's functions on CasADi's symbols are meant: a machine is written once, for numbers and symbols alike.
-ca.GlobalOptions.setNumpyMode(1)
-
-# Gauss-Lobatto points of an interval and their weights: exact to degree 5, and at the nodes, where a peak may stand.
-_PLACES = np.array([-1.0, -math.sqrt(0.2), math.sqrt(0.2), 1.0])
-_WEIGHTS = np.array([1.0, 5.0, 5.0, 1.0]) / 6.0
+_PLACES, _WEIGHTS = LOBATTO
 
 
 class AxisTorque:
@@ -57,7 +51,7 @@ class AxisTorque:
         self._start = machine.sync_start(cut) + float(sync(sync.end))
         self._derivatives = _at_points(basis)
         widths = np.diff(basis.nodes)
-        self._shares = (widths[:, None] * _WEIGHTS / 2).ravel() / widths.sum()
+        self._shares = (widths[:, None] * _WEIGHTS).ravel() / widths.sum()
 
     def value(self, unknowns: FloatArray, cost: TorqueCost) -> float:
         """Objective of a command (N or N·m, or W)."""
@@ -67,8 +61,8 @@ class AxisTorque:
     def value_of(self, back: CamProfile, cost: TorqueCost) -> float:
         """Objective of a return that counts from the end of the sync zone."""
         widths = np.diff(back.breaks)
-        x = (back.breaks[:-1, None] + widths[:, None] * (_PLACES + 1) / 2).ravel()
-        shares = (widths[:, None] * _WEIGHTS / 2).ravel() / back.length
+        x = (back.breaks[:-1, None] + widths[:, None] * _PLACES).ravel()
+        shares = (widths[:, None] * _WEIGHTS).ravel() / back.length
         return self._value([back(x), back(x, 1), back(x, 2)], shares, cost)
 
     def _value(self, motion: list[FloatArray], shares: FloatArray, cost: TorqueCost) -> float:
@@ -152,7 +146,7 @@ class AxisTorque:
 def _at_points(basis: CommandBasis) -> tuple[tuple[FloatArray, FloatArray], ...]:
     """Slave, ratio and ratio slope of a command at the Gauss-Lobatto points of its intervals, each as ``(matrix, constant)``."""
     widths = np.diff(basis.nodes)
-    s = (widths[:, None] * (_PLACES + 1) / 2).ravel()
+    s = (widths[:, None] * _PLACES).ravel()
     interval = np.repeat(np.arange(len(widths)), len(_PLACES))
     one, none = np.ones_like(s), np.zeros_like(s)
     found = []

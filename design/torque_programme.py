@@ -1,7 +1,7 @@
 """The programme of returns whose torque counts: as the objective, or within what the motor gives at its speed.
 
-The pieces, limits and boundary values are those of `design.transcription`; torque and power are evaluated at Gauss points of every
-interval through the machine's own formulas. It is not convex where the inertia changes.
+The pieces, limits and boundary values are those of `design.transcription`; torque and power are evaluated at Gauss-Lobatto points of
+every interval through the machine's own formulas. It is not convex where the inertia changes.
 """
 
 from __future__ import annotations
@@ -30,17 +30,18 @@ Aim = TorqueObjective | Objective | Literal["load"]
 """What is minimised; the load is the greatest share of the motor's torque at its speed that is used."""
 
 INTERVALS = 80
-GAUSS_POINTS = 3
 # A peak, and the energy, also pay this share of the mean square, so that of all motions with that peak the smoothest is taken.
 ROUNDING = 1e-4
 DRAWN_IN = 3e-8
 """Share by which limits are drawn in here: the solver answers this programme to about 1e-8, the contract says 1e-9."""
 CURVE_DRAWN_IN = 2e-3
-"""The same for the motor's torque, which is looked at in Gauss points only."""
+"""The same for the motor's torque, which is looked at in Gauss-Lobatto points only."""
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(GAUSS_POINTS)
-_GAUSS = (0.5 * (_NODES + 1), 0.5 * _WEIGHTS)
-"""Gauss points on the unit interval, and their weights."""
+LOBATTO = (
+    0.5 + 0.5 * np.array([-1.0, -math.sqrt(0.2), math.sqrt(0.2), 1.0]),
+    np.array([1.0, 5.0, 5.0, 1.0]) / 12.0,
+)
+"""Gauss-Lobatto points on the unit interval, and their weights: exact to degree 5, and at the nodes, where a peak may stand."""
 
 _OPTIONS: dict[str, Any] = QUIET | {"ipopt.tol": 1e-8, "ipopt.max_iter": 500, "ipopt.mu_strategy": "adaptive"}
 
@@ -107,7 +108,7 @@ class TorqueProgramme:
         self._task = task
         self._h = np.full(n, 1.0 / n)
         h = 1.0 / n
-        self._drawn = GAUSS_POINTS * n if task.aim == "energy" else 0
+        self._drawn = len(LOBATTO[0]) * n if task.aim == "energy" else 0
         x = ca.MX.sym("x", 3 * (n + 1) + 1 + self._drawn)
         a, v, q, t, drawn = ca.vertsplit(x, list(np.cumsum([0, n + 1, n + 1, n + 1, 1, self._drawn])))
         rise, jerk = a[1:] - a[:-1], (a[1:] - a[:-1]) / h
@@ -120,7 +121,7 @@ class TorqueProgramme:
         torque, power, available = (
             ca.vec(part) for part in interval(a[:-1].T, rise.T, v[:-1].T, q[:-1].T, ca.DM(np.arange(n) * h).T)
         )
-        self._shares = np.tile(h * _GAUSS[1], n)
+        self._shares = np.tile(h * LOBATTO[1], n)
         self._measure = ca.Function("measure", [x], [torque, power, available])
         units = ca.MX.sym("u", 2)  # of the torque or motion, and of the power
         shares = ca.DM(self._shares)
@@ -153,7 +154,7 @@ class TorqueProgramme:
         self._solver = ca.nlpsol("camwright_torque", "ipopt", nlp, _OPTIONS)
 
     def _interval(self) -> Any:
-        """Make the function of one interval: torque or force and power at the slave, and what the motor gives, at its Gauss points.
+        """Make the function of one interval: torque or force and power at the slave, and what the motor gives, at its Gauss-Lobatto points.
 
         It takes the acceleration at the interval's start and its rise, ratio and position at the start, and where the interval begins.
         """
@@ -161,7 +162,7 @@ class TorqueProgramme:
         drift = task.problem.start_ratio * task.problem.length / task.scale
         per_time = task.cut.line_speed * task.scale / task.problem.length
         a, rise, v, q, x = (ca.SX.sym(name) for name in ("a", "r", "v", "q", "x"))
-        s = ca.DM(_GAUSS[0])
+        s = ca.DM(LOBATTO[0])
         pace = v + h * s * (a + rise * s / 2)
         y = task.start + task.scale * (q + h * s * (v + h * s * (a / 2 + rise * s / 6)) + drift * (x + s * h))
         velocity = per_time * (pace + drift)
@@ -169,7 +170,7 @@ class TorqueProgramme:
         force = machine.inertia(y) * acceleration + machine.inertia_slope(y) * velocity**2 / 2
         # a slave that does not turn back has friction against it all the time
         force += machine.friction * (ca.tanh(velocity / (0.01 * task.cut.line_speed)) if machine.turns_back else 1.0)
-        available: Any = ca.DM.inf(GAUSS_POINTS)
+        available: Any = ca.DM.inf(len(LOBATTO[0]))
         if task.curve is not None:
             speeds, torques = (ca.DM(list(column)) for column in zip(*task.curve.points, strict=True))
             speed = ca.vertsplit(ca.fabs(velocity) * machine.motor_ratio)

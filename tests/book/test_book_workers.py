@@ -113,14 +113,19 @@ def test_a_book_that_is_killed_at_any_moment_ends_with_the_same_bytes(whole: dic
         assert contents(root) == whole, moment
 
 
-def test_an_interrupt_keeps_what_is_done(whole: dict[str, bytes], tmp_path: Path) -> None:
+@pytest.mark.parametrize("designs", [0, 3])  # while the workers start, too, who must not tell of it
+def test_an_interrupt_keeps_what_is_done(whole: dict[str, bytes], tmp_path: Path, designs: int) -> None:
     root = tmp_path / "book"
     process = subprocess.Popen(
         [*COMMAND, *ASKED, "--out", str(root)], stderr=subprocess.PIPE, text=True, start_new_session=True
     )
     until = time.monotonic() + 180
-    while len(list(root.glob("designs/*/*/*"))) < 3 and time.monotonic() < until:
+    while len(list(root.glob("designs/*/*/*"))) < designs and time.monotonic() < until:
         time.sleep(0.01)
+    while not (root / ".book" / "journal.sqlite").exists() and time.monotonic() < until:
+        time.sleep(0.01)
+    if not designs:
+        time.sleep(0.2)
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does it: to the workers, too
     _, message = process.communicate(timeout=180)
     assert process.returncode == 130

@@ -13,7 +13,7 @@ from camwright.design_file import job_numbers
 from camwright.recipe.build import MadeRecipe
 from camwright.recipe.catalogue import LANGUAGES, catalogue
 from camwright.recipe.facts import MACHINE, PRODUCT, SERVO
-from camwright.recipe.fonts import covered
+from camwright.recipe.fonts import has_glyph
 from camwright.recipe.model import Language
 from camwright.recipe.sheet import sheet
 from profiles.tables.targets import TARGETS
@@ -54,7 +54,7 @@ def test_titles_and_import_steps_of_all_targets_are_translated(language: Languag
 def test_every_character_of_the_catalogue_has_a_glyph(language: Language) -> None:
     words = catalogue(language)
     letters = set("".join([*words.messages.values(), *words.phrases.values()]))
-    assert {letter for letter in letters if ord(letter) not in covered()} == set()
+    assert {letter for letter in letters if not has_glyph(ord(letter))} == set()
 
 
 def test_chinese_is_written_in_chinese() -> None:
