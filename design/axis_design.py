@@ -7,7 +7,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Literal
 
-from design.axis_programme import RATIO, AxisProblem, AxisProgramme, Cost
+from design.axis_programme import AxisProblem, AxisProgramme, Cost
+from design.axis_rows import RATIO
 from design.command_basis import Command
 from design.ipopt import SolveStatus
 from design.motor import motor_limits, motor_speed_limits

@@ -12,9 +12,9 @@ from functools import cached_property
 from typing import Literal, cast, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
 from design.axis import PHASES, SUBSTEPS, Axis
+from design.axis_rows import RATIO, AxisRows, band_rows, first_places, ratio_rows, worst_places
 from design.axis_torque import AxisTorque, TorqueCost
 from design.command_basis import Command, command_basis
 from design.convex import ACCEPTED, ConvexProgramme
@@ -39,10 +39,6 @@ Cost = Literal[
 
 TORQUES = get_args(TorqueCost)
 
-RATIO = 2.0
-"""Error of the axis' ratio allowed in the shear zone, times its length over the sync tolerance: along the zone the tool could at most go
-from one edge of its band to the other."""
-
 # Limits are drawn in by this share, twice what an answer may break its rows by.
 LIMIT_MARGIN = 2 * ACCEPTED
 # The band in the shear zone is drawn in by this share, as rows stand at single places and times.
@@ -52,10 +48,10 @@ BAND_ACCEPTED = 1e-5
 # Limits of the axis' own speed and acceleration are drawn in by this share, for the same reason.
 AXIS_MARGIN = 1e-3
 # Places in the shear zone that have rows from the start, one for each sample in it, at least so many, and times after a sample: few where
-# rounds are cheap, more for the linear programmes of a single servo; and at most so many places.
-FEW, MORE, MOST_PLACES = (6, 2), (12, 4), 24
-# Rounds of adding rows, most rows of each kind added in a round, and the share by which a band may be missed without another round.
-ROUNDS, MOST_ROWS, NEARLY = 30, 12, 1e-3
+# rounds are cheap, more for the linear programmes of a single servo.
+FEW, MORE = (6, 2), (12, 4)
+# Rounds of adding rows, and the share by which a band may be missed without another round.
+ROUNDS, NEARLY = 30, 1e-3
 # Share by which the value of one round may be that of the round before, where rows beyond the tolerance have no effect.
 STILL = 1e-7
 # Most rows of the axis' own motion added in a round: it runs along its limits where the tool only touches its band.
@@ -68,7 +64,6 @@ MOST_SERVOS = 12
 LEAST_ERROR = 5e-3
 _ORDER = {"peak_acceleration": 2, "rms_acceleration": 2, "peak_jerk": 3, "rms_jerk": 3}
 _LINEAR = ("sync_error", "peak_acceleration", "peak_jerk")
-_EVERYWHERE = 1e300
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,21 +100,6 @@ class AxisProblem:
     between: tuple[Servo, ...] = ()
 
 
-@dataclass(frozen=True, eq=False)
-class _Rows:
-    """Rows ``low <= matrix @ z + constant <= high``."""
-
-    matrix: FloatArray
-    constant: FloatArray
-    low: FloatArray
-    high: FloatArray
-
-    @property
-    def size(self) -> FloatArray:
-        """What rows are divided by, so that their bounds are about one."""
-        return np.maximum(np.abs(self.low), np.abs(self.high))
-
-
 class AxisProgramme:
     """The programmes of one `AxisProblem`; rows found by one answer serve the next.
 
@@ -138,9 +118,9 @@ class AxisProgramme:
         )
         self.scale = max(abs(problem.machine.pitch), abs(problem.machine.sync_profile(problem.cut).advance))
         self.solved = 0
-        self._bands: list[_Rows] = []
-        self._ratios: list[_Rows] = []
-        self._own: list[_Rows] = []
+        self._bands: list[AxisRows] = []
+        self._ratios: list[AxisRows] = []
+        self._own: list[AxisRows] = []
         self._begun: set[str] = set()
         self._turned: FloatArray | None = None
         # a return alone comes near to its limits, a whole cycle has room: rows of its limits come when they matter
@@ -265,10 +245,10 @@ class AxisProgramme:
         first = FEW if in_sync or mean or len(self.axes) > 1 else MORE
         if "band" not in self._begun:
             self._begun.add("band")
-            self._bands += [self._band(axis, *_first_rows(axis, *first)) for axis in self.axes]
+            self._bands += [band_rows(axis, self.basis, *first_places(axis, *first)) for axis in self.axes]
         if ratio and "ratio" not in self._begun and self.problem.cut.shear_zone:
             self._begun.add("ratio")
-            self._ratios.append(self._ratio(*_first_rows(self.axes[0], *first)))
+            self._ratios.append(ratio_rows(self.axes[0], self.basis, *first_places(self.axes[0], *first)))
 
     def _tighten(self, unknowns: FloatArray) -> bool:
         """Ask from now on for the rows of limits that an answer without them breaks; whether there are any."""
@@ -370,25 +350,6 @@ class AxisProgramme:
             found[0] = (machine.home - end, machine.home + machine.stroke - end)
         return found
 
-    def _band(self, axis: Axis, places: FloatArray, times: FloatArray, wider: float = 1.0) -> _Rows:
-        """Rows that keep the axis in its band."""
-        matrix, constant = axis.rows(self.basis, places, times)
-        low, high = axis.band(places, wider * self.problem.cut.sync_tolerance)
-        return _Rows(matrix, constant - axis.ideal(places)[0], low, high)
-
-    def _ratio(self, places: FloatArray, times: FloatArray) -> _Rows:
-        """Rows that keep the ratio of the nominal axis to that of the sync zone."""
-        axis, cut = self.axes[0], self.problem.cut
-        matrix, constant = axis.rows(self.basis, places, times, 1)
-        _, ratio, coordinate = axis.ideal(places)
-        room = (
-            RATIO
-            * cut.sync_tolerance
-            / cut.shear_zone
-            / np.abs(self.problem.machine.tool_ratio(coordinate) + np.zeros(len(places)))
-        )
-        return _Rows(matrix, constant - ratio, -room, room)
-
     def _add_worst(self, profile: CamProfile, band: float, *, ratio: bool) -> bool:
         """Add rows where a command leaves its band, or the nominal axis breaks a limit; whether there were any."""
         nearly = 1.0 if band == 1.0 else 1.0 + NEARLY
@@ -396,9 +357,9 @@ class AxisProgramme:
         added = False
         for axis in self.axes:
             places, times, errors = axis.zone_errors(profile)
-            worst = _peaks(np.abs(errors) - limit)
+            worst = worst_places(np.abs(errors) - limit)
             if len(worst):
-                self._bands.append(self._band(axis, places[worst], times[worst]))
+                self._bands.append(band_rows(axis, self.basis, places[worst], times[worst]))
                 added = True
         if ratio and self.problem.cut.shear_zone:
             added |= self._add_ratio(profile, max(1.0, band))
@@ -411,12 +372,12 @@ class AxisProgramme:
         over = []
         for axis in self._seen + (self._unseen if unseen else []):
             places, times, errors = axis.zone_errors(profile)
-            worst = _peaks(np.abs(errors) - limit)
+            worst = worst_places(np.abs(errors) - limit)
             if len(worst):
                 over.append((float(np.abs(errors).max()), axis, places[worst], times[worst]))
         over.sort(key=lambda each: -each[0])
         for _, axis, places, times in over[:MOST_SERVOS]:
-            self._bands.append(self._band(axis, places, times, self._wider))
+            self._bands.append(band_rows(axis, self.basis, places, times, self._wider))
             if axis in self._unseen:
                 self._unseen.remove(axis)
                 self._seen.append(axis)
@@ -426,9 +387,9 @@ class AxisProgramme:
         """Add rows where the ratio of the nominal axis leaves its band, widened to a share of itself."""
         axis, cut = self.axes[0], self.problem.cut
         places, times, errors = axis.zone_ratios(profile)
-        worst = _peaks(np.abs(errors) - band * RATIO * cut.sync_tolerance / cut.shear_zone)
+        worst = worst_places(np.abs(errors) - band * RATIO * cut.sync_tolerance / cut.shear_zone)
         if len(worst):
-            self._ratios.append(self._ratio(places[worst], times[worst]))
+            self._ratios.append(ratio_rows(axis, self.basis, places[worst], times[worst]))
         return bool(len(worst))
 
     def _add_own(self, profile: CamProfile) -> bool:
@@ -438,7 +399,7 @@ class AxisProgramme:
             if axis.keeps_within(profile, order, low, high):
                 continue
             excess = self._own_excess(profile, order)
-            worst = _peaks(excess.max(axis=0) - 0.5 * AXIS_MARGIN * high, MOST_OWN)
+            worst = worst_places(excess.max(axis=0) - 0.5 * AXIS_MARGIN * high, MOST_OWN)
             if len(worst):  # what is pressed down there rises a sample aside, so that gets rows too
                 worst = np.unique((worst[:, None] + PHASES * np.arange(-1, 2)) % excess.shape[1])
                 times = np.asarray(
@@ -447,7 +408,7 @@ class AxisProgramme:
                 places = np.asarray(worst * (axis.sample / PHASES), dtype=np.float64)
                 matrix, constant = axis.rows(self.basis, places, times, order)
                 room, ones = high * AXIS_MARGIN, np.ones(len(matrix))
-                self._own.append(_Rows(matrix, constant, (low + room) * ones, (high - room) * ones))
+                self._own.append(AxisRows(matrix, constant, (low + room) * ones, (high - room) * ones))
                 added = True
         return added
 
@@ -472,19 +433,3 @@ class AxisProgramme:
 def _stands_still(value: float, before: float, band: float) -> bool:
     """Whether more rows are of no use: beyond the tolerance bands are scaled, and the tool of a crank is off by more than that."""
     return band > 1.0 and math.isclose(value, before, rel_tol=STILL)
-
-
-def _first_rows(axis: Axis, least: int, instants: int) -> tuple[FloatArray, FloatArray]:
-    """Places and times of the first rows: the ends of the shear zone and places between, at a few times after a sample."""
-    start, end = axis.shear_zone
-    count = min(max(least, math.ceil((end - start) / axis.sample)), MOST_PLACES) if end > start else 1
-    places = start + (end - start) * (1.0 - np.cos(np.pi * np.arange(count) / max(1, count - 1))) / 2
-    times = axis.servo.sample_time * np.arange(instants) / instants
-    return np.tile(places, instants), np.repeat(times, count)
-
-
-def _peaks(excess: FloatArray, most: int = MOST_ROWS) -> NDArray[np.intp]:
-    """Find the local maxima above zero, the worst first."""
-    padded = np.concatenate([[-_EVERYWHERE], excess, [-_EVERYWHERE]])
-    found = np.nonzero((excess > 0.0) & (excess >= padded[:-2]) & (excess > padded[2:]))[0]
-    return np.asarray(found[np.argsort(-excess[found], kind="stable")][:most])

@@ -13,7 +13,8 @@ from scipy.optimize import linprog
 
 from design.axis import Axis
 from design.axis_design import solve_axis
-from design.axis_programme import BAND_MARGIN, LEAST_ERROR, RATIO, AxisProblem, AxisProgramme, Cost
+from design.axis_programme import BAND_MARGIN, LEAST_ERROR, AxisProblem, AxisProgramme, Cost
+from design.axis_rows import RATIO
 from design.command_basis import INTERVALS, Command, command_basis
 from design.optimise import solve
 from design.servo_aware import design_axis
