@@ -276,8 +276,6 @@ def export_report(
     results: Sequence[Exported], job: Job, refused: dict[str, tuple[str, ...]] | None = None
 ) -> dict[str, Any]:
     """Contents of ``report.json``: the answer, with ratio errors, checks, reader's notes and provenance, and who cannot take the cam."""
-    from dataclasses import asdict
-
     answer = export_answer(results)
     for result in results:
         entry = answer["targets"][result.target.name]
@@ -293,7 +291,7 @@ def export_report(
                 "acceleration_error_rel": result.dense.deviation.acceleration,
             }
         entry["notes"] = list(result.table.notes)
-        entry["checks"] = [asdict(check) for check in result.judgement.checks]
+        entry["checks"] = [dict(vars(check)) for check in result.judgement.checks]
     reasons = {name: list(faults) for name, faults in (refused or {}).items()}
     return {**answer, "refused": reasons, "job": job.name, "provenance": provenance(job.sha256)}
 

@@ -6,6 +6,7 @@ import hashlib
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from camwright.files import read_text
 from camwright.job_checks import conflicts
@@ -136,6 +137,17 @@ def parse_job(text: str, place: str) -> Job:
     except ValueError as error:  # TOMLDecodeError, and integers beyond Python's limit of digits
         end = f"at the end, line {text.rstrip().count(chr(10)) + 1}"
         raise InputError(f"{place}: not TOML: {str(error).replace('at end of document', end)}") from error
+    return read_job(data, text, place)
+
+
+def read_job(data: dict[str, Any], text: str, place: str) -> Job:
+    """Read a job from what the text of its job file holds; as `parse_job`.
+
+    Raises
+    ------
+    InputError
+        It has faults.
+    """
     file, known, faults = read_structure(data)
     faults += conflicts(known)
     machine = machine_of(known)

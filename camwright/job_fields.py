@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import cast
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationInfo, WithJsonSchema
@@ -230,8 +231,14 @@ def _read(value: object, kind: str, *, zero: bool = False, signed: bool = False,
 
 def _is(value: object, kind: str) -> bool:
     """Whether a value is a quantity of a kind, in range."""
+    return isinstance(value, str) and _text_is(value, kind)
+
+
+@lru_cache(maxsize=256)
+def _text_is(text: str, kind: str) -> bool:
+    """Whether a text is a quantity of a kind, in range; kept, like the quantities themselves."""
     try:
-        quantity(value, kind)
+        quantity(text, kind)
     except InputError:
         return False
     return True

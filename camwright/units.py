@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -144,12 +145,12 @@ def exact_quantity(
     >>> exact_quantity("0.1 mm", "length")
     Fraction(1, 10000)
     """
+    if isinstance(text, str):
+        return _exact(text, kind, zero, signed, example or KINDS[kind].example)
     wanted = KINDS[kind] if example is None else replace(KINDS[kind], example=example)
     if isinstance(text, int | float) and not isinstance(text, bool):
         raise InputError(f'{shown(text)}: a number without a unit; write e.g. "{_repeated(text, wanted)}"')
-    if not isinstance(text, str):
-        raise InputError(f'{shown(text)}: not {wanted.name} with a unit; write e.g. "{wanted.example}"')
-    return _exact(text, kind, zero, signed, wanted.example)
+    raise InputError(f'{shown(text)}: not {wanted.name} with a unit; write e.g. "{wanted.example}"')
 
 
 @lru_cache(maxsize=1024)
@@ -243,17 +244,27 @@ def _described(dimension: dict[str, int]) -> str:
 @cache
 def _known_name(name: str) -> str | None:
     """Look a unit up in the registry: its full name, or nothing if there is no such unit."""
+    registry = _registry()
     import pint
 
     try:
-        return str(_registry().get_name(name))
+        return str(registry.get_name(name))
     except (pint.UndefinedUnitError, pint.DefinitionSyntaxError):
         return None
 
 
 @cache
 def _registry() -> pint.UnitRegistry[Fraction]:
-    """Make the one registry when the first quantity is read."""
-    import pint
+    """Make the one registry when the first quantity is read.
 
+    pint imports dask where it is installed, which takes longer than all the rest of it, for arrays of quantities; there are none here.
+    """
+    hidden = "dask" not in sys.modules
+    if hidden:
+        sys.modules["dask"] = None  # type: ignore[assignment]  # the import system takes this for a module that is not there
+    try:
+        import pint
+    finally:
+        if hidden:
+            del sys.modules["dask"]
     return pint.UnitRegistry(_DEFINITIONS.strip().splitlines(), non_int_type=Fraction)

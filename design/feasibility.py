@@ -53,17 +53,29 @@ class Demand:
 
     def met(self, speed: float = 1.0, acceleration: float = 1.0, jerk: float = 1.0) -> bool:
         """Tell whether limits that are these multiples of the given ones are kept by some motion."""
-        if any(
-            share > factor * (1 + ALLOWED)
-            for share, factor in zip(self.shares, (speed, acceleration, jerk), strict=True)
+        of_speed, of_acceleration, of_jerk = self.shares
+        if (
+            of_speed > speed * (1 + ALLOWED)
+            or of_acceleration > acceleration * (1 + ALLOWED)
+            or of_jerk > jerk * (1 + ALLOWED)
         ):
             return False
-        problem = replace(
-            self.problem,
-            least_ratio=self.problem.least_ratio * speed,
-            greatest_ratio=self.problem.greatest_ratio * speed,
-            greatest_slope=self.problem.greatest_slope * acceleration,
-            greatest_jerk=self.problem.greatest_jerk * jerk,
+        given = self.problem
+        # dataclasses.replace takes several times as long, and this is asked thousands of times
+        problem = ReturnProblem(
+            given.length,
+            given.height,
+            given.start_ratio,
+            given.end_ratio,
+            given.start_slope,
+            given.end_slope,
+            given.least_ratio * speed,
+            given.greatest_ratio * speed,
+            given.greatest_slope * acceleration,
+            given.greatest_jerk * jerk,
+            given.objective,
+            given.least_position,
+            given.greatest_position,
         )
         return is_possible(resolved(problem))
 
@@ -147,12 +159,15 @@ def needed_limits(machine: Machine, cut: Cut, limits: Limits) -> dict[str, float
 
     For a carriage also its ``"stroke"`` (m).
     """
+    asked = demands(machine, cut, limits)
+
+    def works(name: str, factor: float) -> bool:
+        if limits.motor is None:  # then a limit's factor is its demand's
+            return any(demand.met(**{name: factor}) for demand in asked)
+        return is_feasible(machine, cut, with_limit(limits, name, float(getattr(limits, name)) * factor))
 
     def alone(name: str) -> float:
-        value = float(getattr(limits, name))
-        return value * least_factor(
-            lambda f: f >= 1.0 and is_feasible(machine, cut, with_limit(limits, name, value * f))
-        )
+        return float(getattr(limits, name)) * least_factor(lambda f: f >= 1.0 and works(name, f))
 
     need = {name: alone(name) for name in LIMIT_NAMES}
     if isinstance(machine, LinearCarriage):

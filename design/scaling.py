@@ -13,6 +13,8 @@ from profiles.reach import least_acceleration
 # They still allow for jobs at the edge of the speed limit, whose motion happens in a small part of the return.
 GREATEST_SCALED_SPEED = 1e2
 GREATEST_SCALED_ACCELERATION = 1e6
+# Peak acceleration of unit height in unit length where nothing but the time is limited.
+LEAST_PEAK = 4.0
 # A ramp shorter than this share of the return cannot be told from a jump: its ends lie only 1e9 roundings apart. A jerk limit that would
 # allow shorter ramps is lowered; the least peak acceleration then grows by this share of the time that the acceleration takes.
 SHORTEST_RAMP = 2e-7
@@ -68,35 +70,27 @@ def motion_scale(problem: ReturnProblem) -> float:
     """
     length = problem.length
     height = problem.height - problem.start_ratio * length
-    others = (
-        (problem.end_ratio - problem.start_ratio) * length,
-        problem.start_slope * length**2,
-        problem.end_slope * length**2,
-    )
-    size = max(abs(height), *(abs(value) for value in others))
-    return -size if not any(others) and height < 0 else size
+    ratio = (problem.end_ratio - problem.start_ratio) * length
+    start, end = problem.start_slope * length**2, problem.end_slope * length**2
+    size = max(abs(height), abs(ratio), abs(start), abs(end))
+    return -size if height < 0 and not (ratio or start or end) else size
 
 
 def scale_problem(problem: ReturnProblem, scale: float) -> ScaledProblem:
     """Normalise a return by its length and by the scale from `motion_scale`."""
     length = problem.length
-    ratios = sorted(
-        (limit - problem.start_ratio) * length / scale for limit in (problem.least_ratio, problem.greatest_ratio)
-    )
+    least_ratio, greatest_ratio = _scaled_ratios(problem, scale)
     height = (problem.height - problem.start_ratio * length) / scale
-    greatest_ratio = min(ratios[1], GREATEST_SCALED_SPEED)
-    straight = least_acceleration(abs(height), 1.0, max(greatest_ratio, 1e-300), math.inf)
-    sharpest = max(4.0, straight if math.isfinite(straight) else 0.0) / SHORTEST_RAMP
     places = sorted((problem.least_position / scale, problem.greatest_position / scale))
     return ScaledProblem(
         height=height,
         end_ratio=(problem.end_ratio - problem.start_ratio) * length / scale,
         start_slope=problem.start_slope * length**2 / scale,
         end_slope=problem.end_slope * length**2 / scale,
-        least_ratio=max(ratios[0], -GREATEST_SCALED_SPEED),
+        least_ratio=least_ratio,
         greatest_ratio=greatest_ratio,
         greatest_slope=min(problem.greatest_slope * length**2 / abs(scale), GREATEST_SCALED_ACCELERATION),
-        greatest_jerk=min(problem.greatest_jerk * length**3 / abs(scale), sharpest),
+        greatest_jerk=min(problem.greatest_jerk * length**3 / abs(scale), _sharpest(height, greatest_ratio)),
         objective=problem.objective,
         drift=problem.start_ratio * length / scale,
         least_position=places[0],
@@ -104,13 +98,33 @@ def scale_problem(problem: ReturnProblem, scale: float) -> ScaledProblem:
     )
 
 
+def _scaled_ratios(problem: ReturnProblem, scale: float) -> tuple[float, float]:
+    """Limits of the ratio in the scaled problem."""
+    least, greatest = sorted(
+        (limit - problem.start_ratio) * problem.length / scale
+        for limit in (problem.least_ratio, problem.greatest_ratio)
+    )
+    return max(least, -GREATEST_SCALED_SPEED), min(greatest, GREATEST_SCALED_SPEED)
+
+
+def _sharpest(height: float, greatest_ratio: float) -> float:
+    """Jerk of the scaled problem whose ramps are as short as `SHORTEST_RAMP` allows."""
+    straight = least_acceleration(abs(height), 1.0, max(greatest_ratio, 1e-300), math.inf)
+    return max(LEAST_PEAK, straight if math.isfinite(straight) else 0.0) / SHORTEST_RAMP
+
+
 def resolved(problem: ReturnProblem) -> ReturnProblem:
     """Return the problem with the jerk limit that the design goes by: no higher than what `SHORTEST_RAMP` allows."""
     scale = motion_scale(problem)
     if scale == 0.0:
         return problem
-    sharpest = scale_problem(problem, scale).greatest_jerk * abs(scale) / problem.length**3
-    return replace(problem, greatest_jerk=min(problem.greatest_jerk, sharpest))
+    length = problem.length
+    unit = abs(scale) / length**3
+    if problem.greatest_jerk <= LEAST_PEAK / SHORTEST_RAMP * unit:
+        return problem
+    height = (problem.height - problem.start_ratio * length) / scale
+    sharpest = _sharpest(height, _scaled_ratios(problem, scale)[1]) * unit
+    return problem if problem.greatest_jerk <= sharpest else replace(problem, greatest_jerk=sharpest)
 
 
 def unscale_profile(profile: CamProfile, problem: ReturnProblem, scale: float) -> CamProfile:

@@ -6,6 +6,7 @@ import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from typing import Literal
 
 import numpy as np
@@ -73,9 +74,9 @@ class CamProfile:
             raise InputError("a profile needs at least one piece with at least one coefficient")
         if not (np.isfinite(self.breaks).all() and np.isfinite(self.coefficients).all()):
             raise InputError("a profile's breaks and coefficients must be finite numbers; one is NaN or infinite")
-        steps = np.diff(self.breaks)
-        if (steps <= 0).any():
-            i = int(np.argmax(steps <= 0))
+        falls = self.breaks[1:] <= self.breaks[:-1]
+        if falls.any():
+            i = int(falls.argmax())
             raise InputError(
                 f"a profile's breaks must increase: break {i + 1} ({self.breaks[i + 1]!r} m) does not lie beyond "
                 f"break {i} ({self.breaks[i]!r} m)"
@@ -156,20 +157,29 @@ class CamProfile:
         """
         position = np.asarray(x, dtype=np.float64)
         turns: FloatArray | None = None
+        start, end = self.start, self.end
         if outside == "repeat":
-            turns = np.floor((position - self.start) / self.length)
+            turns = np.floor((position - start) / (end - start))
             if side == "left":  # a seam belongs to the cycle that ends there
-                turns = turns - ((position - self.start) == turns * self.length)
-            position = np.clip(position - turns * self.length, self.start, self.end)
-        elif position.size and (position.min() < self.start or position.max() > self.end):
-            worst = position.min() if position.min() < self.start else position.max()
-            raise InputError(f"master position {worst!r} m lies outside the profile, {self.start!r} to {self.end!r} m")
-        index = np.searchsorted(self.breaks[1:-1], position, side=side)
-        local = position - self.breaks.take(index, mode="clip")
-        value = np.zeros_like(local)
-        for coefficient in self._derived(order).T[::-1]:  # Horner
-            value *= local
-            value += coefficient.take(index, mode="clip")  # faster than the default; all are in range
+                turns = turns - ((position - start) == turns * (end - start))
+            position = np.minimum(np.maximum(position - turns * (end - start), start), end)
+        elif position.size and (position.min() < start or position.max() > end):
+            worst = position.min() if position.min() < start else position.max()
+            raise InputError(f"master position {worst!r} m lies outside the profile, {start!r} to {end!r} m")
+        table = self._derived(order)
+        index = self.breaks[1:-1].searchsorted(position, side=side)
+        if position.ndim == 0 or len(table) == 1:  # one piece for all positions
+            piece = int(index) if position.ndim == 0 else 0
+            local = position - self.breaks[piece]
+            value = np.zeros(local.shape)
+            for number in table[piece, ::-1].tolist():  # Horner
+                value = value * local + number
+        else:
+            local = position - self.breaks.take(index, mode="clip")
+            value = np.zeros(local.shape)
+            for coefficient in table.T[::-1]:  # Horner
+                value *= local
+                value += coefficient.take(index, mode="clip")  # faster than the default; all are in range
         if turns is not None and order == 0:
             value = value + turns * self.advance
         return np.asarray(value, dtype=np.float64)
@@ -193,15 +203,15 @@ class CamProfile:
         At the seam the position (``order=0``) is compared with its own advance, so it never jumps: use `advance` and the
         machine's pitch to judge closure of the position.
         """
-        table, width = self._derived(order), np.diff(self.breaks)
+        table, width = self._derived(order), self.breaks[1:] - self.breaks[:-1]
         ends = np.zeros(self.pieces)
         for coefficient in table.T[::-1]:  # Horner
             ends *= width
             ends += coefficient
-        value: FloatArray = table[1:, 0] - ends[:-1]
-        if not seam:
-            return value
-        return np.append(value, 0.0 if order == 0 else table[0, 0] - ends[-1])
+        value = np.empty(self.pieces)
+        np.subtract(table[1:, 0], ends[:-1], out=value[:-1])
+        value[-1] = 0.0 if order == 0 else table[0, 0] - ends[-1]
+        return value if seam else value[:-1]
 
     def extrema(
         self, order: int = 0, start: float | None = None, end: float | None = None
@@ -250,8 +260,8 @@ class CamProfile:
         first, last = self.start if start is None else start, self.end if end is None else end
         part = self if (first == self.start and last == self.end) else self.restrict(first, last)
         table = part._derived(order)
-        node, weight = np.polynomial.legendre.leggauss(table.shape[1])
-        width = np.diff(part.breaks)
+        node, weight = _gauss(table.shape[1])
+        width = part.breaks[1:] - part.breaks[:-1]
         local = 0.5 * width[:, None] * (node + 1.0)
         value = np.zeros_like(local)
         for power in range(table.shape[1] - 1, -1, -1):
@@ -369,6 +379,16 @@ def join(*parts: CamProfile) -> CamProfile:
         if abs(left.end - right.start) > 1e-12 * abs(length):
             raise InputError(f"profiles do not meet: one ends at {left.end!r} m, the next begins at {right.start!r} m")
         breaks.append(right.breaks[1:])
-    width = max(part.degree for part in parts) + 1
-    tables = [np.pad(part.coefficients, ((0, 0), (0, width - part.degree - 1))) for part in parts]
-    return CamProfile(np.concatenate(breaks), np.concatenate(tables))
+    table = np.zeros((sum(part.pieces for part in parts), max(part.degree for part in parts) + 1))
+    row = 0
+    for part in parts:
+        table[row : row + part.pieces, : part.degree + 1] = part.coefficients
+        row += part.pieces
+    return CamProfile(np.concatenate(breaks), table)
+
+
+@cache
+def _gauss(count: int) -> tuple[FloatArray, FloatArray]:
+    """Nodes and weights of a Gauss-Legendre rule; kept, for each is an eigenvalue problem."""
+    node, weight = np.polynomial.legendre.leggauss(count)
+    return node, weight

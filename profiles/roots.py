@@ -56,6 +56,8 @@ def roots_between(table: _Rows, a: _Rows, b: _Rows) -> _Rows:
         Shape ``(n, m - 1)``, in each row the roots in ascending order and then NaN; empty rows where ``b <= a``.
     """
     count, width = table.shape
+    if width == 1:  # constants
+        return np.empty((count, 0))
     found = np.full((count, width - 1), np.nan)
     unit = recentred(table, a) * (b - a)[:, None] ** np.arange(width)
     size = np.abs(unit)

@@ -9,6 +9,7 @@ in the return zone.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Literal
 
 from profiles.cycle import Cut
@@ -262,6 +263,7 @@ def _fastest_quintic_cut(machine: RotaryKnife, line_speed: float, limits: Limits
     return sync_zone + high
 
 
+@lru_cache(maxsize=256)  # the cut length has no part in it: all cuts of a book at one line speed ask the same
 def fastest_cut(machine: RotaryKnife, line_speed: float, limits: Limits, sync_zone: float) -> float:
     """Cut length of the fastest return within the limits, beside a sync zone (m)."""
     if limits.speed <= line_speed or sync_zone >= machine.pitch:  # no running ahead, or no need to

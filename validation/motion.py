@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -87,6 +88,7 @@ def greatest_magnitude(profile: CamProfile, order: int) -> Extremum:
     return Extremum(-least.value, least.at) if -least.value > greatest.value else greatest
 
 
+@lru_cache(maxsize=16)  # several checks ask for the same jumps
 def greatest_jump(profile: CamProfile, order: int) -> Extremum:
     """Greatest magnitude of the jumps of a derivative, at all joins and at the seam, and where it is.
 
@@ -135,6 +137,7 @@ def tool_profile(profile: CamProfile, machine: Machine, cut: Cut) -> CamProfile:
     return integral(compose(lambda y, ratio, _: np.asarray(machine.tool_ratio(start + y) * ratio), profile))
 
 
+@lru_cache(maxsize=8)  # a measure of the motion, and a check
 def sync_ratio_error(profile: CamProfile, machine: Machine, cut: Cut) -> Extremum:
     """Greatest ``|tool speed / (s × line speed) - 1|`` inside the sync zone, and where it is reached.
 
@@ -213,9 +216,10 @@ def measure_tool(profile: CamProfile, machine: Machine, cut: Cut, slave: Motion 
 def _measure(profile: CamProfile, cut: Cut, steady: bool, smooth: bool, in_sync: float) -> Motion:
     v = cut.line_speed
     start, end = cut.return_start, cut.return_start + cut.return_zone
+    back = profile.restrict(start, min(end, profile.end)) if steady else profile
 
     def rms(order: int) -> float:
-        return v**order * math.sqrt(profile.mean_square(order, start, min(end, profile.end)))
+        return v**order * math.sqrt(back.mean_square(order))
 
     return Motion(
         peak_speed=v * greatest_magnitude(profile, 1).value,

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +23,9 @@ below what a drive resolves."""
 
 _AS_GREAT = 1.0 - 1e-6
 """Share of the greatest error that counts as it; the first such point is taken."""
+
+_Index = Any
+"""Anything that picks points of an array."""
 
 _ZERO = 1e-12
 """Accuracy of a zero between two points of the axis, as a part of the step between them."""
@@ -90,16 +96,16 @@ def measure_response(
 ) -> ServoResponse:
     """Measure a simulated response; arguments as in `servo_response`."""
     start = cut.return_start + cut.return_zone  # counted on like AxisRun.master
-    master, error, slope = sync_error(run, profile, machine, cut, start, start + cut.sync_zone)
-    crossing, overshoot = _crossing(master - start, error, slope, ON_THE_LINE * cut.length)
-    settling = _settling(master - start, error, slope, cut.sync_tolerance if tolerance is None else tolerance)
-    in_shear = shear_zone_error(run, profile, machine, cut)[1]
+    part = _in_sync(run, profile, machine, cut, start, start + cut.sync_zone)
+    distance, error = part.master - start, part.error()
+    crossing, overshoot = _crossing(distance, error, part.slope, ON_THE_LINE * cut.length)
+    settling = _settling(distance, error, part.slope, cut.sync_tolerance if tolerance is None else tolerance)
     return ServoResponse(
         crossing=crossing,
         settling=settling,
         overshoot=overshoot,
-        peak_following_error=float(np.abs(_following_error(run, profile, machine, cut)).max()),
-        shear_zone_error=float(np.abs(in_shear).max()),
+        peak_following_error=_peak_following_error(run, profile, machine, cut),
+        shear_zone_error=peak_shear_zone_error(run, profile, machine, cut),
         phases=run.phases,
     )
 
@@ -123,37 +129,103 @@ def sync_error(
     (master, error, slope)
         Master position (m), error (m) and its derivative over the master; shapes ``(phases, n)``.
     """
+    part = _in_sync(run, profile, machine, cut, start, end)
+    return part.master, part.error(), part.slope()
+
+
+@dataclass(frozen=True, eq=False)
+class _InSync:
+    """The axis beside the ideal sync line in a part of the sync zone, at every sampling phase; shapes ``(phases, n)``.
+
+    Parameters
+    ----------
+    machine, sync
+        The machine, and its slave in the sync zone.
+    master, along
+        Master position, counted on and from the start of the sync zone (m).
+    ideal, actual
+        Slave coordinate on the line, and of the axis (slave unit).
+    ratio
+        Ratio of the axis.
+    """
+
+    machine: Machine
+    sync: CamProfile
+    master: FloatArray
+    along: FloatArray
+    ideal: FloatArray
+    actual: FloatArray
+    ratio: FloatArray
+
+    def error(self) -> FloatArray:
+        """Tool minus ideal sync line (m)."""
+        return np.asarray(self.machine.tool(self.actual) - self.machine.tool(self.ideal))
+
+    def slope(self, at: _Index = ...) -> FloatArray:
+        """Give the derivative of the error over the master, at some of the points or at all."""
+        moves = self.machine.tool_ratio(self.actual[at]) * self.ratio[at]
+        return np.asarray(moves - self.machine.tool_ratio(self.ideal[at]) * self.sync(self.along[at], 1))
+
+
+def _in_sync(run: AxisRun, profile: CamProfile, machine: Machine, cut: Cut, start: float, end: float) -> _InSync:
+    """Put the axis beside the ideal sync line; arguments as in `sync_error`."""
     zone = cut.return_start + cut.return_zone
     sync = machine.sync_profile(cut)
     master, axis, ratio = run.window(start, end)
-    inside = np.clip(master - zone, sync.start, sync.end)
+    along = np.minimum(np.maximum(master - zone, sync.start), sync.end)
+    travel = sync(along)
     met = machine.pitch if cut.shaped else float(profile(profile.end))
-    line = sync(inside) + (met - float(sync(np.clip(cut.length - zone, sync.start, sync.end))))
-    ideal = machine.sync_start(cut) + sync(inside)
-    actual = ideal + (axis - line)
-    error = np.asarray(machine.tool(actual) - machine.tool(ideal))
-    slope = np.asarray(machine.tool_ratio(actual) * ratio - machine.tool_ratio(ideal) * sync(inside, 1))
-    return master, error, slope
+    line = travel + (met - float(sync(min(max(cut.length - zone, sync.start), sync.end))))
+    ideal = machine.sync_start(cut) + travel
+    return _InSync(machine, sync, master, along, ideal, ideal + (axis - line), ratio)
 
 
 def shear_zone_error(
     run: AxisRun, profile: CamProfile, machine: Machine, cut: Cut
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Sync error in the shear zone; as `sync_error`."""
+    return sync_error(run, profile, machine, cut, *_shear_zone(cut))
+
+
+def peak_shear_zone_error(run: AxisRun, profile: CamProfile, machine: Machine, cut: Cut) -> float:
+    """Greatest magnitude of the sync error in the shear zone, at every sampling phase (m); arguments as in `sync_error`."""
+    return float(np.abs(_in_sync(run, profile, machine, cut, *_shear_zone(cut)).error()).max())
+
+
+def _shear_zone(cut: Cut) -> tuple[float, float]:
+    """Start and end of the shear zone, counted on like `AxisRun.master`."""
     zone = cut.return_start + cut.return_zone
     start = zone + cut.shear_zone_at
-    return sync_error(run, profile, machine, cut, start, min(start + cut.shear_zone, zone + cut.sync_zone))
+    return start, min(start + cut.shear_zone, zone + cut.sync_zone)
 
 
-def _following_error(run: ServoRun, profile: CamProfile, machine: Machine, cut: Cut) -> FloatArray:
-    """Command minus axis; for a slave in rad at the tool (m)."""
+def _peak_following_error(run: ServoRun, profile: CamProfile, machine: Machine, cut: Cut) -> float:
+    """Greatest magnitude of command minus axis; for a slave in rad at the tool (m).
+
+    The tool of a slave that is off by ``e`` is off by at most the greatest lever times ``e``, so it is computed only where that may be
+    the greatest.
+    """
+    off = np.abs(run.command - run.axis)
     if machine.slave_unit == "m":
-        return run.command - run.axis
+        return float(off.max())
     start = slave_zero(profile, machine, cut)
-    return np.asarray(machine.tool(start + run.command) - machine.tool(start + run.axis))
+
+    def at_tool(at: _Index) -> FloatArray:
+        return np.asarray(np.abs(machine.tool(start + run.command[at]) - machine.tool(start + run.axis[at])))
+
+    found = float(at_tool(np.unravel_index(off.argmax(), off.shape)))
+    return float(at_tool(off * _lever(machine) >= found).max(initial=found))
 
 
-def _crossing(distance: FloatArray, error: FloatArray, slope: FloatArray, floor: float) -> tuple[float | None, float]:
+@lru_cache(maxsize=64)
+def _lever(machine: Machine) -> float:
+    """Bound the tool's travel per slave travel, of a slave in rad: its greatest value around the turn, and a percent more."""
+    return 1.01 * float(np.abs(machine.tool_ratio(np.linspace(0.0, 2 * np.pi, 3601))).max())
+
+
+def _crossing(
+    distance: FloatArray, error: FloatArray, slope: Callable[[_Index], FloatArray], floor: float
+) -> tuple[float | None, float]:
     """Latest over the phases of the first change of sign after the greatest error, and the greatest error beyond it.
 
     What is left of the return before may have put the axis on the other side of the line by a little: it crosses the line at once, only
@@ -175,10 +247,13 @@ def _crossing(distance: FloatArray, error: FloatArray, slope: FloatArray, floor:
     overshoot = max(0.0, float(beyond.max()))
     if not crossed.all():
         return None, overshoot
-    return _latest_zero(distance, error, slope, rows, at - 1), overshoot
+    pairs = _pairs(rows, at - 1)
+    return _latest_zero(distance[pairs], error[pairs], slope(pairs)), overshoot
 
 
-def _settling(distance: FloatArray, error: FloatArray, slope: FloatArray, tolerance: float) -> float | None:
+def _settling(
+    distance: FloatArray, error: FloatArray, slope: Callable[[_Index], FloatArray], tolerance: float
+) -> float | None:
     """Distance beyond which no phase is outside the tolerance."""
     outside = np.abs(error) > tolerance
     if outside[:, -1].any():
@@ -187,29 +262,38 @@ def _settling(distance: FloatArray, error: FloatArray, slope: FloatArray, tolera
     if len(rows) == 0:
         return 0.0
     last = error.shape[1] - 1 - outside[rows, ::-1].argmax(axis=1)
-    edge = np.zeros_like(error)
-    edge[rows] = np.sign(error[rows, last])[:, None] * tolerance
-    return _latest_zero(distance, error - edge, slope, rows, last)
+    pairs = _pairs(rows, last)
+    edge = np.sign(error[rows, last])[:, None] * tolerance
+    return _latest_zero(distance[pairs], error[pairs] - edge, slope(pairs))
 
 
-def _latest_zero(
-    distance: FloatArray, error: FloatArray, slope: FloatArray, rows: NDArray[np.intp], left: NDArray[np.intp]
-) -> float:
-    """Greatest zero of the cubics between the points ``left`` and ``left + 1``, where the sign changes."""
-    x, beyond = distance[rows, left], distance[rows, left + 1]
+def _pairs(rows: NDArray[np.intp], left: NDArray[np.intp]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Index of the points ``left`` and ``left + 1`` of rows; shapes ``(n, 1)`` and ``(n, 2)``."""
+    return rows[:, None], left[:, None] + np.arange(2)
+
+
+def _latest_zero(place: FloatArray, error: FloatArray, slope: FloatArray) -> float:
+    """Greatest zero of the cubics between two points each, where the sign changes; all of shape ``(n, 2)``."""
     latest = 0.0
-    for i in np.nonzero(beyond >= x.max())[0].tolist():  # the others end before the last of these begins
-        points = rows[i], slice(int(left[i]), int(left[i]) + 2)
-        step = float(beyond[i] - x[i])
-        latest = max(latest, float(x[i]) + step * _zero_part(step, error[points].tolist(), slope[points].tolist()))
+    rows = zip(place.tolist(), error.tolist(), slope.tolist(), strict=True)
+    for (x, beyond), value, slopes in sorted(rows, reverse=True):
+        if beyond <= latest:  # it ends before a zero that is known
+            continue
+        step = beyond - x
+        if latest > x and hermite((latest - x) / step, step, value, slopes)[0] * value[0] < 0.0:
+            continue  # its sign has changed before
+        latest = max(latest, x + step * _zero_part(step, value, slopes))
     return latest
 
 
 def _zero_part(step: float, value: list[float], slopes: list[float]) -> float:
     """Zero of the cubic through two points of different sign, as a part of the step: safeguarded Newton."""
     low, high, part = 0.0, 1.0, value[0] / (value[0] - value[1])
+    line, rise = step * slopes[0], value[1] - value[0]  # as `hermite`, its powers made once
+    square, cube = 3 * rise - step * (2 * slopes[0] + slopes[1]), step * (slopes[0] + slopes[1]) - 2 * rise
     while True:
-        error, slope = hermite(part, step, value, slopes)
+        error = value[0] + part * (line + part * (square + part * cube))
+        slope = (line + part * (2 * square + part * 3 * cube)) / step
         if error * value[0] > 0.0:
             low = part
         else:

@@ -87,21 +87,26 @@ class AxisRun:
             Shapes ``(phases, n)``.
         """
         step = self.master[:, 1:2] - self.master[:, :1]
+        most = self.master.shape[1] - 1
         first = np.floor((start - self.master[:, 0]) / step[:, 0]).astype(int)
         last = np.ceil((end - self.master[:, 0]) / step[:, 0]).astype(int)
-        rows = np.arange(self.phases)[:, None]
-        columns = np.minimum(first[:, None] + np.arange(int((last - first).max()) + 1), self.master.shape[1] - 1)
-        x, y, k = self.master[rows, columns], self.axis[rows, columns], self.axis_ratio[rows, columns]
-        for bound, beyond, point in ((start, x <= start, first), (end, x >= end, last - 1)):
-            left = np.clip(point, 0, self.master.shape[1] - 2)[:, None]
-            part = (bound - self.master[rows, left]) / step
+        left, right = max(int(first.min()), 0), min(int(last.max()), most)
+        x, y, k = (values[:, left : right + 1].copy() for values in (self.master, self.axis, self.axis_ratio))
+        # the phases begin and end within a few columns of each other
+        head, tail = slice(int(first.max()) - left + 2), slice(max(int(last.min()) - left - 1, 0), None)
+        first, last = np.clip([first, np.maximum(last - 1, first)], 0, most - 1)
+        edges = ((start, first, head, x[:, head] <= start), (end, last, tail, x[:, tail] >= end))
+        rows = np.arange(self.phases)
+        for bound, point, columns, beyond in edges:
             value, ratio = hermite(
-                part,
-                step,
-                (self.axis[rows, left], self.axis[rows, left + 1]),
-                (self.axis_ratio[rows, left], self.axis_ratio[rows, left + 1]),
+                (bound - self.master[rows, point]) / step[:, 0],
+                step[:, 0],
+                (self.axis[rows, point], self.axis[rows, point + 1]),
+                (self.axis_ratio[rows, point], self.axis_ratio[rows, point + 1]),
             )
-            x, y, k = np.where(beyond, bound, x), np.where(beyond, value, y), np.where(beyond, ratio, k)
+            np.copyto(x[:, columns], bound, where=beyond)
+            np.copyto(y[:, columns], value[:, None], where=beyond)
+            np.copyto(k[:, columns], ratio[:, None], where=beyond)
         return x, y, k
 
 

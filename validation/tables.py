@@ -16,8 +16,8 @@ from profiles.returns import slave_at_start
 from profiles.servo import Servo, spectral_radius
 from validation.checks import Check
 from validation.motion import RATIO_JUMP, greatest_jump, position_scale, ratio_scale
-from validation.response import shear_zone_error
-from validation.simulation import simulate
+from validation.response import peak_shear_zone_error
+from validation.simulation import deviation, simulate
 
 LEAST_WRAPS = 3
 
@@ -173,30 +173,38 @@ def _sync(run: CamProfile, machine: Machine, cut: Cut, wraps: int) -> list[Check
         return []
     sync = machine.sync_profile(cut)
     began = machine.sync_start(cut) - slave_at_start(machine, cut)  # of the zone, from the start of the cycle
-    worst, at, ratio, ratio_at = 0.0, None, 0.0, None
     zone = cut.return_start + cut.return_zone
     edge = _EDGE * cut.length
+    points, middles, homes = [], [], []
     for wrap in range(wraps):
         for start, end in cut.sync_parts:
             later = end == cut.length  # the zone that begins in this cycle
-            origin = wrap * cut.length + zone - (0.0 if later else cut.length)
-            turns = (wrap + (1 if later else 0)) * machine.pitch
-
-            def off(x: FloatArray, origin: float = origin, turns: float = turns) -> tuple[FloatArray, FloatArray]:
-                inside = np.clip(x - origin, sync.start, sync.end)
-                meant = machine.sync_start(cut) + sync(inside)
-                return meant, meant + run(x) - (began + sync(inside) + turns)
-
             x = _places(run, wrap * cut.length + start, min(wrap * cut.length + end, run.end))
-            meant, found = off(x)
-            error = np.abs(machine.tool(found) - machine.tool(meant))
             middle = 0.5 * (x[1:] + x[:-1])
-            middle = middle[(middle > x[0] + edge) & (middle < x[-1] - edge)]
-            slip = np.abs(machine.tool_ratio(off(middle)[1]) * run(middle, 1) / cut.sync_ratio - 1.0)
-            if error.max() > worst:
-                worst, at = float(error.max()), float(x[error.argmax()] - wrap * cut.length)
-            if slip.max(initial=0.0) > ratio:
-                ratio, ratio_at = float(slip.max()), float(middle[slip.argmax()] - wrap * cut.length)
+            points.append(x)
+            middles.append(middle[(middle > x[0] + edge) & (middle < x[-1] - edge)])
+            origin = wrap * cut.length + zone - (0.0 if later else cut.length)
+            homes.append((wrap * cut.length, origin, (wrap + (1 if later else 0)) * machine.pitch))
+
+    def off(parts: list[FloatArray]) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Places of all parts, the starts of their cycles, and the slave there: as it should be, and as it is."""
+        x = np.concatenate(parts)
+        cycle, origin, turns = np.repeat(np.array(homes).T, [len(part) for part in parts], axis=1)
+        along = sync(np.clip(x - origin, sync.start, sync.end))
+        meant = machine.sync_start(cut) + along
+        return x, cycle, meant, meant + run(x) - (began + along + turns)
+
+    def greatest(size: FloatArray, x: FloatArray, cycle: FloatArray) -> tuple[float, float | None]:
+        if not size.any():
+            return 0.0, None
+        worst = int(size.argmax())
+        return float(size[worst]), float(x[worst] - cycle[worst])
+
+    x, cycle, meant, found = off(points)
+    worst, at = greatest(np.abs(machine.tool(found) - machine.tool(meant)), x, cycle)
+    x, cycle, _, found = off(middles)
+    slip = np.abs(machine.tool_ratio(found) * run(x, 1) / cut.sync_ratio - 1.0)
+    ratio, ratio_at = greatest(slip, x, cycle)
     return [
         _at_most("sync_position", worst, cut.sync_tolerance, "m", at, f"tool against material, {wraps} wraps"),
         _at_most(
@@ -279,8 +287,7 @@ def _shear_zone(cycle: CamProfile, machine: Machine, cut: Cut, servo: Servo) -> 
     """Tool of the real axis against material in the shear zone; no value if the servo is unstable."""
     worst = None
     if spectral_radius(servo) < 1.0:
-        error = shear_zone_error(simulate(cycle, cut, servo), cycle, machine, cut)[1]
-        worst = float(np.abs(error).max())
+        worst = peak_shear_zone_error(simulate(cycle, cut, servo), cycle, machine, cut)
     return Check(
         "shear_zone_error",
         worst is not None and worst <= cut.sync_tolerance,
@@ -313,10 +320,17 @@ def sampled_peaks(run: CamProfile, cut: Cut, servo: Servo) -> tuple[tuple[float,
     step = cut.line_speed * servo.sample_time
     joins = (run.breaks[:, None] - step * np.arange(4)).ravel()  # differences peak where a sample falls on a join
     x = np.concatenate([np.linspace(0.0, cut.length, _PHASES, endpoint=False), joins[joins >= 0.0]])
+    x.sort()
+    y = [
+        deviation(run, x + k * step) for k in range(4)
+    ]  # the straight line that this leaves out has no second difference
+    y = [after - before for before, after in pairwise(y)]
     found = []
     for order in (2, 3):
-        size = np.abs(differences(run, x, order, cut, servo))
-        found.append((float(size.max()), float(x[size.argmax()]) % cut.length))
+        y = [after - before for before, after in pairwise(y)]
+        size = np.abs(y[0]) / servo.sample_time**order
+        worst = int(size.argmax())
+        found.append((float(size[worst]), float(x[worst]) % cut.length))
     return found[0], found[1]
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from functools import lru_cache
 from typing import Any
 
 
@@ -36,6 +37,7 @@ def _table(data: dict[str, Any], path: tuple[str, ...]) -> list[str]:
     return lines
 
 
+@lru_cache(maxsize=256)
 def _key(key: str) -> str:
     """Write a key, quoted: every key may be."""
     plain = key.replace("_", "a").replace("-", "a")
@@ -57,4 +59,7 @@ def _value(value: object) -> str:
 
 def _text(text: str) -> str:
     """Write a basic string; the escapes of JSON are TOML's but for the delete character."""
-    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+    return _QUOTED(text).replace("\x7f", "\\u007f")
+
+
+_QUOTED = json.JSONEncoder(ensure_ascii=False).encode

@@ -13,7 +13,7 @@ from typing import Any, get_args
 
 from camwright.book.job_text import job_text
 from camwright.book.ranges import Range, decimal, distinct, parse_range
-from camwright.job import Job, parse_job
+from camwright.job import Job, parse_job, read_job
 from camwright.job_file import Objective
 from camwright.provenance import provenance
 from camwright.table_options import parse_targets
@@ -109,10 +109,14 @@ class Book:
         """Count the combinations."""
         return len(self.lengths) * len(self.line_speeds) * len(self.objectives)
 
+    def indices(self, number: int) -> tuple[int, int, int]:
+        """Give the indices of length, line speed and objective of the combination of a number, 1 and up."""
+        rest, objective = divmod(number - 1, len(self.objectives))
+        return *divmod(rest, len(self.line_speeds)), objective
+
     def combination(self, number: int) -> Combination:
         """Give the combination of a number, 1 and up."""
-        rest, objective = divmod(number - 1, len(self.objectives))
-        length, speed = divmod(rest, len(self.line_speeds))
+        length, speed, objective = self.indices(number)
         return Combination(
             number,
             self.lengths[length],
@@ -132,21 +136,18 @@ class Book:
             The combination is no job: its zones do not fit into its cut length, for example.
         """
         of, data = combination, _data(self.toml)
-        text = job_text(
-            {
-                **data,
-                "name": f"C{of.number:05d} L{of.length_mm} V{of.speed_m_per_min} {self.name}"[:_LONGEST_NAME].rstrip(
-                    " ."
-                ),
-                "cut": {
-                    **data["cut"],
-                    "length": _written(of.length, 1000, "mm", "m"),
-                    "line_speed": _written(of.line_speed, 60, "m/min", "m/s"),
-                },
-                "objective": {**data.get("objective", {}), "minimise": of.objective},
-            }
-        )
-        return parse_job(text, self.name)
+        name = f"C{of.number:05d} L{of.length_mm} V{of.speed_m_per_min} {self.name}"
+        own = {
+            **data,
+            "name": name[:_LONGEST_NAME].rstrip(" ."),
+            "cut": {
+                **data["cut"],
+                "length": _written(of.length, 1000, "mm", "m"),
+                "line_speed": _written(of.line_speed, 60, "m/min", "m/s"),
+            },
+            "objective": {**data.get("objective", {}), "minimise": of.objective},
+        }
+        return read_job(own, job_text(own), self.name)  # what is written is read back as it was
 
     def parameters(self) -> dict[str, Any]:
         """Name what makes two books the same, as it is told and stored."""

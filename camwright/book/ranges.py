@@ -42,7 +42,11 @@ class Range:
         """Give the value of an index, 0 and up."""
         if not 0 <= index < self.count:
             raise IndexError(index)
-        return self.first + index * self.step
+        first, step = self.first, self.step
+        return Fraction(
+            first.numerator * step.denominator + index * step.numerator * first.denominator,
+            first.denominator * step.denominator,
+        )
 
     def __iter__(self) -> Iterator[Fraction]:
         """Give the values, ascending."""

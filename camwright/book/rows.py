@@ -102,11 +102,11 @@ def limit_rows(book: Book, entries: Iterable[Entry]) -> Iterator[list[Cell]]:
     ones of the book do not is said beside it. What binds is what forbids the next one of the book. The physical line speed is that of
     the limits of speed, acceleration, jerk and reversal alone, as ``camwright limits`` finds it; the servo may not settle there.
     """
-    for _, group in groupby(entries, key=lambda entry: book.combination(entry.number).length):
+    for _, group in groupby(entries, key=lambda entry: book.indices(entry.number)[0]):
         at_length = list(group)
         limit = next((entry.limit for entry in at_length if entry.limit), None)
-        for objective in book.objectives:
-            own = [entry for entry in at_length if book.combination(entry.number).objective == objective]
+        for index, objective in enumerate(book.objectives):
+            own = [entry for entry in at_length if book.indices(entry.number)[2] == index]
             yield _limit_row(book, own, objective, limit)
 
 

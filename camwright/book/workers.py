@@ -81,6 +81,9 @@ def local_crew(jobs: int, work: Work = make_chunk) -> Crew:
         with _environment(dict.fromkeys(_ONE_THREAD, "1")):
             executor = ProcessPoolExecutor(jobs, context, _settle, (stop,))
             try:
+                with _interrupts_held():
+                    for _ in range(jobs):  # each starts a process
+                        executor.submit(os.getpid)
                 yield executor
             finally:
                 stop.set()
@@ -102,6 +105,19 @@ def _environment(values: dict[str, str]) -> Iterator[None]:
                 del os.environ[name]
             else:
                 os.environ[name] = value
+
+
+@contextlib.contextmanager
+def _interrupts_held() -> Iterator[None]:
+    """Hold an interrupt back until the end; processes that are started meanwhile get none, not even before they can ignore it."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 _stop: Event | None = None

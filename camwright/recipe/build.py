@@ -113,7 +113,7 @@ def make_recipe(
     step("checking")
     report = validate(profile, job.machine, job.cut, job.limits, job.servo, servo_aware=job.servo_aware)
     step("simulating lower speeds")
-    speeds = at_speeds(profile, job)
+    speeds = at_speeds(profile, job, report)
     step("finding the working range")
     far = working_range(job)
     results, refused = export_possible(profile, job, targets, step=step)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import textwrap
 import unicodedata
-from functools import lru_cache
+from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -67,17 +67,25 @@ def printable(text: str) -> str:
     >>> printable("Messer 切刀 \u202e\U0001f98a")
     'Messer 切刀 ⟨U+202E⟩⟨U+1F98A⟩'
     """
-    text = spelled(text, lambda letter: ord(letter) in covered() and unicodedata.category(letter)[0] != "C")
+    text = spelled(text, lambda letter: has_glyph(ord(letter)) and unicodedata.category(letter)[0] != "C")
     return _LONG_WORD.sub(lambda word: _BREAK.join(textwrap.wrap(word[0], _LONGEST_WORD)), text)
 
 
-@lru_cache(maxsize=1)
-def covered() -> frozenset[int]:
-    """Code points that the fonts have a glyph for."""
+def has_glyph(code: int) -> bool:
+    """Whether one of the fonts shows a code point."""
+    return any(code in _covered(file) for file in _fonts())
+
+
+@cache
+def _fonts() -> tuple[Path, Path]:
+    """Keep where the fonts are."""
+    return font_files()
+
+
+@cache
+def _covered(file: Path) -> frozenset[int]:
+    """Code points that a font has a glyph for; the large one is not looked into where the other has them all."""
     from fontTools.ttLib import TTFont
 
-    found: set[int] = set()
-    for file in font_files():
-        with TTFont(file, lazy=True) as font:
-            found |= set(font.getBestCmap())
-    return frozenset(found)
+    with TTFont(file, lazy=True) as font:
+        return frozenset(font.getBestCmap())

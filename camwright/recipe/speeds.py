@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from camwright.job import Job
 from camwright.recipe.model import AtSpeed
 from profiles.polynomial import CamProfile
 from profiles.servo import spectral_radius
 
+if TYPE_CHECKING:
+    from validation.report import ValidationReport
 
-def at_speeds(profile: CamProfile, job: Job) -> tuple[AtSpeed, ...]:
+
+def at_speeds(profile: CamProfile, job: Job, report: ValidationReport) -> tuple[AtSpeed, ...]:
     """Measure a cam at 10, 25, 50 and 100 % of the line speed.
 
     Over time the speed goes with the line speed, the acceleration with its square, the jerk with its cube; what the servo makes of
@@ -22,19 +26,20 @@ def at_speeds(profile: CamProfile, job: Job) -> tuple[AtSpeed, ...]:
         One cycle.
     job
         The job, its machine with everything that the design chose.
+    report
+        Its validation, which has the servo's response at full line speed and where the cut falls.
     """
-    from validation.lead import length_errors
     from validation.motion import measure_motion
     from validation.motor import measure_motor
     from validation.response import servo_response
 
     machine, stable = job.machine, spectral_radius(job.servo) < 1.0
     rows = []
-    errors = {error.share: error for error in length_errors(profile, machine, job.cut, job.servo)} if stable else {}
+    errors = {error.share: error for error in report.length_errors}
     for share in SHARES:
         cut = replace(job.cut, line_speed=share * job.cut.line_speed)
         motion, motor = measure_motion(profile, machine, cut), measure_motor(profile, machine, cut)
-        response = servo_response(profile, machine, cut, job.servo) if stable else None
+        response = report.servo if cut == job.cut or not stable else servo_response(profile, machine, cut, job.servo)
         error = errors.get(share)
         rows.append(
             AtSpeed(

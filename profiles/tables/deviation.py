@@ -36,6 +36,7 @@ class Deviation:
     acceleration: float | None
 
 
+@lru_cache(maxsize=16)  # asked for where the points are chosen, and where the motion is judged
 def deviation(profile: CamProfile, rebuilt: CamProfile) -> Deviation:
     """Compare two profiles piece by piece on the part of the master that both cover.
 
@@ -85,6 +86,7 @@ def _worst(profile: CamProfile, rebuilt: CamProfile, nodes: FloatArray) -> tuple
     return worst, peak
 
 
+@lru_cache(maxsize=16)
 def _bounded(profile: CamProfile, rebuilt: CamProfile) -> bool:
     """Say whether the rebuilt ratio does not jump, so that there is an acceleration."""
     scale = max(1.0, float(np.abs(profile(profile.breaks[:-1], 1)).max()))

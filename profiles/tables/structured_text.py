@@ -37,7 +37,8 @@ class Reader:
 
     def accept(self, text: str) -> bool:
         """Go on if this is the word that stands here."""
-        if self.now.text.upper() == text:
+        word = self.now.text
+        if word == text or word.upper() == text:
             self.step()
             return True
         return False
@@ -182,13 +183,13 @@ class Reader:
         """Read a number, a word, a structure, an array, or a call."""
         if depth > DEEPEST:
             raise self.refusal(f"values are nested more than {DEEPEST} deep")
+        if self.now.kind in ("number", "based"):
+            return self.number(self.step())
         text = self.now.text
         if text in ("-", "+"):
             self.step()
             inner = self.value(depth + 1)
             return (-inner if text == "-" else inner) if isinstance(inner, float) else Other(self.line)
-        if self.now.kind in ("number", "based"):
-            return self.number(self.step())
         if text == "(":
             return self.structure(depth)
         if text == "[":
