@@ -12,7 +12,7 @@ from design.axis_rows import RATIO
 from design.command_basis import Command
 from design.ipopt import SolveStatus
 from design.motor import motor_limits, motor_speed_limits
-from design.optimise import MOTION_OBJECTIVES, Objective, Solution, motion_objective, solve
+from design.optimise import MOTION_OBJECTIVES, Objective, Solution, motion_objective, require_moving, solve
 from design.refusal import require_feasible
 from design.servo_aware import AxisMotion, design_axis
 from profiles.cycle import Cut
@@ -72,10 +72,11 @@ def solve_axis(
     InfeasibleError
         No command keeps the limits, or none brings the axis into the tolerance.
     InputError
-        The servo is unstable.
+        The servo is unstable; a torque is to be made least of a machine that moves nothing.
     SolverError
         The solver failed.
     """
+    require_moving(machine, objective)
     cost = _cost(machine, objective)
     blind = None
     if command == "in_sync" or (isinstance(machine, CrankSlider) and math.isnan(machine.sync_at)):

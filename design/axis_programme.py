@@ -130,7 +130,7 @@ class AxisProgramme:
         self._excess: dict[int, FloatArray] = {}
 
     def solve(
-        self, cost: Cost, band: float | None, caps: dict[int, float] | None = None
+        self, cost: Cost, band: float | None, caps: dict[int, float] | None = None, rounds: int = ROUNDS
     ) -> tuple[FloatArray, float] | None:
         """Find the command with the least cost.
 
@@ -142,15 +142,17 @@ class AxisProgramme:
             Sync error allowed, as a share of the tolerance; ``None`` if it is the cost. A band of 1 asks for the ratio, too.
         caps
             Peaks of derivatives over the master, by order, that must be kept beside the limits.
+        rounds
+            Most rounds of adding rows.
 
         Returns
         -------
         (unknowns, value) or None
             The value is a share of the tolerance, or the peak or root mean square over the master. ``None`` if no command will do: with
-            limits of the axis none that misses the tolerance, which comes before them.
+            limits of the axis none that misses the tolerance, which comes before them. Nor if fewer rounds than usual were too few.
         """
         before = math.nan
-        for _ in range(ROUNDS + 1):
+        for number in range(rounds + 1):
             found = self._feasible(cost, caps or {}) if band == 1.0 else self._solve_rows(cost, band, caps or {})
             if found is not None and band is None and self.problem.axis_limits and found[1] > 1.0:
                 return None
@@ -158,6 +160,8 @@ class AxisProgramme:
                 break
             if not self._add_worst(self.profile(found[0]), found[1] if band is None else band, ratio=band == 1.0):
                 break
+            if number == rounds < ROUNDS:
+                return None
             before = found[1]
         return found
 
@@ -230,7 +234,9 @@ class AxisProgramme:
     ) -> tuple[FloatArray, float] | None:
         """Solve with the rows there are; ``elastic`` widens the ratio's band with that of the position."""
         self._begin(cost, ratio=elastic or band == 1.0)
-        if cost in TORQUES:  # not so quickly solved that rows may come late
+        if (
+            cost in TORQUES or cost == "sync_error"
+        ):  # not quickly solved again; without limits nothing holds what the shear zone does not see
             self._tight = set(range(4))
         while True:
             found = self._solve_once(cost, band, caps, elastic=elastic)

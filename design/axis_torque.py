@@ -22,12 +22,13 @@ TorqueCost = Literal["rms_torque", "peak_torque", "energy"]
 
 # A slave that turns back has its friction smoothed over this share of the line speed.
 SMOOTH = 0.01
+# A force below this share of inertia times line speed squared over the cut length is rounding.
+STANDING = 1e-6
 _OPTIONS: dict[str, Any] = QUIET | {
     "ipopt.tol": 1e-8,
     "ipopt.constr_viol_tol": 1e-8,
     "ipopt.bound_relax_factor": 0.0,
     "ipopt.max_iter": 500,
-    "ipopt.mu_strategy": "adaptive",
 }
 _PLACES, _WEIGHTS = LOBATTO
 
@@ -108,7 +109,10 @@ class AxisTorque:
         force, power = measure(
             *(ca.mtimes(sparse(matrix * self._scale), z) + ca.DM(known) for matrix, known in self._derivatives)
         )
-        begun = self.value(start, "rms_torque") or 1.0
+        begun = self.value(start, "rms_torque")
+        inertia = float(np.max(self._machine.inertia(self._start + self._derivatives[0][1])))
+        if begun <= STANDING * inertia * self._cut.line_speed**2 / self._cut.length:
+            return start  # even speed will do, and nothing drives it
         unit = max(self.value(start, cost), 1e-300)
         mean_square = ca.dot(ca.DM(self._shares), (force / begun) ** 2)
         above: list[Any] = []
@@ -127,20 +131,22 @@ class AxisTorque:
             "f": least,
             "g": ca.densify(ca.vertcat(ca.mtimes(sparse(rows.matrix), z), *above)),
         }
-        solver = ca.nlpsol("camwright_axis_torque", "ipopt", programme, _OPTIONS)
-        answer = solver(
-            x0=np.concatenate([start, [1.5], np.full(drawn.numel(), 1.5)]),
-            lbx=np.concatenate([np.full(count, -np.inf), np.zeros(1 + drawn.numel())]),
-            lbg=np.concatenate([rows.low, np.zeros(beside)]),
-            ubg=np.concatenate([rows.high, np.full(beside, np.inf)]),
-        )
-        statistics = solver.stats()
-        found: FloatArray = np.asarray(answer["x"], dtype=np.float64).ravel()[:count]
-        if not statistics["success"] or rows.missed(found) > 0.0:
-            raise SolverError(
-                f"IPOPT ended a servo-aware design of least {cost} with {statistics['return_status']!r}; minimise rms_acceleration instead"
+        status = ""
+        for strategy in ("adaptive", "monotone"):  # the former is quicker, the latter ends where that one stumbles
+            solver = ca.nlpsol("camwright_axis_torque", "ipopt", programme, _OPTIONS | {"ipopt.mu_strategy": strategy})
+            answer = solver(
+                x0=np.concatenate([start, [1.5], np.full(drawn.numel(), 1.5)]),
+                lbx=np.concatenate([np.full(count, -np.inf), np.zeros(1 + drawn.numel())]),
+                lbg=np.concatenate([rows.low, np.zeros(beside)]),
+                ubg=np.concatenate([rows.high, np.full(beside, np.inf)]),
             )
-        return found
+            found: FloatArray = np.asarray(answer["x"], dtype=np.float64).ravel()[:count]
+            status = str(solver.stats()["return_status"])
+            if solver.stats()["success"] and rows.missed(found) <= 0.0:
+                return found
+        raise SolverError(
+            f"IPOPT ended a servo-aware design of least {cost} with {status!r}; minimise rms_acceleration instead"
+        )
 
 
 def _at_points(basis: CommandBasis) -> tuple[tuple[FloatArray, FloatArray], ...]:

@@ -136,11 +136,7 @@ def solve(machine: Machine, cut: Cut, limits: Limits, objective: Objective, *, s
     if limits.motor is not None:
         return _solve_for_motor(machine, cut, limits, objective, suggest)
     require_feasible(machine, cut, limits, suggest=suggest)
-    if objective in TORQUE_OBJECTIVES and not moves_something(machine):
-        raise InputError(
-            f"[objective] minimise = {objective!r} needs to know what the motor moves: give the machine's inertia or mass, or minimise "
-            f"rms_acceleration"
-        )
+    require_moving(machine, objective)
     decisive = motion_objective(machine, objective)
     if decisive is None:
         return _solve_torque(machine, cut, limits, objective, valleys=1)
@@ -215,6 +211,21 @@ def _smoothest(problem: ReturnProblem, back: CamProfile) -> CamProfile:
     limit = "greatest_slope" if problem.objective == "peak_acceleration" else "greatest_jerk"
     smooth = smoothest(replace(problem, **{limit: min(peak, getattr(problem, limit))}))
     return back if smooth is None else smooth
+
+
+def require_moving(machine: Machine, objective: str) -> None:
+    """Refuse an objective of the motor for a machine that moves nothing.
+
+    Raises
+    ------
+    InputError
+        A torque or energy is to be made least, and the machine has neither inertia nor mass nor friction.
+    """
+    if objective in TORQUE_OBJECTIVES and not moves_something(machine):
+        raise InputError(
+            f"[objective] minimise = {objective!r} needs to know what the motor moves: give the machine's inertia or mass, or minimise "
+            f"rms_acceleration"
+        )
 
 
 def motion_objective(machine: Machine, objective: Objective) -> MotionObjective | None:

@@ -22,6 +22,8 @@ BETWEEN = 1.1
 # By this share a sync error may be above the least, and by this share a peak, for the sake of what comes after them.
 KEPT_ERROR = 1e-3
 KEPT_PEAK = 1e-5
+# Most rounds that a command of the least peak is smoothed in; it will do as it is.
+SMOOTHING = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,9 +131,9 @@ def _softest(programme: AxisProgramme, band: float) -> tuple[FloatArray, float] 
 def _smoothest(
     programme: AxisProgramme, found: tuple[FloatArray, float], band: float, order: int
 ) -> tuple[FloatArray, float]:
-    """Of all commands with the least peak the one of least RMS jerk; the given one if the solver finds none."""
+    """Of all commands with the least peak the one of least RMS jerk; the given one if the solver finds none, or not soon."""
     try:
-        smooth = programme.solve("rms_jerk", band, {order: found[1] * (1.0 + KEPT_PEAK)})
+        smooth = programme.solve("rms_jerk", band, {order: found[1] * (1.0 + KEPT_PEAK)}, SMOOTHING)
     except SolverError:
         return found
     return found if smooth is None else smooth

@@ -13,7 +13,7 @@ from design.axis_torque import AxisTorque, TorqueCost
 from design.command_basis import Command, command_basis
 from design.optimise import solve
 from profiles.cycle import Cut
-from profiles.errors import SolverError
+from profiles.errors import InputError, SolverError
 from profiles.limits import Limits
 from profiles.machines import CrankSlider, LinearCarriage, Machine, RotaryKnife
 from profiles.polynomial import CamProfile, FloatArray
@@ -111,3 +111,16 @@ def test_a_start_far_from_any_answer_ends_in_an_error_that_says_what_to_do(monke
     )
     with pytest.raises(SolverError, match="least energy with 'Maximum_Iterations_Exceeded'; minimise rms_acceleration"):
         programme.solve("energy", 1.0)
+
+
+def test_what_stands_at_even_speed_needs_no_torque() -> None:
+    knife = RotaryKnife(0.4, drum_inertia=0.02)
+    cut = Cut(0.4, 1.0, 0.1, 0.04, 0.06, 1e-4, shaped=True)
+    found = solve_axis(knife, cut, Limits(3.0, 100.0, 20_000.0), "energy", "shaped", (STIFF,))
+    assert abs(at_the_motor(knife, cut, found.profile, "energy")) < 1e-9
+
+
+def test_a_machine_that_moves_nothing_has_no_torque() -> None:
+    cut = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4, shaped=True)
+    with pytest.raises(InputError, match="'energy' needs to know what the motor moves"):
+        solve_axis(RotaryKnife(0.4), cut, Limits(3.0, 100.0, 20_000.0), "energy", "shaped", (STIFF,))

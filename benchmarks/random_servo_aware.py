@@ -1,0 +1,126 @@
+"""What becomes of many random servo-aware jobs: a design that passes every check and whose error is the simulated one, or a refusal.
+
+Machines, cuts and limits are those of ``random_machines.py``, the servo is drawn so slow that it matters, the command and the objective
+from all there are. A design counts if every check passes (those of the axis' own limits only where the design says that it keeps them)
+and if the sync error that it predicts is the one that the validation's simulation finds. A refusal counts if the job is infeasible, or
+its servo unstable or too slow; so does a least sync error above the tolerance, which a design of that objective says. Writes the counts
+of each machine to ``results/random_servo_aware.csv`` and prints every job that ended otherwise; the exit code is 0 if there is none:
+
+    python benchmarks/random_servo_aware.py [--jobs 60] [--seed 1] [--machine crank_slider]
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import sys
+from collections import Counter
+from dataclasses import replace
+from pathlib import Path
+from time import process_time
+
+import numpy as np
+from random_machines import MACHINES, RandomJob, random_job, spread
+
+from design.axis_design import AxisObjective, solve_axis
+from design.command_basis import Command
+from design.optimise import OBJECTIVES
+from profiles.errors import CamwrightError, InfeasibleError, InputError
+from profiles.servo import Servo
+from validation import validate
+
+RESULTS = Path(__file__).parent / "results"
+AGREEMENT = 1e-8
+"""Greatest difference between predicted and simulated sync error, as a share of the sync zone: at its ends the simulation interpolates."""
+
+GOOD = ("passed", "infeasible", "least error too large", "refused")
+OF_THE_AXIS = {"axis_speed", "axis_acceleration", "axis_reversal"}
+
+
+def draw_servo(rng: np.random.Generator, job: RandomJob) -> Servo:
+    """Draw a servo that takes a good part of the sync zone to settle."""
+    time = job.cut.sync_zone / job.cut.line_speed
+    return Servo(
+        spread(rng, 15.0, 150.0) / time,
+        float(rng.uniform(0.5, 1.0)),
+        spread(rng, 4.0, 30.0) / time,
+        time / spread(rng, 20.0, 200.0),
+        velocity_feedforward=1.0 if rng.integers(2) else float(rng.uniform(0.8, 1.0)),
+    )
+
+
+def ended(job: RandomJob, servo: Servo, command: Command, objective: AxisObjective) -> tuple[str, str]:
+    """Design a job; how it ended, and what there is to say about it."""
+    cut = replace(job.cut, shaped=command == "shaped")
+    try:
+        solution = solve_axis(job.machine, cut, job.limits, objective, command, (servo,), suggest=False)
+    except InfeasibleError as error:
+        return "infeasible", error.binding
+    except InputError as error:
+        known = ("unstable", "remembers", "needs to know what the motor moves")
+        return ("refused" if any(words in str(error) for words in known) else "InputError"), str(error)
+    except CamwrightError as error:
+        return type(error).__name__, str(error)
+    axis = solution.axis
+    if axis is None:
+        return "no axis", ""
+    report = validate(solution.profile, solution.machine, cut, job.limits, servo, sweep=False, servo_aware=True)
+    if objective == "sync_error" and axis.error > cut.sync_tolerance:
+        return "least error too large", ""
+    failed = {check.name for check in report.checks if not check.passed} - (set() if axis.axis_limits else OF_THE_AXIS)
+    if failed:
+        return "check failed", ", ".join(sorted(failed))
+    simulated = next(check.value for check in report.checks if check.name == "shear_zone_error")
+    difference = abs(axis.errors[0] - float(simulated or 0.0)) / cut.sync_zone
+    return ("passed", "") if difference <= AGREEMENT else ("differs", f"{difference:.1e} of the sync zone")
+
+
+def main() -> int:
+    """Draw, design, count, write."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--jobs", type=int, default=60)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--machine", choices=list(MACHINES))
+    parser.add_argument("--out", type=Path, default=RESULTS / "random_servo_aware.csv")
+    options = parser.parse_args()
+    rows, other = [], 0
+    objectives: tuple[AxisObjective, ...] = (*OBJECTIVES, "sync_error")
+    for kind in [options.machine] if options.machine else list(MACHINES):
+        rng = np.random.default_rng([options.seed, list(MACHINES).index(kind), 77])
+        counts: Counter[str] = Counter()
+        seconds = []
+        for number in range(options.jobs):
+            job = random_job(rng, kind)
+            servo = draw_servo(rng, job)
+            command: Command = ("in_sync", "shaped")[int(rng.integers(2))]  # type: ignore[assignment]
+            objective = objectives[int(rng.integers(len(objectives)))]
+            begun = process_time()
+            end, note = ended(job, servo, command, objective)
+            seconds.append(process_time() - begun)
+            counts[end] += 1
+            if end not in GOOD:
+                other += 1
+                print(f"{kind} {number} {command} {objective}: {end}: {note}", file=sys.stderr, flush=True)
+        row = {
+            "machine": kind,
+            "seed": options.seed,
+            "jobs": options.jobs,
+            "passed": counts["passed"],
+            "infeasible": counts["infeasible"],
+            "least_error_too_large": counts["least error too large"],
+            "refused": counts["refused"],
+            "other": options.jobs - sum(counts[name] for name in GOOD),
+            "median_s": f"{np.median(seconds):.2f}",
+            "longest_s": f"{max(seconds):.2f}",
+        }
+        rows.append(row)
+        print(", ".join(f"{name} {value}" for name, value in row.items()), flush=True)
+    with options.out.open("w", newline="", encoding="utf-8") as file:
+        table = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
+        table.writeheader()
+        table.writerows(rows)
+    return 1 if other else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
