@@ -14,7 +14,7 @@ from typing import Literal, cast, get_args
 import numpy as np
 
 from design.axis import PHASES, SUBSTEPS, Axis
-from design.axis_rows import RATIO, AxisRows, band_rows, first_places, ratio_rows, worst_places
+from design.axis_rows import MOST_EACH, MOST_ROWS, RATIO, AxisRows, band_rows, first_places, ratio_rows, worst_places
 from design.axis_torque import AxisTorque, TorqueCost
 from design.command_basis import Command, command_basis
 from design.convex import ACCEPTED, ConvexProgramme
@@ -122,6 +122,7 @@ class AxisProgramme:
         self._ratios: list[AxisRows] = []
         self._own: list[AxisRows] = []
         self._begun: set[str] = set()
+        self._most = MOST_EACH if len(self.axes) > 1 else MOST_ROWS
         self._turned: FloatArray | None = None
         # a return alone comes near to its limits, a whole cycle has room: rows of its limits come when they matter
         self._tight = set(range(4)) if problem.command == "in_sync" else set[int]()
@@ -363,7 +364,7 @@ class AxisProgramme:
         added = False
         for axis in self.axes:
             places, times, errors = axis.zone_errors(profile)
-            worst = worst_places(np.abs(errors) - limit)
+            worst = worst_places(np.abs(errors) - limit, self._most)
             if len(worst):
                 self._bands.append(band_rows(axis, self.basis, places[worst], times[worst]))
                 added = True
@@ -378,7 +379,7 @@ class AxisProgramme:
         over = []
         for axis in self._seen + (self._unseen if unseen else []):
             places, times, errors = axis.zone_errors(profile)
-            worst = worst_places(np.abs(errors) - limit)
+            worst = worst_places(np.abs(errors) - limit, self._most)
             if len(worst):
                 over.append((float(np.abs(errors).max()), axis, places[worst], times[worst]))
         over.sort(key=lambda each: -each[0])

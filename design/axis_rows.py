@@ -16,8 +16,8 @@ RATIO = 2.0
 """Error of the axis' ratio allowed in the shear zone, times its length over the sync tolerance: along the zone the tool could at most go
 from one edge of its band to the other."""
 
-# Most places in the shear zone that have rows from the start, and most rows added at a time.
-MOST_PLACES, MOST_ROWS = 24, 12
+# Most places in the shear zone that have rows from the start, and most rows added at a time, of one servo and of each of several.
+MOST_PLACES, MOST_ROWS, MOST_EACH = 24, 12, 4
 _EVERYWHERE = 1e300
 
 

@@ -8,8 +8,6 @@ Lawson and Hanson, *Solving Least Squares Problems* (1974), chapter 23: with the
 from __future__ import annotations
 
 import numpy as np
-from scipy.linalg import solve_triangular
-from scipy.optimize import nnls
 
 from profiles.polynomial import FloatArray
 
@@ -39,6 +37,9 @@ def least_distance(
         The minimiser, optimal to `_GAP`; how far it breaks rows by rounding is for the caller to judge. ``None`` where rounding leaves no
         such answer, or no point seems to keep the rows.
     """
+    from scipy.linalg import solve_triangular
+    from scipy.optimize import nnls
+
     try:
         factor = np.linalg.cholesky(square)
     except np.linalg.LinAlgError:
