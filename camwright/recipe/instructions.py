@@ -68,10 +68,15 @@ def imports(recipe: Recipe, words: Catalogue) -> list[Block]:
 
 
 def _table_words(table: RecipeTable, words: Catalogue) -> str:
+    # the CSV table is in millimetres, which its reader turns into metres
+    master, slave = (
+        "mm" if table.target == "csv" and unit.symbol == "m" else unit.symbol
+        for unit in (table.master_unit, table.slave_unit)
+    )
     values = {
         "points": str(len(table.points.master)),
-        "master": table.master_unit.symbol,
-        "slave": table.slave_unit.symbol,
+        "master": master,
+        "slave": slave,
         "position": number(max(table.position_error * 1e6, _FINEST), 2),
     }
     if table.acceleration_error is None:

@@ -113,3 +113,9 @@ def test_the_figure_draws_the_cam(made: MadeRecipe) -> None:
     low, high = position[0][1], position[-1][1]
     middle = min(position, key=lambda point: abs(point[0] - (84.0 + 578.0 / 3)))  # x = 200 mm, where y = 100 of 400 mm
     assert (low - middle[1]) / (low - high) == pytest.approx(0.25, abs=0.01)
+
+
+def test_import_steps_name_the_units_of_the_files(made: MadeRecipe) -> None:
+    facts = [text for text in Page(recipe_html(made.recipe)).texts if "points" in text and "rebuilt" in text.lower()]
+    assert len(facts) == 3
+    assert all("mm" in text for text in facts)  # of the CSV, too, though it is read as metres
