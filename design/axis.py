@@ -20,8 +20,8 @@ PHASES = 16
 SUBSTEPS = 8
 _STRIDE = PHASES // SUBSTEPS
 _NEWTON = 12
-# Most samples of the past that are gathered at a time.
-_MOST_VALUES = 2**18
+# Most samples of the past that are gathered at a time, and what a number of samples is rounded up to.
+_MOST_VALUES, _SHARED = 2**18, 32
 
 
 @dataclass(frozen=True, eq=False)
@@ -220,8 +220,10 @@ class _Zone:
 def _grid_states(axis: Axis, profile: CamProfile, first: int, count: int) -> tuple[FloatArray, FloatArray]:
     """States of the plant and held references as if each step of the common grid were a sampling instant."""
     past = memory(axis.servo.loop)
-    grid = np.arange(first - past * PHASES, first + count) * (axis.sample / PHASES)
-    command = profile(grid - axis.cut.line_speed * axis.servo.delay, outside="repeat")
+    ahead = _shared(past)
+    delay = axis.cut.line_speed * axis.servo.delay
+    command = _on_steps(profile, axis.sample / PHASES, delay, first - ahead * PHASES, first + count)
+    command = command[(ahead - past) * PHASES :]
     windows = np.lib.stride_tricks.sliding_window_view(command, past * PHASES + 1)[:, ::-PHASES]  # newest first
     states, reference = np.empty((count, 3)), np.empty(count)
     step = max(1, _MOST_VALUES // (past + 1))
@@ -234,9 +236,27 @@ def _grid_states(axis: Axis, profile: CamProfile, first: int, count: int) -> tup
 def _edge_states(axis: Axis, profile: CamProfile) -> tuple[FloatArray, FloatArray]:
     """States of the plant and held references at the sampling instants before the ends of the shear zone."""
     zone = axis._zone
-    samples = np.arange(memory(axis.servo.loop) + 1) * axis.servo.sample_time
-    past = (zone.edge_times + axis.servo.delay)[:, None] + samples
-    return sampled_states(axis.servo, profile(zone.edges[:, None] - axis.cut.line_speed * past, outside="repeat"))
+    past = memory(axis.servo.loop)
+    newest = zone.edges - axis.cut.line_speed * (zone.edge_times + axis.servo.delay)
+    commands = _before(profile, tuple(newest.tolist()), axis.sample, _shared(past) + 1)
+    return sampled_states(axis.servo, commands[:, : past + 1])
+
+
+def _shared(past: int) -> int:
+    """Round a number of samples up: servos that forget nearly alike then ask for the same part of a command."""
+    return -(-past // _SHARED) * _SHARED
+
+
+@lru_cache(maxsize=4)
+def _on_steps(profile: CamProfile, step: float, delay: float, first: int, end: int) -> FloatArray:
+    """Give the command on steps of a grid, so much behind."""
+    return profile(np.arange(first, end) * step - delay, outside="repeat")
+
+
+@lru_cache(maxsize=4)
+def _before(profile: CamProfile, places: tuple[float, ...], sample: float, count: int) -> FloatArray:
+    """Give the command at places and a number of samples before each, newest first."""
+    return profile(np.array(places)[:, None] - sample * np.arange(count), outside="repeat")
 
 
 @lru_cache(maxsize=256)

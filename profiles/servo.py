@@ -116,6 +116,8 @@ def sample_plant(servo: Servo, time: float) -> SampledPlant:
     transition = np.array([[f00, f01, 0.0], [s, f11, 0.0], [p0, p1, 1.0]])
     # rest at v = u: the response to the input is what is missing from the response to that state
     held = np.array([-f01, 1.0 - f11, time - (-f01 + 2 * sigma * (1.0 - f11)) / (w * w)])
+    for array in (transition, held):  # kept for whoever asks next
+        array.setflags(write=False)
     return SampledPlant(transition, held)
 
 
