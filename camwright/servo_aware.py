@@ -104,7 +104,8 @@ def solve_job(job: Job, *, suggest: bool = True) -> Solution:
         from design.axis_design import solve_axis
 
         objective = "sync_error" if job.minimise_sync_error else job.objective
-        return solve_axis(job.machine, job.cut, job.limits, objective, job.command, servos_of(job), between_of(job))
+        servos, between = servos_of(job), between_of(job)
+        return solve_axis(job.machine, job.cut, job.limits, objective, job.command, servos, between, suggest=suggest)
     from design.optimise import solve
 
     return solve(job.machine, job.cut, job.limits, job.objective, suggest=suggest)

@@ -15,6 +15,7 @@ from camwright import load_job
 from camwright.axis_lengths import axis_lengths
 from camwright.cli import main
 from camwright.job import Job
+from camwright.servo_aware import solve_job
 from design.axis_design import solve_axis
 from profiles.errors import InfeasibleError
 from profiles.limits import Limits
@@ -154,6 +155,9 @@ def test_a_tolerance_out_of_reach_ends_with_exit_code_3(capsys: pytest.CaptureFi
     assert said["excess"]["unit"] == "mm"
     assert {each["change"] for each in said["suggestions"]} == {"sync_tolerance", "line_speed", "length"}
     assert not (tmp_path / "out").exists()
+    with pytest.raises(InfeasibleError) as caught:  # a book does not search for ways out
+        solve_job(load_job(Path(job_file(tmp_path, text))), suggest=False)
+    assert caught.value.suggestions == ()
 
 
 def test_a_crank_is_designed_for_its_torque(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
