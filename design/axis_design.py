@@ -14,7 +14,7 @@ from design.ipopt import SolveStatus
 from design.motor import motor_limits, motor_speed_limits
 from design.optimise import MOTION_OBJECTIVES, Objective, Solution, motion_objective, require_moving, solve
 from design.refusal import require_feasible
-from design.servo_aware import AxisMotion, design_axis
+from design.servo_aware import AxisMotion, design_axis, servo_blind_optimum
 from profiles.cycle import Cut
 from profiles.errors import InfeasibleError, InputError, SolverError, Suggestion
 from profiles.limits import Limits
@@ -85,8 +85,14 @@ def solve_axis(
     structure = None if blind is None or command == "shaped" else blind.back
     problem = AxisProblem(placed, cut, limits, command, servos, True, structure, between)
     order = 2 if cost.endswith("acceleration") else 3 if cost.endswith("jerk") else 0
-    found = [_either(replace(problem, limits=each), cost) for each in motor_limits(placed, limits)]
-    motions = [motion for motion in found if motion is not None]
+    # the servo-blind optimum keeps the motor's curve, though it may lie in none of the rectangles that stand for it
+    by_motor = replace(problem, limits=motor_speed_limits(placed, limits))
+    motions = _kept(by_motor, cost) if limits.motor is not None else []
+    if not motions:
+        found = [_either(replace(problem, limits=each), cost) for each in motor_limits(placed, limits)]
+        motions = [motion for motion in found if motion is not None]
+    if not motions and limits.motor is not None:
+        motions = _kept(replace(by_motor, axis_limits=False), cost)
     if not motions and blind is not None and command == "in_sync":
         motions = _without_choice(
             problem, blind, None if cost == "sync_error" else blind.objective / cut.line_speed**order
@@ -105,6 +111,12 @@ def solve_axis(
     motion = min(motions, key=lambda each: each.value)
     status = blind.status if blind is not None and not motion.programmes else SolveStatus.ON_GRID
     return _solution(motion, status, placed, cut, objective, order)
+
+
+def _kept(problem: AxisProblem, cost: Cost) -> list[AxisMotion]:
+    """Take the servo-blind optimum of a job in sync where its axis keeps to everything."""
+    kept = None if cost == "sync_error" else servo_blind_optimum(AxisProgramme(problem), cost)
+    return [] if kept is None else [kept]
 
 
 def _solution(

@@ -81,7 +81,7 @@ def design_axis(problem: AxisProblem, objective: Cost) -> AxisMotion | None:
     """
     programme = AxisProgramme(problem, BETWEEN if objective == "sync_error" else 1.0)
     if objective != "sync_error":
-        kept = _as_it_is(programme, objective)
+        kept = servo_blind_optimum(programme, objective)
         if kept is not None:
             return kept
         found = programme.solve(objective, 1.0)
@@ -105,7 +105,7 @@ def design_axis(problem: AxisProblem, objective: Cost) -> AxisMotion | None:
     return _motion(programme, found[0])
 
 
-def _as_it_is(programme: AxisProgramme, objective: Objective | TorqueCost) -> AxisMotion | None:
+def servo_blind_optimum(programme: AxisProgramme, objective: Objective | TorqueCost) -> AxisMotion | None:
     """Take the servo-blind optimum, which the problem's structure is, where its axis keeps to everything: then nothing is better."""
     problem = programme.problem
     if problem.structure is None:

@@ -9,6 +9,7 @@ import numpy as np
 
 from design.possible import possible_motion
 from design.scaling import ScaledProblem
+from design.structure import VANISHED
 from design.transcription import PEAKS, Motion
 from profiles.polynomial import FloatArray
 
@@ -16,6 +17,8 @@ from profiles.polynomial import FloatArray
 NARROW = 1e-12
 # A first guess at a limit that is too low is this share of the given one, and lowered by it again.
 STRIDE = 0.25
+# A motion that is said to keep a limit does so but for this share of it.
+KEPT = 1e-9
 MOST_STRIDES = 40
 
 
@@ -35,9 +38,10 @@ def least_peak_motion(problem: ScaledProblem) -> Motion | None:
     slope = problem.objective == "peak_acceleration"
 
     def within(limit: float) -> tuple[FloatArray, FloatArray] | None:
-        return possible_motion(
+        motion = possible_motion(
             replace(problem, greatest_slope=limit) if slope else replace(problem, greatest_jerk=limit)
         )
+        return motion if motion is not None and _peak(*motion, slope=slope) <= limit * (1 + KEPT) else None
 
     high = problem.greatest_slope if slope else problem.greatest_jerk
     found = within(high)
@@ -58,3 +62,11 @@ def least_peak_motion(problem: ScaledProblem) -> Motion | None:
             high, found = middle, gentler
     nodes, accelerations = found
     return Motion(np.diff(nodes), accelerations, math.nan)
+
+
+def _peak(nodes: FloatArray, accelerations: FloatArray, *, slope: bool) -> float:
+    """Greatest magnitude of a broken line or, if not that, of its slope; corners that have come together are none."""
+    if slope:
+        return float(np.abs(accelerations).max())
+    apart = np.diff(nodes) > VANISHED
+    return float(np.abs(np.diff(accelerations)[apart] / np.diff(nodes)[apart]).max(initial=0.0))

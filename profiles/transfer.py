@@ -19,6 +19,8 @@ from profiles.polynomial import FloatArray
 
 ROUNDING = 1e-12
 """Share of a limit by which a state may exceed it."""
+LATE = 1e-9
+"""Share of its time that a transfer may last longer, which is rounding."""
 _STEPS = 200
 """Safeguarded Newton steps; halvings alone would need no more."""
 
@@ -114,7 +116,7 @@ def farthest(time: float, start: State, end: State, bounds: Bounds) -> Transfer 
     if phases is None:
         return None
     peak = _peak(start, phases)
-    if peak > top:
+    if peak > top + rounding:
         phases = _with_cruise(time, start, end, bounds)
         if phases is None:
             return None
@@ -193,6 +195,8 @@ def _with_cruise(time: float, start: State, end: State, bounds: Bounds) -> tuple
         return None
     first, last = (_to_cruise(gain, slope, a_max, j) for gain, slope in ends)
     cruise = time - sum(t for t, _ in first) - sum(t for t, _ in last)
+    if cruise < -LATE * time:
+        return None
     return (*first, (max(0.0, cruise), 0.0), *((t, j) for t, j in reversed(last)))
 
 

@@ -193,3 +193,24 @@ def test_a_crank_that_is_free_is_placed_as_for_the_servo_blind_design() -> None:
 def test_an_unstable_servo_is_refused() -> None:
     with pytest.raises(InputError, match=r"the servo is unstable, its largest pole .* it is stable below"):
         solve_axis(KNIFE, CUT, LIMITS, "sync_error", "shaped", (replace(PAPER, position_gain=200.0),))
+
+
+def test_under_a_motors_curve_the_blind_optimum_is_taken_where_its_axis_will_do() -> None:
+    curve = MotorCurve(
+        (
+            (0.0, 0.007177160213055003),
+            (29.140931787413056, 0.0065790635286337535),
+            (75.76642264727394, 0.00179429005326375),
+        )
+    )
+    knife = RotaryKnife(0.6491686649467264, blades=3, gear_ratio=9.46768294319795, drum_inertia=0.0017478657475046672)
+    zone = 0.04450268185512818
+    cut = Cut(0.4355208673051194, 0.6360150674652206, zone, 0.2 * zone, 0.8 * zone, 0.02 * zone, "cut")
+    limits = Limits(1.908045202395662, 10.04167043281933, 452.6442649083416, True, curve)
+    time = zone / cut.line_speed
+    servo = Servo(200.0 / time, 0.8, 40.0 / time, time / 1000, velocity_feedforward=1.0)
+    blind = solve(knife, cut, limits, "rms_jerk")
+    found = solve_axis(knife, cut, limits, "rms_jerk", "in_sync", (servo,))
+    assert found.axis is not None
+    assert found.axis.error <= cut.sync_tolerance
+    assert found.objective == pytest.approx(blind.objective, rel=1e-9)

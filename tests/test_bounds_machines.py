@@ -53,6 +53,22 @@ def test_a_long_cut_is_as_good_as_braking_within_the_stroke_allows(objective: Ob
         assert bound.value == pytest.approx(found.objective, rel=2e-9 if objective != "rms_acceleration" else 0.02)
 
 
+@pytest.mark.parametrize(
+    ("stroke", "length", "zone"),
+    [(1.2, 0.3, 0.1), (3.0, 0.3, 0.2), (3.0, 1.0, 0.95), (5.0, 0.2, 0.15), (0.32, 0.6, 0.3)],
+)
+@pytest.mark.parametrize("objective", ["peak_acceleration", "rms_acceleration", "peak_jerk"])
+def test_a_wide_stroke_raises_no_bound_above_a_design(
+    stroke: float, length: float, zone: float, objective: Objective
+) -> None:
+    saw, cut = LinearCarriage(stroke), Cut(length, 0.5, zone, 0.2 * zone, 0.8 * zone, 1e-3)
+    limits = Limits(100.0, 1e5, 1e8)
+    found = solve(saw, cut, limits, objective)
+    bound = lower_bound(found.profile, saw, cut, limits, objective)
+    assert bound.value <= found.objective * (1 + 1e-9)
+    assert bound.value >= 0.9 * found.objective
+
+
 def test_no_room_to_turn_round_in_has_no_bound_below_infinity() -> None:
     # such a job has no design; a cycle of a longer stroke may still be held against it
     saw, cut, limits = LinearCarriage(1.2), Cut(3.0, 0.5, 0.7, 0.4, 0.2, 2e-4), Limits(100 / 60, 6.0, 200.0)

@@ -16,6 +16,7 @@ from profiles.cycle import Cut
 from profiles.limits import Limits
 from profiles.machines import LinearCarriage
 from profiles.polynomial import FloatArray
+from validation.optimality import lower_bound
 
 SAW = LinearCarriage(stroke=1.2, home=0.0)
 CUT = Cut(5.0, 0.8, 0.7, 0.4, 0.2, 2e-4)
@@ -122,3 +123,14 @@ def test_without_a_stroke_or_a_peak_there_is_none() -> None:
 
 def test_limits_that_leave_no_motion_give_none() -> None:
     assert least_peak_motion(scaled(CUT, replace(LIMITS, acceleration=1.0))) is None
+
+
+def test_a_way_back_without_a_forward_part_is_no_way_to_a_lower_peak() -> None:
+    # between the turns the carriage may not go forward at all, which rounding of a velocity of 1e-17 must not forbid
+    saw = LinearCarriage(0.17309405007867273)
+    cut = Cut(0.704980846682741, 1.1821578129602466, 0.01793840619453351, 0.0035876812389, 0.01435072495563, 1e-3)
+    limits = Limits(1.5628178544773472, 65.94676435257745, 1340.5896721788567)
+    found = solve(saw, cut, limits, "peak_jerk")
+    bound = lower_bound(found.profile, saw, cut, limits, "peak_jerk")
+    assert found.status.name == "OPTIMAL"
+    assert bound.value <= found.objective <= 1.01 * bound.value

@@ -32,10 +32,8 @@ INTERVALS = 140
 """Intervals of half a motion."""
 GREATEST = 1e3
 """Largest limit that the quadratic programme is told; none that matters is that large."""
-TURNS, PLACES = 2000, 400
-"""Times and places of the first standstill of a carriage that are looked at."""
-BETWEEN = 1e-4
-"""By this share a bound is lowered for what lies between them: the square of a distance."""
+TURNS, EARLIEST = 40_000, 1e-6
+"""Times of the first standstill of a carriage that are looked at, from this share of the latest on; each is later by a 3000th."""
 ROUNDING = 1e-11
 """A bound that a design may reach exactly is lowered by this share."""
 CLOSED_FORM = "closed form, double-S"
@@ -124,7 +122,7 @@ def _braking(velocity: float, room: float, way: float, time: float, limits: Limi
 
     low, high = 0.0, given
     if not stops(given):
-        return given
+        return given * (1 - ROUNDING)
     for _ in range(60):
         middle = 0.5 * (low + high)
         low, high = (low, middle) if stops(middle) else (middle, high)
@@ -136,15 +134,18 @@ def _softest_turns(velocity: float, room: float, way: float, time: float) -> flo
 
     With a motion its mirror image in time keeps the limits, and so does the mean of the two, whose integral is no greater. So it comes to
     its first standstill ``t`` after it set out, ``d`` beyond, and to its last ``t`` before the end. Each of these takes at least
-    ``4 v² / t - 12 v d / t² + 12 d² / t³``, from ``t = 3 d / v`` on ``4 v³ / (9 d)``, and the way between the standstills, ``way + 2 d`` in
-    what time is left, at least ``12 (way + 2 d)² / (time - 2 t)³``.
+    ``4 v² / t - 12 v d / t² + 12 d² / t³``, and the way between the standstills, ``way + 2 d`` in what time is left, at least
+    ``12 (way + 2 d)² / (time - 2 t)³``. A standstill later than ``3 d / v`` is no better than one at that time. The former falls with ``t``
+    and the latter rises: between two times the one at the later and the other at the earlier bound them, a quadratic in ``d``.
     """
-    t = 0.5 * time * (np.arange(1, TURNS)[:, None] / TURNS)
-    d = room * (np.arange(1, PLACES + 1) / PLACES)
-    braking = np.minimum(t, 3 * d / velocity)
-    turn = 4 * velocity**2 / braking - 12 * velocity * d / braking**2 + 12 * d**2 / braking**3
-    least = 2 * turn + 12 * (way + 2 * d) ** 2 / (time - 2 * t) ** 3
-    return float(least.min()) * (1 - BETWEEN)
+    latest = min(0.5 * time, 3 * room / velocity)
+    t = np.concatenate([[0.0], latest * np.geomspace(EARLIEST, 1.0, TURNS)])
+    before, after = t[:-1], t[1:]
+    rest = time - 2 * before
+    least = (velocity / (2 * after**2) - way / rest**3) / (1 / after**3 + 2 / rest**3)
+    d = np.clip(least, np.minimum(velocity * before / 3, room), room)
+    turn = 4 * velocity**2 / after - 12 * velocity * d / after**2 + 12 * d**2 / after**3
+    return float((2 * turn + 12 * (way + 2 * d) ** 2 / rest**3).min()) * (1 - ROUNDING)
 
 
 def _free_bound(

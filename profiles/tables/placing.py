@@ -29,6 +29,9 @@ of points, are worse than a corner of the acceleration cut off."""
 _SAME = 1e-9
 """A break within this part of the cycle of a zone's end is that end."""
 
+_CLOSEST = 1e-9
+"""Spans shorter than this part of the cycle are not divided."""
+
 _NODES = np.linspace(0.02, 0.98, 13)
 _METRES = Units(Unit("m", 1.0), Unit("m", 1.0))
 
@@ -123,8 +126,9 @@ def _pieces(
         if len(x) >= target.min_points and (len(x) >= _GROWTH * shown or done or len(x) == most):
             shown = len(x)
             yield x
-        worst = int(np.argmax(np.where(np.diff(x) > 4.0 * least, missed, 0.0)))
-        if len(x) >= most or np.diff(x)[worst] <= 4.0 * least:
+        room = max(4.0 * least, _CLOSEST * profile.length)  # where an acceleration jumps no point is near enough
+        worst = int(np.argmax(np.where(np.diff(x) > room, missed, 0.0)))
+        if len(x) >= most or np.diff(x)[worst] <= room:
             return
         x = _inserted(profile, x, worst, least)
         missed[worst : worst + 1] = _missed(profile, tuple(x[worst : worst + 3].tolist()), may)

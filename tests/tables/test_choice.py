@@ -11,6 +11,8 @@ from knives import KNIVES, UNITS, chosen, knife
 import validation.tables
 from camwright import load_job
 from camwright.export import export
+from profiles.cycle import Cut
+from profiles.machines import RotaryKnife
 from profiles.polynomial import CamProfile
 from profiles.returns import baseline
 from profiles.tables.deviation import Deviation, deviation, glance
@@ -106,3 +108,12 @@ def test_the_same_motion_is_judged_once(monkeypatch: pytest.MonkeyPatch) -> None
     assert len(calls) == len(set(calls)) < 2 * len(results)
     alone = export(baseline("double_s", job.machine, job.cut), job, ["pacdrive"])[0]
     assert alone.judgement.checks == results[2].judgement.checks
+
+
+@pytest.mark.parametrize("law", ["cubic", "parabolic", "velocity_trapezoid"])
+def test_a_jump_of_the_acceleration_is_missed_and_said_to_be(law: str) -> None:
+    profile = baseline(law, RotaryKnife(0.4), Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4))
+    target = TARGETS["csv"]
+    found = choose(profile, target, table_units(target, profile, UNITS), Accuracy())
+    assert found.table.points <= target.max_points
+    assert not Accuracy().kept_by(found.deviation)
