@@ -57,7 +57,7 @@ def lead_view(job: Job, errors: Sequence[LengthError]) -> RenderableType:
         table.add_row(
             f"{100 * error.share:g} %",
             f"{error.line_speed * 60:.4g}",
-            *(f"{value * 1e3:.4f}" for value in (error.offset, error.offset_with_lead, error.variation)),
+            *(f"{value * 1e3:z.4f}" for value in (error.offset, error.offset_with_lead, error.variation)),
         )
     return table
 
