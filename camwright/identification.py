@@ -11,8 +11,8 @@ from camwright.files import read_text
 from camwright.provenance import camwright_version
 from profiles.errors import InputError
 from profiles.tables.trace_csv import read_trace_csv
+from profiles.trace import Trace
 from validation.identification import Identified, identify
-from validation.trace import Trace
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -44,8 +44,7 @@ def read_trace(path: Path) -> Trace:
     InputError
         The file cannot be read, or is no trace with equally spaced rows.
     """
-    rows = read_trace_csv(read_text(path, "trace", _MOST_BYTES), str(path))
-    return Trace(rows.start, rows.step, rows.command, rows.actual, rows.unit)
+    return read_trace_csv(read_text(path, "trace", _MOST_BYTES), str(path))
 
 
 def identify_file(path: Path, velocity_feedforward: float | None) -> tuple[Trace, Identified]:

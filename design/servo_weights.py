@@ -79,29 +79,6 @@ def servo_weights(servo: Servo, time: float) -> ServoWeights:
     return ServoWeights(rows[:, 2].copy(), rows[:, 1].copy(), rows[:, 0].copy())
 
 
-def sampled_response(servo: Servo, times: FloatArray, samples: FloatArray, order: int) -> FloatArray:
-    """Axis, or a derivative over time, at several times after a sampling instant, each with samples of its own.
-
-    The same sums as with `servo_weights`, in less time where the weights are of use once only.
-
-    Parameters
-    ----------
-    servo
-        The servo; dead time and lead are the caller's.
-    times
-        Times ``0 <= time <= dT`` (s), shape ``(n,)``.
-    samples
-        The command's samples, newest first, shape ``(n, memory + 1)``.
-    order
-        0 for the position, 1 for the velocity (1/s), 2 for the acceleration (1/s²).
-    """
-    states, reference = sampled_states(servo, samples)
-    parts = [sample_plant(servo.loop, time) for time in times.tolist()]
-    row = 2 - order
-    moved = np.einsum("ij,ij->i", np.array([part.transition[row] for part in parts]), states)
-    return np.asarray(moved + np.array([part.input[row] for part in parts]) * reference)
-
-
 def sampled_states(servo: Servo, samples: FloatArray) -> tuple[FloatArray, FloatArray]:
     """State of the plant at a sampling instant, and the velocity reference that is held from there.
 

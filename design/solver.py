@@ -114,9 +114,8 @@ def _solve_scaled(problem: ScaledProblem) -> tuple[CamProfile, SolveStatus, int]
         if excess(profile, problem) <= ALLOWED_EXCESS:
             return profile, SolveStatus.OPTIMAL, iterations
     witness = from_extreme(extreme) if extreme is not None else _possible(problem)
-    if (
-        problem.confined
-    ):  # where the slave turns in a mean square's optimum is where it does in the gentlest motion, not in the fastest
+    if problem.confined:
+        # the optimum of a mean square turns about where the gentlest motion does, not where the fastest does
         witness = least_peak_motion(replace(problem, objective="peak_acceleration")) or witness
     if witness is not None:
         profile = tidy(witness, problem).profile()

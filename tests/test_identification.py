@@ -19,8 +19,9 @@ from profiles.errors import InputError
 from profiles.machines import RotaryKnife
 from profiles.returns import baseline
 from profiles.servo import Servo, sample_plant
+from profiles.trace import Trace
 from validation.identification import identify
-from validation.trace import Trace, require_usable
+from validation.trace import require_usable
 
 PAPER = Servo(120.0, 0.7, 35.0, 0.004, 1.0, 0.002)
 CUT = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4)

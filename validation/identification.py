@@ -11,7 +11,8 @@ import numpy as np
 
 from profiles.errors import InputError
 from profiles.servo import Servo
-from validation.trace import Trace, require_usable
+from profiles.trace import Trace
+from validation.trace import require_usable
 from validation.trace_clock import with_clock
 from validation.trace_fit import CONFIDENCE, RANGES, ROUNDS, Solution, TraceFit
 

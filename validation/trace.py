@@ -1,15 +1,14 @@
-"""A recorded motion of an axis, and whether the axis can be known from it."""
+"""Whether an axis can be known from its recorded motion."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
 from profiles.errors import InputError
-from profiles.machines.machine import SlaveUnit
 from profiles.polynomial import FloatArray
+from profiles.trace import Trace
 
 FEWEST_ROWS = 200
 SHORTEST = 0.3
@@ -29,34 +28,6 @@ _SCALE = 8.0
 
 _STAIRS = 0.5
 """Share of rows in which a command that moves before and after stands still, from which on it is one that is held between samples."""
-
-
-@dataclass(frozen=True, eq=False)
-class Trace:
-    """What a drive recorded: command and actual position at equally spaced times.
-
-    Parameters
-    ----------
-    start
-        Time of the first row (s).
-    step
-        Time between two rows (s).
-    command, actual
-        Positions (m or rad), shape ``(n,)``.
-    unit
-        Unit of the positions.
-    """
-
-    start: float
-    step: float
-    command: FloatArray
-    actual: FloatArray
-    unit: SlaveUnit
-
-    @property
-    def times(self) -> FloatArray:
-        """Times of the rows (s)."""
-        return self.start + self.step * np.arange(len(self.command), dtype=np.float64)
 
 
 def require_usable(trace: Trace, place: str) -> None:

@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from profiles.polynomial import FloatArray
 from profiles.servo import Servo, spectral_radius
+from profiles.trace import Trace
 from validation.sampled_axis import ComplexArray, axis_response, decays, mean_response
-from validation.trace import Trace, noise_of
+from validation.trace import noise_of
 
 RANGES: dict[str, tuple[float, float]] = {
     "bandwidth": (10.0, 3000.0),

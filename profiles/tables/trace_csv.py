@@ -5,13 +5,13 @@ from __future__ import annotations
 import difflib
 import math
 import re
-from dataclasses import dataclass
 
 import numpy as np
 
 from profiles.errors import InputError
 from profiles.machines.machine import SlaveUnit
 from profiles.polynomial import FloatArray
+from profiles.trace import Trace
 
 MOST_ROWS = 10_000
 
@@ -34,30 +34,7 @@ _GAP = 1.5
 """Steps, of a usual length each, from which on rows are missing."""
 
 
-@dataclass(frozen=True, eq=False)
-class TraceRows:
-    """Rows of a recording, equally spaced in time, in SI units.
-
-    Parameters
-    ----------
-    start
-        Time of the first row (s).
-    step
-        Time between two rows (s).
-    command, actual
-        Positions (m or rad), shape ``(n,)``.
-    unit
-        Whether positions are counted in m or in rad.
-    """
-
-    start: float
-    step: float
-    command: FloatArray
-    actual: FloatArray
-    unit: SlaveUnit
-
-
-def read_trace_csv(text: str, place: str) -> TraceRows:
+def read_trace_csv(text: str, place: str) -> Trace:
     """Read a recording: comment lines begin with ``#``, the header names columns and units, rows follow.
 
     Parameters
@@ -94,7 +71,7 @@ def read_trace_csv(text: str, place: str) -> TraceRows:
     lines = [number for number, _ in rows]
     _require_equal_steps(time, lines, place)
     step = (time[-1] - time[0]) / (len(time) - 1)
-    return TraceRows(float(time[0]), float(step), command, actual, unit)
+    return Trace(float(time[0]), float(step), command, actual, unit)
 
 
 def _header(line: str, place: str) -> tuple[dict[str, tuple[int, float]], int, SlaveUnit]:

@@ -1,0 +1,38 @@
+"""A recorded motion of an axis."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from profiles.machines.machine import SlaveUnit
+from profiles.polynomial import FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """What a drive recorded: command and actual position at equally spaced times.
+
+    Parameters
+    ----------
+    start
+        Time of the first row (s).
+    step
+        Time between two rows (s).
+    command, actual
+        Positions (m or rad), shape ``(n,)``.
+    unit
+        Whether positions are counted in m or in rad.
+    """
+
+    start: float
+    step: float
+    command: FloatArray
+    actual: FloatArray
+    unit: SlaveUnit
+
+    @property
+    def times(self) -> FloatArray:
+        """Times of the rows (s)."""
+        return self.start + self.step * np.arange(len(self.command), dtype=np.float64)
