@@ -235,9 +235,8 @@ class AxisProgramme:
     ) -> tuple[FloatArray, float] | None:
         """Solve with the rows there are; ``elastic`` widens the ratio's band with that of the position."""
         self._begin(cost, ratio=elastic or band == 1.0)
-        if (
-            cost in TORQUES or cost == "sync_error"
-        ):  # not quickly solved again; without limits nothing holds what the shear zone does not see
+        if cost in TORQUES or cost == "sync_error":
+            # the former are not quickly solved again; in the latter nothing but limits holds what the shear zone does not see
             self._tight = set(range(4))
         while True:
             found = self._solve_once(cost, band, caps, elastic=elastic)

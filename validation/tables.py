@@ -321,9 +321,8 @@ def sampled_peaks(run: CamProfile, cut: Cut, servo: Servo) -> tuple[tuple[float,
     joins = (run.breaks[:, None] - step * np.arange(4)).ravel()  # differences peak where a sample falls on a join
     x = np.concatenate([np.linspace(0.0, cut.length, _PHASES, endpoint=False), joins[joins >= 0.0]])
     x.sort()
-    y = [
-        deviation(run, x + k * step) for k in range(4)
-    ]  # the straight line that this leaves out has no second difference
+    # the straight line that a deviation leaves out has no second difference
+    y = [deviation(run, x + k * step) for k in range(4)]
     y = [after - before for before, after in pairwise(y)]
     found = []
     for order in (2, 3):
