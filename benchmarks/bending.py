@@ -47,7 +47,7 @@ MOST_TIME, MOST_MEMORY = 5.0, 300.0
 
 def bend(drawing: Path, out: Path) -> tuple[dict[str, Any], float, float, float]:
     """Run the command: its answer, processor time (s), wall time (s), peak memory (MB)."""
-    run = "import sys; from camwright.cli import main; sys.exit(main())"
+    run = "import sys; from camwright.cli.main import main; sys.exit(main())"
     command = [sys.executable, "-c", run, "bend", str(drawing), "--out", str(out), "--json"]
     start = time.perf_counter()
     with (out.parent / "answer.json").open("w+", encoding="utf-8") as said:

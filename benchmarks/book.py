@@ -32,7 +32,7 @@ RESULTS = Path(__file__).parent / "results"
 RATE, SCALING, LOOP, MEMORY = 60.0, 1.7, 8.0, 600.0
 """Promised: designs a second on two processors; ratio to one processor; ratio to a loop of commands; greatest memory (MB)."""
 
-COMMAND = [sys.executable, "-c", "import sys; from camwright.cli import main; sys.exit(main())"]
+COMMAND = [sys.executable, "-c", "import sys; from camwright.cli.main import main; sys.exit(main())"]
 OBJECTIVES = ["--objective", "peak_acceleration", "--objective", "rms_acceleration"]
 SAME = 1e-9
 SAMPLE = 5

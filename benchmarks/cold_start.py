@@ -29,7 +29,7 @@ IMPORTS = [sys.executable, "-c", "import casadi, scipy.signal"]
 DESIGN = [
     sys.executable,
     "-c",
-    "import sys; from camwright.cli import main; sys.exit(main())",
+    "import sys; from camwright.cli.main import main; sys.exit(main())",
     "design",
     "--json",
     "--no-figures",

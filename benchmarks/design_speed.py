@@ -4,7 +4,8 @@ Random rotary-knife jobs, all four objectives. All roads solve the same normalis
 anything is timed each must come within its stated error of the exact optimum: a closed form, or for `rms_jerk` where a limit binds
 (jobs whose optimum is a quintic are not drawn, they need no solver) the design itself, which an independent lower bound confirms:
 
-- camwright: `design.optimise.solve`, from the job to the polished profile, the feasibility check among it, every programme it needs
+- camwright: `camwright.design.optimise.solve`, from the job to the polished profile, the feasibility check among it, every programme
+it needs
   built before;
 - rockit: the problem stated, transcribed by multiple shooting and solved by IPOPT;
 - cvxpy: the problem stated, compiled and solved by Clarabel, and, as `cvxpy_warm`, solved again by the compiled one with its
@@ -41,12 +42,12 @@ import numpy as np
 import rockit
 from random_jobs import Job, random_job
 
-from design.feasibility import is_feasible
-from design.optimise import solve
-from design.problem import Objective, return_problem
-from design.scaling import ScaledProblem, motion_scale, scale_problem
-from design.starts import known_start
-from validation.optimality import QUINTIC, lower_bound
+from camwright.design.feasible.feasibility import is_feasible
+from camwright.design.optimise import solve
+from camwright.design.returns.closed_starts import known_start
+from camwright.design.returns.problem import Objective, return_problem
+from camwright.design.returns.scaling import ScaledProblem, motion_scale, scale_problem
+from camwright.validation.bounds.optimality import QUINTIC, lower_bound
 
 RESULTS = Path(__file__).parent / "results"
 

@@ -14,11 +14,11 @@ import time
 import traceback
 
 from camwright import load_job
-from camwright.export import export_possible
-from profiles.errors import InputError
-from profiles.returns import baseline
-from profiles.tables.targets import TARGETS, detect, read_table
-from profiles.tables.text import decode
+from camwright.drives.export import export_possible
+from camwright.profiles.errors import InputError
+from camwright.profiles.returns import baseline
+from camwright.profiles.tables.targets import TARGETS, detect, read_table
+from camwright.profiles.tables.text import decode
 
 LONGEST = 1.0
 """Processor time that one file may take (s)."""

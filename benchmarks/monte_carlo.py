@@ -19,13 +19,13 @@ from time import process_time
 
 import numpy as np
 
-from profiles.cycle import Cut
-from profiles.machines import RotaryKnife
-from profiles.returns import baseline
-from profiles.servo import Servo
-from profiles.servo_tolerance import ServoTolerance
-from validation.monte_carlo import shear_zone_errors
-from validation.response import servo_response
+from camwright.profiles.cut import Cut
+from camwright.profiles.machines import RotaryKnife
+from camwright.profiles.returns import baseline
+from camwright.profiles.servo import Servo
+from camwright.profiles.servo_tolerance import ServoTolerance
+from camwright.validation.servo.monte_carlo import shear_zone_errors
+from camwright.validation.servo.response import servo_response
 
 DRAWS = 10_000
 ALONE = 20

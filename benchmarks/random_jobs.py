@@ -23,16 +23,16 @@ from typing import get_args
 
 import numpy as np
 
-from design import solver
-from design.optimise import Solution, solve
-from design.problem import Objective, return_problem
-from design.scaling import motion_scale, scale_problem
-from design.structure import extreme_motion, from_extreme, tidy
-from profiles.cycle import Cut
-from profiles.errors import InfeasibleError, SolverError
-from profiles.limits import Limits
-from profiles.machines import RotaryKnife
-from validation.optimality import lower_bound
+from camwright.design.optimise import Solution, solve
+from camwright.design.returns import solver
+from camwright.design.returns.problem import Objective, return_problem
+from camwright.design.returns.scaling import motion_scale, scale_problem
+from camwright.design.returns.structure import extreme_motion, from_extreme, tidy
+from camwright.profiles.cut import Cut
+from camwright.profiles.errors import InfeasibleError, SolverError
+from camwright.profiles.limits import Limits
+from camwright.profiles.machines import RotaryKnife
+from camwright.validation.bounds.optimality import lower_bound
 
 RESULTS = Path(__file__).parent / "results"
 

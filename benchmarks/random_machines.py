@@ -22,16 +22,28 @@ from time import process_time
 
 import numpy as np
 
-from design.feasibility import with_limit
-from design.optimise import MOTION_OBJECTIVES, OBJECTIVES, Objective, solve
-from profiles.cycle import Cut
-from profiles.errors import CamwrightError, InfeasibleError, Suggestion
-from profiles.limits import Limits
-from profiles.machines import CrankSlider, LinearCarriage, Machine, RotaryKnife
-from profiles.motor import MotorCurve
-from profiles.returns import baseline
-from profiles.servo import Servo
-from validation import measure_motion, measure_motor, validate
+from camwright.design.feasible.feasibility import with_limit
+from camwright.design.optimise import (
+    MOTION_OBJECTIVES,
+    OBJECTIVES,
+    Objective,
+    solve,
+)
+from camwright.profiles.cut import Cut
+from camwright.profiles.errors import CamwrightError, InfeasibleError, Suggestion
+from camwright.profiles.limits import Limits
+from camwright.profiles.machines import (
+    CrankSlider,
+    LinearCarriage,
+    Machine,
+    RotaryKnife,
+)
+from camwright.profiles.motor import MotorCurve
+from camwright.profiles.returns import baseline
+from camwright.profiles.servo import Servo
+from camwright.validation.motion import measure_motion
+from camwright.validation.motor import measure_motor
+from camwright.validation.report import validate
 
 RESULTS = Path(__file__).parent / "results"
 

@@ -22,12 +22,12 @@ from time import process_time
 import numpy as np
 from random_machines import MACHINES, RandomJob, random_job, spread
 
-from design.axis_design import AxisObjective, solve_axis
-from design.command_basis import Command
-from design.optimise import OBJECTIVES
-from profiles.errors import CamwrightError, InfeasibleError, InputError
-from profiles.servo import Servo
-from validation import validate
+from camwright.design.optimise import OBJECTIVES
+from camwright.design.optimise_axis import AxisObjective, solve_axis
+from camwright.design.servo_aware.command_basis import Command
+from camwright.profiles.errors import CamwrightError, InfeasibleError, InputError
+from camwright.profiles.servo import Servo
+from camwright.validation.report import validate
 
 RESULTS = Path(__file__).parent / "results"
 AGREEMENT = 1e-8

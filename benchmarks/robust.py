@@ -15,14 +15,14 @@ import sys
 from pathlib import Path
 from time import process_time
 
-from camwright.servo_aware import DRAWS, SEED
-from design.axis_design import solve_axis
-from profiles.cycle import Cut
-from profiles.limits import Limits
-from profiles.machines import RotaryKnife
-from profiles.servo import Servo
-from profiles.servo_tolerance import ServoTolerance
-from validation.monte_carlo import shear_zone_errors
+from camwright.design.optimise_axis import solve_axis
+from camwright.profiles.cut import Cut
+from camwright.profiles.limits import Limits
+from camwright.profiles.machines import RotaryKnife
+from camwright.profiles.servo import Servo
+from camwright.profiles.servo_tolerance import ServoTolerance
+from camwright.studies.axis_study import DRAWS, SEED
+from camwright.validation.servo.monte_carlo import shear_zone_errors
 
 RESULTS = Path(__file__).parent / "results" / "robust.csv"
 PROMISED = {0.213: 1.3e-3, 0.267: 1.5e-4, 0.320: 2e-5}

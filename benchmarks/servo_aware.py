@@ -20,16 +20,21 @@ from dataclasses import replace
 from pathlib import Path
 from time import process_time
 
-from design.axis_design import AxisObjective, solve_axis
-from design.command_basis import Command
-from design.optimise import MOTION_OBJECTIVES, Objective, Solution, solve
-from profiles.cycle import Cut
-from profiles.limits import Limits
-from profiles.machines import RotaryKnife
-from profiles.servo import Servo
-from profiles.servo_tolerance import ServoTolerance
-from validation.monte_carlo import shear_zone_errors
-from validation.response import servo_response
+from camwright.design.optimise import (
+    MOTION_OBJECTIVES,
+    Objective,
+    Solution,
+    solve,
+)
+from camwright.design.optimise_axis import AxisObjective, solve_axis
+from camwright.design.servo_aware.command_basis import Command
+from camwright.profiles.cut import Cut
+from camwright.profiles.limits import Limits
+from camwright.profiles.machines import RotaryKnife
+from camwright.profiles.servo import Servo
+from camwright.profiles.servo_tolerance import ServoTolerance
+from camwright.validation.servo.monte_carlo import shear_zone_errors
+from camwright.validation.servo.response import servo_response
 
 RESULTS = Path(__file__).parent / "results" / "servo_aware.csv"
 RUNS = 15

@@ -23,14 +23,14 @@ from time import process_time
 
 import numpy as np
 
-from profiles.cycle import Cut
-from profiles.machines import RotaryKnife
-from profiles.polynomial import CamProfile
-from profiles.returns import baseline
-from profiles.servo import Servo, sample_plant
-from validation.lifting import SUBSTEPS, lift
-from validation.simulation import ServoRun, memory, simulate
-from validation.sweep import sweep_servos
+from camwright.profiles.cut import Cut
+from camwright.profiles.machines import RotaryKnife
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.returns import baseline
+from camwright.profiles.servo import Servo, sample_plant
+from camwright.validation.servo.lifting import SUBSTEPS, lift
+from camwright.validation.servo.simulation import ServoRun, memory, simulate
+from camwright.validation.servo.sweep import sweep_servos
 
 AGREEMENT = 1e-14
 """Greatest difference of the axis (m) with which the two count as the same."""

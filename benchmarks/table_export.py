@@ -21,15 +21,15 @@ from time import process_time
 
 import numpy as np
 
-from camwright import design, load_job
-from camwright.design_file import design_text
-from camwright.export import Exported, export_possible
-from camwright.job import Job
-from profiles.polynomial import CamProfile
-from profiles.returns import baseline
-from profiles.tables.cam_table import Unit, Units
-from profiles.tables.knots import Accuracy, choose
-from profiles.tables.targets import TARGETS, read_table
+from camwright import load_job, optimise
+from camwright.drives.export import Exported, export_possible
+from camwright.jobs.job import Job
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.returns import baseline
+from camwright.profiles.tables.cam_table import Unit, Units
+from camwright.profiles.tables.knots import Accuracy, choose
+from camwright.profiles.tables.targets import TARGETS, read_table
+from camwright.stored.design_file import design_text
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 
@@ -56,7 +56,7 @@ def wrong(profile: CamProfile, result: Exported) -> str:
 
 def cold(file: Path, directory: str) -> float:
     """Processor time (s) of the whole command."""
-    run = "import sys; from camwright.cli import main; sys.exit(main())"
+    run = "import sys; from camwright.cli.main import main; sys.exit(main())"
     command = [sys.executable, "-c", run, "export", str(file), "--to", "all", "--out", directory, "--quiet"]
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     code = subprocess.run(command, check=False, stdout=subprocess.DEVNULL).returncode
@@ -69,7 +69,7 @@ def cold(file: Path, directory: str) -> float:
 def measured(path: Path, runs: int) -> tuple[str, float]:
     """Design an example, judge and time its export; a CSV row, and the cold time (s)."""
     job: Job = load_job(path)
-    found = design(job)
+    found = optimise(job)
     profile, job = found.profile, found.job
     results, refused = export_possible(profile, job, list(TARGETS))
     faults = [fault for result in results if result.files and (fault := wrong(profile, result))]

@@ -2,9 +2,9 @@
 
 Examples
 --------
->>> from camwright import design, load_job, validate
+>>> from camwright import load_job, optimise, validate
 >>> job = load_job()
->>> result = design(job)
+>>> result = optimise(job)
 >>> result.solution.status.value, result.passed
 ('optimal', True)
 >>> validate(result.profile, job).passed
@@ -13,21 +13,27 @@ True
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from camwright.job import Job, load_job
-    from camwright.results import Design, design, validate
+    from camwright.jobs.job import Job, load_job
+    from camwright.stored.judge import validate
+    from camwright.studies.design import Design, optimise
 
-__all__ = ["Design", "Job", "design", "load_job", "validate"]
+__all__ = ["Design", "Job", "load_job", "optimise", "validate"]
 
-_HOMES = {"Job": "job", "load_job": "job", "Design": "results", "design": "results", "validate": "results"}
+_HOMES = {
+    "Design": "camwright.studies.design",
+    "Job": "camwright.jobs.job",
+    "load_job": "camwright.jobs.job",
+    "optimise": "camwright.studies.design",
+    "validate": "camwright.stored.judge",
+}
 
 
 def __getattr__(name: str) -> Any:
     """Import what is asked for when it is asked for: the command line's help must not wait for numpy."""
-    from importlib import import_module
-
     if name not in _HOMES:
         raise AttributeError(f"module 'camwright' has no attribute {name!r}")
-    return getattr(import_module(f"camwright.{_HOMES[name]}"), name)
+    return getattr(import_module(_HOMES[name]), name)

@@ -8,24 +8,29 @@ from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
-from design.crank_place import place_for
-from design.feasibility import is_feasible
-from design.ipopt import SolveStatus
-from design.motor import motor_limits, motor_speed_limits, moves_something
-from design.problem import Objective as MotionObjective
-from design.problem import ReturnProblem, return_problem
-from design.refusal import infeasible, require_feasible
-from design.solver import grid_objective, objective_value, smoothest, solve_return
-from design.transcription import PEAKS
-from profiles.cycle import Cut
-from profiles.errors import InputError
-from profiles.limits import Limits
-from profiles.machines import CrankSlider, Machine
-from profiles.polynomial import CamProfile
-from profiles.returns import assemble
+from camwright.design.feasible.feasibility import is_feasible
+from camwright.design.feasible.refusal import infeasible, require_feasible
+from camwright.design.place_cost import place_for
+from camwright.design.returns.curve_limits import motor_limits, motor_speed_limits, moves_something
+from camwright.design.returns.ipopt import SolveStatus
+from camwright.design.returns.problem import Objective as MotionObjective
+from camwright.design.returns.problem import ReturnProblem, return_problem
+from camwright.design.returns.solver import (
+    grid_objective,
+    objective_value,
+    smoothest,
+    solve_return,
+)
+from camwright.design.returns.transcription import PEAKS
+from camwright.profiles.cut import Cut
+from camwright.profiles.errors import InputError
+from camwright.profiles.limits import Limits
+from camwright.profiles.machines import CrankSlider, Machine
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.returns import assemble
 
 if TYPE_CHECKING:
-    from design.servo_aware import AxisMotion
+    from camwright.design.servo_aware.axis_motion import AxisMotion
 
 TorqueObjective = Literal["rms_torque", "peak_torque", "energy"]
 Objective = Literal[
@@ -123,7 +128,7 @@ def solve(machine: Machine, cut: Cut, limits: Limits, objective: Objective, *, s
 
     Examples
     --------
-    >>> from profiles.machines import RotaryKnife
+    >>> from camwright.profiles.machines import RotaryKnife
     >>> knife = RotaryKnife(circumference=0.4)
     >>> cut = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4)
     >>> result = solve(knife, cut, Limits(200 / 60, 30.0, 3000.0), "peak_acceleration")
@@ -164,7 +169,7 @@ def _solve_for_motor(machine: Machine, cut: Cut, limits: Limits, objective: Obje
     InfeasibleError
         The motor is too weak, as far as the programme's starts tell.
     """
-    from design.motor_curve import keeps_curve, least_load, solve_within_curve
+    from camwright.design.torque.within_curve import keeps_curve, least_load, solve_within_curve
 
     curve, plain = limits.motor, motor_speed_limits(machine, limits)
     assert curve is not None  # noqa: S101 - that is what this function is for
@@ -244,7 +249,7 @@ def motion_objective(machine: Machine, objective: Objective) -> MotionObjective 
 
 
 def _solve_torque(machine: Machine, cut: Cut, limits: Limits, objective: Objective, valleys: int) -> Solution:
-    from design.torque import solve_torque
+    from camwright.design.torque.torque_return import solve_torque
 
     problem = return_problem(machine, cut, limits, "peak_acceleration")
     found = solve_torque(machine, cut, problem, objective)

@@ -1,1 +1,1 @@
-"""What a cam is: profiles, motion laws, returns, machines, the servo's model, cam tables. Numbers only, SI units."""
+"""What a cam is: words, laws, machines, cam tables; needs nothing but numpy and scipy."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from profiles.errors import InputError
-from profiles.polynomial import CamProfile, join
+from camwright.profiles.errors import InputError
+from camwright.profiles.polynomial.profile import CamProfile, join
 
 QUINTIC_RATIO = 7 / 15
 """Least mean ratio of a return in which the quintic does not reverse: ``K_0`` of S2, where its least ratio is zero."""

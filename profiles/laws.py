@@ -1,7 +1,7 @@
 """The standard motion laws on the unit interval, as a table with sources.
 
 A law is a rest-to-rest motion of unit height in unit time: ``s(0) = 0``, ``s(1) = 1``; placing it on a machine is the work of
-`profiles.returns`. Every law is carried as pieces of polynomials. Sinusoids are Taylor polynomials of degree 15 on pieces of at
+`camwright.profiles.returns`. Every law is carried as pieces of polynomials. Sinusoids are Taylor polynomials of degree 15 on pieces of at
 most an eighth of a period of the sine: the first power left out of the acceleration is below 1e-15 of its amplitude.
 """
 
@@ -14,8 +14,8 @@ from functools import cache
 
 import numpy as np
 
-from profiles.errors import InputError
-from profiles.polynomial import CamProfile, FloatArray
+from camwright.profiles.errors import InputError
+from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 
 _TAYLOR_DEGREE = 15
 _TAYLOR_ANGLE = math.pi / 4

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from profiles.motor import MotorCurve
+from camwright.profiles.motor import MotorCurve
 
 
 @dataclass(frozen=True)

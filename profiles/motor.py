@@ -7,8 +7,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from profiles.errors import InputError
-from profiles.polynomial import FloatArray
+from camwright.profiles.errors import InputError
+from camwright.profiles.polynomial.profile import FloatArray
 
 
 @dataclass(frozen=True)

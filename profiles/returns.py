@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from profiles.cycle import Cut
-from profiles.errors import InputError
-from profiles.laws import LAWS, law
-from profiles.machines import CrankSlider, Machine
-from profiles.polynomial import CamProfile, join
+from camwright.profiles.cut import Cut
+from camwright.profiles.errors import InputError
+from camwright.profiles.laws import LAWS, law
+from camwright.profiles.machines import CrankSlider, Machine
+from camwright.profiles.polynomial.profile import CamProfile, join
 
 BASELINES: tuple[str, ...] = ("linear_return", *(name for name in LAWS if name != "linear"))
 """Names of all baselines: the linear return of S1 and every law of the table, placed as a return."""
@@ -28,7 +28,7 @@ def place_law(name: str, length: float, height: float, ratio: float = 1.0) -> Ca
     Parameters
     ----------
     name
-        Name of the law in `profiles.laws.LAWS`.
+        Name of the law in `camwright.profiles.laws.LAWS`.
     length
         Length of the return zone on the master (m).
     height

@@ -8,7 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from profiles.polynomial import FloatArray
+from camwright.profiles.polynomial.profile import FloatArray
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from itertools import product
 
 import numpy as np
 
-from profiles.servo import Servo
+from camwright.profiles.servo import Servo
 
 _STEPS, _GRIDDED = 5, 3
 """Steps of a range, corners included, and most ranges that are stepped through; see `ServoTolerance.between`."""
@@ -18,7 +18,7 @@ Range = tuple[float, float]
 
 @dataclass(frozen=True)
 class ServoTolerance:
-    """Ranges of the parameters of a servo, by their names in `profiles.servo.Servo`, in SI units.
+    """Ranges of the parameters of a servo, by their names in `camwright.profiles.servo.Servo`, in SI units.
 
     Parameters
     ----------

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from profiles.machines.machine import SlaveUnit
-from profiles.polynomial import FloatArray
+from camwright.profiles.machines.machine import SlaveUnit
+from camwright.profiles.polynomial.profile import FloatArray
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,9 +11,9 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from profiles.errors import InputError
-from profiles.fitting import interpolation
-from profiles.polynomial import CamProfile, FloatArray
+from camwright.profiles.errors import InputError
+from camwright.profiles.polynomial.fitting import interpolation
+from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 
 TOLERANCE = 1e-13
 """Error of a composed quantity, relative to its largest magnitude."""

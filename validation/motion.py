@@ -11,12 +11,12 @@ from functools import lru_cache
 
 import numpy as np
 
-from profiles.cycle import Cut
-from profiles.errors import InputError
-from profiles.machines import Machine
-from profiles.polynomial import CamProfile, Extremum, FloatArray
-from profiles.returns import is_straight, slave_zero
-from validation.composed import compose, integral
+from camwright.profiles.cut import Cut
+from camwright.profiles.errors import InputError
+from camwright.profiles.machines import Machine
+from camwright.profiles.polynomial.profile import CamProfile, Extremum, FloatArray
+from camwright.profiles.returns import is_straight, slave_zero
+from camwright.validation.composed import compose, integral
 
 RATIO_JUMP = 1e-9
 """Jump of the ratio above which acceleration and jerk count as unbounded, relative to `ratio_scale`."""
@@ -129,7 +129,7 @@ def is_smooth(profile: CamProfile) -> bool:
 def tool_profile(profile: CamProfile, machine: Machine, cut: Cut) -> CamProfile:
     """Tool over the master (m): the profile itself where the slave is counted in m, else the carriage ``X(y)`` from zero.
 
-    The carriage's ratio ``X'(y) y'`` is made polynomials (`validation.composed.compose`, to 1e-13) and integrated.
+    The carriage's ratio ``X'(y) y'`` is made polynomials (`camwright.validation.composed.compose`, to 1e-13) and integrated.
     """
     if machine.slave_unit == "m":
         return profile
@@ -142,7 +142,7 @@ def sync_ratio_error(profile: CamProfile, machine: Machine, cut: Cut) -> Extremu
     """Greatest ``|tool speed / (s × line speed) - 1|`` inside the sync zone, and where it is reached.
 
     The ends of the zone count with their one-sided values inside the zone. Exact where the slave's ratio is constant in sync, else to
-    1e-13 (`validation.composed.compose`).
+    1e-13 (`camwright.validation.composed.compose`).
     """
     edge = _EDGE * cut.length
     worst = Extremum(0.0, cut.sync_parts[0][0])

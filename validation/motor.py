@@ -7,13 +7,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from profiles.cycle import Cut
-from profiles.machines import Machine
-from profiles.motor import MotorCurve
-from profiles.polynomial import CamProfile, Extremum, FloatArray
-from profiles.returns import slave_zero
-from validation.composed import compose, integral, recut, split, zeros
-from validation.motion import greatest_magnitude, is_steady, require_period
+from camwright.profiles.cut import Cut
+from camwright.profiles.machines import Machine
+from camwright.profiles.motor import MotorCurve
+from camwright.profiles.polynomial.profile import CamProfile, Extremum, FloatArray
+from camwright.profiles.returns import slave_zero
+from camwright.validation.composed import (
+    compose,
+    integral,
+    recut,
+    split,
+    zeros,
+)
+from camwright.validation.motion import greatest_magnitude, is_steady, require_period
 
 _STANDING = 1e-9
 """Ratio, relative to the cycle's greatest, below which the slave stands still on a piece: friction then asks for no torque."""
@@ -54,7 +60,7 @@ def measure_motor(profile: CamProfile, machine: Machine, cut: Cut) -> MotorMeasu
 
     The torque is ``(I(y) ÿ + I'(y) ẏ² / 2 + F sign(ẏ)) / ratio`` with the machine's inertia ``I``, friction ``F`` and motor ratio; friction
     asks for nothing where the slave stands still. Peaks come from roots of polynomials, mean squares and energies from exact
-    integration: to rounding where the inertia is constant, else to 1e-12 of the largest torque (`validation.composed.compose`).
+    integration: to rounding where the inertia is constant, else to 1e-12 of the largest torque (`camwright.validation.composed.compose`).
 
     Parameters
     ----------

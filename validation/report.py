@@ -7,17 +7,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from profiles.cycle import Cut
-from profiles.limits import Limits
-from profiles.machines import LinearCarriage, Machine, RotaryKnife
-from profiles.polynomial import CamProfile, Extremum
-from profiles.returns import slave_zero
-from profiles.servo import Servo, spectral_radius
-from validation.axis_motion import axis_checks, axis_peaks
-from validation.checks import Check
-from validation.lead import LengthError, length_errors
-from validation.minimum_length import cut_length_eq10, physical, required_sync_zone
-from validation.motion import (
+from camwright.profiles.cut import Cut
+from camwright.profiles.limits import Limits
+from camwright.profiles.machines import LinearCarriage, Machine, RotaryKnife
+from camwright.profiles.polynomial.profile import CamProfile, Extremum
+from camwright.profiles.returns import slave_zero
+from camwright.profiles.servo import Servo, spectral_radius
+from camwright.validation.bounds.minimum_length import cut_length_eq10, physical, required_sync_zone
+from camwright.validation.check import Check
+from camwright.validation.motion import (
     POSITION_JUMP,
     RATIO_JUMP,
     SLOPE_JUMP,
@@ -31,9 +29,16 @@ from validation.motion import (
     slope_scale,
     sync_ratio_error,
 )
-from validation.motor import MotorMeasures, greatest_load, measure_motor, moves_something
-from validation.response import ServoResponse, servo_response
-from validation.sweep import Sweep, servo_sweep
+from camwright.validation.motor import (
+    MotorMeasures,
+    greatest_load,
+    measure_motor,
+    moves_something,
+)
+from camwright.validation.servo.axis_motion import axis_checks, axis_peaks
+from camwright.validation.servo.lead import LengthError, length_errors
+from camwright.validation.servo.response import ServoResponse, servo_response
+from camwright.validation.servo.sweep import Sweep, servo_sweep
 
 CLOSURE = 1e-12
 """What the slave's advance may be off the pitch, relative to the pitch, or to the way out of a slave that comes back: rounding."""

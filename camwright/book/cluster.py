@@ -9,7 +9,7 @@ from concurrent.futures import Executor
 
 from camwright.book.making import make_chunk
 from camwright.book.workers import Crew
-from profiles.errors import InputError, MissingExtraError
+from camwright.profiles.errors import InputError, MissingExtraError
 
 _CHUNK = 8
 _PATIENCE = 15.0

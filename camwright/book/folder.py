@@ -10,7 +10,7 @@ from pathlib import Path
 
 from camwright.book.entry import Entry
 from camwright.book.plan import Book
-from profiles.errors import InputError
+from camwright.profiles.errors import InputError
 
 MANIFEST = "book.json"
 """Written last: where it stands the book is complete."""

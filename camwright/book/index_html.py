@@ -6,7 +6,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from html import escape
 
 from camwright.book.plan import Book
-from camwright.book.rows import COLUMNS, LIMIT_COLUMNS, Cell, Counts
+from camwright.book.rows import (
+    COLUMNS,
+    LIMIT_COLUMNS,
+    Cell,
+    Counts,
+)
 
 _STYLE = """
 body { font: 14px/1.4 system-ui, sans-serif; margin: 2em; color: #111; background: #fff; }

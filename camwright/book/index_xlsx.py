@@ -10,7 +10,7 @@ from typing import Any
 
 from camwright.book.plan import Book
 from camwright.book.rows import COLUMNS, LIMIT_COLUMNS, Cell
-from profiles.errors import MissingExtraError
+from camwright.profiles.errors import MissingExtraError
 
 _NO_TIME = datetime(2000, 1, 1)
 # a workbook must state when it was made; this one says nothing, so that its bytes stay the same

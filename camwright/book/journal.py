@@ -10,7 +10,7 @@ from types import TracebackType
 
 from camwright.book.entry import Entry
 from camwright.book.plan import Book
-from profiles.errors import InputError
+from camwright.profiles.errors import InputError
 
 _SCHEMA = """
 CREATE TABLE IF NOT EXISTS book (key TEXT PRIMARY KEY, value TEXT NOT NULL) STRICT;

@@ -14,14 +14,14 @@ from typing import TYPE_CHECKING
 
 from camwright.book.entry import Entry, Limit
 from camwright.book.plan import Book, Combination
-from camwright.provenance import provenance
-from profiles.errors import InfeasibleError, InputError, SolverError
-from profiles.machines import CrankSlider
+from camwright.house.provenance import provenance
+from camwright.profiles.errors import InfeasibleError, InputError, SolverError
+from camwright.profiles.machines import CrankSlider
 
 if TYPE_CHECKING:
-    from camwright.export import Exported
-    from camwright.job import Job
-    from camwright.results import Design
+    from camwright.drives.export import Exported
+    from camwright.jobs.job import Job
+    from camwright.studies.design import Design
 
 _ONE_AT_A_TIME = threading.Lock()
 # the solver is not made for several threads of one process, and workers of a cluster may have them
@@ -111,7 +111,7 @@ def _no_job(number: int, error: InputError, limit: Limit | None) -> Entry:
 
 def _limit(job: Job) -> Limit | None:
     """Find how fast a cut length can be run; left out for a crank that each design places anew, which would take minutes."""
-    from design.extremes import fastest_line
+    from camwright.design.feasible.extremes import fastest_line
 
     if isinstance(job.machine, CrankSlider) and math.isnan(job.machine.sync_at):
         return None
@@ -119,16 +119,16 @@ def _limit(job: Job) -> Limit | None:
 
 
 def _designed(job: Job) -> Design:
-    """Design and check a job like `camwright.results.design`, without what a book does not hold.
+    """Design and check a job like `camwright.studies.design.design`, without what a book does not hold.
 
     Left out are the lower bound, the baselines, the minimum cut lengths, the ranges of the servo, where the cut falls at other line
     speeds, and the search for what would work.
     """
-    from camwright.comparison import Comparison, Measured
-    from camwright.results import Design
-    from camwright.servo_aware import axis_study, solve_job
-    from validation.optimality import Bound
-    from validation.report import validate
+    from camwright.studies.axis_study import axis_study, solve_job
+    from camwright.studies.comparison import Comparison, Measured
+    from camwright.studies.design import Design
+    from camwright.validation.bounds.optimality import Bound
+    from camwright.validation.report import validate
 
     solution = solve_job(job, suggest=False)
     placed = replace(job, machine=solution.machine)
@@ -152,9 +152,10 @@ def _designed(job: Job) -> Design:
 
 def _exported(number: int, design: Design, targets: Sequence[str], limit: Limit | None) -> tuple[Entry, dict[str, str]]:
     """Write the tables of a design, read them back and judge them, and gather everything."""
-    from camwright.answers import to_json
-    from camwright.design_file import design_text, objective_unit
-    from camwright.export import export_possible
+    from camwright.answers.objective import objective_unit
+    from camwright.drives.export import export_possible
+    from camwright.house.json_text import to_json
+    from camwright.stored.design_file import design_text
 
     results, refused = export_possible(design.profile, design.job, targets)
     failed = [check.name for check in design.report.checks if not check.passed]
@@ -190,7 +191,7 @@ def _exported(number: int, design: Design, targets: Sequence[str], limit: Limit 
 
 def _report(design: Design, results: list[Exported], refused: dict[str, tuple[str, ...]]) -> dict[str, object]:
     """Contents of a combination's report.json: the checks of the design, then what ``camwright export`` reports."""
-    from camwright.export import export_report
+    from camwright.drives.export import export_report
 
     return {
         "checks": [vars(check) for check in design.report.checks],

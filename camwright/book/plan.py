@@ -12,13 +12,18 @@ from functools import lru_cache
 from typing import Any, get_args
 
 from camwright.book.job_text import job_text
-from camwright.book.ranges import Range, decimal, distinct, parse_range
-from camwright.job import Job, parse_job, read_job
-from camwright.job_file import Objective
-from camwright.provenance import provenance
-from camwright.table_options import parse_targets
-from camwright.units import shown
-from profiles.errors import InputError
+from camwright.book.ranges import (
+    Range,
+    decimal,
+    distinct,
+    parse_range,
+)
+from camwright.drives.options import parse_targets
+from camwright.house.provenance import provenance
+from camwright.house.units import shown
+from camwright.jobs.job import Job, parse_job, read_job
+from camwright.jobs.structure import Objective
+from camwright.profiles.errors import InputError
 
 MOST_DESIGNS = 100_000
 """Most combinations of a book."""

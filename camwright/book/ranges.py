@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 
-from camwright.units import KINDS, exact_quantity, shown
-from profiles.errors import InputError
+from camwright.house.units import KINDS, exact_quantity, shown
+from camwright.profiles.errors import InputError
 
 MOST_VALUES = 1000
 """Most values of one range: also the most entries of a folder of the book."""
@@ -68,7 +68,7 @@ def parse_range(text: str, option: str, kind: str, unit: str) -> Range:
     option
         What messages begin with, e.g. ``"--length"``.
     kind
-        Name of the kind of quantity, a key of `camwright.units.KINDS`.
+        Name of the kind of quantity, a key of `camwright.house.units.KINDS`.
     unit
         Unit of bare numbers.
 

@@ -20,7 +20,7 @@ from camwright.book.plan import Book
 from camwright.book.rows import Counts
 from camwright.book.workers import Crew, make_all
 from camwright.book.writing import INDEX, write_index
-from profiles.errors import InputError
+from camwright.profiles.errors import InputError
 
 Told = Callable[[int], None]
 """Told how many combinations are done."""

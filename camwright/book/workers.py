@@ -19,7 +19,7 @@ from multiprocessing.synchronize import Event
 from camwright.book.entry import Entry
 from camwright.book.making import Made, make_chunk
 from camwright.book.plan import Book
-from profiles.errors import InputError
+from camwright.profiles.errors import InputError
 
 _AHEAD = 2
 """Chunks that lie ready for each worker."""

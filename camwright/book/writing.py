@@ -12,7 +12,14 @@ from camwright.book.index_html import html_pieces
 from camwright.book.index_xlsx import write_workbook
 from camwright.book.journal import Journal
 from camwright.book.plan import Book
-from camwright.book.rows import COLUMNS, LIMIT_COLUMNS, Counts, count, index_rows, limit_rows
+from camwright.book.rows import (
+    COLUMNS,
+    LIMIT_COLUMNS,
+    Counts,
+    count,
+    index_rows,
+    limit_rows,
+)
 
 INDEX = ("index.html", "index.xlsx", "index.csv", "limits.csv")
 """The files of a book's own, beside the list of all files."""

@@ -8,11 +8,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from camwright.design_file import StoredDesign, job_numbers
-from camwright.export import Exported, export_possible
-from camwright.job import Job
-from camwright.progress import Step, ignore
-from camwright.provenance import provenance
+from camwright.drives.export import Exported, export_possible
+from camwright.house.progress import Step, ignore
+from camwright.house.provenance import provenance
+from camwright.jobs.job import Job
+from camwright.jobs.numbers import job_numbers
+from camwright.profiles.cut import Cut
+from camwright.profiles.errors import InputError
+from camwright.profiles.polynomial.profile import FloatArray
+from camwright.profiles.returns import slave_at_start
+from camwright.profiles.servo import mean_lag
 from camwright.recipe.manifest import sha256
 from camwright.recipe.model import (
     RECIPE_VERSION,
@@ -32,15 +37,11 @@ from camwright.recipe.model import (
 )
 from camwright.recipe.speeds import at_speeds
 from camwright.recipe.working_range import working_range
-from profiles.cycle import Cut
-from profiles.errors import InputError
-from profiles.polynomial import FloatArray
-from profiles.returns import slave_at_start
-from profiles.servo import mean_lag
+from camwright.stored.design_file import StoredDesign
 
 if TYPE_CHECKING:
-    from validation.checks import Check
-    from validation.report import ValidationReport
+    from camwright.validation.check import Check
+    from camwright.validation.report import ValidationReport
 
 STEPS = 4
 """Steps that `make_recipe` tells beside one for each target."""
@@ -70,7 +71,7 @@ def designed(job: Job) -> StoredDesign:
     SolverError
         The solver failed.
     """
-    from camwright.servo_aware import solve_job
+    from camwright.studies.axis_study import solve_job
 
     solution = solve_job(job)
     return StoredDesign(solution.profile, replace(job, machine=solution.machine))
@@ -107,7 +108,7 @@ def make_recipe(
     InputError
         An unknown target, one that cannot take the cam, or none that can.
     """
-    from validation.report import validate
+    from camwright.validation.report import validate
 
     job, profile = design.job, design.profile
     step("checking")

@@ -9,14 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from camwright.design_file import MOST_BYTES
-from camwright.files import read_text
+from camwright.house.files import read_text
+from camwright.profiles.errors import InputError
+from camwright.profiles.polynomial.profile import CamProfile
 from camwright.recipe.facts import GROUPS
 from camwright.recipe.model import Recipe, RecipeCheck, RecipeTable
 from camwright.recipe.quantities import SHOWN, converted, unit_shown
 from camwright.recipe.recipe_file import RECIPE_FILE, parse_recipe
-from profiles.errors import InputError
-from profiles.polynomial import CamProfile
+from camwright.stored.design_file import MOST_BYTES
 
 _PLACES = 20_001
 

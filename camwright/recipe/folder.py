@@ -9,7 +9,7 @@ import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from profiles.errors import InputError
+from camwright.profiles.errors import InputError
 
 
 @contextlib.contextmanager

@@ -9,8 +9,8 @@ from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 
+from camwright.profiles.errors import MissingExtraError
 from camwright.recipe.user_text import spelled
-from profiles.errors import MissingExtraError
 
 EXTRA = "recipe"
 

@@ -5,7 +5,12 @@ from __future__ import annotations
 from camwright.recipe.blocks import Block, fixed_text, text_block
 from camwright.recipe.catalogue import Catalogue
 from camwright.recipe.model import AtSpeed, Recipe, RecipeTable
-from camwright.recipe.quantities import number, shown, unit_shown, with_unit
+from camwright.recipe.quantities import (
+    number,
+    shown,
+    unit_shown,
+    with_unit,
+)
 
 _FINEST = 0.001
 """What an error is at least said to be within: micrometres, and percent of the acceleration."""

@@ -5,7 +5,12 @@ from __future__ import annotations
 from camwright.recipe.blocks import Block, table_block, text_block
 from camwright.recipe.catalogue import Catalogue
 from camwright.recipe.model import Recipe, RecipeCheck, RecipeTable
-from camwright.recipe.quantities import number, shown, si_unit, unit_shown
+from camwright.recipe.quantities import (
+    number,
+    shown,
+    si_unit,
+    unit_shown,
+)
 
 REACHED = ("speed", "acceleration", "jerk", "reversal", "stroke", "motor_speed", "motor_torque", "shear_zone_error")
 """Checks that compare a quantity of the machine with its limit."""

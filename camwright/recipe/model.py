@@ -66,7 +66,7 @@ class Zones:
 
 @dataclass(frozen=True, config=_STRICT)
 class RecipeCheck:
-    """One judgement: as `validation.checks.Check`, SI units."""
+    """One judgement: as `camwright.validation.check.Check`, SI units."""
 
     name: str
     passed: bool
@@ -98,7 +98,8 @@ class AtSpeed:
     sync_error
         Greatest sync error in the shear zone (m).
     length_offset, length_offset_with_lead, length_variation
-        As `validation.lead.LengthError` (m): mean sync error in the shear zone, positive where the tool is late and the piece too
+        As `camwright.validation.servo.lead.LengthError` (m): mean sync error in the shear zone, positive where the tool is late and
+        the piece too
         long; the same with the recipe's lead time set; what changes from cut to cut.
     """
 

@@ -8,10 +8,10 @@ from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
-from camwright.design_file import StoredDesign, design_schema, parse_design
-from camwright.provenance import SCHEMA_VERSION
+from camwright.house.provenance import SCHEMA_VERSION
+from camwright.profiles.errors import InputError
 from camwright.recipe.model import Recipe
-from profiles.errors import InputError
+from camwright.stored.design_file import StoredDesign, design_schema, parse_design
 
 RECIPE_FILE = "recipe.json"
 

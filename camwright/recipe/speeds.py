@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from camwright.job import Job
+from camwright.jobs.job import Job
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.servo import spectral_radius
 from camwright.recipe.model import AtSpeed
-from profiles.polynomial import CamProfile
-from profiles.servo import spectral_radius
 
 if TYPE_CHECKING:
-    from validation.report import ValidationReport
+    from camwright.validation.report import ValidationReport
 
 
 def at_speeds(profile: CamProfile, job: Job, report: ValidationReport) -> tuple[AtSpeed, ...]:
@@ -29,9 +29,9 @@ def at_speeds(profile: CamProfile, job: Job, report: ValidationReport) -> tuple[
     report
         Its validation, which has the servo's response at full line speed and where the cut falls.
     """
-    from validation.motion import measure_motion
-    from validation.motor import measure_motor
-    from validation.response import servo_response
+    from camwright.validation.motion import measure_motion
+    from camwright.validation.motor import measure_motor
+    from camwright.validation.servo.response import servo_response
 
     machine, stable = job.machine, spectral_radius(job.servo) < 1.0
     rows = []

@@ -11,16 +11,22 @@ from typing import Any
 
 import numpy as np
 
-from camwright.design_file import MOST_BYTES, StoredDesign, job_numbers
-from camwright.export import position_error
+from camwright.drives.export import position_error
+from camwright.jobs.numbers import job_numbers
+from camwright.profiles.errors import InputError
+from camwright.profiles.tables.cam_table import CamTable, Unit, Units
+from camwright.profiles.tables.deviation import deviation
+from camwright.profiles.tables.targets import TARGETS, read_table
+from camwright.profiles.tables.text import decode
 from camwright.recipe.manifest import MANIFEST_FILE, read_manifest, sha256
 from camwright.recipe.model import Points, Recipe, RecipeTable
-from camwright.recipe.recipe_file import RECIPE_FILE, parse_recipe, recipe_text, stored_design
-from profiles.errors import InputError
-from profiles.tables.cam_table import CamTable, Unit, Units
-from profiles.tables.deviation import deviation
-from profiles.tables.targets import TARGETS, read_table
-from profiles.tables.text import decode
+from camwright.recipe.recipe_file import (
+    RECIPE_FILE,
+    parse_recipe,
+    recipe_text,
+    stored_design,
+)
+from camwright.stored.design_file import MOST_BYTES, StoredDesign
 
 SAME = 1e-6
 """What a value computed anew may be off the recorded one, relative to it: another processor or another version of numpy."""
@@ -199,7 +205,7 @@ def _table_faults(table: RecipeTable, design: StoredDesign, data: dict[str, byte
 
 def _number_faults(table: RecipeTable, read: CamTable, units: Units, design: StoredDesign) -> Iterator[str]:
     """Compare the points, the errors and the checks of a table with the recorded ones."""
-    from validation.tables import judge_table
+    from camwright.validation.rebuilt import judge_table
 
     yield from _point_faults(table.points, read)
     job, profile = design.job, design.profile

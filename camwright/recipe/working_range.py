@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from camwright.job import Job
+from camwright.jobs.job import Job
+from camwright.profiles.cut import Cut
+from camwright.profiles.limits import Limits
+from camwright.profiles.machines import LinearCarriage, Machine
 from camwright.recipe.model import Edge, WorkingRange
-from profiles.cycle import Cut
-from profiles.limits import Limits
-from profiles.machines import LinearCarriage, Machine
 
 LONGEST = 4.0
 """Cut lengths up to this multiple of the job's are looked at where the slave cannot wait at rest."""
@@ -37,7 +37,7 @@ def working_range(job: Job) -> WorkingRange:
     job
         The job, a crank's sync zone where the design chose it.
     """
-    from design.extremes import extremes
+    from camwright.design.feasible.extremes import extremes
 
     far = extremes(job.machine, job.cut, job.limits)
     return WorkingRange(
@@ -54,7 +54,12 @@ def longest_cut(machine: Machine, cut: Cut, limits: Limits) -> Edge:
     A slave that can come to rest between two sync zones can wait there for any length. One that must not run backwards and has no
     room to stop can be slowed down by so much only.
     """
-    from design.feasibility import binding_limit, edge, is_feasible, needed_limits
+    from camwright.design.feasible.feasibility import (
+        binding_limit,
+        edge,
+        is_feasible,
+        needed_limits,
+    )
 
     if can_rest(machine, cut, limits):
         return Edge(None, NO_END)
@@ -72,7 +77,7 @@ def longest_cut(machine: Machine, cut: Cut, limits: Limits) -> Edge:
 
 def can_rest(machine: Machine, cut: Cut, limits: Limits) -> bool:
     """Whether the slave can come to rest after a sync zone, and from rest into the next: enough room for both, or reversal allowed."""
-    from design.motor import motor_limits
+    from camwright.design.returns.curve_limits import motor_limits
 
     if limits.motor is not None:
         return any(can_rest(machine, cut, each) for each in motor_limits(machine, limits))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from camwright.progress import Step, ignore
+from camwright.house.progress import Step, ignore
 from camwright.recipe.build import MadeRecipe
 from camwright.recipe.folder import replaced
 from camwright.recipe.fonts import font_files, require

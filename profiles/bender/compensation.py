@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from profiles.bender.plan import BendPlan
-from profiles.bender.program import NcProgram
-from profiles.bender.springback import Springback
+from camwright.profiles.bender.plan import BendPlan
+from camwright.profiles.bender.program import NcProgram
+from camwright.profiles.bender.springback import Springback
 
 _EASING = 0.01
 """Length (m) over which a sideways error is taken out: on shorter sides a full correction would twist the outline."""

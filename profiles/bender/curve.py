@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from profiles.polynomial import FloatArray
+from camwright.profiles.polynomial.profile import FloatArray
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,8 +16,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from profiles.errors import InputError
-from profiles.polynomial import FloatArray
+from camwright.profiles.errors import InputError
+from camwright.profiles.polynomial.profile import FloatArray
 
 _WIDEST = math.radians(60.0)
 """Widest angle from an arc's end to its first bend, and half the widest step: a bend of an arc turns by 120° at "

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from profiles.limits import Limits
-from profiles.polynomial import FloatArray
-from profiles.reach import fastest
+from camwright.profiles.closed_forms.reach import fastest
+from camwright.profiles.limits import Limits
+from camwright.profiles.polynomial.profile import FloatArray
 
 _HALVINGS = 36
 """Bisections of a piece of a move, down to a part of 1e-11 of it."""
@@ -88,7 +88,7 @@ class Moves:
 
 
 def double_s_moves(distances: FloatArray, limits: Limits) -> Moves:
-    """Fastest jerk-limited moves over some distances (`profiles.reach.fastest`)."""
+    """Fastest jerk-limited moves over some distances (`camwright.profiles.closed_forms.reach.fastest`)."""
     unique, rows = np.unique(distances, return_inverse=True)
     found = [fastest(d, limits.speed, limits.acceleration, limits.jerk) for d in unique.tolist()]
     ramp, hold, cruise = (np.array([getattr(move, name) for move in found]) for name in ("ramp", "hold", "cruise"))

@@ -8,8 +8,8 @@ from typing import Literal
 
 import numpy as np
 
-from profiles.bender.program import FULL_TURN, IntArray, NcProgram
-from profiles.errors import InputError
+from camwright.profiles.bender.program import FULL_TURN, IntArray, NcProgram
+from camwright.profiles.errors import InputError
 
 Flavour = Literal["fagor", "iso"]
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from profiles.polynomial import FloatArray
+from camwright.profiles.polynomial.profile import FloatArray
 
 Indices = NDArray[np.int64]
 

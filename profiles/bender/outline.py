@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from profiles.errors import InputError
-from profiles.polynomial import FloatArray
+from camwright.profiles.errors import InputError
+from camwright.profiles.polynomial.profile import FloatArray
 
 FLAT = 1e-9
 """Rise of an arc over its chord (m) below which the segment is a straight line."""

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from profiles.bender.division import Division, DivisionRule
-from profiles.bender.outline import Outline, wrapped
-from profiles.polynomial import FloatArray
+from camwright.profiles.bender.division import Division, DivisionRule
+from camwright.profiles.bender.outline import Outline, wrapped
+from camwright.profiles.polynomial.profile import FloatArray
 
 _ONE_CIRCLE = 1e-6
 """Difference of radius and of centre (m) up to which neighbouring arcs are parts of one circle."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from profiles.errors import InputError
+from camwright.profiles.errors import InputError
 
 IntArray = NDArray[np.int64]
 

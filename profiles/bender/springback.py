@@ -9,10 +9,10 @@ from typing import Literal
 
 import numpy as np
 
-from profiles.bender.curve import Curve
-from profiles.bender.plan import BendPlan
-from profiles.errors import InputError
-from profiles.polynomial import FloatArray
+from camwright.profiles.bender.curve import Curve
+from camwright.profiles.bender.plan import BendPlan
+from camwright.profiles.errors import InputError
+from camwright.profiles.polynomial.profile import FloatArray
 
 Interpolation = Literal["linear", "cubic"]
 

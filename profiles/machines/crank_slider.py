@@ -9,11 +9,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from profiles.cycle import Cut
-from profiles.errors import InputError
-from profiles.fitting import fit_profile
-from profiles.machines.machine import Machine, SlaveUnit
-from profiles.polynomial import CamProfile, FloatArray
+from camwright.profiles.cut import Cut
+from camwright.profiles.errors import InputError
+from camwright.profiles.machines.machine import Machine, SlaveUnit
+from camwright.profiles.polynomial.fitting import fit_profile
+from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 
 _SETTLED = 1e-15
 """Step of the inverse map (rad) that is rounding."""

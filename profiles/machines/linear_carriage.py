@@ -6,10 +6,10 @@ import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from profiles.cycle import Cut
-from profiles.errors import InputError
-from profiles.machines.machine import Machine, SlaveUnit, straight_sync
-from profiles.polynomial import CamProfile
+from camwright.profiles.cut import Cut
+from camwright.profiles.errors import InputError
+from camwright.profiles.machines.machine import Machine, SlaveUnit, straight_sync
+from camwright.profiles.polynomial.profile import CamProfile
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, ClassVar, Literal
 
-from profiles.cycle import Cut
-from profiles.polynomial import CamProfile
+from camwright.profiles.cut import Cut
+from camwright.profiles.polynomial.profile import CamProfile
 
 SlaveUnit = Literal["m", "rad"]
 
@@ -18,7 +18,8 @@ class Machine(ABC):
     """A cutting machine: its slave, its tool and its drive train.
 
     The slave coordinate ``y`` (m or rad, see `slave_unit`) is the machine's own; a profile counts from zero where its cycle starts, so
-    a profile's position plus the coordinate at its start (`profiles.returns.slave_at_start`) is a slave coordinate. Methods that take
+    a profile's position plus the coordinate at its start (`camwright.profiles.returns.slave_at_start`) is a slave coordinate. Methods
+    that take
     a slave coordinate are plain formulas: they accept floats, numpy arrays and symbols alike.
     """
 

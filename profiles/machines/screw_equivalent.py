@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from profiles.machines.crank_slider import CrankSlider
-from profiles.machines.linear_carriage import LinearCarriage
+from camwright.profiles.machines.crank_slider import CrankSlider
+from camwright.profiles.machines.linear_carriage import LinearCarriage
 
 
 def screw_equivalent(crank: CrankSlider, carriage_speed: float, motor_speed: float) -> LinearCarriage:

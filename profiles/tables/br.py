@@ -4,15 +4,25 @@ from __future__ import annotations
 
 import numpy as np
 
-from profiles.errors import InputError
-from profiles.polynomial import CamProfile
-from profiles.tables.cam_table import CamTable, PieceLaw, make_table
-from profiles.tables.interpolation import in_format, quintics
-from profiles.tables.number_formats import literal
-from profiles.tables.st_program import Value, Word, number_of
-from profiles.tables.structured_text import parse
-from profiles.tables.target import Header, Target, slash_comments, units_in
-from profiles.tables.text import check_ascending, check_count, refuse, shown
+from camwright.profiles.errors import InputError
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.tables.cam_table import CamTable, PieceLaw, make_table
+from camwright.profiles.tables.interpolation import in_format, quintics
+from camwright.profiles.tables.number_formats import literal
+from camwright.profiles.tables.st_program import Value, Word, number_of
+from camwright.profiles.tables.structured_text import parse
+from camwright.profiles.tables.target import (
+    Header,
+    Target,
+    slash_comments,
+    units_in,
+)
+from camwright.profiles.tables.text import (
+    check_ascending,
+    check_count,
+    refuse,
+    shown,
+)
 
 MOST_SECTIONS = 130
 LEAST_STEP = 1e-4

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from profiles.errors import InputError
-from profiles.machines.machine import SlaveUnit
-from profiles.polynomial import CamProfile, FloatArray
+from camwright.profiles.errors import InputError
+from camwright.profiles.machines.machine import SlaveUnit
+from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 
 _LENGTHS: dict[str, tuple[float, float]] = {
     "m": (1, 1), "mm": (1, 1000), "cm": (1, 100), "um": (1, 1e6), "µm": (1, 1e6), "in": (127, 5000), "ft": (381, 1250)

@@ -7,9 +7,9 @@ from typing import Literal
 
 import numpy as np
 
-from profiles.errors import InputError
-from profiles.machines.machine import SlaveUnit
-from profiles.polynomial import CamProfile, FloatArray
+from camwright.profiles.errors import InputError
+from camwright.profiles.machines.machine import SlaveUnit
+from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 
 PieceLaw = Literal["line", "quintic", "spline"]
 """What lies between two knots.

@@ -6,14 +6,26 @@ import re
 
 import numpy as np
 
-from profiles.errors import InputError
-from profiles.polynomial import CamProfile, FloatArray
-from profiles.tables.cam_csv import read_cam_csv
-from profiles.tables.cam_csv import rebuild as rebuild_rows
-from profiles.tables.cam_table import CamTable, PieceLaw, Unit, Units, make_table
-from profiles.tables.splines import cyclic_spline
-from profiles.tables.target import Header, Target
-from profiles.tables.text import check_ascending, check_count, lines_of, real, refuse
+from camwright.profiles.errors import InputError
+from camwright.profiles.polynomial.profile import CamProfile, FloatArray
+from camwright.profiles.tables.cam_csv import read_cam_csv
+from camwright.profiles.tables.cam_csv import rebuild as rebuild_rows
+from camwright.profiles.tables.cam_table import (
+    CamTable,
+    PieceLaw,
+    Unit,
+    Units,
+    make_table,
+)
+from camwright.profiles.tables.splines import cyclic_spline
+from camwright.profiles.tables.target import Header, Target
+from camwright.profiles.tables.text import (
+    check_ascending,
+    check_count,
+    lines_of,
+    real,
+    refuse,
+)
 
 MOST_POINTS = 32_767
 

@@ -8,7 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from profiles.polynomial import CamProfile, FloatArray
+from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 
 _NODES = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, 17))
 """Where each common piece is looked at, as parts of it: dense at its ends, where polynomials have their extremes."""

@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from profiles.errors import InputError
-from profiles.polynomial import CamProfile
-from profiles.tables.cam_table import CamTable
-from profiles.tables.number_formats import NumberFormat, rounded
-from profiles.tables.splines import cyclic_spline
+from camwright.profiles.errors import InputError
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.tables.cam_table import CamTable
+from camwright.profiles.tables.number_formats import NumberFormat, rounded
+from camwright.profiles.tables.splines import cyclic_spline
 
 
 def in_format(table: CamTable, number_format: NumberFormat) -> CamTable:

@@ -6,12 +6,25 @@ import re
 
 import numpy as np
 
-from profiles.errors import InputError
-from profiles.polynomial import CamProfile
-from profiles.tables.cam_table import CamTable, PieceLaw, make_table
-from profiles.tables.interpolation import in_format, quintics
-from profiles.tables.target import Header, Target, advance_in, units_in
-from profiles.tables.text import check_ascending, check_count, integer, lines_of, real, refuse, shown
+from camwright.profiles.errors import InputError
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.tables.cam_table import CamTable, PieceLaw, make_table
+from camwright.profiles.tables.interpolation import in_format, quintics
+from camwright.profiles.tables.target import (
+    Header,
+    Target,
+    advance_in,
+    units_in,
+)
+from camwright.profiles.tables.text import (
+    check_ascending,
+    check_count,
+    integer,
+    lines_of,
+    real,
+    refuse,
+    shown,
+)
 
 MOST_PAIRS = 360
 TURN = 3_600_000

@@ -9,13 +9,19 @@ from functools import lru_cache
 
 import numpy as np
 
-from profiles.errors import InputError
-from profiles.polynomial import CamProfile, FloatArray
-from profiles.tables.cam_table import CamTable, PieceLaw, Unit, Units, sample_profile
-from profiles.tables.deviation import Deviation, deviation, glance
-from profiles.tables.number_formats import NumberFormat, rounded
-from profiles.tables.placing import candidates, required_points, zone_ends
-from profiles.tables.target import Target
+from camwright.profiles.errors import InputError
+from camwright.profiles.polynomial.profile import CamProfile, FloatArray
+from camwright.profiles.tables.cam_table import (
+    CamTable,
+    PieceLaw,
+    Unit,
+    Units,
+    sample_profile,
+)
+from camwright.profiles.tables.deviation import Deviation, deviation, glance
+from camwright.profiles.tables.number_formats import NumberFormat, rounded
+from camwright.profiles.tables.placing import candidates, required_points, zone_ends
+from camwright.profiles.tables.target import Target
 
 
 @dataclass(frozen=True)

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
-from profiles.errors import InputError
-from profiles.tables.cam_table import CamTable, make_table
-from profiles.tables.interpolation import by_law
-from profiles.tables.number_formats import decimals
-from profiles.tables.target import Header, Target, companion
-from profiles.tables.text import check_ascending, check_count, lines_of, real, refuse, shown
+from camwright.profiles.errors import InputError
+from camwright.profiles.tables.cam_table import CamTable, make_table
+from camwright.profiles.tables.interpolation import by_law
+from camwright.profiles.tables.number_formats import decimals
+from camwright.profiles.tables.target import Header, Target, companion
+from camwright.profiles.tables.text import (
+    check_ascending,
+    check_count,
+    lines_of,
+    real,
+    refuse,
+    shown,
+)
 
 LEAST_POINTS = 5  # four segments
 MOST_POINTS = 10_000

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
-from profiles.polynomial import CamProfile
-from profiles.tables.cam_table import CamTable, make_table
-from profiles.tables.interpolation import chords
-from profiles.tables.number_formats import decimals
-from profiles.tables.target import Header, Target, units_in
-from profiles.tables.text import check_ascending, check_count, lines_of, real, refuse
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.tables.cam_table import CamTable, make_table
+from camwright.profiles.tables.interpolation import chords
+from camwright.profiles.tables.number_formats import decimals
+from camwright.profiles.tables.target import Header, Target, units_in
+from camwright.profiles.tables.text import (
+    check_ascending,
+    check_count,
+    lines_of,
+    real,
+    refuse,
+)
 
 MOST_POINTS = 10_000
 

@@ -9,14 +9,21 @@ from xml.parsers import expat
 
 import numpy as np
 
-from profiles.errors import InputError
-from profiles.polynomial import CamProfile, join
-from profiles.tables.cam_table import CamTable, PieceLaw, make_table
-from profiles.tables.interpolation import in_format, quintics
-from profiles.tables.number_formats import decimals
-from profiles.tables.splines import clamped_spline
-from profiles.tables.target import Header, Target, units_in
-from profiles.tables.text import check_ascending, check_count, integer, real, refuse, shown
+from camwright.profiles.errors import InputError
+from camwright.profiles.polynomial.profile import CamProfile, join
+from camwright.profiles.tables.cam_table import CamTable, PieceLaw, make_table
+from camwright.profiles.tables.interpolation import in_format, quintics
+from camwright.profiles.tables.number_formats import decimals
+from camwright.profiles.tables.splines import clamped_spline
+from camwright.profiles.tables.target import Header, Target, units_in
+from camwright.profiles.tables.text import (
+    check_ascending,
+    check_count,
+    integer,
+    real,
+    refuse,
+    shown,
+)
 
 MOST_POINTS = 10_000  # read; no limit is documented, and float32 asks for far fewer
 

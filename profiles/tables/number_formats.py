@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from profiles.polynomial import FloatArray
+from camwright.profiles.polynomial.profile import FloatArray
 
 NumberFormat = Literal["float64", "float32", "int32"]
 

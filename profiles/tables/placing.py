@@ -1,4 +1,4 @@
-"""Where the points of a table may go: candidates for `profiles.tables.knots.choose`, few points first."""
+"""Where the points of a table may go: candidates for `camwright.profiles.tables.knots.choose`, few points first."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from profiles.polynomial import CamProfile, FloatArray
-from profiles.tables.cam_table import Unit, Units, sample_profile
-from profiles.tables.interpolation import quintics
-from profiles.tables.target import Target
+from camwright.profiles.polynomial.profile import CamProfile, FloatArray
+from camwright.profiles.tables.cam_table import Unit, Units, sample_profile
+from camwright.profiles.tables.interpolation import quintics
+from camwright.profiles.tables.target import Target
 
 MOST_SPLINE = 1000
 """Points beyond which splines are not refined: the file grows, the motion does not improve."""

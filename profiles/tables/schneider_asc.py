@@ -4,13 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from profiles.errors import InputError
-from profiles.polynomial import CamProfile
-from profiles.tables.cam_table import CamTable, make_table
-from profiles.tables.number_formats import decimals
-from profiles.tables.splines import clamped_spline
-from profiles.tables.target import Header, Target, companion
-from profiles.tables.text import check_count, lines_of, real, refuse, shown
+from camwright.profiles.errors import InputError
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.tables.cam_table import CamTable, make_table
+from camwright.profiles.tables.number_formats import decimals
+from camwright.profiles.tables.splines import clamped_spline
+from camwright.profiles.tables.target import Header, Target, companion
+from camwright.profiles.tables.text import (
+    check_count,
+    lines_of,
+    real,
+    refuse,
+    shown,
+)
 
 MOST_POINTS = 10_000
 

@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
-from profiles.tables.cam_table import CamTable, make_table
-from profiles.tables.interpolation import by_law
-from profiles.tables.number_formats import decimals
-from profiles.tables.target import Header, Target, companion
-from profiles.tables.text import check_ascending, check_count, integer, lines_of, real, refuse
+from camwright.profiles.tables.cam_table import CamTable, make_table
+from camwright.profiles.tables.interpolation import by_law
+from camwright.profiles.tables.number_formats import decimals
+from camwright.profiles.tables.target import Header, Target, companion
+from camwright.profiles.tables.text import (
+    check_ascending,
+    check_count,
+    integer,
+    lines_of,
+    real,
+    refuse,
+)
 
 MOST_SPLINE = 64
 MOST_READ = 16_383

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from profiles.polynomial import CamProfile, FloatArray
+from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 
 
 def clamped_spline(x: FloatArray, y: FloatArray, start_slope: float, end_slope: float) -> CamProfile:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from profiles.tables.text import refuse, shown
+from camwright.profiles.tables.text import refuse, shown
 
 
 @dataclass(frozen=True, slots=True)

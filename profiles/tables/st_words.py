@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from profiles.tables.text import refuse, shown
+from camwright.profiles.tables.text import refuse, shown
 
 MOST_TOKENS = 200_000
 

@@ -2,9 +2,18 @@
 
 from __future__ import annotations
 
-from profiles.tables.st_program import Assignment, Call, Declaration, Other, Program, Struct, Value, Word
-from profiles.tables.st_words import MOST_TOKENS, Token, tokens_of
-from profiles.tables.text import real, refuse, shown
+from camwright.profiles.tables.st_program import (
+    Assignment,
+    Call,
+    Declaration,
+    Other,
+    Program,
+    Struct,
+    Value,
+    Word,
+)
+from camwright.profiles.tables.st_words import MOST_TOKENS, Token, tokens_of
+from camwright.profiles.tables.text import real, refuse, shown
 
 DEEPEST = 8
 _TYPED = frozenset(

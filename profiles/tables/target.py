@@ -7,9 +7,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
-from profiles.polynomial import CamProfile
-from profiles.tables.cam_table import CamTable, Unit, Units
-from profiles.tables.number_formats import NumberFormat
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.tables.cam_table import CamTable, Unit, Units
+from camwright.profiles.tables.number_formats import NumberFormat
 
 Placing = Literal["pieces", "free", "equidistant"]
 """Where a target's points may lie: at the ends of the profile's pieces (carried whole), anywhere, or evenly spaced."""

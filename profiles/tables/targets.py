@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 
-from profiles.errors import InputError
-from profiles.tables import (
+from camwright.profiles.errors import InputError
+from camwright.profiles.tables import (
     br,
     codesys,
     csv_target,
@@ -21,9 +21,9 @@ from profiles.tables import (
     trio,
     twincat,
 )
-from profiles.tables.cam_table import CamTable
-from profiles.tables.target import Target, points_in
-from profiles.tables.text import refuse
+from camwright.profiles.tables.cam_table import CamTable
+from camwright.profiles.tables.target import Target, points_in
+from camwright.profiles.tables.text import refuse
 
 TARGETS: dict[str, Target] = {
     target.name: target

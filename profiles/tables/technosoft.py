@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from profiles.errors import InputError
-from profiles.tables.cam_table import CamTable, make_table
-from profiles.tables.interpolation import counted_chords, in_format
-from profiles.tables.target import Header, Target, companion
-from profiles.tables.text import check_count, integer, lines_of, refuse
+from camwright.profiles.errors import InputError
+from camwright.profiles.tables.cam_table import CamTable, make_table
+from camwright.profiles.tables.interpolation import counted_chords, in_format
+from camwright.profiles.tables.target import Header, Target, companion
+from camwright.profiles.tables.text import (
+    check_count,
+    integer,
+    lines_of,
+    refuse,
+)
 
 MOST_POINTS = 8192
 STEPS = (1, 2, 4, 8, 16, 32, 64, 128)

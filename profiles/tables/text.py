@@ -6,8 +6,8 @@ import math
 import re
 from pathlib import Path
 
-from profiles.errors import InputError
-from profiles.tables.cam_table import LARGEST_VALUE
+from camwright.profiles.errors import InputError
+from camwright.profiles.tables.cam_table import LARGEST_VALUE
 
 LARGEST_FILE = 4_000_000
 """Bytes; a table of 10 000 points takes less than 1 500 000."""

@@ -8,10 +8,10 @@ import re
 
 import numpy as np
 
-from profiles.errors import InputError
-from profiles.machines.machine import SlaveUnit
-from profiles.polynomial import FloatArray
-from profiles.trace import Trace
+from camwright.profiles.errors import InputError
+from camwright.profiles.machines.machine import SlaveUnit
+from camwright.profiles.polynomial.profile import FloatArray
+from camwright.profiles.trace import Trace
 
 MOST_ROWS = 10_000
 

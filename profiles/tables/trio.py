@@ -6,11 +6,18 @@ import re
 
 import numpy as np
 
-from profiles.errors import InputError
-from profiles.tables.cam_table import CamTable, make_table
-from profiles.tables.interpolation import counted_chords, in_format
-from profiles.tables.target import Header, Target, companion
-from profiles.tables.text import check_count, integer, lines_of, real, refuse, shown
+from camwright.profiles.errors import InputError
+from camwright.profiles.tables.cam_table import CamTable, make_table
+from camwright.profiles.tables.interpolation import counted_chords, in_format
+from camwright.profiles.tables.target import Header, Target, companion
+from camwright.profiles.tables.text import (
+    check_count,
+    integer,
+    lines_of,
+    real,
+    refuse,
+    shown,
+)
 
 MOST_POINTS = 16_000
 

@@ -4,13 +4,29 @@ from __future__ import annotations
 
 import numpy as np
 
-from profiles.tables.cam_table import CamTable, PieceLaw, make_table
-from profiles.tables.interpolation import by_law
-from profiles.tables.number_formats import literal
-from profiles.tables.st_program import Program, Struct, Value, Word, number_of
-from profiles.tables.structured_text import parse
-from profiles.tables.target import Header, Target, slash_comments, units_in
-from profiles.tables.text import check_ascending, check_count, refuse, shown
+from camwright.profiles.tables.cam_table import CamTable, PieceLaw, make_table
+from camwright.profiles.tables.interpolation import by_law
+from camwright.profiles.tables.number_formats import literal
+from camwright.profiles.tables.st_program import (
+    Program,
+    Struct,
+    Value,
+    Word,
+    number_of,
+)
+from camwright.profiles.tables.structured_text import parse
+from camwright.profiles.tables.target import (
+    Header,
+    Target,
+    slash_comments,
+    units_in,
+)
+from camwright.profiles.tables.text import (
+    check_ascending,
+    check_count,
+    refuse,
+    shown,
+)
 
 MOST_ROWS = 16_777_216
 MOST_READ = 20_000  # rows; far above any sensible table

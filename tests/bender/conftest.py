@@ -8,8 +8,8 @@ import ezdxf
 import numpy as np
 import pytest
 
-from profiles.bender.outline import Outline
-from profiles.bender.springback import Springback
+from camwright.profiles.bender.outline import Outline
+from camwright.profiles.bender.springback import Springback
 
 MM = 1e-3
 

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from camwright.bending.dxf_guard import MOST_ENTITIES
-from camwright.bending.job import BUNDLED_BENDER
-from camwright.cli import main
+from camwright.bender.dxf_guard import MOST_ENTITIES
+from camwright.bender.job import BUNDLED_BENDER
+from camwright.cli.main import main
 
 Make = Callable[..., Path]
 

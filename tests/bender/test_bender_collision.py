@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from profiles.bender.nearby import BoxTree, crossings
-from profiles.errors import InputError
-from validation.bender_collision import MOST_REPORTED, MouldEnvelope, collisions
+from camwright.profiles.bender.nearby import BoxTree, crossings
+from camwright.profiles.errors import InputError
+from camwright.validation.bender.collision import MOST_REPORTED, MouldEnvelope, collisions
 
 ENVELOPE = MouldEnvelope(np.array([0.0, 0.03, 0.12]), np.array([0.0, 0.005, 0.005]), 0.7e-3)
 

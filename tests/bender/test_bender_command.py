@@ -15,11 +15,11 @@ from pathlib import Path
 
 import pytest
 
-from camwright.bending.job import BUNDLED_BENDER, load_bender
-from camwright.bending.springback_file import BUNDLED
-from camwright.cli import main
-from profiles.bender.nc_code import read_program
-from profiles.errors import InputError
+from camwright.bender.job import BUNDLED_BENDER, load_bender
+from camwright.bender.springback_file import BUNDLED
+from camwright.cli.main import main
+from camwright.profiles.bender.nc_code import read_program
+from camwright.profiles.errors import InputError
 
 Make = Callable[..., Path]
 STEP = [(0, 0), (22, 0), (22, 22), (34.5, 22)]
@@ -370,7 +370,7 @@ def test_serial_line_that_stays_held_up(
     drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ):
     pytest.importorskip("serial")
-    monkeypatch.setattr("camwright.bending.sending._WAIT", 0.3)
+    monkeypatch.setattr("camwright.bender.sending._WAIT", 0.3)
     machine, port = os.openpty()  # nobody reads: its buffer fills up
     path = drawing(lambda m, _: m.add_lwpolyline([(10 * i, 5 * (i % 2)) for i in range(2000)]))
     code, _, err = run(capsys, path, "--out", tmp_path / "out", "--no-figures", "--port", os.ttyname(port))
@@ -382,7 +382,7 @@ def test_serial_line_that_stays_held_up(
 
 def test_bytes_that_do_not_leave_are_noticed(monkeypatch: pytest.MonkeyPatch):
     serial = pytest.importorskip("serial")
-    from camwright.bending import sending
+    from camwright.bender import sending
 
     monkeypatch.setattr(sending, "_WAIT", 0.1)
 

@@ -7,10 +7,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from profiles.bender.division import DivisionRule, EqualSides, EqualSteps, FewestBends
-from profiles.bender.outline import Outline
-from profiles.bender.plan import plan_bends
-from profiles.errors import InputError
+from camwright.profiles.bender.division import (
+    DivisionRule,
+    EqualSides,
+    EqualSteps,
+    FewestBends,
+)
+from camwright.profiles.bender.outline import Outline
+from camwright.profiles.bender.plan import plan_bends
+from camwright.profiles.errors import InputError
 
 CIRCLE = Outline.from_lists([[5e-3, 0], [-5e-3, 0], [5e-3, 0]], [1, 1])
 RULES: list[DivisionRule] = [EqualSides(25), EqualSteps(2e-3), FewestBends(5e-5)]

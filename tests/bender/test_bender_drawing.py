@@ -10,10 +10,10 @@ from ezdxf.math import closed_uniform_bspline
 from hypothesis import given
 from hypothesis import strategies as st
 
-from camwright.bending.drawing import Drawing, join, read_drawing
-from camwright.bending.dxf_entities import Piece
-from camwright.bending.dxf_guard import MOST_ENTITIES
-from profiles.errors import InputError
+from camwright.bender.drawing import Drawing, join, read_drawing
+from camwright.bender.dxf_entities import Piece
+from camwright.bender.dxf_guard import MOST_ENTITIES
+from camwright.profiles.errors import InputError
 
 Make = Callable[..., Path]
 MM = 1e-3

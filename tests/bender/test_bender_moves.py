@@ -7,13 +7,20 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from design.moves import BenderDrive, Dwell, clearance, feed_delay, overlapped_table, sequential_table
-from profiles.bender.motion import double_s_moves, trapezoid_moves
-from profiles.errors import InputError
-from profiles.limits import Limits
-from profiles.reach import fastest
-from profiles.servo import Servo, closed_loop
-from validation.bender_servo import arrivals
+from camwright.design.bender.moves import (
+    BenderDrive,
+    Dwell,
+    clearance,
+    feed_delay,
+    overlapped_table,
+    sequential_table,
+)
+from camwright.profiles.bender.motion import double_s_moves, trapezoid_moves
+from camwright.profiles.closed_forms.reach import fastest
+from camwright.profiles.errors import InputError
+from camwright.profiles.limits import Limits
+from camwright.profiles.servo import Servo, closed_loop
+from camwright.validation.bender.arrival import arrivals
 
 DRIVE = BenderDrive(
     Limits(0.5, 5.0, 1000.0, True),

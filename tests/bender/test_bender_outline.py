@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from profiles.bender.outline import Outline, wrapped
-from profiles.errors import InputError
+from camwright.profiles.bender.outline import Outline, wrapped
+from camwright.profiles.errors import InputError
 
 QUARTER = 0.414214
 

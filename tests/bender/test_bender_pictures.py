@@ -9,8 +9,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from camwright.bending.pictures import FINEST, Line, Marks, Panel, Picture, simplified, ticks, write_pictures
-from profiles.errors import MissingExtraError
+from camwright.bender.pictures import (
+    FINEST,
+    Line,
+    Marks,
+    Panel,
+    Picture,
+    simplified,
+    ticks,
+    write_pictures,
+)
+from camwright.profiles.errors import MissingExtraError
 
 
 @given(st.floats(-1e3, 1e3), st.floats(1e-3, 1e5), st.integers(3, 20))

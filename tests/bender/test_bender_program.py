@@ -5,9 +5,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from profiles.bender.nc_code import Flavour, Numbering, read_program, write_program
-from profiles.bender.program import NcProgram
-from profiles.errors import InputError
+from camwright.profiles.bender.nc_code import (
+    Flavour,
+    Numbering,
+    read_program,
+    write_program,
+)
+from camwright.profiles.bender.program import NcProgram
+from camwright.profiles.errors import InputError
 
 PAPER = """\
 N010 G01 G91 X22.000

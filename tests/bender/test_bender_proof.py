@@ -8,15 +8,25 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from profiles.bender.compensation import compensate
-from profiles.bender.division import DivisionRule, EqualSides, EqualSteps, FewestBends
-from profiles.bender.nc_code import Numbering, read_program, write_program
-from profiles.bender.outline import Outline
-from profiles.bender.plan import BendPlan, plan_bends
-from profiles.bender.program import NcProgram
-from profiles.bender.springback import Springback
-from profiles.errors import InputError
-from validation.bending import BendingProof, bend, compare, prove
+from camwright.profiles.bender.compensation import compensate
+from camwright.profiles.bender.division import (
+    DivisionRule,
+    EqualSides,
+    EqualSteps,
+    FewestBends,
+)
+from camwright.profiles.bender.nc_code import Numbering, read_program, write_program
+from camwright.profiles.bender.outline import Outline
+from camwright.profiles.bender.plan import BendPlan, plan_bends
+from camwright.profiles.bender.program import NcProgram
+from camwright.profiles.bender.springback import Springback
+from camwright.profiles.errors import InputError
+from camwright.validation.bender.virtual_bender import (
+    BendingProof,
+    bend,
+    compare,
+    prove,
+)
 
 RULES: list[DivisionRule] = [FewestBends(5e-5), EqualSides(25), EqualSteps(1e-3), FewestBends(5e-4)]
 LEAST = math.radians(0.01)

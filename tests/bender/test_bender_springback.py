@@ -7,12 +7,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from profiles.bender.curve import Curve
-from profiles.bender.division import EqualSides
-from profiles.bender.outline import Outline
-from profiles.bender.plan import plan_bends
-from profiles.bender.springback import Interpolation, Springback
-from profiles.errors import InputError
+from camwright.profiles.bender.curve import Curve
+from camwright.profiles.bender.division import EqualSides
+from camwright.profiles.bender.outline import Outline
+from camwright.profiles.bender.plan import plan_bends
+from camwright.profiles.bender.springback import Interpolation, Springback
+from camwright.profiles.errors import InputError
 
 
 def make(

@@ -12,8 +12,8 @@ from typing import Any
 from camwright.book.making import Made, make_chunk
 from camwright.book.plan import Book, plan_book
 from camwright.book.workers import Crew
-from camwright.job import load_job
-from profiles.errors import CamwrightError
+from camwright.jobs.job import load_job
+from camwright.profiles.errors import CamwrightError
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 JOB = ROOT / "examples" / "paper-600.toml"

@@ -16,7 +16,7 @@ from books import JOB, contents, inline_crew, small_book
 
 from camwright.book.cluster import cluster_crew
 from camwright.book.run import make_book
-from profiles.errors import InputError, MissingExtraError
+from camwright.profiles.errors import InputError, MissingExtraError
 
 RANGES = ("250:650:50", "60:120:30")
 """27 combinations and an objective: seven chunks, so that both workers have some."""
@@ -77,7 +77,13 @@ def serving(nanny: int) -> list[int]:
 def test_a_worker_that_is_killed_changes_no_byte(cluster: tuple[str, list[int]], tmp_path: Path) -> None:
     address, nannies = cluster
     root = tmp_path / "book"
-    command = [sys.executable, "-c", "import sys; from camwright.cli import main; sys.exit(main())", "book", str(JOB)]
+    command = [
+        sys.executable,
+        "-c",
+        "import sys; from camwright.cli.main import main; sys.exit(main())",
+        "book",
+        str(JOB),
+    ]
     command += ["--length", RANGES[0], "--line-speed", RANGES[1], "--out", str(root), "--cluster", address, "--json"]
     waited_for("two workers", lambda: all(serving(nanny) for nanny in nannies))
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)

@@ -12,7 +12,7 @@ from books import JOB, inline_crew
 
 from camwright.book import workers
 from camwright.book.display import progress
-from camwright.cli import main
+from camwright.cli.main import main
 
 ASKED = ["book", str(JOB), "--length", "600:650:50", "--line-speed", "80"]
 

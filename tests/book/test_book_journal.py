@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from camwright.book.entry import Entry, Limit
 from camwright.book.journal import Journal
-from profiles.errors import InputError
+from camwright.profiles.errors import InputError
 
 NUMBER = st.one_of(st.none(), st.floats(allow_nan=False, allow_infinity=False))
 ENTRIES = st.builds(

@@ -16,9 +16,9 @@ from hypothesis import strategies as st
 
 from camwright.book.job_text import job_text
 from camwright.book.plan import plan_book
-from camwright.job import load_job, parse_job
-from profiles.errors import InputError
-from profiles.tables.target import Header
+from camwright.jobs.job import load_job, parse_job
+from camwright.profiles.errors import InputError
+from camwright.profiles.tables.target import Header
 
 EXAMPLES = sorted((ROOT / "examples").glob("*.toml"))
 

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from camwright.book.ranges import MOST_VALUES, parse_range
-from profiles.errors import InputError
+from camwright.profiles.errors import InputError
 
 
 def lengths(text: str) -> tuple[Fraction, ...]:

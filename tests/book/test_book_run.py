@@ -21,13 +21,18 @@ from camwright.book.folder import BookFolder
 from camwright.book.making import Made, make_chunk
 from camwright.book.plan import Book, plan_book
 from camwright.book.run import make_book
-from camwright.design_file import read_design
-from camwright.export import export
-from camwright.job import load_job
-from design.extremes import extremes
-from design.optimise import solve
-from profiles.errors import InfeasibleError, InputError, MissingExtraError, SolverError
-from validation.report import validate
+from camwright.design.feasible.extremes import extremes
+from camwright.design.optimise import solve
+from camwright.drives.export import export
+from camwright.jobs.job import load_job
+from camwright.profiles.errors import (
+    InfeasibleError,
+    InputError,
+    MissingExtraError,
+    SolverError,
+)
+from camwright.stored.design_file import read_design
+from camwright.validation.report import validate
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +51,7 @@ def rows(root: Path, name: str = "index.csv") -> list[dict[str, str]]:
 
 
 def test_the_index_says_what_designs_made_one_by_one_say(done: Path) -> None:
-    """The same numbers by solver, validation and ``camwright.export``, each called for itself with the job's own objects."""
+    """The same numbers by solver, validation and ``camwright.drives.export``, each called for itself with the job's own objects."""
     book, job = small_book(), load_job(JOB)
     found = rows(done)
     assert len(found) == len(book) == 12
@@ -273,12 +278,12 @@ def test_a_disk_that_is_full_keeps_what_is_done(done: Path, tmp_path: Path, monk
 
 
 def test_a_solver_that_fails_is_listed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    import design.optimise
+    import camwright.design.optimise
 
     def solve(machine: object, cut: object, *rest: object, **named: object) -> None:
         raise SolverError("the solver ended without an answer")
 
-    monkeypatch.setattr(design.optimise, "solve", solve)
+    monkeypatch.setattr(camwright.design.optimise, "solve", solve)
     book = plan_book(load_job(JOB), "600", "60:80:20", [])
     answer = make_book(book, tmp_path / "book", inline_crew())
     assert (answer.counts.failed, answer.exit_code) == (2, 4)

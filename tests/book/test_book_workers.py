@@ -16,7 +16,7 @@ from books import JOB, RANGES, contents, dies_at_3, dies_once, inline_crew, smal
 from camwright.book.run import make_book
 from camwright.book.workers import default_jobs, local_crew
 
-COMMAND = [sys.executable, "-c", "import sys; from camwright.cli import main; sys.exit(main())", "book", str(JOB)]
+COMMAND = [sys.executable, "-c", "import sys; from camwright.cli.main import main; sys.exit(main())", "book", str(JOB)]
 ASKED = ["--length", RANGES[0], "--line-speed", RANGES[1], "--objective", "peak_acceleration"]
 ASKED += ["--objective", "rms_acceleration", "--jobs", "2", "--quiet"]
 

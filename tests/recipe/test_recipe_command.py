@@ -12,11 +12,11 @@ from pathlib import Path
 
 import pytest
 
-from camwright.cli import main
+from camwright.cli.main import main
+from camwright.profiles.tables.targets import TARGETS
 from camwright.recipe import fonts
 from camwright.recipe.compare import compare_recipes, position_difference, read_recipe
 from camwright.recipe.verify import verify
-from profiles.tables.targets import TARGETS
 
 Say = Callable[..., tuple[int, str, str]]
 
@@ -55,7 +55,7 @@ def test_a_recipe_with_everything_takes_less_than_6_s_of_processor_time(paper_jo
     command = [
         sys.executable,
         "-c",
-        "import sys; from camwright.cli import main; sys.exit(main())",
+        "import sys; from camwright.cli.main import main; sys.exit(main())",
         "recipe",
         str(paper_job),
     ]

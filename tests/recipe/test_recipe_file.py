@@ -11,16 +11,21 @@ import jsonschema
 import numpy as np
 import pytest
 
-from camwright.job import BUNDLED_JOB, load_job
+from camwright.design.feasible.extremes import extremes
+from camwright.design.feasible.feasibility import is_feasible
+from camwright.jobs.job import BUNDLED_JOB, load_job
+from camwright.profiles.closed_forms.reach import greatest_reach
+from camwright.profiles.errors import InputError
+from camwright.profiles.limits import Limits
 from camwright.recipe import build
 from camwright.recipe.build import MadeRecipe, designed, make_recipe
-from camwright.recipe.recipe_file import parse_recipe, recipe_schema, recipe_text, stored_design
+from camwright.recipe.recipe_file import (
+    parse_recipe,
+    recipe_schema,
+    recipe_text,
+    stored_design,
+)
 from camwright.recipe.working_range import can_rest, longest_cut, stopping_distance
-from design.extremes import extremes
-from design.feasibility import is_feasible
-from profiles.errors import InputError
-from profiles.limits import Limits
-from profiles.reach import greatest_reach
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -115,7 +120,7 @@ def test_full_speed_is_what_the_checks_say(made: MadeRecipe) -> None:
 def test_the_lead_time_cancels_dead_time_and_lag() -> None:
     text = (EXAMPLES / "paper-600.toml").read_text(encoding="utf-8")
     text = text.replace("velocity_feedforward = 1.0", 'velocity_feedforward = 0.9\ndead_time = "3 ms"')
-    from camwright.job import parse_job
+    from camwright.jobs.job import parse_job
 
     recipe = make_recipe(designed(parse_job(text, "here")), ["csv"]).recipe
     assert recipe.lead_time == pytest.approx(0.003 + 0.1 / 35.0, rel=1e-12)

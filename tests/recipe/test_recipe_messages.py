@@ -9,14 +9,14 @@ from pathlib import Path
 import pytest
 
 from camwright import load_job
-from camwright.design_file import job_numbers
+from camwright.jobs.numbers import job_numbers
+from camwright.profiles.tables.targets import TARGETS
 from camwright.recipe.build import MadeRecipe
 from camwright.recipe.catalogue import LANGUAGES, catalogue
 from camwright.recipe.facts import MACHINE, PRODUCT, SERVO
 from camwright.recipe.fonts import has_glyph
 from camwright.recipe.model import Language
 from camwright.recipe.sheet import sheet
-from profiles.tables.targets import TARGETS
 
 ROOT = Path(__file__).parents[2]
 PLACEHOLDER = re.compile(r"\{(\w+)\}")

@@ -11,13 +11,13 @@ from typing import Any
 import pypdf
 import pytest
 
-from camwright.job import parse_job
+from camwright.jobs.job import parse_job
+from camwright.profiles.errors import MissingExtraError
 from camwright.recipe import fonts
 from camwright.recipe.build import MadeRecipe, designed, make_recipe
 from camwright.recipe.catalogue import LANGUAGES, catalogue
 from camwright.recipe.model import Language
 from camwright.recipe.pdf import recipe_pdf
-from profiles.errors import MissingExtraError
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 

@@ -10,12 +10,12 @@ from pathlib import Path
 
 import pytest
 
+from camwright.profiles.errors import InputError
 from camwright.recipe.build import MadeRecipe
 from camwright.recipe.manifest import manifest_text
 from camwright.recipe.recipe_file import canonical
 from camwright.recipe.verify import Fault, verify
 from camwright.recipe.write import recipe_files, write_folder
-from profiles.errors import InputError
 
 
 def rebuild(folder: Path) -> None:

@@ -4,14 +4,19 @@ from __future__ import annotations
 
 from functools import cache
 
-from profiles import returns
-from profiles.cycle import Cut
-from profiles.machines import RotaryKnife
-from profiles.polynomial import CamProfile
-from profiles.tables.cam_table import Unit, Units
-from profiles.tables.knots import Accuracy, Choice, choose, table_units
-from profiles.tables.target import Header
-from profiles.tables.targets import TARGETS
+from camwright.profiles import returns
+from camwright.profiles.cut import Cut
+from camwright.profiles.machines import RotaryKnife
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.tables.cam_table import Unit, Units
+from camwright.profiles.tables.knots import (
+    Accuracy,
+    Choice,
+    choose,
+    table_units,
+)
+from camwright.profiles.tables.target import Header
+from camwright.profiles.tables.targets import TARGETS
 
 KNIFE = RotaryKnife(0.4)
 UNITS = Units(Unit("mm", 1e-3), Unit("deg", 0.4 / 360))

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from knives import chosen, written
 
-from profiles.tables.target import SAFETY_NOTE, Target
-from profiles.tables.targets import TARGETS
+from camwright.profiles.tables.target import SAFETY_NOTE, Target
+from camwright.profiles.tables.targets import TARGETS
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "targets.md"
 

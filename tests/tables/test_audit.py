@@ -11,18 +11,18 @@ import numpy as np
 import pytest
 
 from camwright import load_job
-from camwright.audit import Audit, audit, audit_answer
-from camwright.cli import main
-from camwright.export import export
-from camwright.job import Job
-from camwright.plots import audit_figures
-from profiles.cycle import Origin
-from profiles.errors import InputError
-from profiles.machines import CrankSlider
-from profiles.polynomial import CamProfile
-from profiles.returns import baseline
-from profiles.servo import Servo
-from profiles.tables.cam_table import Unit, Units
+from camwright.cli.main import main
+from camwright.drives.audit import Audit, audit, audit_answer
+from camwright.drives.export import export
+from camwright.figures import audit_figures
+from camwright.jobs.job import Job
+from camwright.profiles.cut import Origin
+from camwright.profiles.errors import InputError
+from camwright.profiles.machines import CrankSlider
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.returns import baseline
+from camwright.profiles.servo import Servo
+from camwright.profiles.tables.cam_table import Unit, Units
 
 JOB = load_job()
 PROFILE = baseline("double_s", JOB.machine, JOB.cut)

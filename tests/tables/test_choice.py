@@ -8,17 +8,28 @@ from hypothesis import given
 from hypothesis import strategies as st
 from knives import KNIVES, UNITS, chosen, knife
 
-import validation.tables
+import camwright.validation.rebuilt
 from camwright import load_job
-from camwright.export import export
-from profiles.cycle import Cut
-from profiles.machines import RotaryKnife
-from profiles.polynomial import CamProfile
-from profiles.returns import baseline
-from profiles.tables.deviation import Deviation, deviation, glance
-from profiles.tables.knots import Accuracy, Choice, _rebuilt, choose, table_units
-from profiles.tables.placing import _evenly, candidates, required_points, zone_ends
-from profiles.tables.targets import TARGETS
+from camwright.drives.export import export
+from camwright.profiles.cut import Cut
+from camwright.profiles.machines import RotaryKnife
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.returns import baseline
+from camwright.profiles.tables.deviation import Deviation, deviation, glance
+from camwright.profiles.tables.knots import (
+    Accuracy,
+    Choice,
+    _rebuilt,
+    choose,
+    table_units,
+)
+from camwright.profiles.tables.placing import (
+    _evenly,
+    candidates,
+    required_points,
+    zone_ends,
+)
+from camwright.profiles.tables.targets import TARGETS
 
 FINE = Accuracy(1e-9, 1e-6, 1e-4)
 """More than most targets reach: the nearest is chosen then."""
@@ -93,13 +104,13 @@ def test_even_points_are_those_of_linspace(pieces: list[tuple[float, int]], star
 
 
 def test_the_same_motion_is_judged_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    judge, calls = validation.tables.judge_table, []
+    judge, calls = camwright.validation.rebuilt.judge_table, []
 
     def counted(rebuilt: CamProfile, *rest: object) -> object:
         calls.append((rebuilt.breaks.tobytes(), rebuilt.coefficients.tobytes()))
         return judge(rebuilt, *rest)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(validation.tables, "judge_table", counted)
+    monkeypatch.setattr(camwright.validation.rebuilt, "judge_table", counted)
     job = load_job()
     results = export(
         baseline("double_s", job.machine, job.cut), job, ["codesys", "twincat", "pacdrive", "csv", "logix"]

@@ -11,15 +11,15 @@ import numpy as np
 import pytest
 
 from camwright import load_job
-from camwright.export import Exported, export_possible
-from camwright.job import Job
-from design.optimise import solve
-from profiles.machines import CrankSlider
-from profiles.polynomial import CamProfile
-from profiles.returns import baseline, slave_at_start
-from profiles.tables.target import SAFETY_NOTE, units_in
-from profiles.tables.targets import TARGETS, read_table
-from profiles.tables.text import decode
+from camwright.design.optimise import solve
+from camwright.drives.export import Exported, export_possible
+from camwright.jobs.job import Job
+from camwright.profiles.machines import CrankSlider
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.returns import baseline, slave_at_start
+from camwright.profiles.tables.target import SAFETY_NOTE, units_in
+from camwright.profiles.tables.targets import TARGETS, read_table
+from camwright.profiles.tables.text import decode
 
 EXAMPLES = {path.stem: path for path in sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))}
 SOLVED = ("paper-600", "cross-cutter", "flying-saw")  # solved in a moment; of the others the quintic return is taken

@@ -13,17 +13,23 @@ import typer
 from typer.testing import CliRunner
 
 from camwright import load_job
-from camwright.cli import main
-from camwright.commands.tables import register
-from camwright.export import export, export_answer, export_possible, export_report, targets_answer
-from camwright.table_options import default_units, parse_targets, parse_units
-from profiles.errors import InputError
-from profiles.limits import Limits
-from profiles.machines import CrankSlider, LinearCarriage, RotaryKnife
-from profiles.returns import baseline
-from profiles.tables.cam_table import Unit
-from profiles.tables.knots import Accuracy
-from profiles.tables.targets import TARGETS
+from camwright.cli.main import main
+from camwright.cli.tables import register
+from camwright.drives.export import (
+    export,
+    export_answer,
+    export_possible,
+    export_report,
+    targets_answer,
+)
+from camwright.drives.options import default_units, parse_targets, parse_units
+from camwright.profiles.errors import InputError
+from camwright.profiles.limits import Limits
+from camwright.profiles.machines import CrankSlider, LinearCarriage, RotaryKnife
+from camwright.profiles.returns import baseline
+from camwright.profiles.tables.cam_table import Unit
+from camwright.profiles.tables.knots import Accuracy
+from camwright.profiles.tables.targets import TARGETS
 
 JOB = load_job()
 PROFILE = baseline("double_s", JOB.machine, JOB.cut)
@@ -125,10 +131,10 @@ def test_the_commands(tmp_path: Path) -> None:
     listed = run.invoke(app, ["targets", "--json"])
     assert [entry["name"] for entry in json.loads(listed.stdout)] == list(TARGETS)
     assert "logix" in run.invoke(app, ["targets"]).stdout
-    from camwright.design_file import design_text
-    from camwright.results import design
+    from camwright.stored.design_file import design_text
+    from camwright.studies.design import optimise
 
-    (tmp_path / "design.json").write_text(design_text(design(JOB)))
+    (tmp_path / "design.json").write_text(design_text(optimise(JOB)))
     done = run.invoke(
         app, ["export", str(tmp_path / "design.json"), "--to", "codesys,logix", "--units", "mm,deg", "--json"]
     )
@@ -145,11 +151,11 @@ def test_the_commands(tmp_path: Path) -> None:
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Make a folder with a design, and the design of the same cycle for a job that it breaks."""
-    from camwright.design_file import design_text
-    from camwright.results import design
+    from camwright.stored.design_file import design_text
+    from camwright.studies.design import optimise
 
     place = tmp_path_factory.mktemp("designs")
-    text = design_text(design(JOB))
+    text = design_text(optimise(JOB))
     (place / "design.json").write_text(text)
     stored = json.loads(text)
     stored["job"]["toml"] = JOB.text.replace('acceleration = "30 m/s^2"', 'acceleration = "8 m/s^2"')

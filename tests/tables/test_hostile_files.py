@@ -13,10 +13,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from knives import main_text
 
-from profiles.errors import InputError
-from profiles.tables.cam_table import CamTable
-from profiles.tables.targets import TARGETS, detect, read_table, target_of
-from profiles.tables.text import LARGEST_FILE, decode, read_text
+from camwright.profiles.errors import InputError
+from camwright.profiles.tables.cam_table import CamTable
+from camwright.profiles.tables.targets import (
+    TARGETS,
+    detect,
+    read_table,
+    target_of,
+)
+from camwright.profiles.tables.text import LARGEST_FILE, decode, read_text
 
 
 def texts() -> dict[str, str]:

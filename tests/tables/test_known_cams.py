@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 
-from profiles.tables.cam_table import make_table
-from profiles.tables.interpolation import quintics
-from profiles.tables.splines import clamped_spline, cyclic_spline
-from profiles.tables.targets import TARGETS, detect
-from profiles.tables.text import decode
+from camwright.profiles.tables.cam_table import make_table
+from camwright.profiles.tables.interpolation import quintics
+from camwright.profiles.tables.splines import clamped_spline, cyclic_spline
+from camwright.profiles.tables.targets import TARGETS, detect
+from camwright.profiles.tables.text import decode
 
 L5X = """<?xml version="1.0" encoding="UTF-8"?>
 <RSLogix5000Content SchemaRevision="1.0"><Controller Use="Context"><Tags Use="Context">

@@ -8,14 +8,19 @@ import numpy as np
 import pytest
 from knives import HEADER, KNIVES, UNITS, chosen, knife, main_text, written
 
-from profiles.errors import InputError
-from profiles.polynomial import CamProfile
-from profiles.tables.cam_table import CamTable, Unit, Units, make_table
-from profiles.tables.deviation import deviation
-from profiles.tables.knots import Accuracy, choose, table_units
-from profiles.tables.target import Header, advance_in, units_in
-from profiles.tables.targets import TARGETS, detect
-from profiles.tables.text import LARGEST_FILE, decode
+from camwright.profiles.errors import InputError
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.tables.cam_table import (
+    CamTable,
+    Unit,
+    Units,
+    make_table,
+)
+from camwright.profiles.tables.deviation import deviation
+from camwright.profiles.tables.knots import Accuracy, choose, table_units
+from camwright.profiles.tables.target import Header, advance_in, units_in
+from camwright.profiles.tables.targets import TARGETS, detect
+from camwright.profiles.tables.text import LARGEST_FILE, decode
 
 EXACT = ("codesys", "codesys-cambuilder", "twincat", "s7-1500t", "pacdrive", "csv")
 SPLINES = ("twincat-table", "s7-1500t-points", "kollmorgen-kas", "sew", "schneider-asc")

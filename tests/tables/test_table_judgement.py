@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from knives import KNIFE, cut
 
-from profiles.errors import InputError
-from profiles.limits import Limits
-from profiles.polynomial import CamProfile
-from profiles.returns import baseline
-from profiles.servo import Servo
-from validation.tables import ALLOWANCE, TableJudgement, judge_table
+from camwright.profiles.errors import InputError
+from camwright.profiles.limits import Limits
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.returns import baseline
+from camwright.profiles.servo import Servo
+from camwright.validation.rebuilt import ALLOWANCE, TableJudgement, judge_table
 
 LIMITS = Limits(200 / 60, 30.0, 3000.0)
 SERVO = Servo(120.0, 0.7, 35.0, 0.004, 1.0)

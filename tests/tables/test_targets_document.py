@@ -6,7 +6,7 @@ import re
 
 from targets_document import DOCUMENT, document
 
-from profiles.tables.targets import TARGETS
+from camwright.profiles.tables.targets import TARGETS
 
 
 def test_the_document_is_up_to_date() -> None:

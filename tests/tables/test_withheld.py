@@ -12,13 +12,18 @@ import pytest
 from knives import HEADER, KNIVES, written
 
 from camwright import load_job
-from camwright.cli import main
-from camwright.design_file import design_text
-from camwright.results import design
-from camwright.withheld import ENDING, copy_aside, older_tables, remove
-from profiles.errors import InputError
-from profiles.tables.target import Header
-from profiles.tables.targets import TARGETS
+from camwright.cli.main import main
+from camwright.drives.withheld import (
+    ENDING,
+    copy_aside,
+    older_tables,
+    remove,
+)
+from camwright.profiles.errors import InputError
+from camwright.profiles.tables.target import Header
+from camwright.profiles.tables.targets import TARGETS
+from camwright.stored.design_file import design_text
+from camwright.studies.design import optimise
 
 JOB = load_job()
 TABLES = ("paper_600_Cam.L5X", "paper_600_Cam_mccp.txt")
@@ -28,7 +33,7 @@ TABLES = ("paper_600_Cam.L5X", "paper_600_Cam_mccp.txt")
 def designs(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
     """Make a sound design, and the same cycle stored for a job whose acceleration limit it breaks."""
     place = tmp_path_factory.mktemp("designs")
-    text = design_text(design(JOB))
+    text = design_text(optimise(JOB))
     (place / "sound.json").write_text(text)
     stored = json.loads(text)
     stored["job"]["toml"] = JOB.text.replace('acceleration = "30 m/s^2"', 'acceleration = "8 m/s^2"')

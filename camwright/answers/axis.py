@@ -1,0 +1,65 @@
+"""The parts of ``--json`` answers that are about the axis: servo-aware designs, robustness, lead."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+from camwright.jobs.job import Job
+from camwright.profiles.servo import mean_lag
+
+if TYPE_CHECKING:
+    from camwright.studies.axis_lengths import AxisLengths
+    from camwright.studies.axis_study import AxisStudy, Robustness
+    from camwright.validation.servo.lead import LengthError
+
+
+def axis_answer(axis: AxisStudy | None) -> dict[str, Any] | None:
+    """Say what a servo-aware design promises of the axis; null for a servo-blind one."""
+    if axis is None:
+        return None
+    return {
+        "mode": axis.mode,
+        "designed_error_mm": axis.designed_error * 1e3,
+        "simulated_error_mm": axis.simulated_error * 1e3,
+        "phases": axis.phases,
+        "axis_limits": axis.axis_limits,
+    }
+
+
+def robust_answer(robust: Robustness | None) -> dict[str, Any] | None:
+    """Say what the sync error is over the servo's ranges; null where the job gives none."""
+    if robust is None:
+        return None
+    designed = robust.designed_worst
+    return {
+        "worst_error_mm": robust.worst * 1e3,
+        "draws": robust.draws,
+        "designed_worst_error_mm": None if designed is None else designed * 1e3,
+        "vertices": robust.vertices,
+    }
+
+
+def lead_answer(job: Job, errors: Sequence[LengthError]) -> dict[str, Any]:
+    """Say which lead time makes up for the mean lag, and where the cut falls by share of the line speed in per cent."""
+    shares = {f"{100 * error.share:g}": error for error in errors}
+    return {
+        "lead_time_ms": mean_lag(job.servo) * 1e3,
+        "length_error_mm": {share: error.offset * 1e3 for share, error in shares.items()},
+        "length_error_with_lead_mm": {share: error.offset_with_lead * 1e3 for share, error in shares.items()},
+        "length_variation_mm": {share: error.variation * 1e3 for share, error in shares.items()},
+    }
+
+
+def axis_lengths_answer(lengths: AxisLengths | None) -> dict[str, Any]:
+    """Minimum cut lengths with the axis in sync, in mm; null for machines that the published equations are not about."""
+    names = ("linear_return", "poly_3_4_5", "in_sync", "shaped")
+    if lengths is None:
+        none = dict.fromkeys(names)
+        return {"axis_minimum_cut_length_mm": none, "axis_minimum_cut_length_axis_limits_mm": dict.fromkeys(names[2:])}
+    values = {name: None if value is None else value * 1e3 for name, value in asdict(lengths).items()}
+    return {
+        "axis_minimum_cut_length_mm": {name: values[name] for name in names},
+        "axis_minimum_cut_length_axis_limits_mm": {name: values[f"{name}_axis_limits"] for name in names[2:]},
+    }

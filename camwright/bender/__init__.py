@@ -1,0 +1,1 @@
+"""The die-rule bender's front door: drawings, bender jobs, springback tables, programs, figures."""

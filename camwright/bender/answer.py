@@ -1,0 +1,124 @@
+"""What ``camwright bend`` answers: one result for a whole drawing."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import groupby
+from pathlib import Path
+from typing import Any
+
+from camwright.bender.calibration import Calibration
+from camwright.bender.job import BenderJob
+from camwright.bender.program_file import BentOutline
+from camwright.validation.bender.collision import MOST_REPORTED
+
+_SHOWN = 10
+
+
+@dataclass(frozen=True, eq=False)
+class BentDrawing:
+    """The programs of a drawing.
+
+    Parameters
+    ----------
+    drawing
+        The DXF file.
+    sha256
+        Its SHA-256, in hexadecimal.
+    job
+        Bender and rule.
+    outlines
+        One result an outline.
+    notes
+        What was doubtful about the drawing.
+    """
+
+    drawing: Path
+    sha256: str
+    job: BenderJob
+    outlines: tuple[BentOutline, ...]
+    notes: tuple[str, ...]
+
+    @property
+    def passed(self) -> bool:
+        """Whether every check of every program passed."""
+        return all(check.passed for outline in self.outlines for check in outline.checks)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the operator should know: the table's doubtful rows, what was left out, collisions by line."""
+        found = [*self.job.warnings, *self.notes]
+        for outline in self.outlines:
+            found += collision_lines(outline, self.job)
+        return tuple(found)
+
+
+def collision_lines(outline: BentOutline, job: BenderJob) -> list[str]:
+    """Collisions in words, with the lines of the program at which they happen; the first ones if there are many.
+
+    Neighbouring collisions with the same side of the part are told together.
+    """
+    blocks = outline.program.bend_blocks()
+    numbers = job.numbering.numbers(outline.program.blocks)
+    name = outline.program.name
+    texts = []
+    groups = [list(hits) for _, hits in groupby(outline.collisions, key=lambda hit: (hit.side, hit.what))]
+    for hits in groups[:_SHOWN]:
+        side = hits[0].side
+        x, y = 1e3 * outline.proof.points[side]
+        what = "the mould" if hits[0].what == "mould" else "the rule that is still straight"
+        bends, lines = [str(hit.bend + 1) for hit in hits], [f"N{numbers[blocks[hit.bend]]:03d}" for hit in hits]
+        texts.append(
+            f"{name}, {_listed('line', lines)} ({_listed('bend', bends)}): the part bent so far, side {side + 1} from "
+            f"({x:.3f}, {y:.3f}) mm, meets {what}; start elsewhere, reverse the outline or guide the rule by hand"
+        )
+    more = sum(map(len, groups[_SHOWN:]))
+    if more:
+        least = "at least " if len(outline.collisions) >= MOST_REPORTED else ""
+        texts.append(f"{name}: {least}{more} more bends at which the part meets the mould or the rule")
+    return texts
+
+
+def _listed(noun: str, values: list[str]) -> str:
+    return f"{noun} {values[0]}" if len(values) == 1 else f"{noun}s {', '.join(values)}"
+
+
+def answer(result: BentDrawing, programs: Sequence[Path], files: Sequence[Path]) -> dict[str, Any]:
+    """Gather what ``--json`` prints."""
+    closing = [outline.proof.closing_error for outline in result.outlines if outline.proof.closing_error is not None]
+    return {
+        "outlines": len(result.outlines),
+        "bends": sum(outline.plan.bends for outline in result.outlines),
+        "length_mm": sum(int(outline.program.feeds.sum()) for outline in result.outlines) / 1e3,
+        "deviation_mm": max(1e3 * outline.proof.deviation for outline in result.outlines),
+        "chord_error_mm": max(1e3 * outline.plan.chord_error for outline in result.outlines),
+        "closing_error_mm": 1e3 * max(closing) if closing else None,
+        "program": str(programs[0]),
+        "programs": [
+            {"file": str(path), "sha256": outline.sha256, "bends": outline.plan.bends}
+            for path, outline in zip(programs, result.outlines, strict=True)
+        ],
+        "cycle_time_s": sum(outline.times.total for outline in result.outlines),
+        "baseline_cycle_time_s": sum(outline.paper_times.total for outline in result.outlines),
+        "feed_overshoot_mm": max(1e3 * outline.feed_overshoot[0] for outline in result.outlines),
+        "mould_overshoot_deg": max(math.degrees(outline.mould_overshoot[0]) for outline in result.outlines),
+        "collisions": sum(len(outline.collisions) for outline in result.outlines),
+        "passed": result.passed,
+        "warnings": list(result.warnings),
+        "files": [str(path) for path in files],
+    }
+
+
+def calibration_answer(result: Calibration, files: Sequence[Path]) -> dict[str, Any]:
+    """Gather what ``--calibrate --json`` prints."""
+    return {
+        "table": str(files[0]),
+        "test_bends": len(result.bends),
+        "angle_rows": len(result.springback.workpiece),
+        "radius_rows": len(result.springback.radius),
+        "largest_residual_deg": max(abs(residual) for residual in result.residuals),
+        "warnings": list(result.springback.warnings()),
+        "files": [str(file) for file in files],
+    }

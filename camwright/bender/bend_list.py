@@ -1,0 +1,96 @@
+"""The bend list: every bend with its line, feed, angles and times, for the CSV file and the sheet."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from camwright.bender.job import BenderJob
+from camwright.bender.program_file import BentOutline
+
+_HEADER = (
+    "bend,line,feed_mm,workpiece_angle_deg,radius_mm,mould_angle_deg,springback_deg,"
+    "feed_start_s,bend_start_s,return_start_s"
+)
+_ROW = "%d,N%03d,%.3f,%.4f,%s,%.3f,%.4f,%.4f,%.4f,%.4f"
+
+
+@dataclass(frozen=True)
+class BendRow:
+    """One bend.
+
+    Parameters
+    ----------
+    bend
+        Its number, from 1.
+    line
+        Line number of the bend in the program.
+    feed
+        Feed before it (mm).
+    turn
+        Workpiece angle (degrees), positive to the left.
+    radius
+        Radius of the arc that it is a part of (mm), ``None`` at a corner.
+    mould
+        Mould angle (degrees), positive to the left.
+    feed_start, bend_start, return_start
+        Times (s) from the start of the program.
+    """
+
+    bend: int
+    line: int
+    feed: float
+    turn: float
+    radius: float | None
+    mould: float
+    feed_start: float
+    bend_start: float
+    return_start: float
+
+    @property
+    def compensation(self) -> float:
+        """What is added for springback (degrees)."""
+        return abs(self.mould) - abs(self.turn)
+
+
+def bend_rows(outline: BentOutline, job: BenderJob, most: int) -> list[BendRow]:
+    """List the first bends of an outline, ``most`` of them or all."""
+    return [
+        BendRow(i, line, feed, turn, None if math.isinf(radius) else radius, mould, *times)
+        for i, line, feed, turn, radius, mould, *times in _columns(outline, job, min(most, outline.plan.bends))
+    ]
+
+
+def _columns(outline: BentOutline, job: BenderJob, count: int) -> Iterator[tuple[Any, ...]]:
+    """Fields of the first bends, in the order of `BendRow`; the radius is infinite at a corner."""
+    numbers = job.numbering.numbers(outline.program.blocks)[outline.program.bend_blocks()[:count]]
+    return zip(
+        range(1, count + 1),
+        numbers.tolist(),
+        (outline.program.feeds[:count] / 1e3).tolist(),
+        np.degrees(outline.plan.turns[:count]).tolist(),
+        (1e3 * outline.plan.radii[:count]).tolist(),
+        (outline.program.bends[:count] / 1e3).tolist(),
+        outline.times.feed_start[:count].tolist(),
+        outline.times.bend_start[:count].tolist(),
+        outline.times.return_start[:count].tolist(),
+        strict=True,
+    )
+
+
+def csv_text(outline: BentOutline, job: BenderJob) -> str:
+    """Write the bend list as CSV, units in the header; the last row is the feed after the last bend.
+
+    Rows go from the columns straight to text: as `BendRow` they would take twice the time.
+    """
+    lines = [_HEADER]
+    for i, line, feed, turn, radius, mould, *times in _columns(outline, job, outline.plan.bends):
+        size = "" if math.isinf(radius) else f"{radius:.4f}"
+        added = abs(mould) - abs(turn)
+        lines.append(_ROW % (i, line, feed, turn, size, mould, added, *times))
+    lines.append(f"end,,{outline.program.feeds[-1] / 1e3:.3f},,,,,{outline.times.feed_start[-1]:.4f},,")
+    return "\n".join(lines) + "\n"

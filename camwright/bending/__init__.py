@@ -1,1 +1,0 @@
-"""The die-rule bender's front door: drawings, bender jobs, springback tables, programs, figures, sheets, sending."""

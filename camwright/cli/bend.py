@@ -1,0 +1,183 @@
+"""The command ``camwright bend``."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import typer
+
+from camwright.house.output import Voice
+from camwright.profiles.errors import InputError, MissingExtraError
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from camwright.bender.answer import BentDrawing
+    from camwright.bender.job import BenderJob
+    from camwright.house.progress import Step
+
+_MOST_FIGURES = 20
+
+
+def bend(
+    drawing: Annotated[Path | None, typer.Argument(metavar="[DRAWING]", help="Die lines (DXF).")] = None,
+    job: Annotated[
+        Path | None, typer.Option("--job", metavar="BENDER", help="Bender job (TOML); the bundled bender if left out.")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Output directory; out/<drawing> if left out.")
+    ] = None,
+    layer: Annotated[str | None, typer.Option("--layer", metavar="NAME", help="Bend this layer only.")] = None,
+    start: Annotated[
+        str | None, typer.Option("--start", metavar="X,Y", help="Begin at the vertex nearest to this place (mm).")
+    ] = None,
+    reverse: Annotated[bool, typer.Option("--reverse", help="Bend each outline from its other end.")] = False,
+    measurements: Annotated[
+        Path | None, typer.Option("--calibrate", metavar="CSV", help="Make a springback table from test bends instead.")
+    ] = None,
+    port: Annotated[
+        str | None, typer.Option("--port", metavar="DEVICE", help="Send the programs over this serial line.")
+    ] = None,
+    baud: Annotated[int, typer.Option("--baud", min=50, max=4_000_000, help="Bits per second of the line.")] = 9600,
+    handshake: Annotated[
+        Literal["xonxoff", "rtscts"], typer.Option("--handshake", help="How the machine holds the line up.")
+    ] = "xonxoff",
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of tables.")] = False,
+    no_figures: Annotated[bool, typer.Option("--no-figures", help="Write neither figures nor sheets.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Print neither tables nor progress.")] = False,
+) -> int:
+    """Turn a drawing of die lines into proved NC programs of a rule bender."""
+    from camwright.bender.job import load_bender
+
+    voice = Voice(as_json, quiet)
+    bender = load_bender(job)
+    if measurements is not None:
+        if drawing is not None:
+            raise InputError("--calibrate makes a table and bends no drawing; leave the drawing out")
+        return _calibrate(measurements, bender, out, voice)
+    if drawing is None:
+        raise InputError("no drawing is named; give a DXF file, or test bends with --calibrate")
+    place = None if start is None else _place(start)
+    directory = Path("out") / drawing.stem if out is None else out
+    with voice.progress(5) as step:
+        result = _bent(drawing, bender, layer, place, reverse, step)
+        names = _names(drawing.stem, len(result.outlines))
+        programs = [directory / f"{name}.nc" for name in names]
+        result, files = _write(result, names, directory, figures=not no_figures, step=step)
+    if port is not None and not result.passed:
+        result = replace(result, notes=(*result.notes, f"nothing is sent to {port}: a check failed"))
+    elif port is not None:
+        from camwright.bender.sending import send
+
+        for outline in result.outlines:
+            lines = outline.text.count("\n")
+            with voice.progress(lines + 1) as step:
+                send(outline.text, port, handshake, baud, _counter(step, outline.program.name, lines))
+
+    def view() -> RenderableType:
+        from camwright.cli.bend_views import drawing_view
+
+        return drawing_view(result, files)
+
+    from camwright.bender.answer import answer
+
+    voice.answer(lambda: answer(result, programs, files), view)
+    return 0 if result.passed else 1
+
+
+def _counter(step: Step, name: str, lines: int) -> Callable[[int], None]:
+    return lambda count: step(f"{name}: line {count} of {lines} sent")
+
+
+def _place(text: str) -> tuple[float, float]:
+    """Read ``--start``, in mm, into metres."""
+    try:
+        x, y = (1e-3 * float(part) for part in text.split(","))
+    except ValueError:
+        x = y = math.nan
+    if not (math.isfinite(x) and math.isfinite(y)):
+        raise InputError(f"--start {text!r}: not a place; write two numbers in mm, e.g. --start 12.5,0")
+    return x, y
+
+
+def _names(stem: str, count: int) -> list[str]:
+    return [stem] if count == 1 else [f"{stem}-{i + 1}" for i in range(count)]
+
+
+def _bent(
+    drawing: Path, bender: BenderJob, layer: str | None, place: tuple[float, float] | None, reverse: bool, step: Step
+) -> BentDrawing:
+    """Read a drawing and bend its outlines."""
+    import hashlib
+
+    from camwright.bender.answer import BentDrawing
+    from camwright.bender.drawing import read_drawing
+    from camwright.bender.program_file import bend_outlines
+
+    step("reading the drawing")
+    found = read_drawing(drawing, bender.gap, bender.flattening, bender.units, layer)
+    outlines = [outline.reverse() if reverse else outline for outline in found.outlines]
+    if place is not None:
+        outlines = [outline.begin_at(*place) for outline in outlines]
+    step("writing and proving programs")
+    bent = bend_outlines(outlines, bender, drawing.stem)
+    return BentDrawing(drawing, hashlib.sha256(drawing.read_bytes()).hexdigest(), bender, bent, found.warnings)
+
+
+def _write(
+    result: BentDrawing, names: list[str], directory: Path, *, figures: bool, step: Step
+) -> tuple[BentDrawing, list[Path]]:
+    """Write programs, bend lists, figures and sheets, all or none; a missing library leaves figures or sheets out, noted."""
+    from camwright.bender.bend_list import csv_text
+    from camwright.house.files import staged
+
+    step("writing files")
+    notes: tuple[str, ...] = ()
+    with staged(directory) as aside:
+        for name, outline in zip(names, result.outlines, strict=True):
+            (aside / f"{name}.nc").write_bytes(outline.text.encode("ascii"))
+            (aside / f"{name}-bends.csv").write_bytes(csv_text(outline, result.job).encode("ascii"))
+        if figures:
+            from camwright.bender.figures import draw
+            from camwright.bender.sheet import write_sheet
+
+            step("drawing figures")
+            shown = names[:_MOST_FIGURES]
+            missing = "no figures and no sheet"
+            try:
+                for name, outline in zip(shown, result.outlines, strict=False):
+                    draw(outline, aside, name)
+                step("typesetting the sheet")
+                missing = "no sheet"
+                write_sheet(result, aside, [aside / f"{name}-proof.svg" for name in shown])
+            except MissingExtraError as error:
+                notes = (f"{missing}: {error}",)
+        files = [directory / name for name in sorted(file.name for file in aside.iterdir())]
+    return replace(result, notes=result.notes + notes), files
+
+
+def _calibrate(measurements: Path, bender: BenderJob, out: Path | None, voice: Voice) -> int:
+    """Make a springback table from test bends."""
+    from camwright.bender.calibration import calibrate, residuals_text
+    from camwright.house.files import staged
+
+    result = calibrate(measurements, bender)
+    directory = Path("out") / measurements.stem if out is None else out
+    with staged(directory) as aside:
+        (aside / f"{measurements.stem}.toml").write_text(result.text, encoding="utf-8")
+        (aside / f"{measurements.stem}-residuals.csv").write_text(residuals_text(result), encoding="utf-8")
+    files = [directory / f"{measurements.stem}.toml", directory / f"{measurements.stem}-residuals.csv"]
+
+    def view() -> RenderableType:
+        from camwright.cli.bend_views import calibration_view
+
+        return calibration_view(result, files)
+
+    from camwright.bender.answer import calibration_answer
+
+    voice.answer(lambda: calibration_answer(result, files), view)
+    return 0

@@ -1,0 +1,86 @@
+"""The command ``camwright book``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from camwright.house.output import Voice, complain
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from camwright.book.run import BookAnswer
+
+
+def book(
+    job: Annotated[Path, typer.Argument(metavar="JOB", help="Job file (TOML).")],
+    length: Annotated[
+        str, typer.Option("--length", metavar="START:STOP:STEP", help="Cut lengths, mm unless a unit is given.")
+    ],
+    line_speed: Annotated[
+        str, typer.Option("--line-speed", metavar="START:STOP:STEP", help="Line speeds, m/min unless a unit is given.")
+    ],
+    objective: Annotated[
+        list[str] | None,
+        typer.Option("--objective", metavar="NAME", help="Objective; may be repeated; the job's if left out."),
+    ] = None,
+    targets: Annotated[
+        str, typer.Option("--targets", metavar="NAMES", help="Targets of the tables, separated by commas, or all.")
+    ] = "csv",
+    resume: Annotated[bool, typer.Option("--resume", help="Go on with the book in the output directory.")] = False,
+    jobs: Annotated[
+        int | None, typer.Option("--jobs", metavar="N", min=1, max=512, help="Processes; one a processor if left out.")
+    ] = None,
+    cluster: Annotated[
+        str | None, typer.Option("--cluster", metavar="ADDRESS", help="Scheduler of a Dask cluster, tcp://host:8786.")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Output directory; out/<name>-book if left out.")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of a table.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Print neither table nor progress.")] = False,
+) -> int:
+    """Design every combination of cut lengths, line speeds and objectives, check it, write its tables, and an index."""
+    import contextlib
+
+    from camwright.book.cluster import cluster_crew
+    from camwright.book.display import progress
+    from camwright.book.plan import plan_book
+    from camwright.book.run import make_book
+    from camwright.book.workers import default_jobs, local_crew
+    from camwright.jobs.job import load_job
+
+    asked = load_job(job)
+    plan = plan_book(asked, length, line_speed, objective or (), targets)
+    directory = Path("out") / f"{asked.name}-book" if out is None else out
+    here = local_crew(min(jobs or default_jobs(), len(plan)))
+    crews = contextlib.nullcontext(here) if cluster is None else cluster_crew(cluster)
+    try:
+        with crews as crew, progress(len(plan), quiet=quiet) as told:
+            answer = make_book(plan, directory, crew, resume=resume, told=told)
+    except KeyboardInterrupt:
+        complain(f"camwright: interrupted; what is done lies in {directory}, --resume goes on with it")
+        raise
+    Voice(as_json, quiet).answer(answer.to_dict, lambda: _view(answer))
+    return answer.exit_code
+
+
+def _view(answer: BookAnswer) -> RenderableType:
+    """Show how many combinations ended how, and where the book is."""
+    from rich.console import Group
+    from rich.table import Table
+    from rich.text import Text
+
+    from camwright.cli.views import files_view
+
+    table = Table(title=f"{answer.book.name}: a book of {answer.counts.designs} designs", title_justify="left")
+    for name in ("passed", "a check failed", "infeasible", "solver failed"):
+        table.add_column(name, justify="right")
+    counts = answer.counts
+    table.add_row(*map(str, (counts.passed, counts.check_failed, counts.infeasible, counts.failed)))
+    made = counts.designs - answer.resumed
+    speed = f"{made} made at {answer.rate:.3g} a second, {answer.resumed} done before"
+    return Group(table, Text(f"{speed}; peak memory {answer.peak_rss / 2**20:.0f} MB"), files_view(answer.files))

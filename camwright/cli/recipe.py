@@ -1,0 +1,210 @@
+"""The commands about recipes: ``camwright recipe | verify``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import typer
+
+from camwright.house.output import Voice
+from camwright.profiles.errors import InputError
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from camwright.recipe.compare import Change
+    from camwright.recipe.model import Recipe
+    from camwright.recipe.verify import Fault
+    from camwright.stored.design_file import StoredDesign
+
+_Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of tables.")]
+_Quiet = Annotated[bool, typer.Option("--quiet", help="Print neither tables nor progress.")]
+
+_LONGEST_NOTE = 2000
+
+
+def register(app: typer.Typer) -> None:
+    """Add the commands to the command line."""
+    app.command("recipe")(recipe_command)
+    app.command("verify")(verify_command)
+
+
+def recipe_command(
+    file: Annotated[
+        Path | None, typer.Argument(metavar="[JOB|DESIGN]", help="A job file (TOML) or a design.json.")
+    ] = None,
+    targets: Annotated[
+        str | None, typer.Option("--targets", metavar="NAMES", help="Targets, separated by commas, or all.")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="The recipe folder; replaced if it is one already.")
+    ] = None,
+    language: Annotated[
+        Literal["en", "de", "zh"], typer.Option("--language", help="Language of what people read.")
+    ] = "en",
+    note: Annotated[str, typer.Option("--note", metavar="TEXT", help="Text that stands on the recipe.")] = "",
+    compare: Annotated[
+        tuple[Path, Path] | None,
+        typer.Option("--compare", metavar="DIR1 DIR2", help="Show what changes between two recipes instead."),
+    ] = None,
+    as_json: _Json = False,
+    quiet: _Quiet = False,
+) -> int:
+    """Make the recipe of a product: a folder with all that is needed at the machine."""
+    voice = Voice(as_json, quiet)
+    if compare is not None:
+        if file is not None or targets is not None or out is not None:
+            raise InputError("--compare takes two recipe folders and nothing else")
+        return _compare(*compare, voice)
+    missing = [
+        name for name, value in (("JOB or DESIGN", file), ("--targets", targets), ("--out", out)) if value is None
+    ]
+    if file is None or targets is None or out is None:
+        raise InputError(f"{', '.join(missing)} missing; camwright recipe JOB --targets csv --out DIR")
+    return _make(file, targets, out, language, note, voice)
+
+
+def _make(file: Path, targets: str, out: Path, language: Literal["en", "de", "zh"], note: str, voice: Voice) -> int:
+    from camwright.recipe.build import STEPS, make_recipe
+    from camwright.recipe.folder import require_replaceable
+    from camwright.recipe.manifest import sha256
+    from camwright.recipe.write import (
+        WRITE_STEPS,
+        is_recipe,
+        recipe_files,
+        require_extra,
+        write_folder,
+    )
+
+    names = _targets(targets)
+    text = _note(note)
+    require_extra()
+    require_replaceable(out, is_recipe)
+    with voice.progress(STEPS + len(names) + WRITE_STEPS) as step:
+        design = _design(file, step)
+        made = make_recipe(design, names, language, text, required=targets.strip() != "all", step=step)
+        files = recipe_files(made, step)
+        write_folder(files, out)
+    answer = {"files": [{"path": path, "sha256": sha256(data)} for path, data in sorted(files.items())]}
+    voice.answer(lambda: answer, lambda: _recipe_view(made.recipe, answer, out))
+    return 0 if made.recipe.released else 1
+
+
+def _targets(text: str) -> list[str]:
+    """Read the names of targets."""
+    from camwright.profiles.tables.targets import TARGETS, target_of
+
+    if text.strip() == "all":
+        return list(TARGETS)
+    names = list(dict.fromkeys(name.strip() for name in text.split(",") if name.strip()))
+    if not names:
+        raise InputError(f"--targets names no target; the targets are {', '.join(TARGETS)}, or all")
+    return [target_of(name).name for name in names]
+
+
+def _note(text: str) -> str:
+    """Take a note as it is, but for bytes that are no text."""
+    if len(text) > _LONGEST_NOTE:
+        raise InputError(f"--note has {len(text)} characters; it may have {_LONGEST_NOTE}")
+    return text.encode("utf-8", "surrogateescape").decode("utf-8", "replace")
+
+
+def _design(file: Path, step: Any) -> StoredDesign:
+    """Read a design, or design a job."""
+    from camwright.house.files import read_text
+    from camwright.jobs.job import parse_job
+    from camwright.recipe.build import designed
+    from camwright.stored.design_file import MOST_BYTES, parse_design
+
+    text = read_text(file, "job or design file", MOST_BYTES)
+    if text.removeprefix("\ufeff").lstrip().startswith("{"):
+        return parse_design(text, str(file))
+    job = parse_job(text, str(file))
+    step("solving")
+    return designed(job)
+
+
+def _compare(before: Path, after: Path, voice: Voice) -> int:
+    from camwright.recipe.compare import compare_answer, compare_recipes, read_recipe
+
+    changes = compare_recipes(read_recipe(before), read_recipe(after))
+    voice.answer(lambda: compare_answer(before, after, changes), lambda: _compare_view(before, after, changes))
+    return 0
+
+
+def verify_command(
+    directory: Annotated[Path, typer.Argument(metavar="DIR", help="A recipe folder.")],
+    as_json: _Json = False,
+    quiet: _Quiet = False,
+) -> int:
+    """Prove that a recipe folder is what was written, and that its tables are the motion that it promises."""
+    from camwright.recipe.verify import verify, verify_answer
+
+    voice = Voice(as_json, quiet)
+    with voice.progress(1) as step:
+        step("checking")
+        faults = verify(directory)
+    voice.answer(lambda: verify_answer(faults), lambda: _verify_view(directory, faults))
+    return 1 if faults else 0
+
+
+def _recipe_view(recipe: Recipe, answer: dict[str, Any], out: Path) -> RenderableType:
+    from rich.console import Group
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(title=f"{out}", title_justify="left")
+    table.add_column("file")
+    table.add_column("SHA-256")
+    for file in answer["files"]:
+        table.add_row(Text(file["path"]), file["sha256"])
+    state = "released" if recipe.released else "NOT RELEASED: a check failed"
+    notes = [Text(f"{refusal.target} cannot take this cam: {'; '.join(refusal.reasons)}") for refusal in recipe.refused]
+    return Group(Text(f"{recipe.name}: {state}"), table, *notes)
+
+
+def _compare_view(before: Path, after: Path, changes: list[Change]) -> RenderableType:
+    from rich.table import Table
+    from rich.text import Text
+
+    if not changes:
+        return Text(f"nothing changes from {before} to {after}")
+    table = Table(title="What changes on the machine", title_justify="left")
+    for heading in ("", "what", "unit"):
+        table.add_column(heading)
+    table.add_column(Text(str(before)), justify="right")
+    table.add_column(Text(str(after)), justify="right")
+    last = ""
+    for change in changes:
+        values = [Text(_short(value)) for value in (change.before, change.after)]
+        table.add_row(
+            change.group if change.group != last else "", Text(change.name.replace("_", " ")), change.unit, *values
+        )
+        last = change.group
+    return table
+
+
+def _short(value: Any) -> str:
+    """Write a value for the terminal; of checksums the first digits."""
+    if value is None:
+        return "–"
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, dict):
+        return "\n".join(f"{path} {digest[:12]}" for path, digest in value.items()) or "not released"
+    return str(value).replace("_", " ")
+
+
+def _verify_view(directory: Path, faults: list[Fault]) -> RenderableType:
+    from rich.table import Table
+    from rich.text import Text
+
+    if not faults:
+        return Text(f"{directory}: as it was written; its tables are the motion that it promises")
+    table = Table(title=Text(f"{directory}: NOT as it was written"), title_justify="left")
+    table.add_column("file")
+    table.add_column("what is wrong")
+    for fault in faults:
+        table.add_row(Text(fault.file), Text(fault.what))
+    return table

@@ -1,0 +1,1 @@
+"""Cam tables for drives: written, read back, judged, audited."""

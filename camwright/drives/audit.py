@@ -1,0 +1,261 @@
+"""Auditing a cam that runs today: rebuilt as its drive does, judged, and set beside the optimum of the same job."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from camwright.answers.studies import validate_answer
+from camwright.drives.alignment import aligned
+from camwright.drives.options import parse_units
+from camwright.house.progress import Step, ignore
+from camwright.jobs.job import Job
+from camwright.profiles.errors import InputError
+from camwright.profiles.machines import CrankSlider, Machine
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.tables.cam_table import CamTable, Unit, Units
+from camwright.profiles.tables.target import Target
+from camwright.profiles.tables.targets import detect, read_table, target_of
+from camwright.profiles.tables.text import read_text
+
+if TYPE_CHECKING:
+    from camwright.validation.rebuilt import TableJudgement
+    from camwright.validation.report import ValidationReport
+
+_SYNC_AT = re.compile(r"sync_at: ([0-9.eE+-]{1,30}) rad\b")
+"""Where on the crank the sync zone lies, as the head of a table written here states it."""
+
+MEASURES: dict[str, str] = {
+    "peak_speed": "peak speed",
+    "peak_acceleration": "peak acceleration",
+    "rms_acceleration": "RMS acceleration",
+    "peak_jerk": "peak jerk",
+    "rms_jerk": "RMS jerk",
+}
+"""Measures of the slave that the audit sets side by side."""
+
+
+@dataclass(frozen=True)
+class Sampled:
+    """What a drive is commanded: second and third differences of the positions at the servo's sample time.
+
+    Greatest magnitudes over all sampling phases and the whole cycle, root mean squares over the return zone and all
+    phases, like those of `camwright.validation.motion.Motion` (slave unit over s², over s³).
+    """
+
+    peak_acceleration: float
+    rms_acceleration: float
+    peak_jerk: float
+    rms_jerk: float
+
+
+@dataclass(frozen=True, eq=False)
+class Audit:
+    """A cam beside the optimum.
+
+    Parameters
+    ----------
+    target
+        The layout that the file has.
+    table
+        The points of the file.
+    notes
+        What the reader and the alignment found worth telling.
+    job
+        The job, its machine placed as the cam has it.
+    cycle
+        One cycle as the drive runs it, SI units.
+    judgement
+        The checks on it over several wraps.
+    report
+        Its motion and servo response.
+    sampled
+        What the drive is commanded.
+    optimum_job, optimum, optimum_report, optimum_sampled
+        The optimal cycle of the job, alike.
+    """
+
+    target: Target
+    table: CamTable
+    notes: tuple[str, ...]
+    job: Job
+    cycle: CamProfile
+    judgement: TableJudgement
+    report: ValidationReport
+    sampled: Sampled
+    optimum_job: Job
+    optimum: CamProfile
+    optimum_report: ValidationReport
+    optimum_sampled: Sampled
+
+    def is_sampled(self, measure: str) -> bool:
+        """Whether a measure is compared by differences: where straight lines or steps leave the exact one unbounded."""
+        return hasattr(self.sampled, measure) and any(
+            getattr(report.motion, measure) is None for report in (self.report, self.optimum_report)
+        )
+
+    def pair(self, measure: str) -> tuple[float, float]:
+        """Give a measure of the cam and of the optimum, both exact or both by differences."""
+        sources = (
+            (self.sampled, self.optimum_sampled)
+            if self.is_sampled(measure)
+            else (self.report.motion, self.optimum_report.motion)
+        )
+        return float(getattr(sources[0], measure)), float(getattr(sources[1], measure))
+
+    def saving(self, measure: str) -> float | None:
+        """Part of a measure that the optimum saves, negative where it takes more; ``None`` if the cam's own is zero."""
+        own, best = self.pair(measure)
+        return None if own == 0.0 else 1.0 - best / own
+
+
+def audit(path: Path, job: Job, target: str | None = None, units: str | None = None, step: Step = ignore) -> Audit:
+    """Read a cam that runs today, rebuild it as its drive does, and compare it with the optimum of the job.
+
+    Parameters
+    ----------
+    path
+        The file.
+    job
+        The job that the cam is run for.
+    target
+        Name of the layout; found by its words if not given.
+    units
+        Units of the file, for layouts that hold none, as `camwright.drives.options.parse_units` reads them. Where nothing
+        is known, the table's period is taken for the cut length and its advance for the pitch.
+
+    Notes
+    -----
+    The zeros of master and slave are the user's affair: if the cam is not in sync where the job's cycle is, it is begun
+    where it fits the sync zone best, and a note says where.
+
+    Raises
+    ------
+    InputError
+        The file is not read, or is no cam of this job.
+    """
+    from camwright.studies.axis_study import solve_job
+    from camwright.validation.rebuilt import judge_table, one_cycle
+    from camwright.validation.report import validate
+
+    step("reading")
+    text = read_text(path)
+    layout = detect(text, str(path)) if target is None else target_of(target)
+    table = read_table(layout, text, str(path))
+    placed = replace(job, machine=_placed(job.machine, text, str(path)))
+    rebuilt = _units(table, units, placed, str(path)).to_si(layout.rebuild(table))
+    one_cycle(rebuilt, job.cut)  # refuses another period
+    rebuilt, notes = aligned(rebuilt.shift(-rebuilt.start), placed)
+    cycle = one_cycle(rebuilt, job.cut)
+    step("judging")
+    judgement = judge_table(rebuilt, placed.machine, job.cut, job.limits, job.servo)
+    report = validate(cycle, placed.machine, job.cut, job.limits, job.servo)
+    step("solving")
+    solution = solve_job(job)
+    best = replace(job, machine=solution.machine)
+    best_report = validate(solution.profile, best.machine, job.cut, job.limits, job.servo)
+    return Audit(
+        layout,
+        table,
+        (*table.notes, *notes),
+        placed,
+        cycle,
+        judgement,
+        report,
+        _sampled(cycle, job),
+        best,
+        solution.profile,
+        best_report,
+        _sampled(solution.profile, job),
+    )
+
+
+def _placed(machine: Machine, text: str, place: str) -> Machine:
+    """Give the job's machine; where the job leaves the place of a crank's sync zone free, it is that of the file."""
+    if not isinstance(machine, CrankSlider) or not math.isnan(machine.sync_at):
+        return machine
+    found = _SYNC_AT.search(text)
+    if not found:
+        raise InputError(
+            f"{place}: does not say where on the crank its sync zone lies, and neither does the job; give [machine] sync_at"
+        )
+    try:
+        return replace(machine, sync_at=float(found[1]))
+    except ValueError as error:
+        raise InputError(f"{place}: sync_at {found[1]!r} is not a number") from error
+
+
+def _units(table: CamTable, asked: str | None, job: Job, place: str) -> Units:
+    """Give the units that the file states, else those that the user states, else those in which the cycle is the job's."""
+    unit = job.machine.slave_unit
+    if table.units is not None:
+        if asked is not None:
+            stated = f"{table.units.master.symbol},{table.units.slave.symbol}"
+            raise InputError(f"{place}: the file states its units ({stated}); leave --units out")
+        if table.units.slave.si != unit:
+            raise InputError(
+                f"{place}: the slave is counted in {table.units.slave.si}, but that of the job's machine in {unit}; name "
+                "the job that the file was made for"
+            )
+        return table.units
+    if asked is not None:
+        return parse_units(asked, job.machine, job.cut, table.period)
+    if not (table.advance > 0 and job.machine.pitch > 0):
+        raise InputError(
+            f"{place}: the slave advances by {table.advance!r} in a cycle, so its unit cannot be told from the pitch; "
+            "say it with --units, for example --units cycle,mm (cycle: the master's unit is that in which the cut length "
+            "is the table's period)"
+        )
+    return Units(
+        Unit("master unit", job.cut.length / table.period),
+        Unit("slave unit", job.machine.pitch / table.advance, unit),
+    )
+
+
+def _sampled(cycle: CamProfile, job: Job) -> Sampled:
+    """Measure the differences of a cycle at the servo's sample time."""
+    from camwright.validation.rebuilt import differences, sampled_peaks
+
+    cut = job.cut
+    (acceleration, _), (jerk, _) = sampled_peaks(cycle, cut, job.servo)
+    x = cut.return_start + cut.return_zone * (np.arange(_RMS_PLACES) + 0.5) / _RMS_PLACES
+    step = cut.line_speed * job.servo.sample_time
+    rms = [
+        float(np.sqrt(np.mean(differences(cycle, x - 0.5 * order * step + cut.length, order, cut, job.servo) ** 2)))
+        for order in (2, 3)
+    ]
+    return Sampled(acceleration, rms[0], jerk, rms[1])
+
+
+_RMS_PLACES = 20_000
+
+
+def audit_answer(result: Audit, path: Path, files: Sequence[Path] = ()) -> dict[str, Any]:
+    """Answer of ``camwright audit``."""
+    job = result.job
+    return {
+        "job": job.name,
+        "file": str(path),
+        "target": result.target.name,
+        "knots": result.table.points,
+        "notes": list(result.notes),
+        "profile": validate_answer(job, path, result.report)["profile"],
+        "optimum": validate_answer(result.optimum_job, path, result.optimum_report)["profile"],
+        "saving": {f"{name}_rel": result.saving(name) for name in ("peak_acceleration", "rms_acceleration")},
+        "saving_by": "differences at the sample time" if result.is_sampled("peak_acceleration") else "exact",
+        "sampled": {
+            "sample_time_s": job.servo.sample_time,
+            "slave_unit": job.machine.slave_unit,
+            "profile": asdict(result.sampled),
+            "optimum": asdict(result.optimum_sampled),
+        },
+        "checks": [asdict(check) for check in result.judgement.checks],
+        "passed": result.judgement.passed,
+        "files": [str(file) for file in files],
+    }

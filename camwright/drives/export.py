@@ -1,0 +1,317 @@
+"""Writing a cam for drives: points chosen, written, read back, rebuilt in the drive's numbers, and judged."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from camwright.drives.options import default_units
+from camwright.house.progress import Step, ignore
+from camwright.house.provenance import camwright_version, provenance
+from camwright.jobs.job import Job
+from camwright.profiles.errors import InputError
+from camwright.profiles.machines import CrankSlider
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.returns import slave_at_start
+from camwright.profiles.tables.cam_table import CamTable, Units
+from camwright.profiles.tables.deviation import Deviation, deviation
+from camwright.profiles.tables.knots import (
+    Accuracy,
+    Choice,
+    choose,
+    table_units,
+)
+from camwright.profiles.tables.target import Header, Target
+from camwright.profiles.tables.targets import TARGETS, read_table, target_of
+from camwright.profiles.tables.text import decode
+
+if TYPE_CHECKING:
+    from camwright.validation.rebuilt import TableJudgement
+
+DENSE = 1001
+"""Points of a table that one might take for finer: in float32 its acceleration is worse."""
+
+_PLACES = 20_001
+
+
+@dataclass(frozen=True, eq=False)
+class Exported:
+    """A cam written for one target.
+
+    Parameters
+    ----------
+    target
+        The target.
+    table
+        The table as it was read back from the file.
+    units
+        Units of the table, whether its file states them or not.
+    deviation
+        How far the rebuilt motion is off the profile.
+    position_error
+        How far the tool of a slave in rad is off, along the material, else the slave (m).
+    accurate
+        Whether the motion is as near to the profile as was asked for.
+    judgement
+        The checks on the rebuilt motion.
+    files
+        Texts by file name; none if the table was not released.
+    dense
+        What a table of `DENSE` points would be like, for targets that round points to float32 and take any number.
+    """
+
+    target: Target
+    table: CamTable
+    units: Units
+    deviation: Deviation
+    position_error: float
+    accurate: bool
+    judgement: TableJudgement
+    files: dict[str, str]
+    dense: Choice | None = None
+
+    @property
+    def passed(self) -> bool:
+        """Whether every check passed."""
+        return self.judgement.passed
+
+
+def export(
+    profile: CamProfile,
+    job: Job,
+    names: Sequence[str],
+    *,
+    units: Units | None = None,
+    accuracy: Accuracy | None = None,
+    points: int | None = None,
+    force: bool = False,
+    step: Step = ignore,
+) -> list[Exported]:
+    """Write a cycle for drives.
+
+    Every file is read back by the target's own reader, and the motion that the drive will make of it is judged over
+    three wraps. A table that breaks a limit or the sync tolerance has no files, unless forced: then its head says so.
+
+    Parameters
+    ----------
+    profile
+        One cycle over the master period ``[0, x_c]``.
+    job
+        The job that it belongs to, its machine with everything that the design chose.
+    names
+        Names of targets.
+    units
+        Units of the tables; millimetres if not given, degrees for a slave in rad.
+    accuracy
+        What the rebuilt motion may be off: the tool's position (m), the ratio as a part of the ratio in sync, the
+        acceleration as a part of its peak.
+    points
+        Number of points, for targets that leave a choice.
+    force
+        Write tables that were not released, too.
+    step
+        Told what begins now.
+
+    Raises
+    ------
+    InputError
+        An unknown target, or one that cannot take the cam; all faults at once.
+    """
+    results, refused = export_possible(
+        profile, job, names, units=units, accuracy=accuracy, points=points, force=force, step=step
+    )
+    if refused:
+        raise InputError(*(f"{name}: {fault}" for name, faults in refused.items() for fault in faults))
+    return results
+
+
+def export_possible(
+    profile: CamProfile,
+    job: Job,
+    names: Sequence[str],
+    *,
+    units: Units | None = None,
+    accuracy: Accuracy | None = None,
+    points: int | None = None,
+    force: bool = False,
+    step: Step = ignore,
+) -> tuple[list[Exported], dict[str, tuple[str, ...]]]:
+    """Write a cycle for drives like `export`, and say of those that cannot take it why not."""
+    targets = [target_of(name) for name in dict.fromkeys(names)]
+    wanted = units or default_units(job.machine)
+    asked = _in_slave_units(accuracy or Accuracy(), profile, job)
+    judge = _Judge(profile, job)
+    results, refused = [], {}
+    for target in targets:
+        step(f"writing for {target.name}")
+        try:
+            results.append(_export(profile, judge, target, wanted, asked, points, force))
+        except InputError as error:
+            refused[target.name] = tuple(error.faults)
+    return results, refused
+
+
+def _in_slave_units(accuracy: Accuracy, profile: CamProfile, job: Job) -> Accuracy:
+    """Turn what the tool may be off into what the slave may be off; nothing changes for a slave in m."""
+    if job.machine.slave_unit == "m":
+        return accuracy
+    y = slave_at_start(job.machine, job.cut) + profile(np.linspace(profile.start, profile.end, 721))
+    lever = float(np.abs(job.machine.tool_ratio(y)).max())
+    in_sync = abs(float(job.machine.sync_profile(job.cut)(0.0, 1)))
+    return replace(accuracy, position=accuracy.position / lever, ratio=accuracy.ratio * in_sync)
+
+
+@dataclass(frozen=True, eq=False)
+class _Judge:
+    """Judges rebuilt motions, each once: the same numbers bit by bit are the same motion.
+
+    Many targets take the same points and put the same quintics between them, and a file read back should hold what was
+    written into it.
+    """
+
+    profile: CamProfile
+    job: Job
+    _known: dict[tuple[bytes, ...], tuple[Deviation, float, TableJudgement]] = field(default_factory=dict)
+
+    def __call__(self, rebuilt: CamProfile) -> tuple[Deviation, float, TableJudgement]:
+        """Deviation from the profile, `position_error`, and the checks."""
+        key = tuple((numbers + 0.0).tobytes() for numbers in (rebuilt.breaks, rebuilt.coefficients))  # no negative zero
+        if key not in self._known:
+            from camwright.validation.rebuilt import judge_table
+
+            job = self.job
+            off = deviation(self.profile, rebuilt)
+            judgement = judge_table(rebuilt, job.machine, job.cut, job.limits, job.servo)
+            self._known[key] = off, position_error(self.profile, rebuilt, off, job), judgement
+        return self._known[key]
+
+
+def _export(
+    profile: CamProfile,
+    judge: _Judge,
+    target: Target,
+    wanted: Units,
+    accuracy: Accuracy,
+    points: int | None,
+    force: bool,
+) -> Exported:
+    job, cut = judge.job, judge.job.cut
+    zones = (cut.return_zone,) if cut.origin == "return" else (0.5 * cut.sync_zone, cut.length - 0.5 * cut.sync_zone)
+    choice = choose(profile, target, table_units(target, profile, wanted), accuracy, points, zones)
+    _, error, expected = judge(choice.rebuilt)
+    head = Header(job.name, camwright_version(), job.sha256, _facts(expected, job, error))
+    result = _written(judge, choice, target, head, accuracy)
+    if target.number_format == "float32" and target.placing == "free":
+        dense = choose(profile, target, table_units(target, profile, wanted), accuracy, DENSE, zones)
+        result = replace(result, dense=dense)
+    if result.passed:
+        return result
+    if not force:
+        return replace(result, files={})
+    failed = tuple(f"check {check.name} failed" for check in result.judgement.checks if not check.passed)
+    forced = _written(judge, choice, target, replace(head, warnings=failed), accuracy)
+    return replace(forced, dense=result.dense)
+
+
+def _written(judge: _Judge, choice: Choice, target: Target, head: Header, accuracy: Accuracy) -> Exported:
+    """Write the table, read it back, and judge what the drive makes of it."""
+    units = choice.table.units
+    if units is None:
+        raise InputError("the table's units were lost")
+    files = target.write(choice.table, head)
+    table, rebuilt = _read_back(target, files, units)
+    off, error, judgement = judge(rebuilt)
+    return Exported(target, table, table.units or units, off, error, accuracy.kept_by(off), judgement, files)
+
+
+def position_error(profile: CamProfile, rebuilt: CamProfile, off: Deviation, job: Job) -> float:
+    """Greatest error of the slave (m); of a slave in rad the tool's, along the material (m)."""
+    if job.machine.slave_unit == "m":
+        return off.position
+    inner = np.union1d(profile.breaks, rebuilt.breaks)
+    x = np.linspace(max(profile.start, rebuilt.start), min(profile.end, rebuilt.end), _PLACES)
+    x = np.union1d(x, inner[(inner > x[0]) & (inner < x[-1])])
+    begin = slave_at_start(job.machine, job.cut)
+    return float(np.abs(job.machine.tool(begin + rebuilt(x)) - job.machine.tool(begin + profile(x))).max())
+
+
+def _read_back(target: Target, files: dict[str, str], units: Units) -> tuple[CamTable, CamProfile]:
+    """Read the table out of the file as it will lie on the disk; the first file holds it."""
+    name, text = next(iter(files.items()))
+    table = read_table(target, decode(text.encode(), name), name)
+    return table, (table.units or units).to_si(target.rebuild(table))
+
+
+def _facts(judgement: TableJudgement, job: Job, off: float) -> tuple[tuple[str, str], ...]:
+    """Give what the head says of the motion."""
+    found = {check.name: check for check in judgement.checks}
+    facts = [("line speed", f"{job.cut.line_speed:.9g} m/s")]
+    unit = job.machine.slave_unit
+    for name, power in (("speed", "/s"), ("acceleration", "/s^2"), ("jerk", "/s^3")):
+        check = found[name]
+        how = "" if check.source == "exact" else f" ({check.source})"
+        facts.append((f"peak {name}", f"{check.value:.6g} {unit}{power}{how}"))
+    if isinstance(job.machine, CrankSlider):
+        facts.append(("sync_at", f"{job.machine.sync_at!r} rad"))
+    facts.append(("greatest error of the rebuilt position", f"{off * 1e6:.3g} um"))
+    facts.append(("wraps judged", str(judgement.wraps)))
+    return tuple(facts)
+
+
+def export_answer(results: Sequence[Exported]) -> dict[str, Any]:
+    """Answer of ``camwright export``."""
+    return {
+        "targets": {
+            result.target.name: {
+                "knots": result.table.points,
+                "position_error_m": result.position_error,
+                "acceleration_error_rel": result.deviation.acceleration,
+                "passed": result.passed,
+                "files": list(result.files),
+            }
+            for result in results
+        }
+    }
+
+
+def export_report(
+    results: Sequence[Exported], job: Job, refused: dict[str, tuple[str, ...]] | None = None
+) -> dict[str, Any]:
+    """Contents of ``report.json``: the answer, with ratio errors, checks, reader's notes and provenance, and who cannot take the cam."""
+    answer = export_answer(results)
+    for result in results:
+        entry = answer["targets"][result.target.name]
+        entry["ratio_error"] = result.deviation.ratio
+        entry["within_asked_error"] = result.accurate
+        entry["wraps"] = result.judgement.wraps
+        entry["number_format"] = result.target.number_format
+        entry["interpolation"] = result.target.interpolation
+        entry["tested_on_controller"] = result.target.tested_on_controller
+        if result.dense is not None:
+            entry["dense"] = {
+                "knots": result.dense.table.points,
+                "acceleration_error_rel": result.dense.deviation.acceleration,
+            }
+        entry["notes"] = list(result.table.notes)
+        entry["checks"] = [dict(vars(check)) for check in result.judgement.checks]
+    reasons = {name: list(faults) for name, faults in (refused or {}).items()}
+    return {**answer, "refused": reasons, "job": job.name, "provenance": provenance(job.sha256)}
+
+
+def targets_answer() -> list[dict[str, Any]]:
+    """Answer of ``camwright targets``."""
+    return [
+        {
+            "name": target.name,
+            "title": target.title,
+            "interpolation": target.interpolation,
+            "max_points": target.max_points,
+            "number_format": target.number_format,
+            "evidence": target.evidence,
+            "tested_on_controller": target.tested_on_controller,
+        }
+        for target in TARGETS.values()
+    ]

@@ -1,0 +1,128 @@
+"""The crank figure, after S3: crank to carriage, master to carriage, and the servo curve of the optimum and of the table."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from camwright.figures.profile import curve
+from camwright.figures.style import (
+    LINES,
+    SHEAR_COLOUR,
+    SYNC_COLOUR,
+    WIDTH,
+    shade_zones,
+    title,
+)
+from camwright.profiles.cut import Cut
+from camwright.profiles.machines import CrankSlider
+from camwright.profiles.returns import slave_at_start
+from camwright.studies.comparison import Comparison
+
+TABULATED = "crank_tabulated"
+
+STYLES: dict[str, dict[str, Any]] = {
+    "optimised": LINES["optimised"],
+    TABULATED: {"color": "#a0522d", "linestyle": (0, (3, 1.5)), "linewidth": 1.2, "zorder": 3},
+}
+"""Look of the two profiles drawn."""
+
+_ANGLES = 721
+"""Points drawn of the crank's turn."""
+
+
+def crank_figure(comparison: Comparison) -> Figure:
+    """Draw the maps of a crank and the running curve of its servo.
+
+    Parameters
+    ----------
+    comparison
+        Profiles of a job whose machine is a crank with its sync zone placed; the optimised one and the tabulated one are drawn.
+
+    Raises
+    ------
+    TypeError
+        The machine is no crank.
+    """
+    job = comparison.job
+    machine, cut = job.machine, job.cut
+    if not isinstance(machine, CrankSlider):
+        raise TypeError(f"the crank figure is about a crank, not a {type(machine).__name__}")
+    shown = {row.name: row.profile for row in comparison.rows if row.name in STYLES}
+    figure = Figure(figsize=(WIDTH, 7.6), layout="constrained")
+    grid = figure.add_gridspec(3, 2, height_ratios=(1.15, 1.0, 1.0))
+    turn, travel = figure.add_subplot(grid[0, 0]), figure.add_subplot(grid[0, 1])
+    speed = figure.add_subplot(grid[1, :])
+    acceleration = figure.add_subplot(grid[2, :], sharex=speed)
+    _turn(turn, machine, cut)
+    for axes in (travel, speed, acceleration):
+        shade_zones(axes, cut)
+        axes.set_xlim(0.0, cut.length * 1e3)
+    rpm, radians = machine.motor_ratio * cut.line_speed * 30 / np.pi, machine.motor_ratio * cut.line_speed**2
+    start = slave_at_start(machine, cut)
+    back = float(machine.tool(machine.dead_centres[0]))
+    for name in (name for name in STYLES if name in shown):
+        profile = shown[name]
+        x, y = curve(profile, 0)
+        place = machine.tool(start + y - float(profile(profile.start))) - back
+        travel.plot(x * 1e3, place * 1e3, **STYLES[name])
+        x, ratio = curve(profile, 1)
+        speed.plot(x * 1e3, rpm * ratio, **STYLES[name])
+        x, slope = curve(profile, 2)
+        acceleration.plot(x * 1e3, radians * slope, **STYLES[name])
+    speed.axhline(0.0, color="black", linewidth=0.8)
+    speed.set_ylim(bottom=min(0.0, speed.get_ylim()[0]) - 0.04 * speed.get_ylim()[1])
+    travel.set_title("master to carriage")
+    travel.set_xlabel("master position x (mm)")
+    travel.set_ylabel("carriage position (mm)")
+    speed.set_title("servo curve")
+    speed.set_ylabel("servo speed (rpm)")
+    acceleration.set_ylabel("servo acceleration (rad/s²)")
+    acceleration.set_xlabel("master position x (mm)")
+    figure.align_ylabels([speed, acceleration])
+    figure.suptitle(
+        f"{job.name}: crank {machine.crank * 1e3:g} mm, rod {machine.rod * 1e3:g} mm, offset {machine.offset * 1e3:g} mm, "
+        f"gear {machine.gear_ratio:g}",
+        fontsize=9.5,
+    )
+    handles: list[Line2D | Patch] = [
+        Line2D([], [], label=title(name), **STYLES[name]) for name in STYLES if name in shown
+    ]
+    handles += [
+        Patch(facecolor=SYNC_COLOUR, label="sync zone"),
+        Patch(facecolor=SHEAR_COLOUR, edgecolor="#8c8c8c", hatch="////", linewidth=0, label="shear zone"),
+    ]
+    figure.legend(handles=handles, loc="outside lower center", ncols=4)
+    return figure
+
+
+def _turn(axes: Axes, machine: CrankSlider, cut: Cut) -> None:
+    """Draw the carriage over one turn of the crank from its back dead centre, with the zones on the crank and their ends."""
+    back, front = machine.dead_centres
+    angle = np.linspace(back, back + 2 * np.pi, _ANGLES)
+    lowest = float(machine.tool(back))
+    axes.plot(np.degrees(angle), (machine.tool(angle) - lowest) * 1e3, color="black", linewidth=1.3)
+    sync, start = machine.sync_profile(cut), machine.sync_start(cut)
+    shear = (cut.shear_zone_at, min(cut.shear_zone_at + cut.shear_zone, cut.sync_zone))
+    ends = start + sync(np.array([0.0, cut.sync_zone, *shear]))
+    first, last, cut_first, cut_last = np.degrees(ends)
+    axes.axvspan(first, last, color=SYNC_COLOUR, linewidth=0, zorder=0)
+    if cut_last > cut_first:
+        axes.axvspan(
+            cut_first, cut_last, facecolor=SHEAR_COLOUR, edgecolor="#8c8c8c", hatch="////", linewidth=0, zorder=0.5
+        )
+    places = (machine.tool(ends[:2]) - lowest) * 1e3
+    axes.plot([first, last], places, linestyle="none", marker="o", color="black", markersize=4)
+    axes.axvline(np.degrees(front), color="#8c8c8c", linewidth=0.8, zorder=0.5)
+    axes.set_xlim(np.degrees(back), np.degrees(back) + 360)
+    axes.set_xticks(np.arange(0, 361, 60))
+    axes.set_title("crank to carriage")
+    axes.set_xlabel(
+        f"crank angle (°)\nsync zone {first:.1f}° to {last:.1f}°, carriage {places[0]:.1f} to {places[1]:.1f} mm"
+    )
+    axes.set_ylabel("carriage position (mm)")

@@ -1,0 +1,1 @@
+"""What every room of the front door needs: units, files, output, progress, provenance."""

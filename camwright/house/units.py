@@ -1,0 +1,270 @@
+"""Quantities with units as users write them, read into SI numbers at the border of the house."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cache, lru_cache
+from typing import TYPE_CHECKING, cast
+
+from camwright.profiles.errors import InputError
+
+if TYPE_CHECKING:
+    import pint
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of quantity: what it is called, its dimension, how to write it, and the range that camwright computes in.
+
+    Parameters
+    ----------
+    name
+        What messages call it.
+    dimension
+        Powers of the base dimensions.
+    example
+        A quantity of this kind as text.
+    unit
+        The SI unit.
+    least, greatest
+        Range of the value in the SI unit.
+    """
+
+    name: str
+    dimension: dict[str, int]
+    example: str
+    unit: str
+    least: float
+    greatest: float
+
+
+KINDS: dict[str, Kind] = {
+    "length": Kind("a length", {"[length]": 1}, "600 mm", "m", 1e-9, 1e6),
+    "speed": Kind("a speed", {"[length]": 1, "[time]": -1}, "80 m/min", "m/s", 1e-9, 1e6),
+    "acceleration": Kind("an acceleration", {"[length]": 1, "[time]": -2}, "30 m/s^2", "m/s^2", 1e-9, 1e9),
+    "jerk": Kind("a jerk", {"[length]": 1, "[time]": -3}, "3000 m/s^3", "m/s^3", 1e-9, 1e15),
+    "time": Kind("a time", {"[time]": 1}, "4 ms", "s", 1e-9, 1e6),
+    "angular rate": Kind("an angular rate", {"[angle]": 1, "[time]": -1}, "120 rad/s", "rad/s", 1e-6, 1e9),
+    "gain": Kind("a gain", {"[time]": -1}, "35 1/s", "1/s", 1e-6, 1e9),
+    "angle": Kind("an angle", {"[angle]": 1}, "90 deg", "rad", 1e-9, 1e6),
+    "angular acceleration": Kind(
+        "an angular acceleration", {"[angle]": 1, "[time]": -2}, "2000 rad/s^2", "rad/s^2", 1e-9, 1e12
+    ),
+    "angular jerk": Kind("an angular jerk", {"[angle]": 1, "[time]": -3}, "50000 rad/s^3", "rad/s^3", 1e-9, 1e15),
+    "mass": Kind("a mass", {"[mass]": 1}, "20 kg", "kg", 1e-9, 1e9),
+    "inertia": Kind("an inertia", {"[mass]": 1, "[length]": 2}, "0.05 kg m^2", "kg m^2", 1e-12, 1e12),
+    "torque": Kind("a torque", {"[mass]": 1, "[length]": 2, "[time]": -2}, "12 N m", "N m", 1e-9, 1e12),
+}
+"""The kinds of quantities by name."""
+
+_DEFINITIONS = """
+kilo- = 1e3 = k-
+centi- = 1e-2 = c-
+milli- = 1e-3 = m-
+micro- = 1e-6 = µ- = μ- = u-
+meter = [length] = m = metre
+second = [time] = s = sec
+radian = [angle] = rad
+kilogram = [mass] = kg
+gram = 0.001 * kilogram = g
+pound = 0.45359237 * kilogram = lb
+newton = kilogram * meter / second ** 2 = N
+newton_meter = newton * meter = Nm
+inch = 0.0254 * meter = in = inches
+foot = 0.3048 * meter = ft = feet
+minute = 60 * second = min
+hour = 3600 * second = h
+turn = 6.283185307179586476925286766559 * radian = _ = rev = revolution
+degree = turn / 360 = deg = °
+turn_per_minute = turn / minute = rpm
+"""
+# Angle is a dimension of its own, so that "120 1/s" is not taken for 120 rad/s; hertz is left out because it could mean
+# either turns or radians. Numbers are fractions: 600 mm is the float nearest to 0.6, whatever the order of the factors.
+
+_LONGEST = 100
+_TEXT = re.compile(r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?)\s*(.*)", re.DOTALL)
+_NAME_AND_POWER = r"([^\W\d_]{1,24}|°)(?:\s*(?:\*\*|\^)\s*([+-]?[1-9]))?"
+_FACTOR = re.compile(r"([*/·]?)\s*" + _NAME_AND_POWER)
+_UNIT = re.compile(
+    rf"(?:1?\s*/\s*{_NAME_AND_POWER}|{_NAME_AND_POWER}(?:\s+{_NAME_AND_POWER})*)(?:\s*[*/·]\s*{_NAME_AND_POWER})*"
+)
+# A space multiplies, as in "12 N m", but only ahead of any "*" or "/": "m/s s" could be read in two ways.
+_SUPERSCRIPT = re.compile("⁻?[¹²³]")
+_PLAIN = str.maketrans("⁻¹²³", "-123")
+
+
+def quantity(text: object, kind: str, *, zero: bool = False, signed: bool = False, example: str | None = None) -> float:
+    """Read a quantity: a number and a unit of the right dimension.
+
+    Parameters
+    ----------
+    text
+        What the user wrote: a number, a space, a unit. A unit is made of names, ``*`` or a space, ``/`` and powers.
+    kind
+        Name of the kind expected, a key of `KINDS`.
+    zero
+        Whether zero is allowed.
+    signed
+        Whether zero and negative values are allowed.
+    example
+        What messages tell to write; the example of the kind if not given.
+
+    Returns
+    -------
+    float
+        The value in the SI unit of the kind, positive unless allowed otherwise.
+
+    Raises
+    ------
+    InputError
+        No unit, another dimension, no number, or a number outside the range of the kind.
+
+    Examples
+    --------
+    >>> quantity("600 mm", "length"), quantity("24 in", "length"), quantity("80 m/min", "speed")
+    (0.6, 0.6096, 1.3333333333333333)
+    >>> quantity(200, "speed")
+    Traceback (most recent call last):
+        ...
+    camwright.profiles.errors.InputError: 200: a number without a unit; write e.g. "200 m/min"
+    """
+    return float(exact_quantity(text, kind, zero=zero, signed=signed, example=example))
+
+
+def exact_quantity(
+    text: object, kind: str, *, zero: bool = False, signed: bool = False, example: str | None = None
+) -> Fraction:
+    """Read a quantity as `quantity` does, without rounding it to a float.
+
+    Examples
+    --------
+    >>> exact_quantity("0.1 mm", "length")
+    Fraction(1, 10000)
+    """
+    if isinstance(text, str):
+        return _exact(text, kind, zero, signed, example or KINDS[kind].example)
+    wanted = KINDS[kind] if example is None else replace(KINDS[kind], example=example)
+    if isinstance(text, int | float) and not isinstance(text, bool):
+        raise InputError(f'{shown(text)}: a number without a unit; write e.g. "{_repeated(text, wanted)}"')
+    raise InputError(f'{shown(text)}: not {wanted.name} with a unit; write e.g. "{wanted.example}"')
+
+
+@lru_cache(maxsize=1024)
+def _exact(text: str, kind: str, zero: bool, signed: bool, example: str) -> Fraction:
+    """Read the text of a quantity; kept, because job files of one machine differ in few of them."""
+    wanted = replace(KINDS[kind], example=example)
+    hint = f'write e.g. "{example}"'
+    if len(text) > _LONGEST:
+        raise InputError(f"{shown(text)}: longer than {_LONGEST} characters; {hint}")
+    found = _TEXT.fullmatch(text.strip())
+    if found is None:
+        raise InputError(f"{shown(text)}: not {wanted.name}, a finite number and a unit; {hint}")
+    number, unit = found.group(1), found.group(2)
+    if not unit:
+        raise InputError(f'{shown(text)}: a number without a unit; write e.g. "{_repeated(number, wanted)}"')
+    factor, dimension = _unit(unit, shown(text), wanted)
+    if dimension != wanted.dimension:
+        raise InputError(f"{shown(text)}: {_described(dimension)}, but {wanted.name} is expected; {hint}")
+    exact = Fraction(number) * factor
+    if (zero or signed) and exact == 0:
+        return exact
+    if exact <= 0 and not signed:
+        least = "not below zero" if zero else "greater than zero"
+        raise InputError(
+            f"{shown(text)}: {'negative' if exact < 0 else 'zero'}; {wanted.name} {least} is expected; {hint}"
+        )
+    if not (wanted.least <= abs(exact) <= wanted.greatest):
+        raise InputError(
+            f"{shown(text)}: outside the range of {wanted.name}, "
+            f"{wanted.least:g} to {wanted.greatest:g} {wanted.unit}; {hint}"
+        )
+    return exact
+
+
+def shown(value: object) -> str:
+    """Render what the user wrote for a message: one line, at most 60 characters."""
+    if isinstance(value, int) and not isinstance(value, bool) and value.bit_length() > 200:
+        return "an integer of more than 60 digits"
+    text = ascii(value) if isinstance(value, str) and not value.isprintable() else repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def _repeated(number: object, kind: Kind) -> str:
+    """Join the user's number and the unit of the kind's example; the example when the number cannot stand."""
+    text = str(number) if not isinstance(number, int) or number.bit_length() < 50 else ""
+    unit = kind.example.split(" ", 1)[1]
+    return f"{text} {unit}" if re.fullmatch(r"[0-9.]{1,12}", text) and float(text) > 0 else kind.example
+
+
+def _unit(text: str, place: str, wanted: Kind) -> tuple[Fraction, dict[str, int]]:
+    """Read a unit expression, left to right; the factor to SI base units and the powers of the base dimensions."""
+    hint = f'write e.g. "{wanted.example}"'
+    plain = _SUPERSCRIPT.sub(lambda found: "^" + found.group().translate(_PLAIN), text)
+    if _UNIT.fullmatch(plain) is None:
+        raise InputError(f"{place}: {shown(text)} is not a unit; {hint}")
+    powers: dict[str, int] = {}
+    for sign, name, power in _FACTOR.findall(plain.removeprefix("1")):
+        known = _known_name(name)
+        if known is None:
+            raise InputError(
+                f"{place}: there is no unit {shown(name)}; {hint}; units are m, mm, cm, um, in, ft, s, ms, min, h, "
+                "rad, deg, rev, rpm, kg, g, lb, N, Nm"
+            )
+        powers[known] = powers.get(known, 0) + (-1 if sign == "/" else 1) * int(power or 1)
+    factor, dimension = _size(tuple((name, power) for name, power in powers.items() if power))
+    return factor, dict(dimension)
+
+
+@lru_cache(maxsize=256)
+def _size(powers: tuple[tuple[str, int], ...]) -> tuple[Fraction, tuple[tuple[str, int], ...]]:
+    """Factor of a product of units to SI base units, and the powers of the base dimensions."""
+    registry = _registry()
+    units = registry.UnitsContainer(dict(powers))
+    factor = cast("Fraction | int", registry.get_base_units(units)[0])
+    dimension = cast("Mapping[str, Fraction | int]", registry.get_dimensionality(units))
+    return Fraction(factor), tuple((name, int(power)) for name, power in dimension.items())
+
+
+def _described(dimension: dict[str, int]) -> str:
+    """Name a dimension: by its kind, or by its base dimensions."""
+    for kind in KINDS.values():
+        if kind.dimension == dimension:
+            return kind.name
+    if not dimension:
+        return "a number without dimension"
+    return "a quantity in " + " ".join(
+        f"{name.strip('[]')}^{power}" if power != 1 else name.strip("[]") for name, power in sorted(dimension.items())
+    )
+
+
+@cache
+def _known_name(name: str) -> str | None:
+    """Look a unit up in the registry: its full name, or nothing if there is no such unit."""
+    registry = _registry()
+    import pint
+
+    try:
+        return str(registry.get_name(name))
+    except (pint.UndefinedUnitError, pint.DefinitionSyntaxError):
+        return None
+
+
+@cache
+def _registry() -> pint.UnitRegistry[Fraction]:
+    """Make the one registry when the first quantity is read.
+
+    pint imports dask where it is installed, which takes longer than all the rest of it, for arrays of quantities; there are none here.
+    """
+    hidden = "dask" not in sys.modules
+    if hidden:
+        sys.modules["dask"] = None  # type: ignore[assignment]  # the import system takes this for a module that is not there
+    try:
+        import pint
+    finally:
+        if hidden:
+            del sys.modules["dask"]
+    return pint.UnitRegistry(_DEFINITIONS.strip().splitlines(), non_int_type=Fraction)

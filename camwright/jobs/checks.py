@@ -1,0 +1,58 @@
+"""What the numbers of a job must be to each other, whatever the machine."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from camwright.jobs.fields import Known
+from camwright.jobs.machine_checks import machine_conflicts, sync_zone_of
+from camwright.jobs.machine_tables import machine_of
+from camwright.jobs.servo_checks import servo_conflicts
+from camwright.profiles.machines import Machine
+
+
+def conflicts(known: Known) -> list[str]:
+    """Check the numbers of a job against each other.
+
+    Parameters
+    ----------
+    known
+        The numbers that are right in themselves. A check is made when all its numbers are there.
+
+    Returns
+    -------
+    list
+        One message for each conflict: quantity, value, limit, place, way out.
+    """
+    machine = machine_of(known)
+    return [*_zones(known, machine), *machine_conflicts(known, machine), *servo_conflicts(known)]
+
+
+def _mm(value: float) -> str:
+    """Write a length in millimetres."""
+    return f"{value * 1e3:.10g} mm"
+
+
+def _zones(known: Known, machine: Machine | None) -> Iterator[str]:
+    """Check that the zones fit into what holds them."""
+    sync = sync_zone_of(known, machine)
+    if sync is None:
+        return
+    numbers = known.numbers
+    length = numbers.get("length")
+    if length is not None and sync >= length:
+        yield (
+            f"[cut] sync_zone = {_mm(sync)}: not below [cut] length = {_mm(length)}, so no return zone is left; "
+            "shorten the sync zone or cut longer"
+        )
+    shear, at = numbers.get("shear_zone"), numbers.get("shear_zone_at")
+    if shear is not None and shear > sync:
+        yield (
+            f"[cut] shear_zone = {_mm(shear)}: above [cut] sync_zone = {_mm(sync)}, in which it must lie; "
+            "shorten the shear zone or lengthen the sync zone"
+        )
+    elif shear is not None and at is not None and at + shear > sync * (1 + 1e-12):
+        yield (
+            f"[cut] shear_zone_at = {_mm(at)}: the shear zone of {_mm(shear)} would end {_mm(at + shear)} after the "
+            f"start of the sync zone of {_mm(sync)}; begin it at {_mm(sync - shear)} at the latest"
+        )

@@ -1,0 +1,259 @@
+"""Fields of job files: numbers with units and bare numbers, read once and kept so that they can be checked against others."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import lru_cache
+from typing import cast
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationInfo, WithJsonSchema
+from pydantic_core import PydanticCustomError
+
+from camwright.house.units import KINDS, quantity, shown
+from camwright.profiles.errors import InputError
+
+Spread = float | tuple[float, float]
+"""Range of a parameter: the share of it by which it may be off to both sides, or its two ends."""
+
+TURNING = frozenset({"crank_slider"})
+"""Kinds of machines whose slave is an angle."""
+
+
+_CURVE = '[["0 rpm", "12 N m"], ["3000 rpm", "8 N m"]]'
+
+
+@dataclass
+class Known:
+    """What is right in itself in a job file, whatever else is wrong.
+
+    Parameters
+    ----------
+    kind
+        Kind of the machine; nothing if the file names none that is known.
+    numbers
+        Numbers by key, in SI units.
+    sync
+        Which speed of the blade is in sync; nothing if the file says something that is not known.
+    spreads
+        Ranges of the servo's parameters, by key.
+    servo_aware
+        Whether the file says so.
+    """
+
+    kind: str | None = None
+    numbers: dict[str, float] = field(default_factory=dict)
+    sync: str | None = "tangential"
+    spreads: dict[str, Spread] = field(default_factory=dict)
+    servo_aware: bool = False
+
+
+class Table(BaseModel):
+    """A table of a job file: no unknown keys, no conversions."""
+
+    model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+def refusal(message: str) -> PydanticCustomError:
+    """Make the error of a value whose message is complete but for its place."""
+    return PydanticCustomError("value", "{message}", {"message": message})
+
+
+def keep(value: float, info: ValidationInfo, key: str | None = None) -> float:
+    """Keep a number under its key, or another one, so that it can be checked although the file has faults."""
+    cast(Known, info.context).numbers[key or cast(str, info.field_name)] = value
+    return value
+
+
+def quantity_field(
+    kind: str, *, zero: bool = False, signed: bool = False, example: str | None = None
+) -> tuple[BeforeValidator, WithJsonSchema]:
+    """Make the parts of a field that is written as a number with a unit; arguments as `camwright.house.units.quantity`."""
+
+    def read(value: object, info: ValidationInfo) -> float:
+        return keep(_read(value, kind, zero=zero, signed=signed, example=example), info)
+
+    least = "of either sign" if signed else "zero or more" if zero else "greater than zero"
+    return BeforeValidator(read), _schema(f"{KINDS[kind].name}, {least}", [example or KINDS[kind].example], signed)
+
+
+def slave_field(straight: str, turning: str, example: str) -> tuple[BeforeValidator, WithJsonSchema]:
+    """Make the parts of a field whose kind is that of the machine's slave.
+
+    Parameters
+    ----------
+    straight, turning
+        Kind where the slave is counted in metres, and where it is an angle.
+    example
+        What to write where it is an angle.
+    """
+
+    def read(value: object, info: ValidationInfo) -> float:
+        machine = cast(Known, info.context).kind
+        turns = machine in TURNING
+        wanted, other = (turning, straight) if turns else (straight, turning)
+        shown_example = example if turns else KINDS[straight].example
+        if machine is not None and _is(value, other):
+            motion = "turns" if turns else "is counted in metres"
+            raise refusal(
+                f'{shown(value)}: {KINDS[other].name}, but the slave of a {machine} {motion}; write e.g. "{shown_example}"'
+            )
+        if machine is None and _is(value, turning):
+            return _read(value, turning)  # right for a crank, and what the machine is nobody knows
+        return keep(_read(value, wanted, example=shown_example), info)
+
+    words = f"{KINDS[straight].name}, of a crank {KINDS[turning].name}, greater than zero"
+    return BeforeValidator(read), _schema(words, [KINDS[straight].example, example], signed=False)
+
+
+def zone_field(kind: str, angle_key: str, machine: str) -> tuple[BeforeValidator, WithJsonSchema]:
+    """Make the parts of a length that may be written as an angle for one kind of machine.
+
+    The angle is kept under a key of its own and the field is nothing: what length it is the machine says.
+    """
+
+    def read(value: object, info: ValidationInfo) -> float | None:
+        if not _is(value, "angle"):
+            return keep(_read(value, kind), info)
+        named = cast(Known, info.context).kind
+        if named not in (machine, None):
+            raise refusal(f'{shown(value)}: an angle, which only a {machine} knows; write e.g. "{KINDS[kind].example}"')
+        keep(_read(value, "angle"), info, angle_key)
+        return None
+
+    words = f"{KINDS[kind].name}, of a {machine} also {KINDS['angle'].name}, greater than zero"
+    return BeforeValidator(read), _schema(words, [KINDS[kind].example, "60 deg"], signed=False)
+
+
+def number_field(least: float, greatest: float, words: str, example: str, *, above: bool = False) -> BeforeValidator:
+    """Make the validator of a field that is written as a bare number in a range.
+
+    Parameters
+    ----------
+    least, greatest
+        The range.
+    words
+        What a number outside is told.
+    example
+        A number to write.
+    above
+        Whether the least value itself is outside.
+    """
+
+    def read(value: object, info: ValidationInfo) -> float:
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise refusal(f"{shown(value)}: not a number; write e.g. {info.field_name} = {example}")
+        if not math.isfinite(value) or not (least < value <= greatest if above else least <= value <= greatest):
+            raise refusal(f"{shown(value)}: {words}")
+        return keep(float(value), info)
+
+    return BeforeValidator(read)
+
+
+def whole_field(least: int, greatest: int, example: int) -> BeforeValidator:
+    """Make the validator of a field that is written as a whole number in a range."""
+
+    def read(value: object, info: ValidationInfo) -> int:
+        if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= greatest:
+            raise refusal(
+                f"{shown(value)}: not a whole number from {least} to {greatest}; write e.g. {info.field_name} = {example}"
+            )
+        keep(value, info)
+        return value
+
+    return BeforeValidator(read)
+
+
+def curve_field() -> tuple[BeforeValidator, WithJsonSchema]:
+    """Make the parts of a motor's torque-speed curve: points of speed and torque, the speeds increasing from zero, the torques falling."""
+
+    def read(value: object) -> tuple[tuple[float, float], ...]:
+        if not isinstance(value, list) or len(value) < 2:
+            raise refusal(f"{shown(value)}: not two points or more of speed and torque; write e.g. {_CURVE}")
+        points: list[tuple[float, float]] = []
+        for number, point in enumerate(value, start=1):
+            if not isinstance(point, list) or len(point) != 2:
+                raise refusal(
+                    f"{shown(value)}: point {number}: {shown(point)} is not a pair of speed and torque; write e.g. {_CURVE}"
+                )
+            try:
+                pair = _read(point[0], "angular rate", zero=True, example="3000 rpm"), _read(point[1], "torque")
+            except PydanticCustomError as error:
+                raise refusal(f"{shown(value)}: point {number}: {error.message()}") from error
+            before = value[number - 2]
+            if number == 1 and pair[0] > 0:
+                raise refusal(
+                    f'{shown(value)}: point 1: the curve begins at standstill; write "0 rpm" for {shown(point[0])}'
+                )
+            if points and not pair[0] > points[-1][0]:
+                raise refusal(
+                    f"{shown(value)}: point {number}: {shown(point[0])} is not above {shown(before[0])}, the speed of the point before; "
+                    "give the points by increasing speed"
+                )
+            if points and pair[1] > points[-1][1]:
+                raise refusal(
+                    f"{shown(value)}: point {number}: {shown(point[1])} is above {shown(before[1])}, the torque at a lower speed; "
+                    f"a motor's torque does not grow with its speed, give {shown(before[1])} at most"
+                )
+            points.append(pair)
+        return tuple(points)
+
+    text = {"type": "string", "maxLength": 100}
+    schema = {
+        "type": "array",
+        "minItems": 2,
+        "items": {"type": "array", "prefixItems": [text, text], "minItems": 2, "maxItems": 2},
+        "description": "torque that the motor gives over its speed: points of speed, increasing from zero, and torque, never increasing",
+        "examples": [[["0 rpm", "12 N m"], ["3000 rpm", "8 N m"]]],
+    }
+    return BeforeValidator(read), WithJsonSchema(schema)
+
+
+def checked(check: Callable[[object], str | None]) -> BeforeValidator:
+    """Make the validator of a text from a check that tells what is wrong with it."""
+
+    def read(value: object) -> object:
+        message = check(value)
+        if message is not None:
+            raise refusal(message)
+        return value
+
+    return BeforeValidator(read)
+
+
+def _read(value: object, kind: str, *, zero: bool = False, signed: bool = False, example: str | None = None) -> float:
+    try:
+        return quantity(value, kind, zero=zero, signed=signed, example=example)
+    except InputError as error:
+        raise refusal(str(error)) from error
+
+
+def _is(value: object, kind: str) -> bool:
+    """Whether a value is a quantity of a kind, in range."""
+    return isinstance(value, str) and _text_is(value, kind)
+
+
+@lru_cache(maxsize=256)
+def _text_is(text: str, kind: str) -> bool:
+    """Whether a text is a quantity of a kind, in range; kept, like the quantities themselves."""
+    try:
+        quantity(text, kind)
+    except InputError:
+        return False
+    return True
+
+
+def _schema(words: str, examples: list[str], signed: bool) -> WithJsonSchema:
+    """Make the JSON Schema of a number with a unit."""
+    sign = "[+-]?" if signed else "[+]?"
+    return WithJsonSchema(
+        {
+            "type": "string",
+            "description": f"{words}, as a number and a unit",
+            "examples": examples,
+            "minLength": 3,
+            "maxLength": 100,
+            "pattern": rf"^\s*{sign}([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{{1,3}})?\s*([A-Za-z°µμ/]|1\s*/).*$",
+        }
+    )

@@ -1,0 +1,287 @@
+"""The structure of a job file: its tables and keys as pydantic models, its JSON Schema, its faults in plain words."""
+
+from __future__ import annotations
+
+import difflib
+import json
+from typing import Annotated, Any, Literal, cast
+
+from pydantic import BaseModel, Field, ValidationError
+from pydantic_core import ErrorDetails
+
+from camwright.house.units import shown
+from camwright.jobs.fields import (
+    TURNING,
+    Known,
+    Spread,
+    Table,
+    checked,
+    curve_field,
+    number_field,
+    quantity_field,
+    slave_field,
+    whole_field,
+    zone_field,
+)
+from camwright.jobs.machine_tables import TABLES, MachineTable
+from camwright.jobs.spread_fields import aware_only, number_spread, quantity_spread
+
+Objective = Literal[
+    "peak_acceleration", "rms_acceleration", "peak_jerk", "rms_jerk", "rms_torque", "peak_torque", "energy"
+]
+"""What is made least of the motion or the motor's load."""
+
+Command = Literal["in_sync", "shaped"]
+"""What a servo-aware design may do in the sync zone: the command in sync all over it, or shaped so that the axis is in the shear zone."""
+
+_LONGEST_NAME = 60
+_REFUSED_IN_NAMES = '/\\<>:"|?*'
+
+
+def _name(value: object) -> str | None:
+    """Say what is wrong with the name of a job: it is also the name of the output directory."""
+    if not isinstance(value, str):
+        return f'{shown(value)}: not a text; write e.g. "paper-600"'
+    if not value.strip() or len(value) > _LONGEST_NAME:
+        return f"{shown(value)}: a name has 1 to {_LONGEST_NAME} characters"
+    if not value.isprintable() or any(letter in _REFUSED_IN_NAMES for letter in value):
+        return (
+            f"{shown(value)}: a name is on one line and has none of {_REFUSED_IN_NAMES}; it names the output directory"
+        )
+    if value[0] in ". " or value[-1] in ". ":
+        return f"{shown(value)}: a name neither begins nor ends with a dot or a space; it names the output directory"
+    return None
+
+
+class CutTable(Table):
+    """What is cut, how fast, and where the knife must be in sync."""
+
+    length: Annotated[float, *quantity_field("length")]
+    line_speed: Annotated[float, *quantity_field("speed")]
+    sync_zone: Annotated[float | None, *zone_field("length", "sync_angle", "rotary_knife")]
+    shear_zone: Annotated[float, *quantity_field("length", zero=True), Field(json_schema_extra={"default": "0 mm"})] = (
+        0.0
+    )
+    shear_zone_at: Annotated[float | None, *quantity_field("length", zero=True)] = None
+    sync_tolerance: Annotated[
+        float, *quantity_field("length", example="0.1 mm"), Field(json_schema_extra={"default": "0.1 mm"})
+    ] = 1e-4
+    sync_ratio: Annotated[
+        float,
+        number_field(0.1, 10.0, "it is the speed of the tool over that of the material, from 0.1 to 10; 1 is in sync", "1.0"),
+        Field(description="speed of the tool over that of the material in the sync zone",
+              json_schema_extra={"minimum": 0.1, "maximum": 10}),
+    ] = 1.0  # fmt: skip
+
+
+class LimitsTable(Table):
+    """What the slave may do."""
+
+    speed: Annotated[float, *slave_field("speed", "angular rate", "300 rpm")]
+    acceleration: Annotated[float, *slave_field("acceleration", "angular acceleration", "2000 rad/s^2")]
+    jerk: Annotated[float, *slave_field("jerk", "angular jerk", "50000 rad/s^3")]
+    reversal: Annotated[bool, Field(description="whether the slave may run backwards")] = False
+    motor: Annotated[tuple[tuple[float, float], ...] | None, *curve_field()] = None
+
+
+class ServoToleranceTable(Table):
+    """Ranges in which the servo's parameters are known to lie."""
+
+    bandwidth: Annotated[Spread | None, *quantity_spread("angular rate", "108 rad/s", "132 rad/s")] = None
+    damping: Annotated[Spread | None, *number_spread(100.0, "the damping ratio", 0.63, 0.77)] = None
+    position_gain: Annotated[Spread | None, *quantity_spread("gain", "33 1/s", "37 1/s")] = None
+    sample_time: Annotated[Spread | None, *quantity_spread("time", "3.9 ms", "4.1 ms")] = None
+    dead_time: Annotated[Spread | None, *quantity_spread("time", "0 ms", "1 ms", zero=True)] = None
+
+
+class ServoTable(Table):
+    """The discrete servo."""
+
+    bandwidth: Annotated[float, *quantity_field("angular rate")]
+    damping: Annotated[
+        float,
+        number_field(0.0, 100.0, "the damping ratio must be above 0 (else the velocity loop never settles) and at most 100; "
+                     "drives have 0.7 to 0.9", "0.7", above=True),
+        Field(description="damping ratio of the velocity loop", examples=[0.7],
+              json_schema_extra={"exclusiveMinimum": 0, "maximum": 100}),
+    ]  # fmt: skip
+    position_gain: Annotated[float, *quantity_field("gain")]
+    sample_time: Annotated[float, *quantity_field("time")]
+    velocity_feedforward: Annotated[
+        float,
+        number_field(0.0, 1.0, "it is the share of the command's velocity that is fed forward, from 0 (none) to 1 (all, no "
+                     "following error at constant speed); more makes the axis run ahead of its command", "1.0"),
+        Field(description="share of the command's velocity fed forward", examples=[1.0],
+              json_schema_extra={"minimum": 0, "maximum": 1}),
+    ]  # fmt: skip
+    dead_time: Annotated[float, *quantity_field("time", zero=True), Field(json_schema_extra={"default": "0 ms"})] = 0.0
+    lead_time: Annotated[float, *quantity_field("time", zero=True), Field(json_schema_extra={"default": "0 ms"})] = 0.0
+    tolerance: ServoToleranceTable | None = None
+
+
+class ObjectiveTable(Table):
+    """What is made least, and whether of the command alone or with the axis in mind."""
+
+    servo_aware: Annotated[
+        bool, Field(description="whether the axis, not only its command, keeps the sync tolerance")
+    ] = False
+    minimise: Annotated[
+        Literal[Objective, "sync_error"],
+        aware_only('minimise e.g. "peak_acceleration"', only="sync_error"),
+        Field(description="what is made least; sync_error, that of the axis in the shear zone, only if servo_aware"),
+    ] = "peak_acceleration"
+    command: Annotated[
+        Command | None,
+        aware_only("leave command out"),
+        Field(
+            description="whether the command keeps in sync in the whole sync zone, or only the axis in the shear zone; only if servo_aware",
+            json_schema_extra={"default": "in_sync"},
+        ),
+    ] = None
+
+
+class OutputTable(Table):
+    """How the cam is written."""
+
+    origin: Annotated[
+        Literal["return", "cut"], Field(description="master zero: start of the return zone, or mid sync zone")
+    ] = "return"
+    points: Annotated[
+        int,
+        whole_field(2, 100_000, 361),
+        Field(description="rows of cam.csv", json_schema_extra={"minimum": 2, "maximum": 100_000}),
+    ] = 361
+
+
+class JobFile(Table):
+    """A job for camwright: one machine, one product, one drive."""
+
+    name: Annotated[
+        str,
+        checked(_name),
+        Field(
+            description="names the job and its output directory",
+            json_schema_extra={"minLength": 1, "maxLength": _LONGEST_NAME, "pattern": r'^[^/\\<>:"|?*\n\r]+$'},
+        ),
+    ]
+    machine: MachineTable
+    cut: CutTable
+    limits: LimitsTable
+    servo: ServoTable
+    objective: ObjectiveTable = ObjectiveTable()
+    output: OutputTable = OutputTable()
+
+
+def job_schema() -> dict[str, Any]:
+    """Make the JSON Schema of a job file from the models."""
+    schema = JobFile.model_json_schema()
+    for definition in (schema, *schema["$defs"].values()):
+        for entry in definition["properties"].values():
+            # left out, not null: TOML knows no null
+            if "default" in entry and entry["default"] is None:
+                del entry["default"]
+            if {"type": "null"} in entry.get("anyOf", ()):
+                (only,) = (kind for kind in entry.pop("anyOf") if kind != {"type": "null"})
+                entry.update(only)
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
+
+
+def read_structure(data: dict[str, Any]) -> tuple[JobFile | None, Known, list[str]]:
+    """Check the structure and every single value of a job file.
+
+    Parameters
+    ----------
+    data
+        What the TOML file holds.
+
+    Returns
+    -------
+    (file, known, faults)
+        The file, or nothing if it has faults; what is right in itself, defaults of what was left out included; one
+        message for each fault, each with its place.
+    """
+    known = Known()
+    machine = data.get("machine")
+    if isinstance(machine, dict):
+        kind, sync = machine.get("kind"), machine.get("sync", known.sync)
+        known.kind = kind if isinstance(kind, str) and kind in TABLES else None
+        known.sync = sync if sync in ("tangential", "horizontal") else None
+    objective = data.get("objective")
+    known.servo_aware = isinstance(objective, dict) and objective.get("servo_aware", False) is not False
+    for name in JobFile.model_fields:
+        if isinstance(data.get(name), dict):
+            _fill_in(known, data[name], _model_at([name], known))
+    try:
+        return JobFile.model_validate(data, context=known), known, []
+    except ValidationError as error:
+        return None, known, [_fault(entry, known) for entry in error.errors(include_url=False)]
+
+
+def _fill_in(known: Known, table: dict[str, Any], model: type[BaseModel] | None) -> None:
+    """Keep the default numbers of what a table leaves out."""
+    for key, field in model.model_fields.items() if model is not None else ():
+        if key not in table and isinstance(field.default, int | float) and not isinstance(field.default, bool):
+            known.numbers[key] = field.default
+
+
+def _fault(error: ErrorDetails, known: Known) -> str:
+    """Say what is wrong, where, and the way out."""
+    parts = [str(part) for part in error["loc"]]
+    if parts[0] == "machine" and len(parts) > 2:  # its kind, which pydantic puts between its table and the key
+        del parts[1]
+    place, key = parts[:-1], parts[-1]
+    kind, value = error["type"], error["input"]
+    if kind in ("union_tag_not_found", "union_tag_invalid"):
+        if kind == "union_tag_not_found":
+            return '[machine] kind: missing; add e.g. kind = "rotary_knife"'
+        return f"[machine] kind = {shown(value['kind'])}: not known; write {_choice(list(TABLES))}"
+    table = ".".join(place)
+    where = f"[{table}] {key}" if place else (f"[{key}]" if _is_table(key) else key)
+    if kind == "missing":
+        return f"{where}: missing; {_example(place, key, known)}"
+    if kind == "extra_forbidden":
+        known_keys = list(cast(type[BaseModel], _model_at(place, known)).model_fields)
+        where = f"[{table}] {shown(key)[1:-1]}" if place else shown(key)[1:-1]
+        near = difflib.get_close_matches(key[:100], known_keys, n=1, cutoff=0.5)
+        advice = f"did you mean {near[0]}?" if near else f"the keys here are {', '.join(known_keys)}"
+        return f"{where}: there is no such key; {advice}"
+    if kind == "value":
+        return f"{where} = {error['msg']}"
+    if kind == "literal_error":
+        allowed = str(error["ctx"]["expected"]).replace("'", '"')
+        return f"{where} = {shown(value)}: not known; write {allowed}"
+    if kind == "bool_type":
+        return f"{where} = {shown(value)}: neither true nor false; write true or false without quotes"
+    return f"{where} = {shown(value)}: not a table; write [{'.'.join(parts)}] on a line of its own and its keys below"
+
+
+def _choice(words: list[str]) -> str:
+    """Write words to choose from."""
+    quoted = [f'"{word}"' for word in words]
+    return f"{', '.join(quoted[:-1])} or {quoted[-1]}"
+
+
+def _is_table(key: str) -> bool:
+    """Whether a key of the file names one of its tables."""
+    return key in JobFile.model_fields and key != "name"
+
+
+def _model_at(place: list[str], known: Known) -> type[BaseModel] | None:
+    """Find the model of a table by its place; nothing for a machine of no known kind and for what is no table."""
+    if not place:
+        return JobFile
+    if place[0] == "machine":
+        return TABLES.get(known.kind or "")
+    if place == ["servo", "tolerance"]:
+        return ServoToleranceTable
+    model = JobFile.model_fields[place[0]].annotation
+    return model if isinstance(model, type) and issubclass(model, BaseModel) else None
+
+
+def _example(place: list[str], key: str, known: Known) -> str:
+    """Say what to write for a key or table that is missing."""
+    if not place:
+        return f"add the table [{key}]" if _is_table(key) else f'add e.g. {key} = "paper-600"'
+    schema = cast(type[BaseModel], _model_at(place, known)).model_json_schema()["properties"][key]
+    example = schema["examples"][-1 if place[0] == "limits" and known.kind in TURNING else 0]
+    return f"add e.g. {key} = {json.dumps(example)}"

@@ -1,0 +1,261 @@
+"""design.json: a profile, the job that it is the answer to, and where both come from."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, get_args
+
+from camwright.answers.axis import axis_answer, robust_answer
+from camwright.answers.objective import objective_answer, starts_answer
+from camwright.house.files import read_text
+from camwright.house.provenance import SCHEMA_VERSION, provenance
+from camwright.jobs.job import Job, parse_job
+from camwright.jobs.numbers import job_numbers
+from camwright.jobs.structure import Objective
+from camwright.profiles.errors import InputError
+from camwright.profiles.machines import (
+    CrankSlider,
+)
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.servo_tolerance import ServoTolerance
+
+if TYPE_CHECKING:
+    from camwright.studies.design import Design
+
+MOST_BYTES = 1 << 26
+"""The most bytes that a design or table file may have."""
+
+
+_KEYS = ("schema_version", "status", "objective", "profile", "job", "provenance")
+
+
+@dataclass(frozen=True, eq=False)
+class StoredDesign:
+    """What a design.json holds.
+
+    Parameters
+    ----------
+    profile
+        One cycle, bit by bit as it was designed.
+    job
+        The job, read again from its stored text.
+    """
+
+    profile: CamProfile
+    job: Job
+
+
+def design_text(design: Design) -> str:
+    """Write a design as the text of a design.json."""
+    data = {
+        "schema_version": SCHEMA_VERSION,
+        "status": design.solution.status.value,
+        "objective": objective_answer(design),
+        "lower_bound_method": design.bound.method,
+        "starts": starts_answer(design),
+        "servo_aware": axis_answer(design.axis),
+        "robust": robust_answer(design.robust),
+        "profile": design.profile.to_dict(),
+        "job": {"toml": design.job.text, "si": job_numbers(design.job)},
+        "provenance": provenance(design.job.sha256),
+    }
+    return json.dumps(data, indent=1, allow_nan=False) + "\n"
+
+
+def read_design(path: str | Path) -> StoredDesign:
+    """Read a design.json.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read or is not a design.json.
+    """
+    return parse_design(read_text(Path(path), "design file", MOST_BYTES), str(path))
+
+
+def parse_design(text: str, place: str) -> StoredDesign:
+    """Read the text of a design.json; messages begin with the place.
+
+    Raises
+    ------
+    InputError
+        It is not a design.json of this schema version, or its job was changed after it was stored.
+    """
+    try:
+        data = json.loads(text)
+    except RecursionError as error:
+        raise InputError(f"{place}: not a design.json: nested too deeply") from error
+    except ValueError as error:  # JSONDecodeError, and integers beyond Python's limit of digits
+        raise InputError(f"{place}: not JSON: {error}") from error
+    missing = [key for key in _KEYS if not isinstance(data, dict) or key not in data]
+    if missing:
+        raise InputError(f"{place}: not a design.json: {', '.join(missing)} missing; camwright design writes one")
+    if data["schema_version"] != SCHEMA_VERSION:
+        raise InputError(
+            f"{place}: schema_version {data['schema_version']!r:.40} is not read; this camwright reads {SCHEMA_VERSION}"
+        )
+    job, origin = data["job"], data["provenance"]
+    if not isinstance(job, dict) or not isinstance(job.get("toml"), str):
+        raise InputError(f"{place}: not a design.json: job.toml, the text of the job file, is missing")
+    stored = origin.get("job_sha256") if isinstance(origin, dict) else None
+    if hashlib.sha256(job["toml"].encode("utf-8", "surrogatepass")).hexdigest() != stored:
+        raise InputError(
+            f"{place}: the stored job is not the one that was designed (its SHA-256 differs); design it anew"
+        )
+    try:
+        profile = CamProfile.from_dict(data["profile"])
+    except InputError as error:
+        raise InputError(f"{place}: {error}") from error
+    return StoredDesign(profile, _placed(parse_job(job["toml"], f"{place}, job.toml"), job.get("si"), place))
+
+
+def _placed(job: Job, numbers: object, place: str) -> Job:
+    """Put a crank's sync zone where the design chose it."""
+    machine = job.machine
+    if not isinstance(machine, CrankSlider) or not math.isnan(machine.sync_at):
+        return job
+    stored = numbers.get("machine") if isinstance(numbers, dict) else None
+    angle = stored.get("sync_at") if isinstance(stored, dict) else None
+    least, greatest = machine.sync_range(job.cut)
+    if isinstance(angle, bool) or not isinstance(angle, int | float) or not least < angle < greatest:
+        raise InputError(
+            f"{place}: not a design.json: job.si.machine.sync_at, where on the crank the sync zone lies, must be a number from "
+            f"{least:.6g} to {greatest:.6g} (rad)"
+        )
+    return replace(job, machine=replace(machine, sync_at=float(angle)))
+
+
+def design_schema() -> dict[str, Any]:
+    """Make the JSON Schema of a design.json."""
+    number, whole, text = {"type": "number"}, {"type": "integer"}, {"type": "string"}
+    maybe = {"type": ["number", "null"]}
+    objectives = [*get_args(Objective), "sync_error"]
+    numbers = {"type": "array", "items": number, "minItems": 1}
+
+    def table(**entries: Any) -> dict[str, Any]:
+        return {"type": "object", "properties": entries, "required": list(entries), "additionalProperties": False}
+
+    ends = {"type": "array", "items": number, "minItems": 2, "maxItems": 2}
+    pairs = {"type": "array", "items": {"type": "array", "items": number, "minItems": 2, "maxItems": 2}}
+    curve = {"oneOf": [{"type": "null"}, table(points=pairs)], "description": "motor speed (rad/s) and torque (N m)"}
+    machines = [
+        table(
+            kind={"const": "rotary_knife"},
+            circumference=number,
+            blades=whole,
+            gear_ratio=number,
+            sync={"enum": ["tangential", "horizontal"]},
+            inertia=number,
+            friction=number,
+        ),
+        table(kind={"const": "linear_carriage"}, stroke=number, home=number, mass=number, travel_per_turn=number),
+        table(
+            kind={"const": "crank_slider"},
+            crank=number,
+            rod=number,
+            offset=number,
+            crank_inertia=number,
+            carriage_mass=number,
+            gear_ratio=number,
+            sync_at={**number, "description": "crank angle at mid sync zone (rad), given or chosen"},
+        ),
+    ]
+    root = table(
+        schema_version={"const": SCHEMA_VERSION},
+        status={"type": "string", "description": "how the solver ended"},
+        objective=table(
+            name={"enum": objectives},
+            value=number,
+            unit={"enum": ["m/s^2", "m/s^3", "rad/s^2", "rad/s^3", "N m", "J", "m"]},
+            lower_bound=maybe,
+            gap={**maybe, "description": "(value - lower_bound) / value; null without a bound"},
+        ),
+        lower_bound_method={"type": "string", "description": "how the lower bound was found; none where there is none"},
+        starts={
+            "oneOf": [
+                {"type": "null"},
+                table(converged=whole, agreeing=whole, spread=number, residual=number, valleys=whole),
+            ],
+            "description": "agreement of several starts; null where the problem is convex",
+        },
+        servo_aware={
+            "oneOf": [
+                {"type": "null"},
+                table(
+                    mode={"enum": ["in_sync", "shaped"]},
+                    designed_error_mm=number,
+                    simulated_error_mm=number,
+                    phases=whole,
+                    axis_limits={"type": "boolean"},
+                ),
+            ],
+            "description": "sync error of the axis in the shear zone; null for a servo-blind design",
+        },
+        robust={
+            "oneOf": [
+                {"type": "null"},
+                table(worst_error_mm=number, draws=whole, designed_worst_error_mm=maybe, vertices=whole),
+            ],
+            "description": "sync error over the ranges of the servo; null where the job gives none",
+        },
+        profile=table(
+            breaks={**numbers, "minItems": 2, "description": "ends of the pieces on the master (m)"},
+            coefficients={
+                "type": "array",
+                "items": numbers,
+                "minItems": 1,
+                "description": "per piece, ascending powers of the distance from its first break (m per m**power)",
+            },
+        ),
+        job=table(
+            toml={"type": "string", "description": "the job file as it was read"},
+            si=table(
+                name=text,
+                machine={"oneOf": machines},
+                cut=table(
+                    length=number,
+                    line_speed=number,
+                    sync_zone=number,
+                    shear_zone=number,
+                    shear_zone_at=number,
+                    sync_tolerance=number,
+                    origin={"enum": ["return", "cut"]},
+                    sync_ratio=number,
+                    shaped={"type": "boolean"},
+                ),
+                limits=table(speed=number, acceleration=number, jerk=number, reversal={"type": "boolean"}, motor=curve),
+                servo=table(
+                    bandwidth=number,
+                    damping=number,
+                    position_gain=number,
+                    sample_time=number,
+                    velocity_feedforward=number,
+                    dead_time=number,
+                    lead_time=number,
+                ),
+                objective={"enum": objectives},
+                servo_aware={"type": "boolean"},
+                command={"enum": ["in_sync", "shaped"]},
+                servo_tolerance={
+                    "oneOf": [
+                        {"type": "null"},
+                        table(**dict.fromkeys(ServoTolerance.__dataclass_fields__, ends)),
+                    ],
+                    "description": "least and greatest value of each parameter of the servo",
+                },
+                points={"type": "integer", "minimum": 2},
+            ),
+        ),
+        provenance=table(
+            camwright=text,
+            job_sha256={"type": "string", "pattern": "^[0-9a-f]{64}$"},
+            libraries={"type": "object", "additionalProperties": text},
+            schema_version={"const": SCHEMA_VERSION},
+        ),
+    )
+    head = {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "camwright design"}
+    return {**head, **root}

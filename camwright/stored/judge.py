@@ -1,0 +1,41 @@
+"""Judging a cycle, or a file that holds one, by a job."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from camwright.jobs.job import Job
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.stored.profile_files import read_cycle
+from camwright.validation.report import ValidationReport
+from camwright.validation.report import validate as judge
+
+
+def validate(profile: CamProfile | str | Path, job: Job) -> ValidationReport:
+    """Judge one cycle by a job's machine, limits and servo.
+
+    Parameters
+    ----------
+    profile
+        The cycle, or a file that holds one: a ``design.json`` or a ``cam.csv``, camwright's or anyone's.
+    job
+        The job to judge it by.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or the profile is not one cycle of the job.
+
+    Examples
+    --------
+    >>> from camwright import load_job
+    >>> from camwright.profiles.returns import baseline
+    >>> job = load_job()
+    >>> report = validate(baseline("poly_3_4_5", job.machine, job.cut), job)
+    >>> report.motion.sync_ratio_error
+    0.0
+    """
+    if isinstance(profile, CamProfile):
+        return judge(profile, job.machine, job.cut, job.limits, job.servo, servo_aware=job.servo_aware)
+    cycle, machine = read_cycle(Path(profile), job)
+    return judge(cycle, machine, job.cut, job.limits, job.servo, servo_aware=job.servo_aware)

@@ -1,0 +1,126 @@
+"""Files that hold a profile: cam.csv with its head, and reading any of them."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camwright.house.files import read_text
+from camwright.house.provenance import provenance
+from camwright.jobs.job import Job
+from camwright.profiles.errors import InputError
+from camwright.profiles.machines import CrankSlider, Machine
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.tables.cam_csv import read_cam_csv, rebuild, write_cam_csv
+from camwright.stored.design_file import MOST_BYTES, parse_design
+
+if TYPE_CHECKING:
+    from camwright.studies.design import Design
+
+_ROUNDING = 1e-6
+"""What a table's ends may miss those of the cycle by, as a part of the cut length: tables are rounded."""
+
+
+_SYNC_AT = re.compile(r"^# sync_at: ([0-9.eE+-]{1,30}) rad$", re.MULTILINE)
+"""The comment line of a cam.csv that says where on the crank its sync zone lies."""
+
+
+def cam_text(design: Design) -> str:
+    """Write a design as the text of a cam.csv: its origin in comment lines, then the table.
+
+    Raises
+    ------
+    InputError
+        The job asks for fewer points than the profile has ends of pieces.
+    """
+    origin = provenance(design.job.sha256)
+    libraries = origin.pop("libraries")
+    entries = {"job": design.job.name, **origin, **(libraries if isinstance(libraries, dict) else {})}
+    comments = [f"{name}: {value}" for name, value in entries.items()]
+    machine = design.job.machine
+    if isinstance(machine, CrankSlider):
+        comments.append(f"sync_at: {machine.sync_at!r} rad")
+    return write_cam_csv(design.profile, design.job.output.points, comments, machine.slave_unit)
+
+
+def read_profile(path: Path, job: Job) -> CamProfile:
+    """Read one cycle like `read_cycle`, without the machine."""
+    return read_cycle(path, job)[0]
+
+
+def read_cycle(path: Path, job: Job) -> tuple[CamProfile, Machine]:
+    """Read one cycle from a design.json or a table, told apart by the first character, and the machine to judge it by.
+
+    The machine is the job's; where the job leaves the place of a crank's sync zone free, it is that of the file.
+
+    Parameters
+    ----------
+    path
+        The file. A table has the columns that `camwright.profiles.tables.cam_csv.read_cam_csv` describes; it runs over one cycle
+        of the job, from master position 0 to the cut length, both to a millionth of the cut length. The slave may begin
+        anywhere.
+    job
+        The job that the cycle is judged by.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, holds no profile, or one of another cut length or slave unit.
+    """
+    text = read_text(path, "profile file", MOST_BYTES)
+    if text.removeprefix("\ufeff").lstrip().startswith("{"):
+        stored = parse_design(text, str(path))
+        profile, unit = stored.profile, stored.job.machine.slave_unit
+        place = stored.job.machine.sync_at if isinstance(stored.job.machine, CrankSlider) else math.nan
+    else:
+        rows = read_cam_csv(text, str(path))
+        profile, unit = rebuild(rows.x, rows.y, rows.dy, rows.d2y), rows.slave_unit
+        place = _sync_at(text)
+    if unit != job.machine.slave_unit:
+        raise InputError(
+            f"{path}: the slave is counted in {unit}, but that of the job's machine in {job.machine.slave_unit}; name the job that the "
+            "file was made for"
+        )
+    return _one_cycle(profile, job.cut.length, str(path)), _placed(job, place, str(path))
+
+
+def _sync_at(text: str) -> float:
+    """Crank angle at mid sync zone that a cam.csv states (rad); not a number if it states none."""
+    found = _SYNC_AT.search(text)
+    try:
+        return float(found.group(1)) if found else math.nan
+    except ValueError:
+        return math.nan
+
+
+def _placed(job: Job, place: float, file: str) -> Machine:
+    """Give the job's machine, a free sync zone placed where the file has it."""
+    machine = job.machine
+    if not isinstance(machine, CrankSlider) or not math.isnan(machine.sync_at):
+        return machine
+    if math.isnan(place):
+        raise InputError(
+            f"{file}: does not say where on the crank its sync zone lies, and neither does the job; give [machine] sync_at"
+        )
+    machine = replace(machine, sync_at=place)
+    machine.sync_start(job.cut)
+    return machine
+
+
+def _one_cycle(profile: CamProfile, length: float, place: str) -> CamProfile:
+    """Put the ends of a cycle where they belong; refuse a profile that is not one cycle."""
+    allowed = _ROUNDING * length
+    if abs(profile.start) > allowed or abs(profile.end - length) > allowed:
+        raise InputError(
+            f"{place}: runs over the master from {profile.start * 1e3:.10g} mm to {profile.end * 1e3:.10g} mm, "
+            f"but a cycle of the job from 0 mm to {length * 1e3:.10g} mm ([cut] length); "
+            "name the job that the file was made for"
+        )
+    breaks = np.array(profile.breaks)
+    breaks[0], breaks[-1] = 0.0, length
+    return CamProfile(breaks, profile.coefficients.copy())

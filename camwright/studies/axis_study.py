@@ -1,0 +1,180 @@
+"""`AxisStudy`: what a servo-aware design promises of the axis, and what independent simulations say."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camwright.jobs.job import Job
+from camwright.profiles.polynomial.profile import CamProfile, FloatArray
+from camwright.profiles.servo import Servo
+
+if TYPE_CHECKING:
+    from camwright.design.optimise import Solution
+
+DRAWS = 10_000
+"""Servos drawn from the ranges of a job's ``[servo.tolerance]``."""
+
+SEED = 20160
+"""Seed of the draws: the same job, the same servos."""
+
+_BAND_DRAWS, _BAND_POINTS = 200, 81
+"""Servos drawn for a `RobustBand`, and its places."""
+
+
+@dataclass(frozen=True)
+class Robustness:
+    """What a cam does when the servo is not quite the one assumed.
+
+    Parameters
+    ----------
+    vertices
+        Servos at the corners of the ranges, for which the tolerance was asked for.
+    designed_worst
+        Greatest sync error over the corners and the nominal servo that the design predicts (m); ``None`` where it did not look.
+    worst
+        Greatest sync error over the draws (m).
+    draws
+        Number of servos drawn uniformly from the ranges.
+    """
+
+    vertices: int
+    designed_worst: float | None
+    worst: float
+    draws: int
+
+
+@dataclass(frozen=True)
+class AxisStudy:
+    """The axis of a servo-aware design.
+
+    Parameters
+    ----------
+    mode
+        ``"in_sync"`` or ``"shaped"``.
+    designed_error
+        Sync error of the nominal servo in the shear zone that the design's linear rows predict (m).
+    simulated_error
+        The same by the validation's own simulation (m).
+    phases
+        Sampling phases for which both hold.
+    axis_limits
+        Whether the axis, too, keeps the limits of speed, acceleration and reversal.
+    """
+
+    mode: str
+    designed_error: float
+    simulated_error: float
+    phases: int
+    axis_limits: bool
+
+
+def servos_of(job: Job) -> tuple[Servo, ...]:
+    """Servos with which a servo-aware design must keep the tolerance: the nominal one, then the corners of its ranges."""
+    if job.servo_tolerance is None or not job.servo_tolerance.varying:
+        return (job.servo,)
+    return (job.servo, *job.servo_tolerance.vertices(job.servo))
+
+
+def between_of(job: Job) -> tuple[Servo, ...]:
+    """Servos between the corners of a job's ranges, which a servo-aware design looks at too."""
+    return () if job.servo_tolerance is None else job.servo_tolerance.between(job.servo)
+
+
+def solve_job(job: Job, *, suggest: bool = True) -> Solution:
+    """Design the cycle of a job, servo-aware if it says so.
+
+    Parameters
+    ----------
+    job
+        The job.
+    suggest
+        As in `camwright.design.optimise.solve`.
+
+    Raises
+    ------
+    InfeasibleError
+        No motion keeps the limits, or none brings the axis into the tolerance.
+    SolverError
+        The solver failed.
+    """
+    if job.servo_aware:
+        from camwright.design.optimise_axis import solve_axis
+
+        objective = "sync_error" if job.minimise_sync_error else job.objective
+        servos, between = servos_of(job), between_of(job)
+        return solve_axis(job.machine, job.cut, job.limits, objective, job.command, servos, between, suggest=suggest)
+    from camwright.design.optimise import solve
+
+    return solve(job.machine, job.cut, job.limits, job.objective, suggest=suggest)
+
+
+def axis_study(job: Job, solution: Solution) -> AxisStudy | None:
+    """Compare what a servo-aware design predicts with an independent simulation; ``None`` for other designs."""
+    from camwright.validation.servo.response import servo_response
+
+    if solution.axis is None:
+        return None
+    response = servo_response(solution.profile, solution.machine, job.cut, job.servo)
+    axis = solution.axis
+    return AxisStudy(job.command, axis.errors[0], response.shear_zone_error, response.phases, axis.axis_limits)
+
+
+def robustness(job: Job, profile: CamProfile, solution: Solution | None = None) -> Robustness | None:
+    """Draw servos from the ranges of a job and take the worst sync error; ``None`` if the job gives no ranges."""
+    from camwright.validation.servo.monte_carlo import shear_zone_errors
+
+    ranges = job.servo_tolerance
+    if ranges is None or not ranges.varying:
+        return None
+    drawn = ranges.draw(job.servo, DRAWS, SEED)
+    worst = float(shear_zone_errors(profile, job.machine, job.cut, drawn).max())
+    designed = solution.axis.error if solution is not None and solution.axis is not None else None
+    return Robustness(len(ranges.vertices(job.servo)), designed, worst, DRAWS)
+
+
+@dataclass(frozen=True, eq=False)
+class RobustBand:
+    """Sync error over the ranges of a servo, by place in the shear zone.
+
+    Parameters
+    ----------
+    master
+        Master from the start of the sync zone (m).
+    low, high
+        Least and greatest sync error at every sampling phase of every servo (m).
+    nominal
+        Sync error of the job's own servo, mean over its phases (m).
+    servos
+        Servos drawn at random, beside those at the corners.
+    """
+
+    master: FloatArray
+    low: FloatArray
+    high: FloatArray
+    nominal: FloatArray
+    servos: int
+
+
+def robust_band(job: Job, profile: CamProfile) -> RobustBand | None:
+    """Simulate servos drawn from a job's ranges and those at the corners; ``None`` if the job gives no ranges."""
+    from camwright.validation.servo.response import shear_zone_error
+    from camwright.validation.servo.simulation import simulate
+
+    ranges, cut = job.servo_tolerance, job.cut
+    if ranges is None or not ranges.varying:
+        return None
+    start = cut.return_start + cut.return_zone
+    master = cut.shear_zone_at + np.linspace(0.0, cut.shear_zone, _BAND_POINTS)
+    low, high = np.full(_BAND_POINTS, np.inf), np.full(_BAND_POINTS, -np.inf)
+
+    def errors(servo: Servo) -> FloatArray:
+        place, error, _ = shear_zone_error(simulate(profile, cut, servo), profile, job.machine, cut)
+        return np.array([np.interp(master, x - start, y) for x, y in zip(place, error, strict=True)])
+
+    for servo in (*ranges.vertices(job.servo), *ranges.draw(job.servo, _BAND_DRAWS, SEED)):
+        found = errors(servo)
+        low, high = np.minimum(low, found.min(axis=0)), np.maximum(high, found.max(axis=0))
+    return RobustBand(master, low, high, errors(job.servo).mean(axis=0), _BAND_DRAWS)

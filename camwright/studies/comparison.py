@@ -1,0 +1,182 @@
+"""`Comparison`: the optimised profile beside the baselines, all measured alike."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from camwright.house.progress import Step, ignore
+from camwright.jobs.job import Job
+from camwright.profiles.cross_cutter import QUINTIC_RATIO, quintic_return
+from camwright.profiles.cut import Cut
+from camwright.profiles.errors import InputError
+from camwright.profiles.machines import CrankSlider, Machine
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.returns import (
+    BASELINES,
+    assemble,
+    baseline,
+    baseline_names,
+    is_straight,
+)
+
+if TYPE_CHECKING:
+    from camwright.studies.screw import ScrewCarriage
+    from camwright.validation.motion import Motion
+    from camwright.validation.motor import MotorMeasures
+    from camwright.validation.servo.response import ServoResponse
+
+QUINTIC = "quintic"
+"""The return of S2; where the polynomial 3-4-5 would run backwards it decelerates, perhaps stands, and accelerates."""
+
+_LEAST_MEAN_RATIO = 1e-9
+# Below this mean ratio of the return S2's curve would stand still but for rounding.
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """A profile and its measures.
+
+    Parameters
+    ----------
+    name
+        ``"optimised"`` or the name of a baseline.
+    profile
+        One cycle.
+    motion
+        Measures of the slave's motion at line speed (slave unit).
+    tool
+        Measures of the tool's motion (m): the same where the slave is counted in metres.
+    motor
+        What the motor must give.
+    response
+        What the servo makes of it.
+    """
+
+    name: str
+    profile: CamProfile
+    motion: Motion
+    tool: Motion
+    motor: MotorMeasures
+    response: ServoResponse
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """Profiles of one job, measured alike.
+
+    Parameters
+    ----------
+    job
+        The job, its machine with everything that the design chose.
+    rows
+        The profiles, sorted by peak acceleration, the unbounded ones last.
+    screw
+        For a crank: the same cut by a carriage on a screw, another machine beside the rows.
+    """
+
+    job: Job
+    rows: tuple[Measured, ...]
+    screw: ScrewCarriage | None = None
+
+    def __getitem__(self, name: str) -> Measured:
+        """Return the profile of that name."""
+        return next(row for row in self.rows if row.name == name)
+
+
+def law_names(machine: Machine, cut: Cut) -> tuple[str, ...]:
+    """Names of all baselines of a machine: those of `camwright.profiles.returns`, and the return of S2 where it is another one.
+
+    Examples
+    --------
+    >>> from camwright import load_job
+    >>> job = load_job()
+    >>> "quintic" in law_names(job.machine, job.cut), "cycloid" in law_names(job.machine, job.cut)
+    (False, True)
+    """
+    if isinstance(machine, CrankSlider) and math.isnan(machine.sync_at):
+        least, greatest = machine.sync_range(cut)
+        machine = replace(machine, sync_at=0.5 * (least + greatest))  # the names are the same at every place
+    names = baseline_names(machine, cut)
+    if not is_straight(machine, cut):
+        return names
+    mean = (machine.pitch - cut.sync_ratio * cut.sync_zone) / (cut.sync_ratio * cut.return_zone)
+    return (*names, QUINTIC) if _LEAST_MEAN_RATIO < mean < QUINTIC_RATIO else names
+
+
+def require_laws(names: Sequence[str], machine: Machine, cut: Cut) -> None:
+    """Refuse names of baselines that do not exist for a machine, all at once.
+
+    Raises
+    ------
+    InputError
+        With one message for each.
+    """
+    import difflib
+
+    known = law_names(machine, cut)
+    faults = []
+    for name in names:
+        if name not in known:
+            near = [] if name in BASELINES else difflib.get_close_matches(name[:50], known, n=1)
+            advice = f"did you mean {near[0]}?" if near else f"the laws are {', '.join(known)}"
+            here = " for this machine" if name in BASELINES else ""
+            faults.append(f"--with {name[:50]!r}: there is no such law{here}; {advice}")
+    if faults:
+        raise InputError(*faults)
+
+
+def compare(job: Job, optimised: CamProfile, names: Sequence[str] | None = None, step: Step = ignore) -> Comparison:
+    """Measure the optimised profile of a job and baselines.
+
+    Parameters
+    ----------
+    job
+        The job, the place of its sync zone chosen.
+    optimised
+        Its optimised cycle.
+    names
+        Names of baselines, from `law_names`; all of them if not given.
+    step
+        Told what begins now.
+
+    Raises
+    ------
+    InputError
+        There is no such baseline.
+    """
+    chosen = law_names(job.machine, job.cut) if names is None else names
+    require_laws(chosen, job.machine, job.cut)
+    profiles = {"optimised": optimised, **{name: law_profile(name, job.machine, job.cut) for name in chosen}}
+    rows = []
+    for name, profile in profiles.items():
+        step(f"measuring {name}")
+        rows.append(_measure(name, profile, job))
+    rows.sort(key=lambda row: math.inf if row.motion.peak_acceleration is None else row.motion.peak_acceleration)
+    return Comparison(job, tuple(rows))
+
+
+def law_profile(name: str, machine: Machine, cut: Cut) -> CamProfile:
+    """Make one cycle of a baseline."""
+    if name != QUINTIC:
+        return baseline(name, machine, cut)
+    height = machine.pitch / cut.sync_ratio - cut.sync_zone  # S2 has ratio 1 in sync
+    return assemble(quintic_return(cut.return_zone, height).scale(slave=cut.sync_ratio), machine, cut)
+
+
+def _measure(name: str, profile: CamProfile, job: Job) -> Measured:
+    """Measure one profile."""
+    from camwright.validation.motion import measure_motion, measure_tool
+    from camwright.validation.motor import measure_motor
+    from camwright.validation.servo.response import servo_response
+
+    return Measured(
+        name,
+        profile,
+        measure_motion(profile, job.machine, job.cut),
+        measure_tool(profile, job.machine, job.cut),
+        measure_motor(profile, job.machine, job.cut),
+        servo_response(profile, job.machine, job.cut, job.servo),
+    )

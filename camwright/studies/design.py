@@ -1,0 +1,128 @@
+"""`Design`: everything that a job leads to; making it, and judging profiles of anyone's."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from camwright.house.progress import Step, ignore
+from camwright.jobs.job import Job
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.studies.comparison import Comparison, compare
+from camwright.studies.cut_lengths import CutLengths, cut_lengths
+
+if TYPE_CHECKING:
+    from camwright.design.optimise import Solution
+    from camwright.studies.axis_study import AxisStudy, Robustness
+    from camwright.validation.bounds.optimality import Bound
+    from camwright.validation.report import ValidationReport
+
+STEPS = 4
+"""Steps that `optimise` tells beside the measuring of each profile."""
+
+
+@dataclass(frozen=True, eq=False)
+class Design:
+    """An optimal cam, proved and compared.
+
+    Parameters
+    ----------
+    job
+        What was asked for, its machine with everything that the design chose.
+    solution
+        The optimal cycle, its objective, and how the solver ended.
+    bound
+        What the objective cannot go below, found on an independent road.
+    report
+        The checks on the optimal cycle.
+    comparison
+        The optimal cycle beside the baselines.
+    lengths
+        How short the machine can cut; ``None`` for machines that the published equations are not about.
+    axis
+        What a servo-aware design promises of the axis; ``None`` for a servo-blind one.
+    robust
+        The sync error over the ranges of the servo's parameters; ``None`` if the job gives none.
+    """
+
+    job: Job
+    solution: Solution
+    bound: Bound
+    report: ValidationReport
+    comparison: Comparison
+    lengths: CutLengths | None
+    axis: AxisStudy | None
+    robust: Robustness | None
+
+    @property
+    def profile(self) -> CamProfile:
+        """The optimal cycle over the master period ``[0, x_c]``."""
+        return self.solution.profile
+
+    @property
+    def objective(self) -> float:
+        """The objective at the job's line speed: m/s² or m/s³ (rad for m with a crank), N·m or J at the motor, m of sync error."""
+        motor = self.comparison["optimised"].motor
+        if self.job.minimise_sync_error:
+            return self.solution.objective
+        torques = {"rms_torque": motor.rms_torque, "peak_torque": motor.peak_torque, "energy": motor.energy}
+        value = torques.get(self.solution.objective_name)
+        return self.solution.objective if value is None else value
+
+    @property
+    def gap(self) -> float | None:
+        """How far the objective lies above its lower bound, as a part of the objective; ``None`` without a bound."""
+        if math.isnan(self.bound.value):
+            return None
+        return (self.objective - self.bound.value) / self.objective if self.objective > 0.0 else 0.0
+
+    @property
+    def passed(self) -> bool:
+        """Whether every check passed."""
+        return self.report.passed
+
+
+def optimise(job: Job, step: Step = ignore) -> Design:
+    """Find the optimal cam of a job, prove it, and compare it with the baselines.
+
+    Parameters
+    ----------
+    job
+        The job.
+    step
+        Told what begins now, for a display of progress.
+
+    Raises
+    ------
+    InfeasibleError
+        No motion keeps the limits of the job.
+    SolverError
+        The solver failed.
+
+    Examples
+    --------
+    >>> from camwright import load_job
+    >>> result = optimise(load_job())
+    >>> result.passed, round(result.solution.objective, 2)
+    (True, 9.07)
+    """
+    from camwright.studies.axis_study import axis_study, robustness, solve_job
+    from camwright.studies.screw import with_screw
+    from camwright.validation.bounds.optimality import Bound, lower_bound
+    from camwright.validation.report import validate as judge
+
+    step("solving")
+    solution = solve_job(job)
+    placed = replace(job, machine=solution.machine)
+    step("bounding the objective from below")
+    if job.cut.shaped or job.minimise_sync_error:  # what bounds a return bounds neither the whole cycle nor the axis
+        bound = Bound(math.nan, "none")
+    else:
+        bound = lower_bound(solution.profile, placed.machine, job.cut, job.limits, job.objective)
+    step("checking")
+    report = judge(solution.profile, placed.machine, job.cut, job.limits, job.servo, servo_aware=job.servo_aware)
+    aware, robust = axis_study(placed, solution), robustness(placed, solution.profile, solution)
+    comparison = with_screw(compare(placed, solution.profile, step=step))
+    step("finding minimum cut lengths")
+    return Design(placed, solution, bound, report, comparison, cut_lengths(placed), aware, robust)

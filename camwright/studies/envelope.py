@@ -1,0 +1,153 @@
+"""`EnvelopeAnswer`: which cut lengths and line speeds are possible, as tables and as CSV."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from camwright.house.progress import Step, ignore
+from camwright.house.provenance import provenance
+from camwright.jobs.job import Job
+from camwright.jobs.machine_checks import TORQUE_OBJECTIVES, sync_pace
+from camwright.profiles.machines import CrankSlider, Machine
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from camwright.design.feasible.envelope import Envelope
+    from camwright.design.returns.problem import Objective
+
+SHORTEST, LONGEST = 0.5, 2.0
+"""Cut lengths of the map as parts of the job's; none of them is shorter than `LEAST_ZONE` of the sync zone."""
+LEAST_ZONE = 1.05
+
+
+@dataclass(frozen=True, eq=False)
+class EnvelopeAnswer:
+    """The map of a job.
+
+    Parameters
+    ----------
+    job
+        The job.
+    objective
+        What was made least at every point.
+    envelope
+        The map.
+    """
+
+    job: Job
+    objective: Objective
+    envelope: Envelope
+
+    @property
+    def unit(self) -> str:
+        """Unit of the objective."""
+        return self.job.machine.slave_unit + ("/s^2" if self.objective.endswith("acceleration") else "/s^3")
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give the object that ``--json`` prints."""
+        return {
+            "job": self.job.name,
+            "objective": {"name": self.objective, "unit": self.unit},
+            "points": [
+                {
+                    "length_mm": point.length * 1e3,
+                    "line_speed_m_per_min": point.line_speed * 60,
+                    "optimised": point.optimised,
+                    "quintic": point.quintic,
+                    "linear": point.linear,
+                    "objective": point.objective,
+                    "binding": point.binding,
+                }
+                for point in self.envelope.points
+            ],
+            "max_line_speed": [
+                {
+                    "length_mm": row.length * 1e3,
+                    "optimised_m_per_min": _per_minute(row.optimised),
+                    "quintic_m_per_min": _per_minute(row.quintic),
+                    "linear_m_per_min": _per_minute(row.linear),
+                    "binding": row.binding,
+                    **_place(row.machine),
+                }
+                for row in self.envelope.rows
+            ],
+        }
+
+    def files(self) -> dict[str, str]:
+        """Give the texts of the files by name: every point, and the table of the highest line speed at each cut length."""
+        answer = self.to_dict()
+        rows = {"envelope.csv": answer["points"], "max-line-speed.csv": answer["max_line_speed"]}
+        origin = provenance(self.job.sha256)
+        head = [
+            f"# job: {self.job.name}",
+            f"# camwright: {origin['camwright']}",
+            f"# job_sha256: {self.job.sha256}",
+            f"# objective: {self.objective} ({self.unit})",
+        ]
+        return {name: "\n".join([*head, *_csv(entries)]) + "\n" for name, entries in rows.items()}
+
+    def view(self) -> RenderableType:
+        """Give the table that people read."""
+        from rich.table import Table
+
+        table = Table(title="Highest line speed (m/min)", title_justify="left")
+        for name in ("cut length\nmm", "optimised", "quintic", "linear", "binds"):
+            table.add_column(name, justify="left" if name == "binds" else "right")
+        for row in self.envelope.rows:
+            speeds = (_per_minute(speed) for speed in (row.optimised, row.quintic, row.linear))
+            table.add_row(
+                f"{row.length * 1e3:.5g}", *("–" if speed is None else f"{speed:.5g}" for speed in speeds), row.binding
+            )
+        return table
+
+
+def envelope_answer(job: Job, points: int, step: Step = ignore) -> EnvelopeAnswer:
+    """Compute the map of a job: from half to twice its cut length, up to the line speed at which the sync zone alone is too fast.
+
+    Parameters
+    ----------
+    job
+        The job.
+    points
+        Number of cut lengths, and of line speeds.
+    step
+        Told what begins now.
+
+    Raises
+    ------
+    InputError
+        The machine cannot be in sync over the zone.
+    """
+    from camwright.design.feasible.envelope import envelope
+
+    shortest = max(SHORTEST * job.cut.length, LEAST_ZONE * job.cut.sync_zone)
+    lengths = np.linspace(shortest, LONGEST * job.cut.length, points).round(6)
+    fastest = job.limits.speed / sync_pace(job.machine, job.cut)
+    speeds = np.linspace(fastest / points, fastest, points)
+    objective = cast("Objective", "rms_acceleration" if job.objective in TORQUE_OBJECTIVES else job.objective)
+    found = envelope(job.machine, job.cut, job.limits, objective, lengths.tolist(), speeds.tolist(), step)
+    return EnvelopeAnswer(job, objective, found)
+
+
+def _place(machine: Machine) -> dict[str, float]:
+    """Where a crank has its sync zone; nothing for other machines."""
+    return {"sync_at_deg": math.degrees(machine.sync_at)} if isinstance(machine, CrankSlider) else {}
+
+
+def _per_minute(speed: float | None) -> float | None:
+    """Turn m/s into m/min."""
+    return None if speed is None else speed * 60
+
+
+def _csv(entries: list[dict[str, Any]]) -> list[str]:
+    """Write entries as lines of CSV: what is not there is empty, truths are 1 and 0."""
+
+    def cell(value: object) -> str:
+        return "" if value is None else str(int(value)) if isinstance(value, bool) else str(value)
+
+    return [",".join(entries[0]), *(",".join(map(cell, entry.values())) for entry in entries)]

@@ -1,0 +1,148 @@
+"""`ScrewCarriage`: a crank's cut done by a carriage on a screw, the comparison that S3 makes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camwright.jobs.job import Job
+from camwright.profiles.errors import InfeasibleError
+from camwright.profiles.limits import Limits
+from camwright.profiles.machines import CrankSlider, LinearCarriage
+from camwright.profiles.machines.screw_equivalent import screw_equivalent
+from camwright.profiles.polynomial.profile import CamProfile, FloatArray
+
+if TYPE_CHECKING:
+    from camwright.studies.comparison import Comparison, Measured
+
+SCREW = "screw_carriage"
+"""Name of the carriage's profile among the measured profiles."""
+
+_ROOM = 1e-6
+"""Share by which the carriage's limits exceed what the crank's carriage reaches, so that a motion at the limits is not lost to rounding."""
+
+_STANDING = 1e-9
+"""Ratio, relative to the greatest, below which a carriage stands: rounding is no reversal."""
+
+_GRID = 20_001
+
+
+@dataclass(frozen=True, eq=False)
+class ScrewCarriage:
+    """The carriage on a screw beside the crank that it is compared with.
+
+    Parameters
+    ----------
+    machine
+        The carriage on its screw.
+    limits
+        What it may reach: the greatest speed, acceleration and jerk of the crank's carriage (m).
+    row
+        Its optimal cycle and measures, for the same cut, objective and servo.
+    crank
+        The crank's optimal cycle and measures.
+    reversals
+        How often its motor turns back in one cycle.
+    heating
+        RMS torque of its motor over that of the crank's.
+    """
+
+    machine: LinearCarriage
+    limits: Limits
+    row: Measured
+    crank: Measured
+    reversals: int
+    heating: float
+
+    @property
+    def sentence(self) -> str:
+        """What is compared, what is equal, and the outcome."""
+        own, crank = self.row.motor, self.crank.motor
+        return (
+            f"{SCREW}: the same carriage on a screw of {self.machine.travel_per_turn * 1e3:.4g} mm lead, with the stroke, the greatest "
+            f"motor speed and the limits of carriage speed, acceleration and jerk that the crank's optimum reaches, screw and motor "
+            f"without inertia: {self.reversals} reversals a cut and {own.rms_torque:.4g} N m RMS against none and "
+            f"{crank.rms_torque:.4g} N m of the crank ({self.heating:.3g} times)"
+        )
+
+
+def screw_carriage(job: Job, crank: Measured) -> ScrewCarriage | None:
+    """Optimise the screw-driven carriage that does a crank's cut.
+
+    Equal are: cut, objective, servo, mass of the carriage, stroke, greatest speed of the motor; and the greatest speed, acceleration and
+    jerk of the crank's carriage are the limits of the screw's.
+
+    Parameters
+    ----------
+    job
+        A job, its machine with everything that the design chose.
+    crank
+        Its optimal cycle, measured.
+
+    Returns
+    -------
+    ScrewCarriage or None
+        None where there is nothing to compare: the machine is no crank, its carriage has no mass, or a carriage on a screw cannot do
+        the cut within these limits.
+    """
+    from camwright.design.optimise import solve
+
+    machine, tool = job.machine, crank.tool
+    if not isinstance(machine, CrankSlider) or machine.carriage_mass == 0.0:
+        return None
+    if tool.peak_acceleration is None or tool.peak_jerk is None:
+        return None
+    room = 1 + _ROOM
+    limits = Limits(tool.peak_speed * room, tool.peak_acceleration * room, tool.peak_jerk * room, reversal=True)
+    motor_speed = crank.motor.peak_speed
+    first = screw_equivalent(machine, tool.peak_speed, motor_speed)
+    try:
+        profile = solve(first, job.cut, limits, job.objective).profile
+    except InfeasibleError:
+        return None
+    # the motion of a carriage does not depend on the lead: it is chosen last, by the speed that the carriage reaches
+    screw = screw_equivalent(machine, job.cut.line_speed * _greatest_ratio(profile), motor_speed)
+    row = _measured(replace(job, machine=screw, limits=limits), profile)
+    if row.motor.rms_torque is None or not crank.motor.rms_torque:
+        return None
+    heating = row.motor.rms_torque / crank.motor.rms_torque
+    return ScrewCarriage(screw, limits, row, crank, reversals(profile), heating)
+
+
+def reversals(profile: CamProfile) -> int:
+    """Count how often a cycle turns back, the seam included."""
+    x: FloatArray = np.linspace(profile.start, profile.end, _GRID)
+    ratio = profile(x, 1)
+    signs = np.sign(ratio[np.abs(ratio) > _STANDING * np.abs(ratio).max()])
+    return int(np.count_nonzero(signs != np.roll(signs, 1)))
+
+
+def _greatest_ratio(profile: CamProfile) -> float:
+    """Greatest magnitude of the ratio."""
+    least, greatest = profile.extrema(1)
+    return max(-least.value, greatest.value)
+
+
+def _measured(job: Job, profile: CamProfile) -> Measured:
+    """Measure the carriage's cycle like the profiles of a comparison."""
+    from camwright.studies.comparison import Measured
+    from camwright.validation.motion import measure_motion
+    from camwright.validation.motor import measure_motor
+    from camwright.validation.servo.response import servo_response
+
+    motion = measure_motion(profile, job.machine, job.cut)
+    return Measured(
+        SCREW,
+        profile,
+        motion,
+        motion,
+        measure_motor(profile, job.machine, job.cut),
+        servo_response(profile, job.machine, job.cut, job.servo),
+    )
+
+
+def with_screw(comparison: Comparison) -> Comparison:
+    """Add the carriage on a screw to the comparison of a crank; others stay as they are."""
+    return replace(comparison, screw=screw_carriage(comparison.job, comparison["optimised"]))

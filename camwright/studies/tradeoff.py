@@ -1,0 +1,294 @@
+"""`TradeOff`: the optimum of every objective and every baseline by the same measures, and what each costs in the others."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from camwright.house.progress import Step, ignore
+from camwright.jobs.job import Job
+from camwright.profiles.errors import SolverError
+from camwright.profiles.machines import LinearCarriage
+from camwright.profiles.returns import slave_zero
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rich.console import RenderableType
+
+    from camwright.design.optimise import Objective
+    from camwright.profiles.polynomial.profile import CamProfile
+    from camwright.validation.motion import Motion
+
+Kind = Literal["objective", "baseline"]
+
+MOTION_MEASURES = ("peak_acceleration", "rms_acceleration", "peak_jerk", "rms_jerk")
+TORQUE_MEASURES = ("rms_torque", "peak_torque", "energy")
+"""Measures, which are the objectives too; those of the torque only where the job says what the motor moves."""
+
+_BEYOND = 1e-8
+"""Part of a limit by which the solver's accuracy may exceed it."""
+
+_POINTS = 20_001
+"""Points along the cycle at which torque and speed are held against the motor's curve."""
+
+_TORQUE_UNITS = {"rms_torque": "N m", "peak_torque": "N m", "energy": "J"}
+
+
+@dataclass(frozen=True, eq=False)
+class Row:
+    """One profile of a trade-off.
+
+    Parameters
+    ----------
+    name
+        The objective that it is the optimum of, or the name of a baseline.
+    kind
+        Which of the two.
+    profile
+        One cycle.
+    values
+        Its measures by name, of the slave (its unit over s², s³) and at the motor (N·m, J per cycle); ``None`` stands for unbounded.
+    within_limits
+        Whether it keeps the limits of the job.
+    """
+
+    name: str
+    kind: Kind
+    profile: CamProfile
+    values: dict[str, float | None]
+    within_limits: bool
+
+
+@dataclass(frozen=True)
+class Failure:
+    """An objective that the solver found no optimum of, and why."""
+
+    name: str
+    reason: str
+
+
+@dataclass(frozen=True, eq=False)
+class TradeOff:
+    """All objectives and baselines of a job.
+
+    Parameters
+    ----------
+    job
+        The job.
+    measures
+        What was measured, in the order of the tables.
+    rows
+        The profiles by the measure that the job minimises, unbounded ones last.
+    failures
+        The objectives without an optimum.
+    """
+
+    job: Job
+    measures: tuple[str, ...]
+    rows: tuple[Row, ...]
+    failures: tuple[Failure, ...] = ()
+
+    def best(self, measure: str) -> Row | None:
+        """Profile of the least value of a measure among those that keep the limits; none where it is unbounded in all of them."""
+        able = [row for row in self.rows if row.within_limits and row.values[measure] is not None]
+        return min(able, key=lambda row: _order(row.values[measure]), default=None)
+
+    def cost(self, row: Row, measure: str) -> float | None:
+        """Give a measure of a profile as a multiple of the best; below 1 only where the profile breaks a limit.
+
+        None where it is unbounded, or where the best is zero.
+        """
+        value, best = row.values[measure], self.best(measure)
+        least = None if best is None else best.values[measure]
+        return value / least if value is not None and least else None
+
+    def unit(self, measure: str) -> str:
+        """Give the unit of a measure in ASCII, as JSON has it."""
+        slave = self.job.machine.slave_unit
+        return _TORQUE_UNITS.get(measure, f"{slave}/s^2" if measure.endswith("acceleration") else f"{slave}/s^3")
+
+
+def step_count(job: Job) -> int:
+    """Count the steps that `trade_off` tells."""
+    from camwright.studies.comparison import law_names
+
+    return len(_objectives(job)) + len(law_names(job.machine, job.cut))
+
+
+def trade_off(job: Job, step: Step = ignore) -> TradeOff:
+    """Solve a job for every objective and measure the optima and all baselines.
+
+    A crank whose sync zone is free has it where each objective wants it; the baselines have it where the job's own objective does, or, if
+    the solver failed on that, the first one that it solved.
+
+    Parameters
+    ----------
+    job
+        The job.
+    step
+        Told what begins now.
+
+    Raises
+    ------
+    InfeasibleError
+        No motion keeps the limits of the job.
+    SolverError
+        The solver failed on all of the objectives.
+    """
+    from camwright.design.optimise import solve
+    from camwright.studies.comparison import law_names, law_profile
+
+    objectives = _objectives(job)
+    measures = tuple(
+        name for name in (*MOTION_MEASURES[:2], *TORQUE_MEASURES, *MOTION_MEASURES[2:]) if name in objectives
+    )
+    rows: list[Row] = []
+    failures: list[Failure] = []
+    placed = job
+    for objective in objectives:
+        step(f"solving for the least {words(objective)}")
+        try:
+            solution = solve(job.machine, job.cut, job.limits, objective)
+        except SolverError as error:
+            failures.append(Failure(objective, str(error)))
+            continue
+        here = replace(job, machine=solution.machine)
+        placed = here if objective == job.objective or not rows else placed
+        rows.append(_row(objective, "objective", solution.profile, here, measures))
+    if not rows:
+        raise SolverError(f"no objective was solved; the first, {failures[0].name}: {failures[0].reason}")
+    for name in law_names(placed.machine, placed.cut):
+        step(f"measuring {name}")
+        rows.append(_row(name, "baseline", law_profile(name, placed.machine, placed.cut), placed, measures))
+    rows.sort(key=lambda row: _order(row.values[job.objective]))
+    return TradeOff(placed, measures, tuple(rows), tuple(failures))
+
+
+def words(name: str) -> str:
+    """Write the name of an objective or measure in words."""
+    return name.replace("_", " ").replace("rms", "RMS")
+
+
+def tradeoff_answer(result: TradeOff, files: Sequence[Path]) -> dict[str, Any]:
+    """Answer of ``camwright compare --objectives --json``; null where a value is unbounded, or a ratio has no meaning."""
+    best = {measure: result.best(measure) for measure in result.measures}
+    return {
+        "job": result.job.name,
+        "sorted_by": result.job.objective,
+        "measures": {
+            name: {"unit": result.unit(name), "best": row and row.values[name], "best_of": row and row.name}
+            for name, row in best.items()
+        },
+        "profiles": [
+            {
+                "name": row.name,
+                "kind": row.kind,
+                "within_limits": row.within_limits,
+                "values": row.values,
+                "cost": {measure: result.cost(row, measure) for measure in result.measures},
+            }
+            for row in result.rows
+        ],
+        "failed": [asdict(failure) for failure in result.failures],
+        "files": [str(file) for file in files],
+    }
+
+
+def tradeoff_view(result: TradeOff) -> RenderableType:
+    """Show all profiles, each measure with its multiple of the best."""
+    from rich.console import Group
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(title=f"Objectives and laws, by {words(result.job.objective)}; × the best", title_justify="left")
+    table.add_column("least …, or law")
+    for name in result.measures:
+        unit = result.unit(name).replace("^2", "²").replace("^3", "³")
+        table.add_column(f"{words(name).replace('acceleration', 'acc.')}\n{unit}", justify="right")
+    for row in result.rows:
+        name = words(row.name) if row.kind == "objective" else row.name
+        cells = [_cell(row.values[measure], result.cost(row, measure)) for measure in result.measures]
+        style = "bold" if row.kind == "objective" else ""
+        table.add_row(name + ("" if row.within_limits else " †"), *cells, style=style)
+    for failure in result.failures:
+        table.add_row(words(failure.name), "failed", *[""] * (len(result.measures) - 1), style="bold")
+    broken = any(not row.within_limits for row in result.rows)
+    notes = [Text("† breaks a limit of the job; not counted as the best")] if broken else []
+    notes += [Text(f"least {words(failure.name)}, failed: {failure.reason}") for failure in result.failures]
+    return Group(table, *notes)
+
+
+def _cell(value: float | None, cost: float | None) -> str:
+    """Write a value and its multiple of the best."""
+    if value is None:
+        return "unbounded"
+    return f"{value:.4g}" if cost is None else f"{value:.4g} ×{cost:.2f}"
+
+
+def _objectives(job: Job) -> tuple[Objective, ...]:
+    """Objectives that have a meaning for a job."""
+    from camwright.design.optimise import OBJECTIVES
+    from camwright.validation.motor import moves_something
+
+    moved = moves_something(job.machine)
+    return tuple(name for name in OBJECTIVES if moved or name not in TORQUE_MEASURES)
+
+
+def _row(name: str, kind: Kind, profile: CamProfile, job: Job, measures: Sequence[str]) -> Row:
+    """Measure one profile."""
+    from camwright.validation.motion import measure_motion
+    from camwright.validation.motor import measure_motor
+
+    motion = measure_motion(profile, job.machine, job.cut)
+    motor = measure_motor(profile, job.machine, job.cut)
+    values = {measure: getattr(motor if measure in TORQUE_MEASURES else motion, measure) for measure in measures}
+    able = _keeps_limits(motion, job) and _keeps_stroke(profile, job) and _keeps_curve(profile, job)
+    return Row(name, kind, profile, values, able)
+
+
+def _keeps_limits(motion: Motion, job: Job) -> bool:
+    """Whether a motion keeps speed, acceleration, jerk and, where it is forbidden, does not turn back."""
+    limits = job.limits
+    if motion.peak_acceleration is None or motion.peak_jerk is None:
+        return False
+    least = 0.0 if not (job.machine.turns_back or limits.reversal) else -limits.speed
+    return (
+        motion.peak_speed <= limits.speed * (1 + _BEYOND)
+        and motion.min_speed >= least - _BEYOND * limits.speed
+        and motion.peak_acceleration <= limits.acceleration * (1 + _BEYOND)
+        and motion.peak_jerk <= limits.jerk * (1 + _BEYOND)
+    )
+
+
+def _keeps_stroke(profile: CamProfile, job: Job) -> bool:
+    """Whether a carriage stays on its guide."""
+    machine = job.machine
+    if not isinstance(machine, LinearCarriage):
+        return True
+    start = slave_zero(profile, machine, job.cut) - machine.home
+    least, greatest = profile.extrema(0)
+    rounding = _BEYOND * machine.stroke
+    return start + least.value >= -rounding and start + greatest.value <= machine.stroke + rounding
+
+
+def _keeps_curve(profile: CamProfile, job: Job) -> bool:
+    """Whether the motor can give the torque of a steady motion at each of its speeds; judged at points along the cycle."""
+    from camwright.validation.motor import motor_torque
+
+    curve, machine, cut = job.limits.motor, job.machine, job.cut
+    if curve is None:
+        return True
+    torque = motor_torque(profile, machine, cut)
+    x = np.linspace(profile.start, profile.end, _POINTS)
+    available = curve.torque(cut.line_speed * machine.motor_ratio * profile(x, 1))
+    return bool(np.all(np.abs(torque(x)) <= available * (1 + _BEYOND)))
+
+
+def _order(value: float | None) -> float:
+    """Sort unbounded values last."""
+    return math.inf if value is None else value

@@ -1,0 +1,1 @@
+"""The fastest moves of the die-rule bender."""

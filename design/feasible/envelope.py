@@ -1,0 +1,209 @@
+"""The map of cut length and line speed: what is possible, with which return, and what binds."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from camwright.design.feasible.extremes import BEYOND, max_line_speed, placed_fastest
+from camwright.design.feasible.feasibility import binding_limit, needed_limits
+from camwright.design.returns.problem import Objective, return_problem
+from camwright.design.returns.solver import objective_value, solve_return
+from camwright.profiles.cross_cutter import quintic_return
+from camwright.profiles.cut import Cut
+from camwright.profiles.errors import InputError, SolverError
+from camwright.profiles.limits import Limits
+from camwright.profiles.machines import Machine
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.returns import assemble, is_straight, quintic_between
+
+# Rounding that a baseline may exceed a limit by.
+ROUNDING = 1e-9
+
+
+@dataclass(frozen=True)
+class EnvelopePoint:
+    """One cut length at one line speed.
+
+    Parameters
+    ----------
+    length, line_speed
+        The point (m, m/s).
+    objective
+        Least objective of the optimised return over time (slave unit per s² or s³); None where no return is possible.
+    binding
+        What forbids the point, or what would bind first at this cut length if the line ran faster; for machines without a closed
+        form the latter in both cases.
+    quintic, linear
+        Whether the quintic return keeps all limits, and whether the linear return keeps the speed limit, the only one that S1
+        asks of it.
+    """
+
+    length: float
+    line_speed: float
+    objective: float | None
+    binding: str
+    quintic: bool
+    linear: bool
+
+    @property
+    def optimised(self) -> bool:
+        """Whether some return keeps all limits."""
+        return self.objective is not None
+
+
+@dataclass(frozen=True)
+class EnvelopeRow:
+    """One cut length.
+
+    Parameters
+    ----------
+    length
+        The cut length (m).
+    machine
+        The machine as placed for it.
+    optimised, quintic, linear
+        Highest line speeds with each return (m/s), None where no speed works.
+    binding
+        What binds the first of these.
+    """
+
+    length: float
+    machine: Machine
+    optimised: float | None
+    quintic: float | None
+    linear: float | None
+    binding: str
+
+
+@dataclass(frozen=True)
+class Envelope:
+    """The map: its points by length and then speed, and a row for each length."""
+
+    points: tuple[EnvelopePoint, ...]
+    rows: tuple[EnvelopeRow, ...]
+
+
+def envelope(
+    machine: Machine,
+    cut: Cut,
+    limits: Limits,
+    objective: Objective,
+    lengths: Sequence[float],
+    line_speeds: Sequence[float],
+    step: Callable[[str], None] = lambda _: None,
+) -> Envelope:
+    """Compute the map; every point is an optimisation of its own.
+
+    Parameters
+    ----------
+    machine, cut, limits, objective
+        The job; its cut length and line speed are replaced by those of the points. A crank whose sync zone is free has it, at each cut
+        length, where the line can run fastest.
+    lengths, line_speeds
+        Cut lengths (m), each above the sync zone, and line speeds (m/s).
+    step
+        Told before every cut length and every point.
+
+    Raises
+    ------
+    InputError
+        A cut length is not above the sync zone.
+    """
+    short = [length for length in lengths if length <= cut.sync_zone]
+    if short:
+        raise InputError(
+            f"the envelope cannot begin at a cut length of {min(short) * 1e3:.6g} mm: it must be above the sync zone, "
+            f"[cut] sync_zone = {cut.sync_zone * 1e3:.6g} mm"
+        )
+    rows, points = [], []
+    for length in lengths:
+        step(f"cut length {length * 1e3:.4g} mm")
+        at_length = replace(cut, length=length)
+        row = _row(placed_fastest(machine, at_length, limits), at_length, limits)
+        rows.append(row)
+        points += list(_points(row.machine, at_length, limits, objective, line_speeds, row, step))
+    return Envelope(tuple(points), tuple(rows))
+
+
+def _row(machine: Machine, cut: Cut, limits: Limits) -> EnvelopeRow:
+    fastest = max_line_speed(machine, cut, limits)
+    beyond = replace(cut, line_speed=(fastest or cut.line_speed) * (1 + BEYOND))
+    binding = binding_limit(machine, beyond, limits, needed_limits(machine, beyond, limits))
+    return EnvelopeRow(
+        cut.length, machine, fastest, quintic_speed(machine, cut, limits), linear_speed(machine, cut, limits), binding
+    )
+
+
+def _points(
+    machine: Machine,
+    cut: Cut,
+    limits: Limits,
+    objective: Objective,
+    line_speeds: Sequence[float],
+    row: EnvelopeRow,
+    step: Callable[[str], None],
+) -> Iterator[EnvelopePoint]:
+    # where closed forms tell what a point lacks it is asked at the point, elsewhere at the edge of its cut length
+    straight = machine.slave_unit == "m" and is_straight(machine, cut)
+    for v in line_speeds:
+        step(f"cut length {cut.length * 1e3:.4g} mm at {v * 60:.4g} m/min")
+        here = replace(cut, line_speed=v)
+        possible = row.optimised is not None and v <= row.optimised
+        value = _objective(machine, here, limits, objective) if possible else None
+        binding = row.binding
+        if not possible and straight:
+            binding = binding_limit(machine, here, limits, needed_limits(machine, here, limits))
+        quintic = row.quintic is not None and v <= row.quintic
+        linear = row.linear is not None and v <= row.linear
+        yield EnvelopePoint(cut.length, v, value, binding, quintic, linear)
+
+
+def _objective(machine: Machine, cut: Cut, limits: Limits, objective: Objective) -> float | None:
+    try:
+        back = solve_return(return_problem(machine, cut, limits, objective))[0]
+    except SolverError:
+        return None
+    order = 2 if objective.endswith("acceleration") else 3
+    return objective_value(back, objective) * cut.line_speed**order
+
+
+def quintic_speed(machine: Machine, cut: Cut, limits: Limits) -> float | None:
+    """Highest line speed at which the quintic return keeps all limits, exactly: its shape over the master does not depend on the speed.
+
+    None if it reverses where it may not, or leaves the stroke.
+    """
+    problem = return_problem(machine, replace(cut, line_speed=1.0), limits, "peak_acceleration")
+    sync = machine.sync_profile(cut)
+    straight = is_straight(machine, cut) and cut.sync_ratio == 1.0
+    back = (
+        quintic_return(cut.return_zone, problem.height)
+        if straight
+        else quintic_between(sync, cut.return_zone, problem.height)
+    )
+    cycle = assemble(back, machine, replace(cut, origin="return"))
+    low, high = cycle.extrema(1)
+    if low.value < -ROUNDING * high.value and not (limits.reversal or machine.turns_back):
+        return None
+    place = back.extrema(0)
+    if place[0].value < problem.least_position or place[1].value > problem.greatest_position:
+        return None
+    speed, slope, jerk = max(high.value, -low.value), _peak(cycle, 2), _peak(cycle, 3)
+    bounds = [limits.speed / speed]
+    bounds += [math.sqrt(limits.acceleration / slope)] if slope > 0 else []
+    bounds += [math.cbrt(limits.jerk / jerk)] if jerk > 0 else []
+    return min(bounds)
+
+
+def linear_speed(machine: Machine, cut: Cut, limits: Limits) -> float | None:
+    """Highest line speed at which the linear return keeps the speed limit (S1, eq. 8); None if it would reverse where it may not."""
+    sync = machine.sync_profile(cut)
+    ratio = (machine.pitch - sync.advance) / cut.return_zone
+    if ratio < 0 and not (limits.reversal or machine.turns_back):
+        return None
+    return limits.speed / max(abs(ratio), sync.extrema(1)[1].value)
+
+
+def _peak(profile: CamProfile, order: int) -> float:
+    return max(abs(extremum.value) for extremum in profile.extrema(order))

@@ -1,0 +1,243 @@
+"""Whether a job can be done at all, what each limit would have to be, and which limit binds.
+
+Whether a return is possible is a closed form for every machine (`camwright.design.returns.possible`), so the edges of what is possible
+are found by
+bisection.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+from camwright.design.returns.curve_limits import motor_limits
+from camwright.design.returns.possible import is_possible
+from camwright.design.returns.problem import ReturnProblem, return_problem
+from camwright.design.returns.scaling import resolved
+from camwright.profiles.closed_forms.overshoot import least_overshoot
+from camwright.profiles.closed_forms.transfer import Bounds
+from camwright.profiles.cut import Cut
+from camwright.profiles.errors import InputError
+from camwright.profiles.limits import Limits
+from camwright.profiles.machines import LinearCarriage, Machine
+from camwright.profiles.polynomial.profile import CamProfile
+
+LIMIT_NAMES = ("speed", "acceleration", "jerk")
+# The sync zone may use this much more than a limit: rounding.
+ALLOWED = 1e-9
+# Edges are found to this share.
+EDGE = 1e-12
+# The least peak is found to this share.
+PEAK = 1e-6
+# "Unlimited", as a multiple of the limit.
+FREE = 1e6
+# A search for an edge starts with steps of this factor.
+STRIDE = 4.0
+
+
+@dataclass(frozen=True)
+class Demand:
+    """A return and its sync zone over the master, to be held against limits that are multiples of those given.
+
+    Parameters
+    ----------
+    problem
+        The return.
+    shares
+        Shares of the limits of speed, acceleration and jerk that the sync zone uses.
+    """
+
+    problem: ReturnProblem
+    shares: tuple[float, float, float]
+
+    def met(self, speed: float = 1.0, acceleration: float = 1.0, jerk: float = 1.0) -> bool:
+        """Tell whether limits that are these multiples of the given ones are kept by some motion."""
+        of_speed, of_acceleration, of_jerk = self.shares
+        if (
+            of_speed > speed * (1 + ALLOWED)
+            or of_acceleration > acceleration * (1 + ALLOWED)
+            or of_jerk > jerk * (1 + ALLOWED)
+        ):
+            return False
+        given = self.problem
+        # dataclasses.replace takes several times as long, and this is asked thousands of times
+        problem = ReturnProblem(
+            given.length,
+            given.height,
+            given.start_ratio,
+            given.end_ratio,
+            given.start_slope,
+            given.end_slope,
+            given.least_ratio * speed,
+            given.greatest_ratio * speed,
+            given.greatest_slope * acceleration,
+            given.greatest_jerk * jerk,
+            given.objective,
+            given.least_position,
+            given.greatest_position,
+        )
+        return is_possible(resolved(problem))
+
+
+def demands(machine: Machine, cut: Cut, limits: Limits) -> tuple[Demand, ...]:
+    """Make a job's demand on each of the limits that its motor's curve stands for; none if the machine cannot be in sync at all."""
+    found = []
+    for each in motor_limits(machine, limits):
+        try:
+            problem = return_problem(machine, cut, each, "peak_acceleration")
+            ratio, slope, jerk = _sync_peaks(machine.sync_profile(cut))
+        except InputError:
+            return ()
+        shares = (ratio / problem.greatest_ratio, slope / problem.greatest_slope, jerk / problem.greatest_jerk)
+        found.append(Demand(problem, shares))
+    return tuple(found)
+
+
+@lru_cache(maxsize=256)
+def _sync_peaks(sync: CamProfile) -> tuple[float, float, float]:
+    """Greatest ratio, ratio slope and its slope in a sync zone, as magnitudes."""
+    slope, jerk = (max(abs(extremum.value) for extremum in sync.extrema(order)) for order in (2, 3))
+    return sync.extrema(1)[1].value, slope, jerk
+
+
+def is_feasible(machine: Machine, cut: Cut, limits: Limits) -> bool:
+    """Tell whether some motion keeps the limits. A zone that the machine cannot be in sync over counts as infeasible."""
+    return any(demand.met() for demand in demands(machine, cut, limits))
+
+
+def margin(machine: Machine, cut: Cut, limits: Limits) -> float:
+    """Least common factor on the limits with which the machine can do the cut, sync zone and return; at most 1 if it can.
+
+    Infinite where the machine cannot be in sync over the zone at all, or where no limits would be enough.
+    """
+    found = [least_factor(lambda f, each=demand: each.met(f, f, f)) for demand in demands(machine, cut, limits)]  # type: ignore[misc]
+    return min(found, default=math.inf)
+
+
+def least_limit(machine: Machine, cut: Cut, limits: Limits, name: str) -> float:
+    """Least value of one limit that is enough for sync zone and return, the others as they are; infinite if the given one is not enough."""
+    place = LIMIT_NAMES.index(name)
+    found = [
+        least_factor(lambda f, each=demand: f <= 1.0 and each.met(*(f if k == place else 1.0 for k in range(3))), PEAK)  # type: ignore[misc]
+        for demand in demands(machine, cut, limits)
+        if demand.met()
+    ]
+    return float(getattr(limits, name)) * min(found, default=math.inf)
+
+
+def slowdown(machine: Machine, cut: Cut, limits: Limits, tolerance: float = EDGE) -> float:
+    """Greatest factor on the line speed with which the machine can do the cut; zero if it cannot at any speed."""
+    found = [
+        least_factor(lambda f, each=demand: each.met(f, f**2, f**3), tolerance)  # type: ignore[misc]
+        for demand in demands(machine, cut, limits)
+    ]
+    return 1.0 / min(found, default=math.inf)
+
+
+def least_factor(works: Callable[[float], bool], tolerance: float = EDGE) -> float:
+    """Least positive factor that works, where all greater ones do too; infinite if none up to `FREE` does."""
+    good = bad = 1.0
+    if works(1.0):
+        while works(bad / STRIDE):
+            good = bad = bad / STRIDE
+            if bad < 1 / FREE:
+                return bad
+        bad /= STRIDE
+    else:
+        while not works(good * STRIDE):
+            good = bad = good * STRIDE
+            if good > FREE:
+                return math.inf
+        good *= STRIDE
+    found = edge(works, good, bad, tolerance)
+    return math.inf if found is None else found
+
+
+def needed_limits(machine: Machine, cut: Cut, limits: Limits) -> dict[str, float]:
+    """Least value of each limit that would do, the others as they are (over time, slave unit), infinite where none does.
+
+    For a carriage also its ``"stroke"`` (m).
+    """
+    asked = demands(machine, cut, limits)
+
+    def works(name: str, factor: float) -> bool:
+        if limits.motor is None:  # then a limit's factor is its demand's
+            return any(demand.met(**{name: factor}) for demand in asked)
+        return is_feasible(machine, cut, with_limit(limits, name, float(getattr(limits, name)) * factor))
+
+    def alone(name: str) -> float:
+        return float(getattr(limits, name)) * least_factor(lambda f: f >= 1.0 and works(name, f))
+
+    need = {name: alone(name) for name in LIMIT_NAMES}
+    if isinstance(machine, LinearCarriage):
+        need["stroke"] = _stroke_needed(machine, cut, limits)
+    return need
+
+
+def _stroke_needed(machine: LinearCarriage, cut: Cut, limits: Limits) -> float:
+    """Least stroke with which the job works (m); infinite if none does."""
+    travel = cut.sync_ratio * cut.sync_zone
+    wide = replace(machine, stroke=max(machine.stroke, 2 * travel))
+    found = math.inf
+    for demand in demands(wide, cut, limits):
+        problem = resolved(demand.problem)
+        bounds = Bounds(problem.least_ratio, problem.greatest_ratio, problem.greatest_slope, problem.greatest_jerk)
+        beyond = least_overshoot(problem.length, problem.start_ratio, -problem.height, bounds)
+        if beyond is not None and max(demand.shares) <= 1 + ALLOWED:
+            found = min(found, travel + 2 * beyond.distance)
+    return found
+
+
+def binding_limit(machine: Machine, cut: Cut, limits: Limits, need: dict[str, float]) -> str:
+    """Name the limit that binds: the one that would have to give least, were it the only one to give.
+
+    Where no single limit would be enough it is the one whose release helps most; ``"reversal"`` where running backwards would be
+    enough; ``"sync_zone"`` where the machine cannot be in sync over the zone; ``"motor"`` where the slave's own limits would do.
+
+    Parameters
+    ----------
+    need
+        What `needed_limits` says.
+    """
+    if limits.motor is not None:
+        alone = replace(limits, motor=None)
+        if is_feasible(machine, cut, alone):
+            return "motor"
+        limits, need = alone, needed_limits(machine, cut, alone)
+    if not demands(machine, cut, limits):
+        return "sync_zone"
+    if not (limits.reversal or machine.turns_back) and is_feasible(machine, cut, replace(limits, reversal=True)):
+        return "reversal"
+    share = {name: value / _have(machine, limits, name) for name, value in need.items()}
+    binding = min(share, key=lambda name: share[name])
+    if math.isfinite(share[binding]):
+        return binding
+    rest = {name: margin(machine, cut, with_limit(limits, name, FREE * getattr(limits, name))) for name in LIMIT_NAMES}
+    return min(rest, key=lambda name: rest[name])
+
+
+def _have(machine: Machine, limits: Limits, name: str) -> float:
+    return machine.stroke if name == "stroke" and isinstance(machine, LinearCarriage) else float(getattr(limits, name))
+
+
+def with_limit(limits: Limits, name: str, value: float) -> Limits:
+    """Change one limit: ``"speed"``, ``"acceleration"`` or ``"jerk"``."""
+    changed = {"speed": limits.speed, "acceleration": limits.acceleration, "jerk": limits.jerk, name: value}
+    return Limits(changed["speed"], changed["acceleration"], changed["jerk"], limits.reversal, limits.motor)
+
+
+def edge(works: Callable[[float], bool], good: float, bad: float, tolerance: float = 0.0) -> float | None:
+    """Find the value nearest to ``bad`` that works, by bisection from ``good``; None if ``good`` does not work."""
+    if not works(good):
+        return None
+    while abs(good - bad) > tolerance * abs(bad):
+        middle = 0.5 * (good + bad)
+        if middle in (good, bad):
+            break
+        if works(middle):
+            good = middle
+        else:
+            bad = middle
+    return good

@@ -1,0 +1,223 @@
+"""The refusal of a job that no motion can do: what binds, by how much, and the nearest single changes that work."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+from camwright.design.feasible.feasibility import (
+    LIMIT_NAMES,
+    binding_limit,
+    edge,
+    is_feasible,
+    least_factor,
+    needed_limits,
+    slowdown,
+    with_limit,
+)
+from camwright.profiles.cut import Cut
+from camwright.profiles.errors import InfeasibleError, Suggestion
+from camwright.profiles.limits import Limits
+from camwright.profiles.machines import LinearCarriage, Machine
+from camwright.profiles.motor import MotorCurve
+
+# Suggested values are rounded to this many digits, towards the safe side; to more where that misses.
+DIGITS = (4, 6, 9, 15)
+# Suggestions keep this share away from the edge, so that the motion is not the only one.
+ASIDE = 1e-3
+# Cut lengths are looked for in steps of this factor, up to the longest multiple of the job's.
+STEP = 2**0.125
+LONGEST = 64.0
+# Edges of the cut length are found to this share.
+EDGE = 1e-9
+
+_UNITS = {
+    "m": {"speed": (60.0, "m/min"), "acceleration": (1.0, "m/s^2"), "jerk": (1.0, "m/s^3")},
+    "rad": {"speed": (30.0 / math.pi, "rpm"), "acceleration": (1.0, "rad/s^2"), "jerk": (1.0, "rad/s^3")},
+}
+
+
+def require_feasible(machine: Machine, cut: Cut, limits: Limits, *, suggest: bool = True) -> None:
+    """Refuse a job that no motion can do.
+
+    Parameters
+    ----------
+    machine, cut, limits
+        The job.
+    suggest
+        Whether to look for what would work.
+
+    Raises
+    ------
+    InfeasibleError
+        With the limit that binds, by how much, and the nearest line speed, cut length or limit that works.
+    """
+    if not is_feasible(machine, cut, limits):
+        raise infeasible(machine, cut, limits, suggest=suggest)
+
+
+def infeasible(
+    machine: Machine, cut: Cut, limits: Limits, *, suggest: bool = True, load: float | None = None
+) -> InfeasibleError:
+    """Say why a job is infeasible and, if asked, what would work; every suggestion has been checked.
+
+    Parameters
+    ----------
+    machine, cut, limits
+        The job.
+    suggest
+        Whether to look for what would work.
+    load
+        Least share of the motor's torque that a motion needs, if that is known; else the motor's rectangles tell
+        (`camwright.design.returns.curve_limits.motor_limits`).
+    """
+    need = needed_limits(machine, cut, limits)
+    binding = binding_limit(machine, cut, limits, need)
+    torque = _torque_needed(machine, cut, limits) if load is None else load
+    excess, unit, words = _words(binding, need, torque, machine, limits, cut)
+    message = (
+        f"no motion returns the slave in time: {words} ([cut] length {cut.length * 1e3:g} mm at [cut] line_speed "
+        f"{cut.line_speed * 60:g} m/min, sync zone {cut.sync_zone * 1e3:g} mm)"
+    )
+    if not suggest:
+        return InfeasibleError(message, binding, excess, unit, ())
+    suggestions = tuple(_suggestions(machine, cut, limits, need, torque))
+    offers = "; ".join(_offer(suggestion) for suggestion in suggestions)
+    return InfeasibleError(
+        f"{message}. "
+        + (f"What works, each alone: {offers}" if offers else "No single change of speed, length or limit works"),
+        binding,
+        excess,
+        unit,
+        suggestions,
+    )
+
+
+def _torque_needed(machine: Machine, cut: Cut, limits: Limits) -> float:
+    """Factor on the torque of the motor's curve that would do; infinite if there is no curve, or no torque is enough."""
+    curve = limits.motor
+    if curve is None:
+        return math.inf
+    return least_factor(lambda f: f >= 1.0 and is_feasible(machine, cut, replace(limits, motor=_stronger(curve, f))))
+
+
+def _stronger(curve: MotorCurve, factor: float) -> MotorCurve:
+    return MotorCurve(tuple((speed, torque * factor) for speed, torque in curve.points))
+
+
+def _words(
+    binding: str, need: dict[str, float], torque: float, machine: Machine, limits: Limits, cut: Cut
+) -> tuple[float | None, str, str]:
+    """By how much the binding limit is exceeded, its unit, and both in words."""
+    if binding == "reversal":
+        return (
+            None,
+            "",
+            f"[limits] reversal = false binds, the slave would have to run backwards from {cut.line_speed * 60:g} m/min",
+        )
+    if binding == "sync_zone":
+        return None, "", "[cut] sync_zone binds, the machine cannot be in sync over it"
+    if binding == "motor":
+        if math.isinf(torque):
+            return None, "%", "[limits] motor binds, the motor does not reach the speed that is needed"
+        more = 100 * (torque - 1)
+        return more, "%", f"[limits] motor binds, {more:.3g} % more torque is needed at the speeds of the motion"
+    if binding == "stroke" and isinstance(machine, LinearCarriage):
+        have, needed, unit, place = machine.stroke * 1e3, need["stroke"] * 1e3, "mm", "[machine] stroke"
+    else:
+        factor, unit = _UNITS[machine.slave_unit][binding]
+        have, needed, place = getattr(limits, binding) * factor, need[binding] * factor, f"[limits] {binding}"
+    if not math.isfinite(needed):
+        return None, unit, f"{place} {have:g} {unit} binds, and no other value of it alone would do"
+    share = 100 * (needed / have - 1)
+    return (
+        needed - have,
+        unit,
+        f"{place} binds, {needed:.6g} {unit} is needed, {have:g} {unit} is given ({share:.3g} % too little)",
+    )
+
+
+def _suggestions(
+    machine: Machine, cut: Cut, limits: Limits, need: dict[str, float], torque: float
+) -> Iterator[Suggestion]:
+    """Nearest changes that work: line speed, cut length, stroke, each limit, motor, reversal; each checked as it is written."""
+
+    def at_speed(v: float) -> bool:
+        return is_feasible(machine, replace(cut, line_speed=v), limits)
+
+    def at_length(length: float) -> bool:
+        return length > cut.sync_zone and is_feasible(machine, replace(cut, length=length), limits)
+
+    slower = slowdown(machine, cut, limits)
+    if slower > 0:
+        yield from _written("line_speed", slower * cut.line_speed, 60.0, "m/min", False, at_speed)
+    length = _nearest_length(at_length, machine, cut)
+    if length is not None:
+        yield from _written("length", length, 1e3, "mm", length > cut.length, at_length)
+    if isinstance(machine, LinearCarriage) and machine.stroke < need["stroke"] < math.inf:
+
+        def with_stroke(stroke: float) -> bool:
+            return is_feasible(replace(machine, stroke=stroke), cut, limits)
+
+        yield from _written("stroke", need["stroke"], 1e3, "mm", True, with_stroke)
+    for name in LIMIT_NAMES:
+        if not getattr(limits, name) < need[name] < math.inf:
+            continue
+
+        def with_value(value: float, name: str = name) -> bool:
+            return is_feasible(machine, cut, with_limit(limits, name, value))
+
+        factor, unit = _UNITS[machine.slave_unit][name]
+        yield from _written(name, need[name], factor, unit, True, with_value)
+    if limits.motor is not None and 1.0 < torque < math.inf:
+        yield from _written("motor", torque, 100.0, "%", True, lambda factor: factor > torque)
+    if not (limits.reversal or machine.turns_back) and is_feasible(machine, cut, replace(limits, reversal=True)):
+        yield Suggestion("reversal", 1.0, "")
+
+
+def _written(
+    change: str, value: float, factor: float, unit: str, up: bool, works: Callable[[float], bool]
+) -> Iterator[Suggestion]:
+    """Write a value at an edge a little aside of it, in a unit, with as few digits as work."""
+    safe = value * (1 + ASIDE if up else 1 - ASIDE)
+    for digits in DIGITS:
+        rounded = rounded_to(safe * factor, digits, up)
+        if works(rounded / factor):
+            yield Suggestion(change, rounded, unit)
+            return
+
+
+def _nearest_length(works: Callable[[float], bool], machine: Machine, cut: Cut) -> float | None:
+    """Find the cut length nearest to the job's that works, looking at longer and shorter ones in steps; None if none does.
+
+    Among them is the one at which a slave as fast as it leaves the sync zone would be back just in time: it can be the only one.
+    """
+    sync = machine.sync_profile(cut)
+    easy = (cut.sync_zone + (machine.pitch - sync.advance) / float(sync(sync.end, 1))) / cut.length
+    count = 1 + round(math.log(LONGEST) / math.log(STEP))
+    factors = [STEP**number for number in range(1 - count, count)]
+    factors += [easy] if easy > 0 else []
+    for factor in sorted(factors, key=lambda factor: abs(math.log(factor))):
+        if factor != 1.0 and works(cut.length * factor):
+            bad = factor / STEP if factor > 1.0 else factor * STEP
+            bad = max(bad, 1.0) if factor > 1.0 else min(bad, 1.0)
+            return edge(works, cut.length * factor, cut.length * bad, EDGE)
+    return None
+
+
+def rounded_to(value: float, digits: int, up: bool) -> float:
+    """Round to a number of digits, up or down."""
+    scale = 10.0 ** (digits - 1 - math.floor(math.log10(abs(value))))
+    return (math.ceil(value * scale - 1e-6) if up else math.floor(value * scale + 1e-6)) / scale
+
+
+def _offer(suggestion: Suggestion) -> str:
+    """Write a suggestion as it would stand in the job file."""
+    table = {"line_speed": "cut", "length": "cut", "stroke": "machine"}.get(suggestion.change, "limits")
+    place = f"[{table}] {suggestion.change}"
+    if suggestion.change == "reversal":
+        return f"{place} = true"
+    if suggestion.change == "motor":
+        return f"{place} with {suggestion.value:.15g} % of its torque"
+    return f'{place} = "{suggestion.value:.15g} {suggestion.unit}"'

@@ -1,0 +1,263 @@
+"""From a cutting machine's job to a cycle whose axis keeps to the material."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from typing import Literal
+
+from camwright.design.feasible.refusal import require_feasible
+from camwright.design.optimise import (
+    MOTION_OBJECTIVES,
+    Objective,
+    Solution,
+    motion_objective,
+    require_moving,
+    solve,
+)
+from camwright.design.returns.curve_limits import motor_limits, motor_speed_limits
+from camwright.design.returns.ipopt import SolveStatus
+from camwright.design.servo_aware.axis_motion import AxisMotion, design_axis, servo_blind_optimum
+from camwright.design.servo_aware.command_basis import Command
+from camwright.design.servo_aware.programme import AxisProblem, AxisProgramme, Cost
+from camwright.design.servo_aware.rows import RATIO
+from camwright.profiles.cut import Cut
+from camwright.profiles.errors import (
+    InfeasibleError,
+    InputError,
+    SolverError,
+    Suggestion,
+)
+from camwright.profiles.limits import Limits
+from camwright.profiles.machines import CrankSlider, Machine
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.returns import assemble
+from camwright.profiles.servo import Servo
+
+AxisObjective = Objective | Literal["sync_error"]
+"""What a servo-aware design may be asked for."""
+
+# Suggested values are searched to this share, and stand aside by it from the edge.
+ASIDE = 2e-3
+# What works by a programme alone is designed; where that fails it is taken further by these factors.
+FURTHER = (1.0, 1.02, 1.1)
+# Shares of the least tolerance that a programme keeps, tried in turn.
+WIDER = (1.0 + ASIDE, 1.01, 1.1, 1.5)
+# Cuts up to so many times the asked length, and line speeds down to such a share, are looked at for a way out.
+LONGEST, SLOWEST = 8.0, 0.02
+
+
+def solve_axis(
+    machine: Machine,
+    cut: Cut,
+    limits: Limits,
+    objective: AxisObjective,
+    command: Command,
+    servos: tuple[Servo, ...],
+    between: tuple[Servo, ...] = (),
+    *,
+    suggest: bool = True,
+) -> Solution:
+    """Design the cycle of a cutting machine whose axis keeps to the material in the shear zone.
+
+    The limits hold for the command, and for the axis too wherever the tolerance can then still be kept; `Solution.axis` says whether.
+
+    Parameters
+    ----------
+    machine, cut, limits
+        As for `camwright.design.optimise.solve`; the cut's sync tolerance is what the axis may be off.
+    objective
+        What is made least.
+    command
+        Whether the command keeps ``k = 1`` in the whole sync zone (``"in_sync"``), or may be anything that brings the axis into sync in
+        the shear zone (``"shaped"``).
+    servos
+        Servos with which the tolerance must be kept, the nominal one first.
+    between
+        Servos between the corners of the ranges, which must keep the tolerance too, or be hardly worse than the corners.
+    suggest
+        Whether an `InfeasibleError` says what would work; finding that takes longer than the design.
+
+    Raises
+    ------
+    InfeasibleError
+        No command keeps the limits, or none brings the axis into the tolerance.
+    InputError
+        The servo is unstable; a torque is to be made least of a machine that moves nothing.
+    SolverError
+        The solver failed.
+    """
+    require_moving(machine, objective)
+    cost = _cost(machine, objective)
+    blind = None
+    if command == "in_sync" or (isinstance(machine, CrankSlider) and math.isnan(machine.sync_at)):
+        blind = solve(machine, cut, limits, "peak_acceleration" if cost == "sync_error" else cost, suggest=suggest)
+    placed = machine if blind is None else blind.machine
+    structure = None if blind is None or command == "shaped" else blind.back
+    problem = AxisProblem(placed, cut, limits, command, servos, True, structure, between)
+    order = 2 if cost.endswith("acceleration") else 3 if cost.endswith("jerk") else 0
+    # the servo-blind optimum keeps the motor's curve, though it may lie in none of the rectangles that stand for it
+    by_motor = replace(problem, limits=motor_speed_limits(placed, limits))
+    motions = _kept(by_motor, cost) if limits.motor is not None else []
+    if not motions:
+        found = [_either(replace(problem, limits=each), cost) for each in motor_limits(placed, limits)]
+        motions = [motion for motion in found if motion is not None]
+    if not motions and limits.motor is not None:
+        motions = _kept(replace(by_motor, axis_limits=False), cost)
+    if not motions and blind is not None and command == "in_sync":
+        motions = _without_choice(
+            problem, blind, None if cost == "sync_error" else blind.objective / cut.line_speed**order
+        )
+    if not motions:
+        loosest = replace(problem, limits=motor_speed_limits(placed, limits), axis_limits=False)
+
+        def settles(other: Cut) -> bool:
+            try:
+                solve_axis(machine, other, limits, objective, command, servos, between, suggest=False)
+            except (InfeasibleError, InputError, SolverError):
+                return False
+            return True
+
+        raise _infeasible(loosest, settles if suggest else None)
+    motion = min(motions, key=lambda each: each.value)
+    status = blind.status if blind is not None and not motion.programmes else SolveStatus.ON_GRID
+    return _solution(motion, status, placed, cut, objective, order)
+
+
+def _kept(problem: AxisProblem, cost: Cost) -> list[AxisMotion]:
+    """Take the servo-blind optimum of a job in sync where its axis keeps to everything."""
+    kept = None if cost == "sync_error" else servo_blind_optimum(AxisProgramme(problem), cost)
+    return [] if kept is None else [kept]
+
+
+def _solution(
+    motion: AxisMotion, status: SolveStatus, machine: Machine, cut: Cut, objective: AxisObjective, order: int
+) -> Solution:
+    """Put a motion as the cycle that was asked for."""
+    profile = motion.profile
+    back = profile.restrict(0.0, cut.return_zone)
+    if cut.origin == "cut":
+        profile = _from_mid_sync(profile, machine, cut)
+    name: Objective = "peak_acceleration" if objective == "sync_error" else objective
+    value = motion.value * cut.line_speed**order
+    return Solution(machine, profile, back, status, name, value, motion.programmes, axis=motion)
+
+
+def _cost(machine: Machine, objective: AxisObjective) -> Cost:
+    """Objective of the motion that a programme can minimise."""
+    if objective == "sync_error" or objective in MOTION_OBJECTIVES:
+        return objective
+    return motion_objective(machine, objective) or objective
+
+
+def _either(problem: AxisProblem, cost: Cost) -> AxisMotion | None:
+    """Design with the limits held by the axis too; without, where that costs the tolerance."""
+    try:
+        strict = design_axis(problem, cost)
+    except SolverError:
+        strict = None
+    if strict is not None and strict.axis_limits and strict.error <= problem.cut.sync_tolerance:
+        return strict
+    return design_axis(replace(problem, axis_limits=False), cost)
+
+
+def _without_choice(problem: AxisProblem, blind: Solution, value: float | None) -> list[AxisMotion]:
+    """Take the servo-blind command where the limits leave no other, if its axis will do; ``value`` as in `AxisMotion`."""
+    programme = AxisProgramme(replace(problem, axis_limits=False))
+    if programme.least_share() is not None:
+        return []
+    profile = assemble(blind.back, problem.machine, replace(problem.cut, origin="return"))
+    errors = programme.errors(profile)
+    if value is not None and max(errors) > problem.cut.sync_tolerance:
+        return []
+    kept = programme.keeps_axis_limits(profile)
+    return [AxisMotion(profile, errors, max(errors) if value is None else value, programme.solved, kept)]
+
+
+def _from_mid_sync(profile: CamProfile, machine: Machine, cut: Cut) -> CamProfile:
+    """Count master and slave from mid sync zone, the slave from where the machine is in sync there."""
+    at = cut.length - 0.5 * cut.sync_zone
+    sync = machine.sync_profile(cut)
+    in_sync = machine.pitch - sync.advance + float(sync(0.5 * cut.sync_zone)) - float(sync(sync.start))
+    return profile.roll(at).shift(slave=float(profile(at)) - in_sync)
+
+
+def _infeasible(problem: AxisProblem, settles: Callable[[Cut], bool] | None) -> InfeasibleError:
+    """Say by how much the tolerance is missed, and, of a way to tell whether a cut can be designed, what would keep it."""
+    tolerance, cut = problem.cut.sync_tolerance, problem.cut
+    share = AxisProgramme(problem).least_share()
+    if share is None:
+        if problem.structure is None:
+            require_feasible(problem.machine, cut, problem.limits, suggest=settles is not None)
+            raise SolverError(
+                "a servo-aware design found no command that keeps the limits although the job allows one; report this job"
+            )
+        only = assemble(problem.structure, problem.machine, replace(cut, origin="return"))
+        share = max(AxisProgramme(problem).errors(only)) / tolerance
+    needed = max(1.0, share) * tolerance
+    suggestions = () if settles is None else tuple(_suggestions(problem, needed, settles))
+    ways = "; ".join(f"{each.change} {each.value:.6g} {each.unit}" for each in suggestions)
+    excess = (needed - tolerance) * 1e3
+    return InfeasibleError(
+        f"[cut] sync_tolerance = {tolerance * 1e3:g} mm: no {problem.command} command within the limits holds the axis to it in the shear "
+        f"zone and the ratio of the axis to {_percent(cut, tolerance)} (twice the tolerance over the shear zone); the least that one holds "
+        f"is {needed * 1e3:.6g} mm and {_percent(cut, needed)}, {excess:.4g} mm too much"
+        + (f"; what works: {ways}" if ways else ""),
+        "sync_tolerance",
+        excess,
+        "mm",
+        suggestions,
+    )
+
+
+def _suggestions(problem: AxisProblem, needed: float, settles: Callable[[Cut], bool]) -> Iterator[Suggestion]:
+    """Search a tolerance, a line speed and a cut length that work, each alone and each designed once."""
+    cut = problem.cut
+    for factor in WIDER:
+        if settles(replace(cut, sync_tolerance=factor * needed)):
+            yield Suggestion("sync_tolerance", factor * needed * 1e3, "mm")
+            break
+    changes: tuple[tuple[str, str, float, float, Callable[[float], Cut]], ...] = (
+        ("line_speed", "m/min", 60.0, 1 / SLOWEST, lambda share: replace(cut, line_speed=cut.line_speed / share)),
+        ("length", "mm", 1e3, LONGEST, lambda share: replace(cut, length=share * cut.length)),
+    )
+    for name, unit, per, most, changed in changes:
+
+        def works(share: float, changed: Callable[[float], Cut] = changed) -> bool:
+            return _works(replace(problem, cut=changed(share), structure=None))
+
+        found = _nearest(works, most)
+        if found is None:
+            continue
+        for factor in FURTHER:
+            other = changed(found * factor)
+            if settles(other):
+                yield Suggestion(name, getattr(other, name) * per, unit)
+                break
+
+
+def _percent(cut: Cut, tolerance: float) -> str:
+    """Error of the ratio that goes with a tolerance."""
+    return f"{100 * RATIO * tolerance / cut.shear_zone:.3g} %" if cut.shear_zone else "any"
+
+
+def _works(problem: AxisProblem) -> bool:
+    """Whether a command brings the axis into the tolerance."""
+    try:
+        return AxisProgramme(problem).reaches()
+    except (InputError, SolverError):
+        return False
+
+
+def _nearest(works: Callable[[float], bool], most: float) -> float | None:
+    """Least share above 1 found to work: grown until it does, then bisected; ``None`` if none up to ``most`` works."""
+    low, high = 1.0, 1.0 + ASIDE
+    while not works(high):
+        low, high = high, 2.0 * high - 1.0
+        if high > most:
+            return None
+    while high - low > ASIDE * high:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if works(middle) else (middle, high)
+    return high

@@ -1,0 +1,98 @@
+"""Where on the crank the sync zone should lie: the one number that a crank leaves open."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from camwright.profiles.cut import Cut
+from camwright.profiles.errors import InputError
+from camwright.profiles.machines import CrankSlider
+
+PLACES = 9
+"""Places looked at first, evenly over the range that leaves room for the sync zone."""
+MARGIN = 0.02
+"""Share of that range kept free at both ends: at a dead centre the crank would need infinite speed."""
+RESOLUTION = 2e-3
+"""Accuracy of the place (rad), 0.1°; about a valley the objective changes with its square."""
+_GOLDEN = (math.sqrt(5) - 1) / 2
+
+
+@dataclass(frozen=True)
+class Placement:
+    """A chosen place and what is known about the choice.
+
+    Parameters
+    ----------
+    machine
+        The crank with its sync zone placed.
+    cost
+        Objective there.
+    valleys
+        Local minima seen among the places looked at first; 1 means that all of them led to the same place.
+    """
+
+    machine: CrankSlider
+    cost: float
+    valleys: int
+
+
+def place_sync(machine: CrankSlider, cut: Cut, cost: Callable[[CrankSlider], float]) -> Placement | None:
+    """Choose the crank angle at mid sync zone that makes a cost least, by a scan and golden sections around its best places.
+
+    Returns None if no place has a finite cost.
+
+    Raises
+    ------
+    InputError
+        The sync zone is longer than the crank's stroke.
+    """
+    if cut.sync_ratio * cut.sync_zone >= machine.stroke:
+        raise InputError(
+            f"[cut] sync_zone needs {cut.sync_ratio * cut.sync_zone * 1e3:.6g} mm of carriage travel, the crank's stroke is "
+            f"{machine.stroke * 1e3:.6g} mm; shorten the sync zone below {machine.stroke / cut.sync_ratio * 1e3:.6g} mm or take a "
+            f"longer crank"
+        )
+    least, greatest = machine.sync_range(cut)
+    margin = MARGIN * (greatest - least)
+    angles = np.linspace(least + margin, greatest - margin, PLACES)
+
+    def at(angle: float) -> float:
+        return cost(replace(machine, sync_at=angle))
+
+    costs = [at(float(angle)) for angle in angles]
+    if not any(math.isfinite(value) for value in costs):
+        return None
+    valleys = [
+        i
+        for i, value in enumerate(costs)
+        if math.isfinite(value) and value <= min(costs[max(0, i - 1)], costs[min(PLACES - 1, i + 1)])
+    ]
+    best = (math.inf, 0.0)
+    for i in valleys:
+        best = min(
+            best,
+            _golden(
+                at, float(angles[max(0, i - 1)]), float(angles[min(PLACES - 1, i + 1)]), (costs[i], float(angles[i]))
+            ),
+        )
+    return Placement(replace(machine, sync_at=best[1]), best[0], len(valleys))
+
+
+def _golden(at: Callable[[float], float], low: float, high: float, best: tuple[float, float]) -> tuple[float, float]:
+    left, right = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
+    cost_left, cost_right = at(left), at(right)
+    while high - low > RESOLUTION:
+        best = min(best, (cost_left, left), (cost_right, right))
+        if cost_left <= cost_right:
+            high, right, cost_right = right, left, cost_left
+            left = high - _GOLDEN * (high - low)
+            cost_left = at(left)
+        else:
+            low, left, cost_left = left, right, cost_right
+            right = low + _GOLDEN * (high - low)
+            cost_right = at(right)
+    return min(best, (cost_left, left), (cost_right, right))

@@ -1,0 +1,95 @@
+"""What a place of the sync zone on a crank costs, by the objective that the whole design has."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+
+from camwright.design.feasible.feasibility import is_feasible, least_limit, margin
+from camwright.design.place import Placement, place_sync
+from camwright.design.returns.curve_limits import motor_limits, motor_speed_limits
+from camwright.design.returns.possible import possible_rms
+from camwright.design.returns.problem import Objective, return_problem
+from camwright.design.returns.solver import grid_objective
+from camwright.design.torque.within_curve import load
+from camwright.profiles.cut import Cut
+from camwright.profiles.limits import Limits
+from camwright.profiles.machines import CrankSlider
+from camwright.profiles.returns import baseline, slave_at_start
+
+MISSING = 1e30
+"""Where limits are not enough the cost is this, far above any objective, times the factor on the limits that would be."""
+FAR = 1e30
+"""The same for limits of the slave over those of the motor."""
+ANGLES = 721
+"""Places of the cycle at which the torque of a stand-in is taken."""
+
+
+def place_for(
+    machine: CrankSlider,
+    cut: Cut,
+    limits: Limits,
+    objective: Objective | Literal["rms_torque", "peak_torque", "energy"],
+) -> Placement:
+    """Place the sync zone where an objective is least, or, where the limits are not enough at any place, where least is missing.
+
+    A peak is that of the whole cycle, for the sync zone can have a higher one than the return. Root mean squares are those of the return,
+    on a grid.
+
+    Raises
+    ------
+    InputError
+        The sync zone is longer than the crank's stroke.
+    """
+
+    def cost(placed: CrankSlider) -> float:
+        if not is_feasible(placed, cut, limits):
+            return MISSING * _missing(placed, cut, limits)
+        match objective:
+            case "peak_acceleration":
+                return least_limit(placed, cut, limits, "acceleration")
+            case "peak_jerk":
+                return least_limit(placed, cut, limits, "jerk")
+            case "rms_acceleration" | "rms_jerk":
+                return _rms(placed, cut, limits, objective)
+        return _torque(placed, cut)
+
+    found = place_sync(machine, cut, cost)
+    if found is None:
+        least, greatest = machine.sync_range(cut)
+        return Placement(replace(machine, sync_at=0.5 * (least + greatest)), math.inf, 1)
+    return found
+
+
+def _missing(machine: CrankSlider, cut: Cut, limits: Limits) -> float:
+    """How much is missing at a place: torque of the motor, told by the quintic, or far worse, what the slave itself may do."""
+    plain = motor_speed_limits(machine, limits)
+    if limits.motor is not None and is_feasible(machine, cut, plain):
+        return load(baseline("poly_3_4_5", machine, cut), machine, cut, limits.motor)
+    return FAR * margin(machine, cut, plain)
+
+
+def _rms(machine: CrankSlider, cut: Cut, limits: Limits, objective: Objective) -> float:
+    """Objective on the coarse grid within the best of the motor's limits, or, where the grid is too coarse for them, of any motion."""
+    costs = []
+    for each in motor_limits(machine, limits):
+        if is_feasible(machine, cut, each):
+            problem = return_problem(machine, cut, each, objective)
+            value = grid_objective(problem)
+            costs.append(value if math.isfinite(value) else possible_rms(problem))
+    return min(costs)
+
+
+def _torque(machine: CrankSlider, cut: Cut) -> float:
+    """Mean square torque of the quintic: a fast stand-in for the torque's own optimum.
+
+    The place matters through the inertia's change in the sync zone and the speeds that the return must join, which both share.
+    """
+    cycle = baseline("poly_3_4_5", machine, replace(cut, origin="return"))
+    x = np.linspace(cycle.start, cycle.end, ANGLES)
+    y = slave_at_start(machine, replace(cut, origin="return")) + cycle(x)
+    torque = machine.inertia(y) * cycle(x, 2) + machine.inertia_slope(y) * cycle(x, 1) ** 2 / 2
+    return float(np.mean(torque**2))

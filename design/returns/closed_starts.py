@@ -1,0 +1,46 @@
+"""Motions from rest to rest whose optimum is known in closed form: starts for the programme, and what its answer must come to."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from camwright.design.returns.scaling import ScaledProblem
+from camwright.design.returns.structure import VANISHED, extreme_motion
+from camwright.design.returns.transcription import PEAKS, Arc, Motion
+from camwright.profiles.closed_forms.softest import softest
+
+
+def known_start(problem: ScaledProblem) -> tuple[Motion, tuple[Arc, ...]] | None:
+    """Optimum in closed form, with the arcs that it has and their objective; None where no closed form is known.
+
+    That is so for the least RMS jerk and for all but motions from rest to rest. Limits of the position are left out of account.
+    """
+    if problem.objective == "rms_jerk" or not problem.rest_to_rest:
+        return None
+    if problem.objective in PEAKS:
+        extreme = extreme_motion(problem)
+        if extreme is None:
+            return None
+        rise = fall = extreme.ramp
+        hold, cruise, level = extreme.hold, extreme.cruise, extreme.acceleration
+        objective = level if problem.objective == "peak_acceleration" else extreme.jerk
+    else:
+        limits = problem.greatest_ratio, problem.greatest_slope, problem.greatest_jerk
+        softest_motion = softest(problem.height, 1.0, *limits)
+        if softest_motion is None:
+            return None
+        rise, hold, fall = softest_motion.rise, softest_motion.hold, softest_motion.fall
+        cruise, level, objective = softest_motion.cruise, softest_motion.acceleration, softest_motion.mean_square
+    if not (min(rise, level) > 0 and math.isfinite(objective)):
+        return None
+    arcs: list[tuple[Arc, float, float]] = [("free", rise, level), ("hold", hold, level)]
+    if cruise > VANISHED:
+        arcs += [("free", fall, 0.0), ("cruise", cruise, 0.0)]
+    else:
+        arcs += [("fall", fall, 0.0)]
+    arcs += [("free", fall, -level), ("hold", hold, -level), ("free", rise, 0.0)]
+    arcs = [arc for arc in arcs if arc[1] > VANISHED]
+    lengths, ends = np.array([arc[1] for arc in arcs]), [arc[2] for arc in arcs]
+    return Motion(lengths, np.array([0.0, *ends]), objective), tuple(arc[0] for arc in arcs)

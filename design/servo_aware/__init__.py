@@ -1,0 +1,1 @@
+"""The axis, not its command, keeps to the material: the servo stands inside the programme."""

@@ -1,0 +1,153 @@
+"""Servo-aware design: the axis, not the command, keeps to the material.
+
+The command is a spline, linear in its unknowns; the servo's periodic response to it is linear too. Peaks are then linear programmes, root
+mean squares quadratic ones, and both hold at every sampling phase and for every servo that may occur.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from camwright.design.returns.problem import Objective
+from camwright.design.returns.solver import objective_value
+from camwright.design.servo_aware.axis_response import PHASES
+from camwright.design.servo_aware.programme import (
+    BAND_MARGIN,
+    LEAST_ERROR,
+    AxisProblem,
+    AxisProgramme,
+    Cost,
+)
+from camwright.design.servo_aware.torque import TorqueCost
+from camwright.profiles.errors import SolverError
+from camwright.profiles.polynomial.profile import CamProfile, FloatArray
+from camwright.profiles.returns import assemble
+
+# By this factor the sync error of a servo between the corners may be above that at the corners.
+BETWEEN = 1.1
+# By this share a sync error may be above the least, and by this share a peak, for the sake of what comes after them.
+KEPT_ERROR = 1e-3
+KEPT_PEAK = 1e-5
+# Most rounds that a command of the least peak is smoothed in; it will do as it is.
+SMOOTHING = 8
+
+
+@dataclass(frozen=True, eq=False)
+class AxisMotion:
+    """A command whose axis keeps to the material.
+
+    Parameters
+    ----------
+    profile
+        One cycle of the command over ``[0, x_c]`` from the start of the return. Its slave zero is the machine at the end of its sync zone,
+        where a shaped command itself need not be.
+    errors
+        Largest sync error of the tool in the shear zone (m) over all phases, by servo, the nominal one first.
+    value
+        What was made least: the sync error (m), or the peak or root mean square over the master.
+    programmes
+        Programmes solved.
+    axis_limits
+        Whether the nominal axis, too, keeps the limits of speed, acceleration and reversal.
+    phases
+        Sampling phases for which the errors hold.
+    """
+
+    profile: CamProfile
+    errors: tuple[float, ...]
+    value: float
+    programmes: int
+    axis_limits: bool
+    phases: int = PHASES
+
+    @property
+    def error(self) -> float:
+        """Largest sync error over all servos (m)."""
+        return max(self.errors)
+
+
+def design_axis(problem: AxisProblem, objective: Cost) -> AxisMotion | None:
+    """Design a command whose axis keeps to the material in the shear zone.
+
+    With ``"sync_error"`` the largest sync error is made least, down to 0.5 % of the tolerance, then, within a thousandth of it, the peak
+    acceleration; with an objective of the motion the sync tolerance is a limit. Of all commands with the least peak that of least RMS
+    jerk is taken. The limits are kept by the command, and by the axis as `AxisProblem.axis_limits` says.
+
+    Returns
+    -------
+    AxisMotion or None
+        ``None`` if no command brings the axis into the tolerance, where that is asked for.
+
+    Raises
+    ------
+    InputError
+        The servo is unstable or forgets too slowly.
+    SolverError
+        A solver ended without an answer.
+    """
+    programme = AxisProgramme(problem, BETWEEN if objective == "sync_error" else 1.0)
+    if objective != "sync_error":
+        kept = servo_blind_optimum(programme, objective)
+        if kept is not None:
+            return kept
+        found = programme.solve(objective, 1.0)
+        if found is None:
+            return None
+        value = found[1]
+        if objective in ("peak_acceleration", "peak_jerk"):
+            found = _smoothest(programme, found, 1.0, 2 if objective == "peak_acceleration" else 3)
+        return _motion(programme, found[0], value)
+    band = LEAST_ERROR
+    softer = _softest(programme, band) if len(problem.servos) == 1 else None  # no command suits several servos so well
+    if softer is not None:
+        return _motion(programme, _smoothest(programme, softer, band, 2)[0])
+    found = programme.solve("sync_error", None)
+    if found is None:
+        return None
+    band = found[1] * (1.0 + KEPT_ERROR) / (1.0 - BAND_MARGIN)
+    softer = _softest(programme, band)
+    if softer is not None:
+        found = _smoothest(programme, softer, band, 2)
+    return _motion(programme, found[0])
+
+
+def servo_blind_optimum(programme: AxisProgramme, objective: Objective | TorqueCost) -> AxisMotion | None:
+    """Take the servo-blind optimum, which the problem's structure is, where its axis keeps to everything: then nothing is better."""
+    problem = programme.problem
+    if problem.structure is None:
+        return None
+    profile = assemble(problem.structure, problem.machine, replace(problem.cut, origin="return"))
+    if not programme.holds(profile):
+        return None
+    if objective == "rms_torque" or objective == "peak_torque" or objective == "energy":
+        value = programme.torque.value_of(problem.structure, objective)
+    else:
+        value = objective_value(problem.structure, objective)
+    return AxisMotion(profile, programme.errors(profile), value, programme.solved, problem.axis_limits)
+
+
+def _softest(programme: AxisProgramme, band: float) -> tuple[FloatArray, float] | None:
+    """Command of the least peak acceleration within a band; ``None`` if there is none, or none to double precision."""
+    try:
+        return programme.solve("peak_acceleration", band)
+    except SolverError:
+        return None
+
+
+def _smoothest(
+    programme: AxisProgramme, found: tuple[FloatArray, float], band: float, order: int
+) -> tuple[FloatArray, float]:
+    """Of all commands with the least peak the one of least RMS jerk; the given one if the solver finds none, or not soon."""
+    try:
+        smooth = programme.solve("rms_jerk", band, {order: found[1] * (1.0 + KEPT_PEAK)}, SMOOTHING)
+    except SolverError:
+        return found
+    return found if smooth is None else smooth
+
+
+def _motion(programme: AxisProgramme, unknowns: FloatArray, value: float | None = None) -> AxisMotion:
+    profile = programme.profile(unknowns)
+    errors = programme.errors(profile)
+    least = max(errors) if value is None else value
+    axis_limits = programme.problem.axis_limits and programme.keeps_axis_limits(profile)
+    return AxisMotion(profile, errors, least, programme.solved, axis_limits)

@@ -1,0 +1,271 @@
+"""The axis of a servo-aware design: rows of its response, and its response on the grid of all sampling phases."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+import numpy as np
+
+from camwright.design.servo_aware.command_basis import CommandBasis
+from camwright.design.servo_aware.servo_weights import (
+    greatest_gains,
+    memory,
+    sampled_states,
+    servo_weights,
+)
+from camwright.profiles.cut import Cut
+from camwright.profiles.machines import Machine
+from camwright.profiles.polynomial.profile import CamProfile, FloatArray
+from camwright.profiles.servo import Servo, sample_plant
+
+# Sampling phases, and points between two samples, on which a design is judged: those of the validation.
+PHASES = 16
+SUBSTEPS = 8
+_STRIDE = PHASES // SUBSTEPS
+_NEWTON = 12
+# Most samples of the past that are gathered at a time, and what a number of samples is rounded up to.
+_MOST_VALUES, _SHARED = 2**18, 32
+
+
+@dataclass(frozen=True, eq=False)
+class Axis:
+    """A machine's axis with one servo: where it must be, and where a command takes it.
+
+    Master positions count from the start of the return zone, slave positions from the machine's position there.
+
+    Parameters
+    ----------
+    machine
+        The machine, its sync zone placed.
+    cut
+        The cut.
+    servo
+        The servo.
+    """
+
+    machine: Machine
+    cut: Cut
+    servo: Servo
+
+    @property
+    def sample(self) -> float:
+        """Master travel in a sampling period (m)."""
+        return self.servo.sample_time * self.cut.line_speed
+
+    @property
+    def shear_zone(self) -> tuple[float, float]:
+        """Shear zone (m)."""
+        start = self.cut.return_zone + self.cut.shear_zone_at
+        return start, min(start + self.cut.shear_zone, self.cut.length)
+
+    def ideal(self, places: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Slave, ratio, and slave coordinate of the machine in sync, at places in the sync zone."""
+        sync = self.machine.sync_profile(self.cut)
+        inside = np.clip(places - self.cut.return_zone, sync.start, sync.end)
+        travel = sync(inside)
+        return (
+            travel + (self.machine.pitch - sync.advance - float(sync(sync.start))),
+            sync(inside, 1),
+            self.machine.sync_start(self.cut) + travel,
+        )
+
+    def band(self, places: FloatArray, tolerance: float) -> tuple[FloatArray, FloatArray]:
+        """Least and greatest deviation of the slave that keep the tool within a tolerance (m) of the material."""
+        coordinate = self.ideal(places)[2]
+        edges = []
+        for sign in (-1.0, 1.0):
+            slope = np.asarray(self.machine.tool_ratio(coordinate)) + np.zeros_like(coordinate)
+            deviation = sign * tolerance / slope
+            for _ in range(
+                _NEWTON
+            ):  # the tool's map is monotonic in the sync zone and nearly straight over a tolerance
+                off = self.machine.tool(coordinate + deviation) - self.machine.tool(coordinate) - sign * tolerance
+                deviation = deviation - off / self.machine.tool_ratio(coordinate + deviation)
+            edges.append(deviation)
+        return np.minimum(*edges), np.maximum(*edges)
+
+    def rows(
+        self, basis: CommandBasis, places: FloatArray, times: FloatArray, order: int = 0
+    ) -> tuple[FloatArray, FloatArray]:
+        """Axis, or its ratio (1) or ratio slope (2), as rows over the unknowns of a command.
+
+        Parameters
+        ----------
+        places
+            Master positions (m).
+        times
+            Time (s) since the sampling instant before, for each place; below the sample time.
+        order
+            Derivative over the master.
+        """
+        matrix, constant = np.empty((len(places), basis.matrix.shape[1])), np.empty(len(places))
+        known, index = np.unique(times, return_inverse=True)
+        weights = np.array([self._weights(float(time), order) for time in known])
+        samples = self.servo.sample_time * np.arange(weights.shape[1])
+        step = max(1, _MOST_VALUES // len(samples))
+        for part in (slice(start, start + step) for start in range(0, len(places), step)):
+            past = (times[part] + self.servo.delay)[:, None] + samples
+            matrix[part], constant[part] = basis.rows(
+                places[part, None] - self.cut.line_speed * past, weights[index[part]]
+            )
+        return matrix, constant
+
+    def on_grid(self, profile: CamProfile, first: int, count: int, order: int = 0) -> FloatArray:
+        """Response on the common grid, at every phase.
+
+        Parameters
+        ----------
+        profile
+            One cycle of the command, from the start of the return.
+        first, count
+            First step of the grid and number of steps (a 16th of a sample each).
+        order
+            Derivative over the master.
+
+        Returns
+        -------
+        ndarray
+            Shape ``(SUBSTEPS, count)``: by the time since the sampling instant before, in 8ths of a sample, and by place.
+        """
+        ahead = (SUBSTEPS - 1) * _STRIDE
+        states, reference = _grid_states(self, profile, first - ahead, count + ahead)
+        times = np.arange(SUBSTEPS, dtype=np.float64) * (self.servo.sample_time / SUBSTEPS)
+        turned, pushed = self._after_sample(times, order)
+        values = states @ turned.T + reference[:, None] * pushed
+        # the sampling instants lie the more before the places the longer it is since
+        return np.stack([values[ahead - sub * _STRIDE :, sub][:count] for sub in range(SUBSTEPS)])
+
+    def keeps_within(self, profile: CamProfile, order: int, low: float, high: float) -> bool:
+        """Whether the command's own range already tells that the axis' ratio (1) or ratio slope (2) stays between two limits."""
+        up, down = greatest_gains(self.servo.loop, order, SUBSTEPS)
+        least, greatest = (extremum.value for extremum in profile.extrema(order))
+        return up * greatest - down * least <= high and up * least - down * greatest >= low
+
+    def zone_errors(self, profile: CamProfile) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Sync error of the tool in the shear zone at every phase, the ends of the zone included.
+
+        Parameters
+        ----------
+        profile
+            One cycle of the command, from the start of the return.
+
+        Returns
+        -------
+        (places, times, errors)
+            Master positions (m), times since the sampling instant before (s), errors (m).
+        """
+        zone = self._zone
+        found = zone.coordinate + (self._in_zone(profile, 0) - zone.slave)
+        return zone.places, zone.times, np.asarray(self.machine.tool(found) - self.machine.tool(zone.coordinate))
+
+    def zone_ratios(self, profile: CamProfile) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Error of the tool's ratio in the shear zone at every phase; as `zone_errors`."""
+        zone = self._zone
+        off = (self._in_zone(profile, 1) - zone.ratio) * self.machine.tool_ratio(zone.coordinate)
+        return zone.places, zone.times, np.asarray(off)
+
+    @cached_property
+    def _zone(self) -> _Zone:
+        """Where the shear zone is looked at: on the common grid, and at its ends at the times that occur there."""
+        start, end = self.shear_zone
+        step = self.sample / PHASES
+        first, last = math.ceil(start / step - 1e-9), math.floor(end / step + 1e-9)
+        steps = np.clip(np.arange(first, last + 1) * step, start, end)
+        after = np.arange(SUBSTEPS) * (self.servo.sample_time / SUBSTEPS)
+        edges = np.repeat(list(dict.fromkeys((start, end))), PHASES)
+        edge_times = (edges / self.cut.line_speed) % (self.servo.sample_time / PHASES)
+        edge_times += np.tile(np.arange(PHASES), len(edges) // PHASES) * (self.servo.sample_time / PHASES)
+        places = np.concatenate([np.tile(steps, SUBSTEPS), edges])
+        times = np.concatenate([np.repeat(after, len(steps)), edge_times])
+        return _Zone(first, len(steps), edges, edge_times, places, times, *self.ideal(places))
+
+    def _in_zone(self, profile: CamProfile, order: int) -> FloatArray:
+        """Axis, or a derivative of it over the master, where the shear zone is looked at."""
+        zone = self._zone
+        states, reference = _edge_states(self, profile)
+        turned, pushed = self._after_sample(zone.edge_times, order)
+        at_edges: FloatArray = np.einsum("ij,ij->i", turned, states) + pushed * reference
+        if not zone.count:
+            return at_edges
+        return np.concatenate([self.on_grid(profile, zone.first, zone.count, order).ravel(), at_edges])
+
+    def _after_sample(self, times: FloatArray, order: int) -> tuple[FloatArray, FloatArray]:
+        """Give what state and held reference at a sampling instant contribute to a derivative over the master, times (s) after it."""
+        turned, pushed = _sampled_plants(self.servo.loop, tuple(times.tolist()))
+        return turned[:, 2 - order] / self.cut.line_speed**order, pushed[:, 2 - order] / self.cut.line_speed**order
+
+    def _weights(self, time: float, order: int) -> FloatArray:
+        """Weights of the command's samples for the axis or a derivative over the master, a time (s) after a sample."""
+        weights = servo_weights(self.servo.loop, time)
+        return (weights.position, weights.velocity, weights.acceleration)[order] / self.cut.line_speed**order
+
+
+@dataclass(frozen=True, eq=False)
+class _Zone:
+    """Where the shear zone is looked at: ``count`` steps of the common grid at every time after a sample, then the ends.
+
+    ``edges`` and ``edge_times`` are the ends and the times since the sampling instant before (s) that occur there; ``places`` and ``times``
+    are all of them, and ``slave``, ``ratio`` and ``coordinate`` what `Axis.ideal` says there.
+    """
+
+    first: int
+    count: int
+    edges: FloatArray
+    edge_times: FloatArray
+    places: FloatArray
+    times: FloatArray
+    slave: FloatArray
+    ratio: FloatArray
+    coordinate: FloatArray
+
+
+@lru_cache(maxsize=4)  # the axis, its ratio and its ratio slope are asked for one after another
+def _grid_states(axis: Axis, profile: CamProfile, first: int, count: int) -> tuple[FloatArray, FloatArray]:
+    """States of the plant and held references as if each step of the common grid were a sampling instant."""
+    past = memory(axis.servo.loop)
+    ahead = _shared(past)
+    delay = axis.cut.line_speed * axis.servo.delay
+    command = _on_steps(profile, axis.sample / PHASES, delay, first - ahead * PHASES, first + count)
+    command = command[(ahead - past) * PHASES :]
+    windows = np.lib.stride_tricks.sliding_window_view(command, past * PHASES + 1)[:, ::-PHASES]  # newest first
+    states, reference = np.empty((count, 3)), np.empty(count)
+    step = max(1, _MOST_VALUES // (past + 1))
+    for part in (slice(start, start + step) for start in range(0, count, step)):
+        states[part], reference[part] = sampled_states(axis.servo, windows[part])
+    return states, reference
+
+
+@lru_cache(maxsize=4)
+def _edge_states(axis: Axis, profile: CamProfile) -> tuple[FloatArray, FloatArray]:
+    """States of the plant and held references at the sampling instants before the ends of the shear zone."""
+    zone = axis._zone
+    past = memory(axis.servo.loop)
+    newest = zone.edges - axis.cut.line_speed * (zone.edge_times + axis.servo.delay)
+    commands = _before(profile, tuple(newest.tolist()), axis.sample, _shared(past) + 1)
+    return sampled_states(axis.servo, commands[:, : past + 1])
+
+
+def _shared(past: int) -> int:
+    """Round a number of samples up: servos that forget nearly alike then ask for the same part of a command."""
+    return -(-past // _SHARED) * _SHARED
+
+
+@lru_cache(maxsize=4)
+def _on_steps(profile: CamProfile, step: float, delay: float, first: int, end: int) -> FloatArray:
+    """Give the command on steps of a grid, so much behind."""
+    return profile(np.arange(first, end) * step - delay, outside="repeat")
+
+
+@lru_cache(maxsize=4)
+def _before(profile: CamProfile, places: tuple[float, ...], sample: float, count: int) -> FloatArray:
+    """Give the command at places and a number of samples before each, newest first."""
+    return profile(np.array(places)[:, None] - sample * np.arange(count), outside="repeat")
+
+
+@lru_cache(maxsize=256)
+def _sampled_plants(servo: Servo, times: tuple[float, ...]) -> tuple[FloatArray, FloatArray]:
+    """Transitions and inputs of `camwright.profiles.servo.sample_plant` at several times, shapes ``(n, 3, 3)`` and ``(n, 3)``."""
+    parts = [sample_plant(servo, time) for time in times]
+    return np.array([part.transition for part in parts]), np.array([part.input for part in parts])

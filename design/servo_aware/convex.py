@@ -1,0 +1,265 @@
+"""Linear and quadratic programmes with dense rows: HiGHS for the former, least squares and qpOASES for the latter, IPOPT behind them."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from camwright.design.returns.ipopt import QUIET
+from camwright.design.servo_aware.least_distance import least_distance
+from camwright.profiles.errors import SolverError
+from camwright.profiles.polynomial.profile import FloatArray
+
+# Loaded now: a HiGHS that another library of the process brings along would else be taken for CasADi's own, which crashes.
+ca.load_conic("highs")
+
+ACCEPTED = 1e-6
+"""What a row of an answer may be broken by where nothing else is said; rows are scaled so that their bounds are about one."""
+
+_TOLERANCE = 1e-9
+
+_HIGHS: dict[str, Any] = {
+    "output_flag": False,
+    "threads": 1,
+    "parallel": "off",
+    "primal_feasibility_tolerance": _TOLERANCE,
+    "dual_feasibility_tolerance": _TOLERANCE,
+}
+# Roads to the vertex, tried in turn after the dual: where one ends with rows broken by rounding, another need not.
+_HIGHS_ROADS: tuple[dict[str, Any], ...] = ({}, {"presolve": "off"}, {"simplex_strategy": 4})
+_QPOASES: dict[str, Any] = {
+    "printLevel": "none",
+    "sparse": False,
+    "hessian_type": "posdef",
+    "initialStatusBounds": "inactive",
+}
+_IPOPT: dict[str, Any] = {
+    "nlpsol": "ipopt",
+    "nlpsol_options": QUIET
+    | {
+        "error_on_fail": False,
+        "ipopt.mu_strategy": "adaptive",
+        "ipopt.tol": 1e-9,
+        "ipopt.constr_viol_tol": _TOLERANCE,
+        "ipopt.bound_relax_factor": 0.0,
+        "ipopt.max_iter": 300,
+        "ipopt.jac_d_constant": "yes",
+        "ipopt.hessian_constant": "yes",
+    },
+}
+# HiGHS' words for a programme without an answer.
+_INFEASIBLE, _UNBOUNDED = "Infeasible", "Unbounded"
+# Added to the diagonal of a quadratic cost, relative to its mean: directions that cost nothing are left where they are.
+_STEADY = 1e-11
+# A linear answer that breaks rows by rounding is refined: what is missing is solved for, with the room that is left magnified by at most
+# this factor, so that the solver's tolerance shrinks by it.
+_REFINEMENTS = 2
+_GREATEST_FACTOR = 1e6
+# Coefficients below this share of the largest of their row are rounding.
+_ROUNDING = 1e-13
+
+
+@dataclass
+class ConvexProgramme:
+    """Rows ``low <= matrix @ x <= high``, gathered one block after another.
+
+    Parameters
+    ----------
+    unknowns
+        Number of unknowns.
+    """
+
+    unknowns: int
+    _matrices: list[FloatArray] = field(default_factory=list)
+    _low: list[FloatArray] = field(default_factory=list)
+    _high: list[FloatArray] = field(default_factory=list)
+    _accepted: list[FloatArray] = field(default_factory=list)
+
+    def add(
+        self, matrix: FloatArray, low: FloatArray | float, high: FloatArray | float, accepted: float = ACCEPTED
+    ) -> None:
+        """Add rows, and what an answer may break them by; a matrix of fewer columns leaves the last unknowns out."""
+        wide = np.zeros((len(matrix), self.unknowns))
+        wide[:, : matrix.shape[1]] = matrix
+        self._matrices.append(wide)
+        self._low.append(np.broadcast_to(np.asarray(low, dtype=np.float64), len(matrix)))
+        self._high.append(np.broadcast_to(np.asarray(high, dtype=np.float64), len(matrix)))
+        self._accepted.append(np.full(len(matrix), accepted))
+
+    def add_peak(
+        self,
+        matrix: FloatArray,
+        constant: FloatArray,
+        below: FloatArray | float,
+        above: FloatArray | float,
+        accepted: float = ACCEPTED,
+    ) -> None:
+        """Add rows ``below * t <= matrix @ z + constant <= above * t`` with the last unknown ``t``."""
+        low, high = (
+            np.broadcast_to(np.asarray(side, dtype=np.float64), len(matrix))[:, None] for side in (below, above)
+        )
+        self.add(np.hstack([matrix, -high]), -np.inf, -constant, accepted)
+        self.add(np.hstack([matrix, -low]), -constant, np.inf, accepted)
+
+    def rows(self) -> Rows:
+        """Stack what was gathered."""
+        matrix = np.vstack(self._matrices)
+        matrix[np.abs(matrix) < _ROUNDING * np.abs(matrix).max(axis=1, keepdims=True)] = 0.0
+        return Rows(matrix, *(np.concatenate(parts) for parts in (self._low, self._high, self._accepted)))
+
+    def solve(self, cost: FloatArray, square: FloatArray | None = None, *, sure: bool = True) -> FloatArray | None:
+        """Minimise ``cost @ x``, plus ``x @ square @ x / 2``.
+
+        Parameters
+        ----------
+        cost, square
+            Shapes ``(n,)`` and ``(n, n)``.
+        sure
+            Whether IPOPT, a hundred times slower, is asked where qpOASES fails.
+
+        Returns
+        -------
+        ndarray or None
+            The minimiser; ``None`` if no point keeps the rows.
+
+        Raises
+        ------
+        SolverError
+            Every solver ended without an answer.
+        """
+        rows = self.rows()
+        return _linear(rows, cost) if square is None else _quadratic(rows, cost, square, sure)
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """Rows ``low <= matrix @ x <= high``.
+
+    Parameters
+    ----------
+    matrix
+        Shape ``(rows, n)``.
+    low, high
+        Shape ``(rows,)``; infinite sides are no rows.
+    accepted
+        What an answer may break each by.
+    """
+
+    matrix: FloatArray
+    low: FloatArray
+    high: FloatArray
+    accepted: FloatArray
+
+    def missed(self, found: FloatArray) -> float:
+        """By how much an answer breaks rows beyond what is accepted; 0 or less where it keeps them all."""
+        values = self.matrix @ found
+        return float((np.maximum(values - self.high, self.low - values) - self.accepted).max())
+
+
+_Road = Callable[[FloatArray, FloatArray, FloatArray, FloatArray], tuple[FloatArray | None, str]]
+"""What solves a linear programme of a matrix, bounds of its rows and a cost: the answer, or nothing, and the status."""
+
+
+def _linear(rows: Rows, cost: FloatArray) -> FloatArray | None:
+    """Solve a linear programme; its answer is refined where it breaks rows by rounding."""
+    status = ""
+    roads: list[_Road] = [_by_its_dual, *(partial(_by_simplex, options=options) for options in _HIGHS_ROADS)]
+    for road in roads:
+        found, factor = np.zeros(len(cost)), 1.0
+        for _ in range(1 + _REFINEMENTS):
+            low, high = (factor * (side - rows.matrix @ found) for side in (rows.low, rows.high))
+            step, status = road(rows.matrix, low, high, cost)
+            if step is None:
+                break
+            found = found + step / factor
+            missed = rows.missed(found)
+            if missed <= 0.0:
+                return found
+            factor = min(_GREATEST_FACTOR, 1.0 / missed)
+        if factor == 1.0 and status == _INFEASIBLE:
+            return None
+    raise SolverError(f"HiGHS ended a servo-aware design with {status!r}; report this job")
+
+
+def _by_its_dual(
+    matrix: FloatArray, low: FloatArray, high: FloatArray, cost: FloatArray
+) -> tuple[FloatArray | None, str]:
+    """Ask HiGHS for the dual, whose basis is as small as the unknowns are few; its multipliers are the answer."""
+    above, below = np.isfinite(high), np.isfinite(low)
+    columns = sparse(np.vstack([-matrix[above], matrix[below]]).T)
+    prices = np.concatenate([high[above], -low[below]])
+    answer, status = _ask(
+        "highs", {"highs": _HIGHS | {"presolve": "off"}}, prices, columns, (cost, cost), (0.0, np.inf)
+    )
+    if answer is None:  # no answer of a programme is too much of its dual, and the other way round
+        return None, {_UNBOUNDED: _INFEASIBLE, _INFEASIBLE: _UNBOUNDED}.get(status, status)
+    return answer["lam_a"], status
+
+
+def _by_simplex(
+    matrix: FloatArray, low: FloatArray, high: FloatArray, cost: FloatArray, options: dict[str, Any]
+) -> tuple[FloatArray | None, str]:
+    """Ask HiGHS for the programme as it stands."""
+    answer, status = _ask("highs", {"highs": _HIGHS | options}, cost, sparse(matrix), (low, high), (-np.inf, np.inf))
+    return None if answer is None else answer["x"], status
+
+
+def _quadratic(rows: Rows, cost: FloatArray, square: FloatArray, sure: bool) -> FloatArray | None:
+    """Solve a quadratic programme by least squares or by qpOASES, or by IPOPT where HiGHS finds that there is an answer."""
+    square = square + _STEADY * np.trace(square) / len(cost) * np.eye(len(cost))
+    nearest = least_distance(square, cost, rows.matrix, rows.low, rows.high)
+    if nearest is not None and rows.missed(nearest) <= 0.0:
+        return nearest
+    quadratic, matrix = sparse(square), sparse(rows.matrix)
+    status = ""
+    for plugin, options in [("qpoases", _QPOASES), ("nlpsol", _IPOPT)][: 1 + sure]:
+        answer, status = _ask(plugin, options, cost, matrix, (rows.low, rows.high), (-np.inf, np.inf), quadratic)
+        if answer is not None and rows.missed(answer["x"]) <= 0.0:
+            return answer["x"]
+        if plugin == "qpoases" and _linear(rows, np.zeros(len(cost))) is None:
+            return None
+    raise SolverError(f"{'IPOPT' if sure else 'qpOASES'} ended a servo-aware design with {status!r}; report this job")
+
+
+def sparse(matrix: FloatArray) -> ca.DM:
+    """Hand a matrix to CasADi without its zeros: in a fraction of the time that all its numbers would take."""
+    columns, rows = np.nonzero(matrix.T)
+    starts = np.searchsorted(columns, np.arange(matrix.shape[1] + 1))
+    pattern = ca.Sparsity(matrix.shape[0], matrix.shape[1], starts.tolist(), rows.tolist())
+    return ca.DM(pattern, matrix.T[columns, rows])
+
+
+def _ask(
+    plugin: str,
+    options: dict[str, Any],
+    cost: FloatArray,
+    rows: ca.DM,
+    between: tuple[FloatArray, FloatArray],
+    bounds: tuple[float, float],
+    quadratic: ca.DM | None = None,
+) -> tuple[dict[str, FloatArray] | None, str]:
+    """Minimise with one of CasADi's solvers; nothing and its status where it found no answer."""
+    square = ca.DM(len(cost), len(cost)) if quadratic is None else quadratic
+    form = {"h": square.sparsity(), "a": rows.sparsity()}
+    with _silenced():
+        solver = ca.conic("camwright", plugin, form, options | {"error_on_fail": False})
+        answer = solver(h=square, g=cost, a=rows, lba=between[0], uba=between[1], lbx=bounds[0], ubx=bounds[1])
+    statistics = solver.stats()
+    status = str(statistics.get("solver_stats", statistics).get("return_status", ""))
+    if not statistics["success"]:
+        return None, status
+    return {name: np.asarray(answer[name], dtype=np.float64).ravel() for name in ("x", "lam_a")}, status
+
+
+@contextlib.contextmanager
+def _silenced() -> Iterator[None]:
+    """Keep qpOASES' banner, which no option of it turns off, from standard output."""
+    with contextlib.redirect_stdout(io.StringIO()):
+        yield

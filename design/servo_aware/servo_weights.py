@@ -1,0 +1,153 @@
+"""What each sample of the command contributes to the axis: the closed servo loop written out as a sum.
+
+The servo is linear and, but for its sampling, the same at all times. A time ``s`` after a sampling instant the axis is therefore a fixed
+sum over the command's samples of the past::
+
+    axis(k dT + s) = sum_i weights[i] c[k - i]
+
+which stays linear when the command's samples are themselves linear in unknowns.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from camwright.profiles.errors import InputError
+from camwright.profiles.polynomial.profile import FloatArray
+from camwright.profiles.servo import (
+    Servo,
+    closed_loop,
+    gain_margin,
+    sample_plant,
+    spectral_radius,
+)
+
+# The past that is left out moves the axis by less than this part of the command's travel.
+FORGOTTEN = 1e-14
+# Most samples of the past that a servo may need: a slower one has no use as an axis in sync, and its rows would fill the memory.
+MOST_SAMPLES = 20_000
+
+
+@dataclass(frozen=True, eq=False)
+class ServoWeights:
+    """Weights of the command's samples, newest first, a time after a sampling instant.
+
+    Parameters
+    ----------
+    position, velocity, acceleration
+        Weights for the axis' position (1), velocity (1/s) and acceleration (1/s²), shape ``(samples,)``.
+    """
+
+    position: FloatArray
+    velocity: FloatArray
+    acceleration: FloatArray
+
+
+@lru_cache(maxsize=1024)
+def memory(servo: Servo) -> int:
+    """Count the samples of the past that still move the axis.
+
+    Raises
+    ------
+    InputError
+        The servo is unstable, or forgets too slowly.
+    """
+    radius = spectral_radius(servo)
+    if not radius < 1.0:
+        raise InputError(
+            f"[servo] position_gain = {servo.position_gain:g} 1/s: the servo is unstable, its largest pole in the z-plane has the "
+            f"magnitude {radius:.6g} and the limit is 1; it is stable below {servo.position_gain * gain_margin(servo):.6g} 1/s"
+        )
+    count = max(4, math.ceil(math.log(FORGOTTEN) / math.log(max(radius, 1e-3))))
+    if count > MOST_SAMPLES:
+        raise InputError(
+            f"[servo] position_gain = {servo.position_gain:g} 1/s: the servo remembers {count} samples of {servo.sample_time:g} s, the "
+            f"limit for a servo-aware design is {MOST_SAMPLES}; raise the position gain or the sample time"
+        )
+    return count
+
+
+@lru_cache(maxsize=4096)
+def servo_weights(servo: Servo, time: float) -> ServoWeights:
+    """Weights at a time ``0 <= time <= dT`` (s) after a sampling instant; dead time and lead are the caller's."""
+    past = _past_states(servo.loop, memory(servo.loop))
+    part = sample_plant(servo.loop, time)
+    gain, lead = servo.position_gain, servo.velocity_feedforward / servo.sample_time
+    after = part.transition.copy()
+    after[:, 2] -= gain * part.input
+    rows = past @ after.T
+    rows[0] += (gain + lead) * part.input
+    rows[1] -= lead * part.input
+    return ServoWeights(rows[:, 2].copy(), rows[:, 1].copy(), rows[:, 0].copy())
+
+
+def sampled_states(servo: Servo, samples: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """State of the plant at a sampling instant, and the velocity reference that is held from there.
+
+    Parameters
+    ----------
+    servo
+        The servo; dead time and lead are the caller's.
+    samples
+        The command's samples, newest first, shape ``(n, memory + 1)``.
+
+    Returns
+    -------
+    (states, reference)
+        Shapes ``(n, 3)`` and ``(n,)``, as in `camwright.profiles.servo.SampledPlant`.
+    """
+    states = samples @ _past_states(servo.loop, samples.shape[1] - 1)
+    gain, lead = servo.position_gain, servo.velocity_feedforward / servo.sample_time
+    return states, (gain + lead) * samples[:, 0] - lead * samples[:, 1] - gain * states[:, 2]
+
+
+@lru_cache(maxsize=256)
+def greatest_gains(servo: Servo, order: int, substeps: int) -> tuple[float, float]:
+    """Bound what the servo makes of the command's velocity (order 1) or acceleration (2).
+
+    With the command's between ``low`` and ``high`` the axis' stays between ``up low - down high`` and ``up high - down low``: summed by
+    parts, once or twice, the axis' derivative is a weighted sum of the command's mean velocities between samples, or of its second
+    differences, which lie within the command's own range. ``up`` and ``down`` are the sums of the positive and the negative weights.
+
+    Parameters
+    ----------
+    servo
+        The servo; dead time and lead only shift its response.
+    order
+        1 or 2.
+    substeps
+        Equally spaced times after a sampling instant for which the bounds hold.
+
+    Returns
+    -------
+    (up, down)
+        The greatest over these times.
+    """
+    up = down = 0.0
+    for time in np.arange(substeps) * (servo.sample_time / substeps):
+        weights = servo_weights(servo, float(time))
+        sums = np.cumsum(weights.velocity) if order == 1 else np.cumsum(np.cumsum(weights.acceleration))
+        sums *= servo.sample_time**order
+        up = max(up, float(sums[sums > 0.0].sum()))
+        down = max(down, -float(sums[sums < 0.0].sum()))
+    return up, down
+
+
+@lru_cache(maxsize=256)
+def _past_states(servo: Servo, count: int) -> FloatArray:
+    """State at a sampling instant by the samples: ``z[k] = sum_i past[i] c[k - i]``, shape ``(count + 1, 3)``."""
+    transition, inputs = closed_loop(servo)
+    powers, power, done = inputs, transition, 1  # columns A^j B, twice as many in each round
+    while done < count:
+        powers = np.concatenate([powers, power @ powers], axis=1)
+        power = power @ power
+        done *= 2
+    each = powers.reshape(3, -1, 2)[:, :count]
+    past = np.zeros((count + 1, 3))
+    past[1:] += each[:, :, 0].T
+    past[2:] += each[:, :-1, 1].T
+    return past

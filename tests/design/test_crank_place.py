@@ -1,0 +1,70 @@
+"""Where the sync zone of a crank is put: a peak is that of the whole cycle."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from camwright.design.feasible.feasibility import is_feasible, least_limit
+from camwright.design.optimise import Objective, solve
+from camwright.design.place_cost import place_for
+from camwright.profiles.cut import Cut
+from camwright.profiles.limits import Limits
+from camwright.profiles.machines import CrankSlider
+from camwright.profiles.motor import MotorCurve
+from camwright.validation.motion import measure_motion
+
+CRANK = CrankSlider(0.15, 0.6, 0.0, 0.5, 20.0, 5.0)
+# a long sync zone: the crank turns much faster at its ends than in its middle
+LONG = Cut(0.9, 1.0, 0.2, 0.04, 0.1, 1e-4)
+LIMITS = Limits(60.0, 2000.0, 400000.0)
+
+
+def peak(placed: CrankSlider, cut: Cut, objective: Objective) -> float:
+    """Peak of the whole cycle that is optimal at a place."""
+    motion = measure_motion(solve(placed, cut, LIMITS, objective).profile, placed, cut)
+    value = motion.peak_acceleration if objective == "peak_acceleration" else motion.peak_jerk
+    assert value is not None
+    return value
+
+
+@pytest.mark.parametrize("objective", ["peak_acceleration", "peak_jerk"])
+@pytest.mark.parametrize("cut", [LONG, replace(LONG, length=2.0)])
+def test_no_other_place_has_a_lower_peak_of_the_whole_cycle(objective: Objective, cut: Cut) -> None:
+    found = place_for(CRANK, cut, LIMITS, objective).machine
+    best = peak(found, cut, objective)
+    least, greatest = CRANK.sync_range(cut)
+    for angle in np.linspace(least, greatest, 8)[1:-1]:
+        there = replace(CRANK, sync_at=float(angle))
+        if is_feasible(there, cut, LIMITS):
+            assert peak(there, cut, objective) >= best * (1 - 1e-3)
+
+
+def test_the_sync_zone_can_have_the_higher_peak() -> None:
+    """Far from the middle of the stroke it has, so the return alone would mislead."""
+    cut = replace(LONG, length=2.0)
+    placed = place_for(CRANK, cut, LIMITS, "peak_acceleration").machine
+    sync = placed.sync_profile(cut)
+    in_sync = max(abs(extremum.value) for extremum in sync.extrema(2)) * cut.line_speed**2
+    assert least_limit(placed, cut, LIMITS, "acceleration") >= in_sync * (1 - 1e-5)
+    middle = replace(placed, sync_at=placed.sync_at + 0.15)
+    sync = middle.sync_profile(cut)
+    there = max(abs(extremum.value) for extremum in sync.extrema(2)) * cut.line_speed**2
+    assert there > in_sync
+
+
+def test_where_no_place_will_do_it_is_the_one_where_least_is_missing() -> None:
+    cut = replace(LONG, line_speed=6.0)
+    placed = place_for(CRANK, cut, LIMITS, "rms_acceleration").machine
+    assert not math.isnan(placed.sync_at)
+    assert not is_feasible(placed, cut, LIMITS)
+
+
+def test_a_motor_too_weak_for_its_rectangles_is_placed_by_torque() -> None:
+    weak = replace(LIMITS, motor=MotorCurve(((0.0, 1.0), (400.0, 1.0))))
+    weaker = replace(LIMITS, motor=MotorCurve(((0.0, 0.5), (400.0, 0.5))))
+    places = [place_for(CRANK, LONG, limits, "rms_torque").machine.sync_at for limits in (weak, weaker)]
+    assert places[0] == pytest.approx(places[1], abs=1e-12)

@@ -1,0 +1,77 @@
+"""The floors of the house: who may import whom."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def imported(folder: str) -> set[str]:
+    """Names of the floors and of other top-level packages that a folder imports, wherever in its modules."""
+    names: set[str] = set()
+    for file in (ROOT / folder).rglob("*.py"):
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Import):
+                names |= {_package(alias.name) for alias in node.names}
+            elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+                names.add(_package(node.module))
+    return names
+
+
+def _package(module: str) -> str:
+    """Name the floor of a module of the house, ``camwright`` for the front door; of others the top-level package."""
+    parts = module.split(".")
+    return parts[1] if parts[0] == "camwright" and parts[1] in ("profiles", "design", "validation") else parts[0]
+
+
+def test_the_contracts_hold() -> None:
+    run = subprocess.run(
+        [
+            sys.executable,
+            "-c",
+            "from importlinter.cli import lint_imports_command; lint_imports_command()",
+            "--no-cache",
+        ],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert run.returncode == 0, run.stdout + run.stderr
+    assert "0 broken" in run.stdout
+
+
+@pytest.mark.parametrize(
+    ("folder", "forbidden"),
+    [
+        ("profiles", {"design", "validation", "camwright"}),
+        ("design", {"validation", "camwright"}),
+        ("validation", {"design", "camwright"}),
+    ],
+)
+def test_no_floor_knows_those_above_or_beside_it(folder: str, forbidden: set[str]) -> None:
+    assert not imported(folder) & forbidden
+
+
+@pytest.mark.parametrize("folder", ["profiles", "validation", "camwright"])
+def test_only_design_knows_casadi(folder: str) -> None:
+    assert "casadi" not in imported(folder)
+    assert "casadi" in imported("design")
+
+
+@pytest.mark.parametrize("folder", ["profiles", "design", "validation"])
+def test_only_the_front_door_shows_things(folder: str) -> None:
+    assert not imported(folder) & {"matplotlib", "rich", "typer", "pint", "pydantic"}
+
+
+def test_reading_a_profile_loads_nothing_heavy() -> None:
+    """Importing the ground floor must not cost what only some commands need."""
+    code = "import sys, camwright.profiles.returns, camwright.profiles.servo; print(*{name.partition('.')[0] for name in sys.modules})"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
+    assert not set(run.stdout.split()) & {"casadi", "matplotlib", "pint", "pydantic", "rich", "scipy", "typer"}

@@ -1,0 +1,84 @@
+"""Recorded traces as CSV: units, columns, and every fault with its line."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from camwright.profiles.errors import InputError
+from camwright.profiles.tables.trace_csv import MOST_ROWS, read_trace_csv
+
+HEADER = "time [ms],command [mm],actual [mm]"
+
+
+def rows(count: int = 5, step: float = 1.0) -> list[str]:
+    return [f"{n * step:.6g},{2.0 * n:.6g},{2.0 * n - 0.5:.6g}" for n in range(count)]
+
+
+def text(*lines: str, header: str = HEADER) -> str:
+    return "\n".join([header, *lines]) + "\n"
+
+
+def test_a_trace_is_read_in_si_units() -> None:
+    found = read_trace_csv("# drive 3\n\n" + text(*rows()), "t.csv")
+    assert (found.start, found.unit) == (0.0, "m")
+    assert found.step == pytest.approx(1e-3, rel=1e-12)
+    assert found.command == pytest.approx(2e-3 * np.arange(5), abs=1e-15)
+    assert found.actual == pytest.approx(2e-3 * np.arange(5) - 0.5e-3, abs=1e-15)
+
+
+def test_columns_stand_in_any_order_beside_others() -> None:
+    header = "torque,Actual (deg), Command [rev] ,speed [rpm],time [s]"
+    found = read_trace_csv(
+        "\ufeff" + text("9,90,0.5,x,2.5", "9,180,1,,2.501", header=header).replace("\n", "\r\n"), "t.csv"
+    )
+    assert (found.unit, found.start) == ("rad", 2.5)
+    assert found.step == pytest.approx(1e-3, rel=1e-9)
+    assert found.actual == pytest.approx([math.pi / 2, math.pi])
+    assert found.command == pytest.approx([math.pi, 2 * math.pi])
+
+
+def test_rounded_times_are_equally_spaced() -> None:
+    lines = [f"{n / 3:.3f},{n},{n}" for n in range(300)]
+    assert read_trace_csv(text(*lines), "t.csv").step == pytest.approx(1e-3 / 3, rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("written", "message"),
+    [
+        ("", "t.csv: there is no recording in it; write a header like time [ms],command [mm],actual [mm] and rows"),
+        ("# only a comment\n", "t.csv: there is no recording in it"),
+        (text(), "t.csv: 0 rows below the header"),
+        (text(*rows(), header="time;command;actual"), "t.csv, line 1: there is no comma; separate the columns by commas"),
+        (text(*rows(), header="time [ms],comand [mm],actual [mm]"),
+         "t.csv, line 1: there is no column command; is it 'comand'? write a header like time [ms],command [mm],actual [mm]"),
+        (text(*rows(), header="time [ms],command [mm],actual"),
+         "t.csv, line 1: column actual has no unit; write it in brackets, e.g. actual [mm]"),
+        (text(*rows(), header="time,command [mm],actual [mm]"),
+         "t.csv, line 1: column time has no unit; write it in brackets, e.g. time [ms]"),
+        (text(*rows(), header="time [mm],command [mm],actual [mm]"),
+         "t.csv, line 1: column time cannot be in 'mm'; its unit is one of s, ms, us, µs"),
+        (text(*rows(), header="time [ms],command [V],actual [mm]"), "column command cannot be in 'V'; its unit is one of m, "),
+        (text(*rows(), header="time [ms],command [mm],actual [deg]"), "command and actual are a length and an angle"),
+        (text(*rows(), header="time [ms],time [ms],actual [mm]"), "t.csv, line 1: column time stands there twice"),
+        (text(*rows(2), "2,4", *rows(2)), "t.csv, line 4: 2 cells where the header has 3; numbers have a decimal point"),
+        (text(*rows(2), "2,nan,4"), "t.csv, line 4: command 'nan' is not a finite number of at most 1e+12"),
+        (text(*rows(2), "2,4,inf"), "t.csv, line 4: actual 'inf' is not a finite number"),
+        (text(*rows(2), "2,,4"), "t.csv, line 4: command '' is not a finite number"),
+        (text(*rows(2), "2,4,1e15"), "t.csv, line 4: actual '1e15' is not a finite number of at most 1e+12"),
+        (text(*rows(3), "1.5,4,4"), "t.csv, line 5: the time does not increase from the row before; sort the rows"),
+        (text(*rows(3), "2,4,4"), "t.csv, line 5: the time does not increase"),
+        (text(*rows(9), "12,4,4", "13,4,4"),
+         "t.csv, line 11: a gap of 4 ms where rows are 1 ms apart; record again, or cut out a part without gaps"),
+        (text(*rows(9), "12,4,4", "16,4,4"), "t.csv, line 11: a gap of 4 ms where rows are 1 ms apart, the first of 2"),
+        (text(*rows(9), "9.2,4,4", "10,4,4"),
+         "t.csv, line 11: 1.2 ms after the row before where rows are 1 ms apart; the sampling must be equal"),
+        (text(*rows(MOST_ROWS + 1)), f"t.csv: {MOST_ROWS + 1} rows, the limit is {MOST_ROWS}; cut out a part"),
+    ],
+)  # fmt: skip
+def test_a_fault_is_told_with_its_place(written: str, message: str) -> None:
+    with pytest.raises(InputError) as caught:
+        read_trace_csv(written, "t.csv")
+    assert message in str(caught.value)

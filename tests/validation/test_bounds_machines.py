@@ -1,0 +1,122 @@
+"""Lower bounds for every machine: reached by designs where they are known, and named "none" where they are not."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from camwright.design.optimise import Objective, solve
+from camwright.profiles.cut import Cut
+from camwright.profiles.errors import InputError
+from camwright.profiles.limits import Limits
+from camwright.profiles.machines import (
+    CrankSlider,
+    LinearCarriage,
+    Machine,
+    RotaryKnife,
+)
+from camwright.profiles.returns import baseline
+from camwright.validation.bounds.optimality import OBJECTIVES, lower_bound
+from camwright.validation.motor import measure_motor
+
+CUT = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4, sync_ratio=1.05)
+LIMITS = Limits(200 / 60, 60.0, 6000.0)
+WIDE = LinearCarriage(5.0, mass=30.0, travel_per_turn=0.04)
+KNIFE = RotaryKnife(0.4, gear_ratio=3.0, drum_inertia=0.02)
+
+
+@pytest.mark.parametrize("machine", [KNIFE, WIDE], ids=["knife", "carriage"])
+@pytest.mark.parametrize("objective", ["peak_acceleration", "rms_acceleration", "peak_jerk", "rms_jerk"])
+def test_designs_reach_the_bound_with_over_speed(machine: Machine, objective: str) -> None:
+    found = solve(machine, CUT, LIMITS, objective)
+    bound = lower_bound(found.profile, machine, CUT, LIMITS, objective)
+    assert bound.value <= found.objective * (1 + 1e-9)
+    assert bound.value == pytest.approx(found.objective, rel=1e-3)
+
+
+def test_a_stroke_leaves_the_bound_below() -> None:
+    narrow, limits = replace(WIDE, stroke=0.25), Limits(200 / 60, 200.0, 60_000.0)
+    found = solve(narrow, CUT, limits, "rms_acceleration")
+    bound = lower_bound(found.profile, narrow, CUT, limits, "rms_acceleration")
+    assert 0.0 < bound.value < 0.999 * found.objective
+
+
+@pytest.mark.parametrize("objective", ["peak_acceleration", "rms_acceleration", "peak_jerk"])
+@pytest.mark.parametrize("length", [3.4, 4.5, 7.0])
+def test_a_long_cut_is_as_good_as_braking_within_the_stroke_allows(objective: Objective, length: float) -> None:
+    saw = LinearCarriage(1.2)
+    cut, limits = Cut(length, 0.5, 0.7, 0.4, 0.2, 2e-4), Limits(100 / 60, 6.0, 200.0)
+    found = solve(saw, cut, limits, objective)
+    bound = lower_bound(found.profile, saw, cut, limits, objective)
+    assert bound.value <= found.objective * (1 + 1e-9)
+    if length == 7.0:  # there is time to spare: braking is all that counts
+        assert bound.method == "closed form, braking within the stroke"
+        assert bound.value == pytest.approx(found.objective, rel=2e-9 if objective != "rms_acceleration" else 0.02)
+
+
+@pytest.mark.parametrize(
+    ("stroke", "length", "zone"),
+    [(1.2, 0.3, 0.1), (3.0, 0.3, 0.2), (3.0, 1.0, 0.95), (5.0, 0.2, 0.15), (0.32, 0.6, 0.3)],
+)
+@pytest.mark.parametrize("objective", ["peak_acceleration", "rms_acceleration", "peak_jerk"])
+def test_a_wide_stroke_raises_no_bound_above_a_design(
+    stroke: float, length: float, zone: float, objective: Objective
+) -> None:
+    saw, cut = LinearCarriage(stroke), Cut(length, 0.5, zone, 0.2 * zone, 0.8 * zone, 1e-3)
+    limits = Limits(100.0, 1e5, 1e8)
+    found = solve(saw, cut, limits, objective)
+    bound = lower_bound(found.profile, saw, cut, limits, objective)
+    assert bound.value <= found.objective * (1 + 1e-9)
+    assert bound.value >= 0.9 * found.objective
+
+
+def test_no_room_to_turn_round_in_has_no_bound_below_infinity() -> None:
+    # such a job has no design; a cycle of a longer stroke may still be held against it
+    saw, cut, limits = LinearCarriage(1.2), Cut(3.0, 0.5, 0.7, 0.4, 0.2, 2e-4), Limits(100 / 60, 6.0, 200.0)
+    found = solve(saw, cut, limits, "peak_acceleration")
+    assert lower_bound(found.profile, replace(saw, stroke=0.7), cut, limits, "peak_acceleration").value == math.inf
+
+
+@settings(deadline=None, max_examples=8)
+@given(st.floats(0.0, 5.0), st.floats(0.3, 1.5), st.sampled_from(["carriage", "knife"]))
+def test_no_baseline_has_less_torque_than_the_bound(friction: float, length: float, kind: str) -> None:
+    machine = replace(KNIFE, drum_friction=friction) if kind == "knife" else WIDE
+    cut = replace(CUT, length=length)
+    open_limits = Limits(100.0, 1e5, 1e8, reversal=True)
+    for name in ("poly_3_4_5", "cycloid", "double_s"):
+        cycle = baseline(name, machine, cut)
+        motor = measure_motor(cycle, machine, cut)
+        assert motor.rms_torque >= lower_bound(cycle, machine, cut, open_limits, "rms_torque").value * (1 - 1e-9)
+        peak = lower_bound(cycle, machine, cut, open_limits, "peak_torque")
+        assert peak.method == "none" if machine.friction else motor.peak_torque >= peak.value * (1 - 1e-9)
+
+
+@pytest.mark.parametrize("objective", ["rms_torque", "peak_torque"])
+def test_least_torque_without_friction_reaches_the_bound(objective: str) -> None:
+    found = solve(KNIFE, CUT, LIMITS, objective)
+    value = getattr(measure_motor(found.profile, KNIFE, CUT), objective)
+    assert lower_bound(found.profile, KNIFE, CUT, LIMITS, objective).value == pytest.approx(value, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    "machine",
+    [CrankSlider(0.15, 0.6, 0.0, 0.5, 20.0, sync_at=1.5), replace(KNIFE, sync="horizontal", circumference=0.8)],
+    ids=["crank", "horizontal"],
+)
+@pytest.mark.parametrize("objective", OBJECTIVES)
+def test_there_is_no_bound_where_the_ratio_changes_in_sync(machine: Machine, objective: str) -> None:
+    bound = lower_bound(baseline("poly_3_4_5", machine, CUT), machine, CUT, LIMITS, objective)
+    assert math.isnan(bound.value)
+    assert bound.method == "none"
+
+
+def test_energy_and_weightless_machines_have_no_bound_and_unknown_objectives_are_refused() -> None:
+    cycle = baseline("poly_3_4_5", KNIFE, CUT)
+    assert lower_bound(cycle, KNIFE, CUT, LIMITS, "energy").method == "none"
+    assert lower_bound(cycle, replace(KNIFE, drum_inertia=0.0), CUT, LIMITS, "rms_torque").method == "none"
+    with pytest.raises(InputError, match=r"no objective 'haste'; the objectives are peak_acceleration, "):
+        lower_bound(cycle, KNIFE, CUT, LIMITS, "haste")

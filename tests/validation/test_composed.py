@@ -1,0 +1,89 @@
+"""Formulas along a cycle as polynomials, their integrals, zeros and cuts."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from camwright.profiles.errors import InputError
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.validation.composed import (
+    compose,
+    integral,
+    recut,
+    split,
+    zeros,
+)
+
+WAVE = CamProfile.from_arrays([0.0, 0.4, 1.0], [[0.0, 1.0, 2.0, -3.0], [0.528, 1.16, -1.6, 2.0]])
+
+
+@settings(deadline=None, max_examples=40)
+@given(st.floats(0.1, 30.0), st.floats(-3.0, 3.0))
+def test_a_smooth_formula_to_thirteen_digits(pitch: float, phase: float) -> None:
+    found = compose(lambda y, ratio, slope: np.sin(pitch * y + phase) * ratio + np.cos(slope), WAVE)
+    x = np.linspace(0.0, 1.0, 3001)
+    truth = np.sin(pitch * WAVE(x) + phase) * WAVE(x, 1) + np.cos(WAVE(x, 2))
+    assert np.abs(found(x) - truth).max() <= 2e-13 * np.abs(truth).max()
+    assert set(WAVE.breaks) <= set(found.breaks)
+
+
+def test_a_jump_of_the_profile_is_a_jump_of_the_formula() -> None:
+    kinked = CamProfile.from_arrays([0.0, 0.5, 1.0], [[0.0, 1.0], [0.5, 3.0]])
+    found = compose(lambda y, ratio, _: ratio + 0.0 * y, kinked)
+    assert (float(found(0.5, side="left")), float(found(0.5))) == (pytest.approx(1.0), pytest.approx(3.0))
+
+
+def test_a_formula_that_rounds_is_taken_to_its_rounding() -> None:
+    """What is lost in a difference of large numbers no halving brings back."""
+
+    def rounded(y: np.ndarray, ratio: np.ndarray, _: np.ndarray) -> np.ndarray:
+        return (y + 2e3) - 2e3 + np.cos(ratio)
+
+    found = compose(rounded, WAVE)
+    x = np.linspace(0.0, 1.0, 3001)
+    truth = WAVE(x) + np.cos(WAVE(x, 1))
+    assert np.abs(found(x) - truth).max() <= 2e-12 * np.abs(truth).max()
+    with pytest.raises(InputError, match="not smooth"):
+        compose(lambda y, ratio, _: (y + 2e5) - 2e5 + np.cos(ratio), WAVE)
+
+
+def test_a_sliver_left_by_rounding_does_no_harm() -> None:
+    breaks = np.array([0.0, 0.4, 0.4 + 1e-15, 1.0])
+    sliver = CamProfile(breaks, WAVE.coefficients[[0, 1, 1]])
+    found = compose(lambda y, ratio, _: np.cos(y) * ratio, sliver)
+    greatest = max(abs(extremum.value) for extremum in found.extrema(2))
+    plain = compose(lambda y, ratio, _: np.cos(y) * ratio, WAVE)
+    assert greatest == pytest.approx(max(abs(extremum.value) for extremum in plain.extrema(2)), rel=1e-6)
+
+
+def test_formulas_without_a_value_or_not_smooth_are_refused() -> None:
+    with (
+        np.errstate(invalid="ignore"),
+        pytest.raises(InputError, match="no finite value: the machine cannot take all positions"),
+    ):
+        compose(lambda y, *_: np.sqrt(y - 0.5), WAVE)
+    with pytest.raises(InputError, match=r"not smooth at master 0\.\d+ m"):
+        compose(lambda y, *_: np.sign(y - 0.3), WAVE)
+
+
+def test_integral_recut_and_split() -> None:
+    area = integral(WAVE)
+    assert area.advance == pytest.approx(0.4**2 / 2 + 2 / 3 * 0.4**3 - 3 / 4 * 0.4**4 + sum(
+        c * 0.6 ** (p + 1) / (p + 1) for p, c in enumerate([0.528, 1.16, -1.6, 2.0])), rel=1e-14)  # fmt: skip
+    x = np.linspace(0.0, 1.0, 101)
+    assert np.abs(recut(WAVE, np.array([0.0, 0.1, 0.4, 0.77, 1.0]))(x) - WAVE(x)).max() <= 1e-15
+    finer = split(WAVE, np.array([0.3, 0.3 + 1e-15, 0.4 + 1e-15, 0.9]))
+    assert finer.breaks.tolist() == [0.0, 0.3, 0.4, 0.9, 1.0]
+    assert split(WAVE, np.zeros(0)) is WAVE
+
+
+def test_zeros_of_a_profile_and_its_derivative() -> None:
+    cosine = compose(lambda y, *_: np.cos(y), CamProfile.from_arrays([0.0, 10.0], [[0.0, 1.0]]))
+    assert zeros(cosine) == pytest.approx([math.pi / 2, 3 * math.pi / 2, 5 * math.pi / 2], abs=1e-12)
+    assert zeros(cosine, 1) == pytest.approx([math.pi, 2 * math.pi, 3 * math.pi], abs=1e-11)
+    assert zeros(CamProfile.from_arrays([0.0, 1.0], [[2.0]])).size == 0

@@ -1,0 +1,257 @@
+"""Parameters from synthetic traces with noise, made by a plain loop, and every trace that is refused."""
+
+from __future__ import annotations
+
+import json
+import math
+import tomllib
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from camwright.cli.main import main
+from camwright.jobs.job import BUNDLED_JOB, parse_job
+from camwright.profiles.cut import Cut
+from camwright.profiles.errors import InputError
+from camwright.profiles.machines import RotaryKnife
+from camwright.profiles.returns import baseline
+from camwright.profiles.servo import Servo, sample_plant
+from camwright.profiles.trace import Trace
+from camwright.validation.identify.identification import identify
+from camwright.validation.identify.quality import require_usable
+
+PAPER = Servo(120.0, 0.7, 35.0, 0.004, 1.0, 0.002)
+CUT = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4)
+CYCLES = {law: baseline(law, RotaryKnife(0.4), CUT) for law in ("poly_3_4_5", "linear_return")}
+STEP, ROWS, NOISE = 1e-3, 2000, 10e-6
+Command = Callable[[float], float]
+
+
+def cam(law: str) -> Command:
+    """Commands of the paper's cut with a return."""
+    return lambda time: float(CYCLES[law](np.array(time * CUT.line_speed), outside="repeat"))
+
+
+def sweep(size: float, last: float) -> Command:
+    """Sine from half a hertz to a last frequency in 2 s; at rest before."""
+    return lambda time: size * math.sin(2 * math.pi * (0.5 + (last - 0.5) * time / 4.0) * time) if time > 0 else 0.0
+
+
+def recorded(servo: Servo, command: Command, seed: int, *, noise: float = NOISE, rows: int = ROWS) -> Trace:
+    """Run the servo by a plain loop over its samples, from a second before the recording, its clock anywhere; add noise."""
+    random = np.random.default_rng(seed)
+    clock = -1.0 - servo.sample_time * random.random()
+    whole = sample_plant(servo, servo.sample_time)
+    times = STEP * np.arange(rows)
+    actual = np.empty(rows)
+    before = command(clock - servo.delay)
+    state = np.array([0.0, 0.0, before])
+    row = 0
+    for k in range(math.ceil((times[-1] - clock) / servo.sample_time) + 1):
+        start = clock + k * servo.sample_time
+        now = command(start - servo.delay)
+        held = servo.position_gain * (now - state[2]) + servo.velocity_feedforward * (now - before) / servo.sample_time
+        while row < rows and times[row] < start + servo.sample_time:
+            plant = sample_plant(servo, times[row] - start)
+            actual[row] = plant.transition[2] @ state + plant.input[2] * held
+            row += 1
+        state, before = whole.transition @ state + whole.input * held, now
+    return Trace(0.0, STEP, np.array([command(t) for t in times]), actual + random.normal(0.0, noise, rows), "m")
+
+
+def csv(trace: Trace) -> str:
+    lines = (
+        f"{t * 1e3:.3f},{c * 1e3:.7g},{a * 1e3:.7g}"
+        for t, c, a in zip(trace.times, trace.command, trace.actual, strict=True)
+    )
+    return "\n".join(["time [ms],command [mm],actual [mm]", *lines]) + "\n"
+
+
+def assert_found(found: Servo, servo: Servo) -> None:
+    """Every parameter within 2 per cent, the dead time within 0.1 ms or this."""
+    for name in ("bandwidth", "damping", "position_gain", "sample_time"):
+        assert getattr(found, name) == pytest.approx(getattr(servo, name), rel=0.02), name
+    assert found.dead_time == pytest.approx(servo.dead_time, rel=0.02, abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("law", "seed"), [("poly_3_4_5", 1), ("poly_3_4_5", 2), ("poly_3_4_5", 3), ("linear_return", 1)]
+)
+def test_the_papers_servo_is_found_from_the_papers_cut(law: str, seed: int) -> None:
+    found = identify(recorded(PAPER, cam(law), seed), "t", 1.0)
+    assert_found(found.servo, PAPER)
+    assert found.feedforward_from == "given"
+    assert "velocity_feedforward" not in found.confidence
+    assert found.residual == pytest.approx(NOISE, rel=0.05)
+    assert found.fit > 0.9999
+
+
+@pytest.mark.parametrize(
+    ("servo", "command"),
+    [
+        (Servo(82.0, 0.88, 11.0, 0.0078, 1.0, 0.0), sweep(0.02, 8.0)),
+        (Servo(148.0, 0.72, 49.0, 0.0011, 1.0, 0.004), sweep(0.02, 15.0)),
+        (Servo(105.0, 0.81, 28.0, 0.0063, 0.0, 0.006), sweep(0.02, 20.0)),
+    ],
+)
+def test_servos_of_the_published_ranges_are_found_from_a_sweep(servo: Servo, command: Command) -> None:
+    assert_found(identify(recorded(servo, command, 3), "t", servo.velocity_feedforward).servo, servo)
+
+
+def test_a_whole_feedforward_is_assumed_where_the_trace_allows_it() -> None:
+    found = identify(recorded(PAPER, cam("poly_3_4_5"), 5), "t")
+    assert (found.servo.velocity_feedforward, found.feedforward_from) == (1.0, "assumed")
+    assert_found(found.servo, PAPER)
+
+
+def test_another_feedforward_is_fitted() -> None:
+    servo = replace(PAPER, velocity_feedforward=0.9)
+    found = identify(recorded(servo, sweep(0.02, 30.0), 6), "t")
+    assert found.feedforward_from == "trace"
+    assert found.servo.velocity_feedforward == pytest.approx(0.9, abs=0.01)
+    assert_found(found.servo, servo)
+    low, high = found.confidence["velocity_feedforward"]
+    assert low < found.servo.velocity_feedforward < high < 1.0
+
+
+def test_the_confidence_holds_the_truth_and_follows_the_noise() -> None:
+    quiet, loud = (identify(recorded(PAPER, cam("poly_3_4_5"), 7, noise=noise), "t", 1.0) for noise in (1e-5, 4e-5))
+    for found in (quiet, loud):
+        for name, (low, high) in found.confidence.items():
+            half = 0.5 * (high - low)  # twice the width: it holds the truth but for once in 10 000
+            assert low - half <= getattr(PAPER, name) <= high + half, name
+    for name, (low, high) in quiet.confidence.items():
+        wider = loud.confidence[name]
+        assert (wider[1] - wider[0]) / (high - low) == pytest.approx(4.0, rel=0.2), name
+
+
+def line(time: float) -> float:
+    return 0.3 * time
+
+
+def clipped(trace: Trace) -> Trace:
+    return replace(trace, actual=np.minimum(trace.actual, 0.8 * trace.actual.max()))
+
+
+def stairs(trace: Trace) -> Trace:
+    return replace(trace, command=np.repeat(trace.command[::4], 4))
+
+
+SWEEP = recorded(PAPER, sweep(0.02, 15.0), 8)
+
+
+@pytest.mark.parametrize(
+    ("trace", "message"),
+    [
+        (recorded(PAPER, sweep(0.02, 15.0), 1, rows=150), "t: 150 rows over 0.149 s: too short to know the axis from; record 200 rows"),
+        (replace(SWEEP, command=np.full(ROWS, 0.1)), "t: the command stands still, so the axis is not excited; record a motion"),
+        (recorded(PAPER, line, 1), "t: the command runs straight, so the axis is not excited; record a motion"),
+        (recorded(PAPER, lambda t: 0.3 * t + 1e-5 * math.sin(9 * t), 1), "t: the command leaves its straight line by "),
+        (replace(SWEEP, actual=np.zeros(ROWS)), "t: the actual position stands still while the command moves"),
+        (clipped(SWEEP), "t: the actual position is clipped: from 0."),
+        (replace(SWEEP, actual=np.maximum(SWEEP.actual, -0.012)), "m, the end of its range, while the command moves on; record it"),
+        (replace(SWEEP, command=np.maximum(SWEEP.command, -0.012)), "t: the command is clipped: from 0."),
+        (stairs(SWEEP), "t: the command is recorded in stairs of 4 ms, as a sampled loop holds it; record the command before"),
+        (replace(SWEEP, actual=25.4 * SWEEP.actual), "times as far as the command; give both in their true units"),
+        (recorded(replace(PAPER, lead_time=0.006), cam("poly_3_4_5"), 1),
+         "t: the actual position runs ahead of the command: dead time -4 ms, give or take"),
+        (recorded(PAPER, sweep(0.05, 0.7), 1), "t: the trace does not tell the sample time: "),
+    ],
+)  # fmt: skip
+def test_a_trace_that_does_not_tell_the_servo_is_refused(trace: Trace, message: str) -> None:
+    with pytest.raises(InputError) as caught:
+        identify(trace, "t", 1.0)
+    assert message in str(caught.value)
+
+
+def test_an_axis_that_is_no_such_servo_is_refused() -> None:
+    wrong = replace(SWEEP, actual=-SWEEP.actual)
+    with pytest.raises(InputError, match="no servo of this kind does what the trace shows: the best leaves"):
+        identify(wrong, "t", 1.0)
+
+
+def test_rest_before_and_after_a_motion_is_not_clipping() -> None:
+    def move(time: float) -> float:
+        part = min(max((time - 0.5) / 0.4, 0.0), 1.0)
+        return 0.2 * part**3 * (10 - 15 * part + 6 * part**2)
+
+    trace = recorded(replace(PAPER, dead_time=0.01), move, 1, noise=0.0)
+    coarse = replace(trace, actual=np.round(trace.actual, 5), command=np.round(trace.command, 5))
+    assert (coarse.actual[:400] == 0.0).all()
+    require_usable(coarse, "t")
+
+
+def test_the_command_writes_a_servo_for_job_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file, out = tmp_path / "trace.csv", tmp_path / "new" / "servo.toml"
+    file.write_text(csv(recorded(PAPER, cam("poly_3_4_5"), 9)), encoding="utf-8")
+    assert main(["identify", str(file), "--out", str(out), "--velocity-feedforward", "1", "--json"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    expected = {
+        "bandwidth_rad_per_s": 120.0, "damping": 0.7, "position_gain_per_s": 35.0, "sample_time_ms": 4.0, "dead_time_ms": 2.0
+    }  # fmt: skip
+    for key, value in expected.items():
+        assert answer[key] == pytest.approx(value, rel=0.02)
+        assert answer["confidence"][key][0] < answer[key] < answer["confidence"][key][1]
+    assert answer["fit"] > 0.9999
+    assert (answer["velocity_feedforward"], answer["velocity_feedforward_from"]) == (1.0, "given")
+    assert answer["residual_rms"]["value"] == pytest.approx(10.0, rel=0.05)
+    assert answer["residual_rms"]["unit"] == "um"
+    assert answer["files"] == [str(out)]
+    assert [path.name for path in out.parent.iterdir()] == ["servo.toml"]
+    # it stands in the place of the job's own
+    text = out.read_text(encoding="utf-8")
+    assert tomllib.loads(text)["servo"]["velocity_feedforward"] == 1.0
+    job = BUNDLED_JOB.read_text(encoding="utf-8")
+    head, rest = job.split("[servo]")
+    found = parse_job(head + text + "\n[objective]" + rest.split("[objective]")[1], "").servo
+    assert found.bandwidth == pytest.approx(answer["bandwidth_rad_per_s"], rel=1e-4)
+    assert found.dead_time * 1e3 == pytest.approx(answer["dead_time_ms"], rel=1e-3)
+
+
+def test_the_command_shows_what_it_found(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "trace.csv"
+    file.write_text(csv(SWEEP), encoding="utf-8")
+    assert main(["identify", str(file), "--velocity-feedforward", "1"]) == 0
+    shown = capsys.readouterr().out
+    for words in (
+        "bandwidth ω",
+        "rad/s",
+        "dead time",
+        "95 % confidence",
+        "given",
+        "fit 0.999",
+        "um rms over 1940 rows",
+    ):
+        assert words in shown
+    assert "wrote" not in shown
+    assert main(["identify", str(file), "--velocity-feedforward", "1", "--quiet"]) == 0
+    assert capsys.readouterr().out == ""
+
+
+@pytest.mark.parametrize(
+    ("content", "options", "message"),
+    [
+        (csv(SWEEP).replace("time [ms]", "time"), [], "line 1: column time has no unit"),
+        (csv(SWEEP).replace("\n100.000,", "\n100.400,"), [], "the sampling must be equal"),
+        ("\n".join(csv(SWEEP).split("\n")[:100]), [], "too short to know the axis from"),
+        (csv(SWEEP), ["--velocity-feedforward", "1.5"], "--velocity-feedforward 1.5: it is a share from 0 to 1"),
+    ],
+)
+def test_nothing_is_written_where_the_trace_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], content: str, options: list[str], message: str
+) -> None:
+    file, out = tmp_path / "trace.csv", tmp_path / "out" / "servo.toml"
+    file.write_text(content, encoding="utf-8")
+    assert main(["identify", str(file), "--out", str(out), "--json", *options]) == 2
+    captured = capsys.readouterr()
+    assert message in captured.err
+    assert json.loads(captured.out)["exit_code"] == 2
+    assert not out.parent.exists()
+
+
+def test_a_directory_is_no_file_to_write(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["identify", "none.csv", "--out", str(tmp_path)]) == 2
+    assert "a directory; --out names the file to write, e.g. servo.toml" in capsys.readouterr().err

@@ -1,0 +1,1 @@
+"""Bends an NC program on paper and judges it."""

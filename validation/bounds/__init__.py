@@ -1,0 +1,1 @@
+"""What no cam can go below: lower bounds of objectives, minimum cut lengths."""

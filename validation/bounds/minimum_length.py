@@ -1,0 +1,298 @@
+"""How short a piece can be cut: published equations, physical bound, and what the servo really needs.
+
+Letters as in S1: cut length ``x_c``, pitch ``y_c``, line speed ``v``, speed limit ``v_max``, sync zone ``l_s``,
+transition length ``l_t``, shear zone ``l_j``. At ``x_c = y_c`` the knife turns at the line speed and is always in
+sync, so whatever the limits are, no minimum lies above the pitch; below it the knife must run ahead of the material
+in the return zone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Literal
+
+from camwright.profiles.closed_forms.reach import in_time, least_acceleration, shortest_return_length
+from camwright.profiles.cut import Cut
+from camwright.profiles.errors import InputError
+from camwright.profiles.limits import Limits
+from camwright.profiles.machines import RotaryKnife
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.returns import assemble, baseline
+from camwright.profiles.servo import Servo
+from camwright.validation.bounds.zone_search import ZoneSearch
+from camwright.validation.servo.response import servo_response, sync_error
+from camwright.validation.servo.simulation import simulate
+
+Binding = Literal["speed", "acceleration", "jerk", "settling"]
+
+Law = Literal["linear_return", "poly_3_4_5", "least_acceleration"]
+"""Returns of which the minimum is looked for."""
+
+_FINE = 64
+"""Parts into which the room between shear zone and pitch is divided by the sync zones tried."""
+
+_ZONE_RESOLUTION = 1e-5
+"""Step of the sync zone with which the search ends, relative to the pitch."""
+
+_GAIN_RESOLUTION = 1e-4
+"""The same where only the gain by an eased quantity is asked for."""
+
+_LENGTH_RESOLUTION = 3e-6
+"""Accuracy of the cut length found for a sync zone, relative to the pitch; no smaller gain is looked for."""
+
+_RELAXATION = 0.01
+"""Part by which a quantity is eased to see how much the minimum gains by it."""
+
+
+@dataclass(frozen=True)
+class MinimumCutLength:
+    """A minimum cut length and what it consists of.
+
+    Parameters
+    ----------
+    length
+        The minimum cut length (m).
+    sync_zone
+        Sync zone with which it is reached (m).
+    transition
+        Transition length: the settling length of this very cycle (m), 0 for the physical bound and where the knife
+        turns at the line speed throughout.
+    binding
+        What binds: the quantity which, eased by one per cent, shortens the cut most: a limit, or the settling length.
+    """
+
+    length: float
+    sync_zone: float
+    transition: float
+    binding: Binding
+
+
+def required_sync_zone(transition: float, shear_zone: float) -> float:
+    """Shortest sync zone: ``l_s >= l_t + l_j`` (S1, eq. 6; eq. 5 for a cut of no width), all lengths in m."""
+    return transition + shear_zone
+
+
+def cut_length_eq9(transition: float, pitch: float, line_speed: float, speed: float) -> float:
+    """Minimum cut length for a cut of no width: ``x_c = l_t + (v / v_max) (y_c - l_t)`` (S1, eq. 9).
+
+    Examples
+    --------
+    >>> round(cut_length_eq9(transition=0.080, pitch=0.400, line_speed=80 / 60, speed=200 / 60), 6)
+    0.208
+    """
+    return cut_length_eq10(transition, 0.0, pitch, line_speed, speed)
+
+
+def cut_length_eq10(transition: float, shear_zone: float, pitch: float, line_speed: float, speed: float) -> float:
+    """Minimum cut length with a shear zone: ``x_c = l_j + l_t + (v / v_max) (y_c - l_t - l_j)`` (S1, eq. 10).
+
+    The knife runs at its speed limit throughout the return zone; acceleration and jerk are not limited.
+
+    Parameters
+    ----------
+    transition
+        Transition length ``l_t`` (m).
+    shear_zone
+        Shear zone ``l_j`` (m).
+    pitch
+        Slave travel per cycle ``y_c`` (m).
+    line_speed, speed
+        Line speed ``v`` and speed limit ``v_max`` of the slave (m/s).
+    """
+    sync_zone = required_sync_zone(transition, shear_zone)
+    return sync_zone + line_speed / speed * (pitch - sync_zone)
+
+
+def physical(machine: RotaryKnife, cut: Cut, limits: Limits) -> MinimumCutLength:
+    """Shortest cut length of a perfect axis: in sync in the shear zone alone, the fastest return beside it.
+
+    Seen from the material the return is a motion from rest to rest over ``y_c - x_c``, at no more than ``v_max - v``;
+    so ``x_c = l_j + v t(y_c - x_c)`` with the shortest time ``t`` of a double-S, whose right side falls as ``x_c``
+    grows.
+
+    Raises
+    ------
+    InputError
+        The shear zone is not shorter than the pitch.
+    """
+    _require_room(machine, cut)
+    length = fastest_cut(machine, cut.line_speed, limits, cut.shear_zone)
+    gain = {
+        name: length - fastest_cut(machine, cut.line_speed, eased, cut.shear_zone)
+        for name, eased in _eased(limits).items()
+    }
+    return MinimumCutLength(length, cut.shear_zone, 0.0, _greatest(gain))
+
+
+def linear_return_to_tolerance(machine: RotaryKnife, cut: Cut, limits: Limits, servo: Servo) -> MinimumCutLength:
+    """Shortest cut length with the axis within tolerance in the whole shear zone: linear return.
+
+    The shortest cycle of the linear return that some sync zone has and in which the axis, at every sampling phase,
+    stays within the sync tolerance over the last ``l_j`` of the sync zone. The knife runs no faster than the speed
+    limit (eq. 8), but slower where that settles sooner; the linear return knows no limits of acceleration and jerk.
+
+    Sync zones in steps of a 64th of the room between shear zone and pitch are tried; about the best, the step is
+    halved down to 1e-5 of the pitch. For each, the cut length is bisected to 3e-6 of the pitch between the shortest
+    return and the best length so far, as if a longer cut always settled better. A range of sync zones narrower than
+    the steps, or of cut lengths below the one that bisection finds, is not found.
+
+    Parameters
+    ----------
+    machine, cut, limits, servo
+        Pitch; line speed, shear zone and sync tolerance; speed limit; servo. The cut's own lengths are not used.
+
+    Raises
+    ------
+    InputError
+        The shear zone is not shorter than the pitch, or the servo cannot be simulated
+        (`camwright.validation.servo.simulation.simulate`).
+    """
+    return _minimum(_Laws(machine, cut, limits, servo, "linear_return"))
+
+
+def optimised_to_tolerance(machine: RotaryKnife, cut: Cut, limits: Limits, servo: Servo) -> MinimumCutLength:
+    """Shortest cut length with the axis within tolerance in the whole shear zone: return of least acceleration.
+
+    As `linear_return_to_tolerance`, with the return of the least peak acceleration within the limits of speed and
+    jerk (`camwright.profiles.closed_forms.reach.least_acceleration`), from the shortest that the limits allow at all
+    (`camwright.profiles.closed_forms.reach.shortest_return_length`) to ever gentler ones.
+    """
+    return _minimum(_Laws(machine, cut, limits, servo, "least_acceleration"))
+
+
+def quintic_to_tolerance(machine: RotaryKnife, cut: Cut, limits: Limits, servo: Servo) -> MinimumCutLength:
+    """Shortest cut length with the axis within tolerance in the whole shear zone: polynomial 3-4-5 within the limits.
+
+    As `linear_return_to_tolerance`.
+    """
+    return _minimum(_Laws(machine, cut, limits, servo, "poly_3_4_5"))
+
+
+@dataclass(frozen=True)
+class _Laws:
+    """Cycles of one kind of return, and whether the axis follows them.
+
+    ``relief`` is the part of the transition by which it may end late.
+    """
+
+    machine: RotaryKnife
+    cut: Cut
+    limits: Limits
+    servo: Servo
+    law: Law
+    relief: float = 0.0
+
+    def search(self, zone_resolution: float) -> ZoneSearch:
+        """Search for the minimum cut length."""
+        pitch = self.machine.pitch
+        return ZoneSearch(self.cut, pitch, self.lower, self.holds, _FINE, _LENGTH_RESOLUTION, zone_resolution)
+
+    def lower(self, sync_zone: float) -> float:
+        """Cut length of the shortest return beside a sync zone (m)."""
+        if self.law == "linear_return":
+            return cut_length_eq10(sync_zone, 0.0, self.machine.pitch, self.cut.line_speed, self.limits.speed)
+        if self.law == "poly_3_4_5":
+            return _fastest_quintic_cut(self.machine, self.cut.line_speed, self.limits, sync_zone)
+        return fastest_cut(self.machine, self.cut.line_speed, self.limits, sync_zone)
+
+    def cycle(self, shape: Cut) -> CamProfile:
+        """Cycle with the return of this search."""
+        if self.law != "least_acceleration":
+            return baseline(self.law, self.machine, shape)
+        speed, acceleration, jerk = _over_master(self.limits, shape.line_speed)
+        rise, length = self.machine.pitch - shape.length, shape.return_zone
+        # rounding may ask for a little more than the limit at the shortest return
+        least = min(acceleration, least_acceleration(rise, length, speed - 1, jerk))
+        motion = in_time(rise, length, speed - 1, least, jerk).profile()
+        breaks = motion.breaks.copy()
+        breaks[-1] = length  # equal but for rounding
+        return assemble(CamProfile(breaks, motion.coefficients.copy()).add_line(1.0), self.machine, shape)
+
+    def holds(self, shape: Cut) -> bool:
+        """Whether the axis is within tolerance in the whole shear zone at every phase."""
+        profile = self.cycle(shape)
+        run = simulate(profile, shape, self.servo)
+        start = shape.shear_start + self.relief * shape.shear_zone_at
+        error = sync_error(run, profile, self.machine, shape, start, shape.length)[1]
+        return float(abs(error).max()) <= self.cut.sync_tolerance
+
+
+def _minimum(laws: _Laws) -> MinimumCutLength:
+    """Search the whole room, then once more about the answer with each quantity eased, to see what binds."""
+    machine, cut = laws.machine, laws.cut
+    _require_room(machine, cut)
+    if laws.limits.speed <= cut.line_speed:  # the knife cannot run ahead of the material
+        return MinimumCutLength(machine.pitch, machine.pitch, 0.0, "speed")
+    search = laws.search(_ZONE_RESOLUTION)
+    best, zone = search.find()
+    if zone == machine.pitch:
+        return MinimumCutLength(best, zone, 0.0, "settling")
+    shape = search.shape(best, zone)
+    settling = servo_response(laws.cycle(shape), machine, shape, laws.servo).settling
+    eased = {name: replace(laws, limits=limits) for name, limits in _eased(laws.limits).items()}
+    eased["settling"] = replace(laws, relief=_RELAXATION)
+    gain: dict[Binding, float] = {}
+    for name, other in eased.items():
+        again = other.search(_GAIN_RESOLUTION)
+        gain[name] = best - again.refine(again.shorter(zone, best) or best, zone)[0]
+    # settled it has, in tolerance as it is; to rounding, before the shear zone begins
+    transition = zone - cut.shear_zone if settling is None else settling
+    return MinimumCutLength(best, zone, transition, _greatest(gain))
+
+
+def _fastest_quintic_cut(machine: RotaryKnife, line_speed: float, limits: Limits, sync_zone: float) -> float:
+    """Cut length of the fastest polynomial 3-4-5 within the limits, beside a sync zone (m).
+
+    Seen from the material it rises by ``y_c - x_c`` over the return of length ``R``: its peaks are 15/8 of the mean ratio, ``10/sqrt(3)``
+    and 60 of the rise over ``R²`` and ``R³``. The rise falls and the powers grow with ``R``, so one bisection finds where all limits hold.
+    """
+    if limits.speed <= line_speed or sync_zone >= machine.pitch:
+        return machine.pitch
+    speed, acceleration, jerk = _over_master(limits, line_speed)
+    low, high = 0.0, machine.pitch - sync_zone
+    while high - low > _LENGTH_RESOLUTION * machine.pitch:
+        length = 0.5 * (low + high)
+        rise = machine.pitch - sync_zone - length
+        shares = (
+            15 / 8 * rise / length / (speed - 1),
+            10 / 3**0.5 * rise / length**2 / acceleration,
+            60 * rise / length**3 / jerk,
+        )
+        low, high = (low, length) if max(shares) <= 1.0 else (length, high)
+    return sync_zone + high
+
+
+@lru_cache(maxsize=256)  # the cut length has no part in it: all cuts of a book at one line speed ask the same
+def fastest_cut(machine: RotaryKnife, line_speed: float, limits: Limits, sync_zone: float) -> float:
+    """Cut length of the fastest return within the limits, beside a sync zone (m)."""
+    if limits.speed <= line_speed or sync_zone >= machine.pitch:  # no running ahead, or no need to
+        return machine.pitch
+    return sync_zone + shortest_return_length(machine.pitch - sync_zone, *_over_master(limits, line_speed))
+
+
+def _over_master(limits: Limits, line_speed: float) -> tuple[float, float, float]:
+    """Limits of ratio (1), ratio slope (1/m) and its slope (1/m²) at a line speed."""
+    return limits.speed / line_speed, limits.acceleration / line_speed**2, limits.jerk / line_speed**3
+
+
+def _eased(limits: Limits) -> dict[Binding, Limits]:
+    """Return the limits with one of them eased, by the name of that one."""
+    more = 1 + _RELAXATION
+    return {
+        "speed": replace(limits, speed=more * limits.speed),
+        "acceleration": replace(limits, acceleration=more * limits.acceleration),
+        "jerk": replace(limits, jerk=more * limits.jerk),
+    }
+
+
+def _greatest(gain: dict[Binding, float]) -> Binding:
+    return max(gain, key=lambda name: gain[name])
+
+
+def _require_room(machine: RotaryKnife, cut: Cut) -> None:
+    if not cut.shear_zone < machine.pitch:
+        raise InputError(
+            f"the shear zone of {cut.shear_zone!r} m is not shorter than the slave travel per cycle of "
+            f"{machine.pitch!r} m, so there is no room for a return; shorten the shear zone"
+        )

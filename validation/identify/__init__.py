@@ -1,0 +1,1 @@
+"""The servo's parameters from a recorded trace."""

@@ -1,0 +1,312 @@
+"""Least squares between what a sampled servo does of a recorded command and what was recorded of the axis."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from camwright.profiles.polynomial.profile import FloatArray
+from camwright.profiles.servo import Servo, spectral_radius
+from camwright.profiles.trace import Trace
+from camwright.validation.identify.quality import noise_of
+from camwright.validation.servo.sampled_axis import (
+    ComplexArray,
+    axis_response,
+    decays,
+    mean_response,
+)
+
+RANGES: dict[str, tuple[float, float]] = {
+    "bandwidth": (10.0, 3000.0),
+    "damping": (0.1, 3.0),
+    "position_gain": (0.5, 1000.0),
+    "sample_time": (1e-4, 2e-2),
+    "dead_time": (-0.02, 0.05),
+    "velocity_feedforward": (-0.1, 1.2),
+}
+"""Ranges that are searched, in SI units. A negative dead time is found where the controller leads."""
+
+CONFIDENCE = 1.96
+"""Standard deviations to both sides that hold 95 %."""
+
+ROUNDS = 40
+"""Most steps of a least squares fit."""
+
+_LOGARITHMIC = frozenset({"bandwidth", "damping", "position_gain", "sample_time"})
+
+_RUN_IN = 0.06
+"""Beginning of the trace that is not judged (s): the greatest dead time and some samples, whose commands must be known."""
+
+_START_TIMES = (0.0015, 0.005)
+_START_GAINS = (12.0, 35.0)
+"""Sample times (s) and position gains (1/s) from which the search starts, each with each."""
+
+_COARSE_ROUNDS = 10
+_SEARCH_ROWS = 600
+_UNSTABLE = 1e3
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """A minimum.
+
+    Parameters
+    ----------
+    values
+        All parameters by their names in `camwright.profiles.servo.Servo`, in SI units.
+    names
+        Those that were fitted.
+    clock
+        Sampling phase as a part of the sample time, nothing where it is not fitted.
+    cost
+        Squared residual.
+    spreads
+        Half the widths of the 95 % confidence, by name.
+    """
+
+    values: dict[str, float]
+    names: tuple[str, ...]
+    clock: float | None
+    cost: float
+    spreads: dict[str, float]
+
+
+@dataclass(frozen=True, eq=False)
+class TraceFit:
+    """A trace as least squares of the servo's parameters.
+
+    Parameters
+    ----------
+    times, actual
+        Rows that are judged.
+    command
+        The command between the rows.
+    line
+        The straight line from the first command to the last: where it begins (unit of the trace) and its velocity.
+    spectrum
+        What the command is beyond that line, bent back smoothly to where it began, by frequency.
+    rates
+        These frequencies (rad/s).
+    rows
+        Numbers of the rows that are judged.
+    step
+        Time between two rows of the trace (s).
+    noise
+        Noise of the actual position (rms).
+    """
+
+    times: FloatArray
+    actual: FloatArray
+    command: Callable[[FloatArray], FloatArray]
+    line: tuple[float, float]
+    spectrum: ComplexArray
+    rates: FloatArray
+    rows: NDArray[np.intp]
+    step: float
+    noise: float
+
+    @classmethod
+    def of(cls, trace: Trace) -> TraceFit:
+        """Prepare a trace."""
+        from scipy.fft import next_fast_len, rfft
+        from scipy.interpolate import CubicSpline
+
+        times, rows = trace.times, len(trace.command)
+        curve = CubicSpline(times, trace.command)
+        first = math.ceil(_RUN_IN / trace.step)
+        begin, velocity = float(trace.command[0]), float(trace.command[-1] - trace.command[0]) / (times[-1] - times[0])
+        beyond = trace.command - begin - velocity * (times - times[0])
+        whole = 2 * next_fast_len(math.ceil(0.625 * rows), real=True)
+        # back by a cubic, from the last command's velocity to the first's
+        part, width = np.arange(1, whole - rows + 1) / (whole - rows + 1), trace.step * (whole - rows + 1)
+        leaving, coming = (float(curve(times[row], 1)) - velocity for row in (-1, 0))
+        back = width * part * (1.0 - part) * (leaving * (1.0 - part) - coming * part)
+        rates = 2.0 * math.pi * np.arange(whole // 2 + 1) / (whole * trace.step)
+
+        def command(at: FloatArray) -> FloatArray:
+            return np.asarray(curve(np.clip(at, times[0], times[-1])))
+
+        spectrum = np.asarray(rfft(np.concatenate([beyond, back])))
+        judged = np.arange(first, rows)
+        return cls(
+            times[judged],
+            trace.actual[judged],
+            command,
+            (begin, velocity),
+            spectrum,
+            rates,
+            judged,
+            trace.step,
+            noise_of(trace.actual),
+        )
+
+    @property
+    def lag(self) -> float:
+        """Time by which the actual position runs after the command, on average over the rows (s)."""
+        ahead = 1e-3
+        command = self.command(self.times)
+        velocity = (command - self.command(self.times - ahead)) / ahead
+        return float(velocity @ (command - self.actual) / (velocity @ velocity))
+
+    def residual(self, values: dict[str, float], clock: float | None) -> FloatArray:
+        """Take the model and its best beginning off the actual position; without clock the model is the mean over all phases.
+
+        A servo that is unstable leaves far more than any other, so that the search turns back.
+        """
+        servo = Servo(**values)
+        if not spectral_radius(servo) < 1.0:
+            return np.full(len(self.times), _UNSTABLE * float(np.ptp(self.actual)))
+        if clock is None:
+            position, free = self.mean(servo), decays(servo, self.times)
+        else:
+            position, free = axis_response(
+                servo, float(self.times[0]) + clock * servo.sample_time, self.command, self.times
+            )
+        return without(self.actual - position, free)
+
+    def mean(self, servo: Servo) -> FloatArray:
+        """Position at the rows, mean over all phases of the sampling clock."""
+        from scipy.fft import irfft
+
+        begin, velocity = self.line
+        found = irfft(self.spectrum * mean_response(servo, self.rates), 2 * (len(self.rates) - 1))
+        late = servo.delay + (1.0 - servo.velocity_feedforward) / servo.position_gain
+        return np.asarray(found[self.rows] + begin + velocity * (self.step * self.rows - late))
+
+    def doubt(self, found: Solution) -> float:
+        """Squared residual that the command between the rows may account for, which nobody knows: large where it has corners.
+
+        A spline through every second row misses the others; one through all rows misses a fourth of that, at a corner.
+        """
+        from scipy.fft import irfft, rfft
+        from scipy.interpolate import CubicSpline
+
+        rows = len(self.times)
+        every = self.command(self.times)
+        missed = every - CubicSpline(self.times[::2], every[::2])(self.times)
+        rates = 2.0 * math.pi / (rows * self.step) * np.arange(rows // 2 + 1, dtype=np.float64)
+        effect = np.asarray(irfft(rfft(missed) * mean_response(Servo(**found.values), rates), rows))
+        return float(np.sum((effect / 4.0) ** 2))
+
+    def solve(self, alpha: float) -> Solution:
+        """Fit all parameters but the velocity feed-forward and the clock, from many starts."""
+        names = tuple(name for name in RANGES if name != "velocity_feedforward")
+        lag, found = self.lag, []
+        for step in _START_TIMES:
+            for gain in _START_GAINS:
+                start = {
+                    "bandwidth": 110.0,
+                    "damping": 0.8,
+                    "position_gain": gain,
+                    "sample_time": step,
+                    "dead_time": min(max(lag - step - (1.0 - alpha) / gain, 0.0), 0.04),
+                    "velocity_feedforward": alpha,
+                }
+                found.append(self.minimum(start, names, None, _COARSE_ROUNDS))
+        found.sort(key=lambda each: each.cost)
+        return min((self.minimum(each.values, names, None, ROUNDS) for each in found[:2]), key=lambda each: each.cost)
+
+    def thinned(self) -> TraceFit:
+        """Give the problem with no more rows than a search needs."""
+        every = slice(None, None, max(1, len(self.times) // _SEARCH_ROWS))
+        return replace(self, times=self.times[every], actual=self.actual[every], rows=self.rows[every])
+
+    def slopes(self, values: dict[str, float], names: tuple[str, ...], clock: float | None) -> FloatArray:
+        """Take derivatives of the residual by parameters (log of those above zero) and, last, the clock; central differences."""
+        columns = []
+        for name in (*names, *(("clock",) if clock is not None else ())):
+            step = _difference(name)
+            sides = []
+            for side in (step, -step):
+                if name == "clock":
+                    sides.append(self.residual(values, (clock or 0.0) + side))
+                else:
+                    sides.append(self.residual({**values, name: moved(name, values[name], side)}, clock))
+            columns.append((sides[0] - sides[1]) / (2.0 * step))
+        return np.stack(columns, axis=1)
+
+    def minimum(self, start: dict[str, float], names: tuple[str, ...], clock: float | None, rounds: int) -> Solution:
+        """Least squares over some parameters, and the clock if one is given, from a start; ranges are kept."""
+        from scipy.optimize import least_squares
+
+        low, high = (np.array([_coordinate(name, RANGES[name][end]) for name in names]) for end in (0, 1))
+        begin = np.array([_coordinate(name, start[name]) for name in names])
+        if clock is not None:
+            low, high, begin = np.append(low, clock - 2.0), np.append(high, clock + 2.0), np.append(begin, clock)
+
+        def read(point: FloatArray) -> tuple[dict[str, float], float | None]:
+            values = {name: _value(name, float(x)) for name, x in zip(names, point, strict=False)}
+            return {**start, **values}, None if clock is None else float(point[-1])
+
+        def left(point: FloatArray) -> FloatArray:
+            values, phase = read(point)
+            return self.residual(values, phase)
+
+        def slopes(point: FloatArray) -> FloatArray:
+            values, phase = read(point)
+            return self.slopes(values, names, phase)
+
+        edge = 1e-9 * (high - low)
+        begin = np.clip(begin, low + edge, high - edge)
+        size = float(np.abs(self.actual).max()) or 1.0
+        found = least_squares(
+            lambda point: left(point) / size,
+            begin,
+            jac=lambda point: slopes(point) / size,
+            bounds=(low, high),
+            x_scale="jac",
+            max_nfev=rounds,
+            ftol=1e-9,
+            xtol=1e-9,
+            gtol=1e-15,
+        )
+        values, phase = read(found.x)
+        jacobian = found.jac * size
+        rows, width = jacobian.shape
+        scale = np.sqrt((jacobian**2).sum(axis=0))
+        cost = 2.0 * found.cost * size * size
+        inverse = np.linalg.pinv((jacobian / scale).T @ (jacobian / scale))
+        spread = CONFIDENCE * np.sqrt(np.diag(inverse) * cost / (rows - width - 3)) / scale
+        spreads = {
+            name: float(each) * (values[name] if name in _LOGARITHMIC else 1.0)
+            for name, each in zip(names, spread, strict=False)
+        }
+        return Solution(values, names, phase, cost, spreads)
+
+
+def without(signal: FloatArray, rows: FloatArray) -> FloatArray:
+    """Take off a signal what some rows can make of it, by Gram and Schmidt, each twice."""
+    basis: list[FloatArray] = []
+    for row in rows:
+        direction = row
+        for _ in range(2):
+            for other in basis:
+                direction = direction - float(other @ direction) * other
+        size = math.sqrt(float(direction @ direction))
+        if size > 1e-13 * math.sqrt(float(row @ row)):
+            basis.append(direction / size)
+            signal = signal - float(basis[-1] @ signal) * basis[-1]
+    return signal
+
+
+def _coordinate(name: str, value: float) -> float:
+    """Where the search puts a value: the logarithm of what is above zero."""
+    return math.log(value) if name in _LOGARITHMIC else value
+
+
+def _value(name: str, coordinate: float) -> float:
+    return math.exp(coordinate) if name in _LOGARITHMIC else coordinate
+
+
+def moved(name: str, value: float, by: float) -> float:
+    """Move a parameter by a part of itself, or by a number if it may be zero."""
+    return _value(name, _coordinate(name, value) + by)
+
+
+def _difference(name: str) -> float:
+    """Step of a difference: of a logarithm, of the dead time (s), of a part."""
+    return {"dead_time": 1e-6, "clock": 1e-2}.get(name, 1e-4)

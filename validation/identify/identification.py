@@ -1,0 +1,189 @@
+"""The servo's parameters from a recorded trace."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from camwright.profiles.errors import InputError
+from camwright.profiles.servo import Servo
+from camwright.profiles.trace import Trace
+from camwright.validation.identify.clock import with_clock
+from camwright.validation.identify.fit import (
+    CONFIDENCE,
+    RANGES,
+    ROUNDS,
+    Solution,
+    TraceFit,
+)
+from camwright.validation.identify.quality import require_usable
+
+Origin = Literal["trace", "assumed", "given"]
+"""Where the velocity feed-forward comes from."""
+
+_UNITS = {
+    "bandwidth": (1.0, " rad/s"),
+    "damping": (1.0, ""),
+    "position_gain": (1.0, " 1/s"),
+    "sample_time": (1e3, " ms"),
+    "dead_time": (1e3, " ms"),
+    "velocity_feedforward": (1.0, ""),
+}
+_WORST_FIT = 0.5
+_LIVELIER = "record a livelier motion, e.g. a sweep up to the bandwidth of the axis, or a longer one"
+
+
+@dataclass(frozen=True)
+class Identified:
+    """What a trace tells of a servo.
+
+    Parameters
+    ----------
+    servo
+        The servo, no lead in it.
+    confidence
+        Least and greatest value of each fitted parameter by name, 95 % confidence, in SI units.
+    feedforward_from
+        Where the velocity feed-forward comes from: fitted to the trace, assumed to be 0 or 1, which the trace allows, or given.
+    fit
+        ``1 - |residual| / |actual - mean|``: 1 where the model is the axis.
+    residual
+        Rms of what the model leaves over (unit of the trace).
+    rows
+        Rows that were judged.
+    """
+
+    servo: Servo
+    confidence: dict[str, tuple[float, float]]
+    feedforward_from: Origin
+    fit: float
+    residual: float
+    rows: int
+
+
+def identify(trace: Trace, place: str, velocity_feedforward: float | None = None) -> Identified:
+    """Find the servo that makes of the recorded command what was recorded of the axis.
+
+    The axis' state at the beginning is not known and fitted too (three numbers, linear). The sampling clock's phase is not known either:
+    where the trace shows it, it is fitted; where it does not, the model is the mean over all phases.
+
+    The velocity feed-forward is a number that was set; the trace often tells it from the sample time only poorly. Unless given it is
+    fitted, and taken as 1 or as 0 where the fit does not contradict this.
+
+    Parameters
+    ----------
+    trace
+        The trace.
+    place
+        What messages begin with.
+    velocity_feedforward
+        Share of the command's velocity that is fed forward, if known.
+
+    Raises
+    ------
+    InputError
+        The trace cannot be used (`camwright.validation.identify.quality.require_usable`), does not tell a parameter, or no servo of
+        this kind does what it
+        shows.
+    """
+    require_usable(trace, place)
+    fit = TraceFit.of(trace)
+    origin: Origin = "given"
+    if velocity_feedforward is None:
+        solution, origin = _choose(fit)
+    else:
+        solution = with_clock(fit, fit.solve(velocity_feedforward))
+    solution = _with_doubt(fit, solution)
+    share = 1.0 - math.sqrt(solution.cost / float(np.sum((fit.actual - fit.actual.mean()) ** 2)))
+    faults = list(_faults(solution, share))
+    if faults:
+        raise InputError(*(f"{place}: {fault}" for fault in faults))
+    values, spread = solution.values, solution.spreads
+    confidence = {name: (values[name] - spread[name], values[name] + spread[name]) for name in solution.names}
+    return Identified(
+        servo=Servo(
+            **{
+                **values,
+                "dead_time": max(0.0, values["dead_time"]),
+                "velocity_feedforward": min(max(0.0, values["velocity_feedforward"]), 1.0),
+            }
+        ),
+        confidence=confidence,
+        feedforward_from=origin,
+        fit=share,
+        residual=math.sqrt(solution.cost / len(fit.times)),
+        rows=len(fit.times),
+    )
+
+
+def _choose(fit: TraceFit) -> tuple[Solution, Origin]:
+    """Fit the velocity feed-forward too, or take it as 0 or 1 where this is about as good."""
+    from scipy.optimize import minimize_scalar
+
+    whole = min((fit.solve(alpha) for alpha in (0.0, 1.0)), key=lambda each: each.cost)
+    names, free = whole.names, (*whole.names, "velocity_feedforward")
+    assumed = with_clock(fit, whole)
+    if assumed.clock is not None:
+        freed = fit.minimum(assumed.values, free, assumed.clock, ROUNDS)
+        if _about_as_good(fit, assumed, freed):
+            return assumed, "assumed"
+    tried = [whole]
+
+    def cost(alpha: float) -> float:
+        near = min(tried, key=lambda each: abs(each.values["velocity_feedforward"] - alpha))
+        tried.append(fit.minimum({**near.values, "velocity_feedforward": alpha}, names, None, ROUNDS))
+        return tried[-1].cost
+
+    alpha = whole.values["velocity_feedforward"]
+    minimize_scalar(cost, bracket=(alpha, alpha + (0.02 if alpha == 0.0 else -0.02)), options={"xtol": 1e-4})
+    best = min(tried, key=lambda each: each.cost)
+    if assumed.clock is None and _about_as_good(fit, whole, best):
+        return whole, "assumed"
+    return with_clock(fit, fit.minimum(best.values, free, None, ROUNDS)), "trace"
+
+
+def _about_as_good(fit: TraceFit, simple: Solution, free: Solution) -> bool:
+    """Whether a fit of one parameter less is not significantly worse."""
+    noise = free.cost / len(fit.times)
+    return simple.cost - free.cost <= CONFIDENCE**2 * (noise + fit.doubt(free))
+
+
+def _with_doubt(fit: TraceFit, found: Solution) -> Solution:
+    """Widen the confidence by what the command between the rows may do."""
+    wider = math.sqrt(1.0 + fit.doubt(found) * len(fit.times) / found.cost)
+    return replace(found, spreads={name: wider * spread for name, spread in found.spreads.items()})
+
+
+def _faults(solution: Solution, fit: float) -> Iterator[str]:
+    """Say what the trace does not tell, or tells of no servo of this kind."""
+    if not fit > _WORST_FIT:
+        yield (
+            f"no servo of this kind does what the trace shows: the best leaves {100 * (1 - fit):.3g} % of the motion over; check the "
+            "units and the columns, and that it is one axis in position control"
+        )
+        return
+    values = solution.values
+    for name in solution.names:
+        factor, unit = _UNITS[name]
+        words, value, spread = name.replace("_", " "), values[name], solution.spreads[name]
+        low, high = RANGES[name]
+        about = f"{value * factor:.4g}{unit}, give or take {spread * factor:.2g}{unit} (95 %)"
+        known = max(value, values["sample_time"]) if name == "dead_time" else abs(value)
+        if name == "dead_time" and value + spread < 0.0:
+            yield (
+                f"the actual position runs ahead of the command: {words} {about}; switch the controller's lead off for the recording, and "
+                "give command and actual in their own columns"
+            )
+        elif name == "velocity_feedforward" and value - spread > 1.0:
+            yield f"{words} {about}: above 1, the axis would run ahead; give the share that is set in the drive, --velocity-feedforward"
+        elif not low + 1e-6 * abs(low) < value < high - 1e-6 * abs(high):
+            yield f"{words} {value * factor:.4g}{unit}: the end of the range that is searched; {_LIVELIER}"
+        elif 2 * spread > known and name != "velocity_feedforward":
+            yield (
+                f"the trace does not tell the {words}: {about}; {_LIVELIER}"
+                + (", or give --velocity-feedforward" if "velocity_feedforward" in solution.names else "")
+            )

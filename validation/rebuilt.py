@@ -1,0 +1,347 @@
+"""Judging a cam table as the drive will run it: its rebuilt motion over several wraps, with allowances for rounding."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from camwright.profiles.cut import Cut
+from camwright.profiles.errors import InputError
+from camwright.profiles.limits import Limits
+from camwright.profiles.machines import LinearCarriage, Machine
+from camwright.profiles.polynomial.profile import CamProfile, Extremum, FloatArray
+from camwright.profiles.returns import slave_at_start
+from camwright.profiles.servo import Servo, spectral_radius
+from camwright.validation.check import Check
+from camwright.validation.motion import (
+    RATIO_JUMP,
+    greatest_jump,
+    position_scale,
+    ratio_scale,
+)
+from camwright.validation.servo.response import peak_shear_zone_error
+from camwright.validation.servo.simulation import deviation, simulate
+
+LEAST_WRAPS = 3
+
+ALLOWANCE = 0.01
+"""What a limit may be exceeded by, relative to the limit: interpolation and number format, stated in every report."""
+
+_SAME_PERIOD = 1e-3
+"""How far a table's period may be off the cut length, relative to it, to be the table of this cut at all."""
+
+_STEP = 1e-9
+"""Step of the position at a join, relative to the cut length (a turn, for a slave in rad), that is rounding."""
+
+_EDGE = 1e-6
+"""Part of the cut length next to the ends of the sync zone in which the ratio is not judged: a point that stands for an
+end is rounded to the number format, and what lies on its other side is the return."""
+
+_NODES = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, 17))
+_PHASES = 4096
+
+
+@dataclass(frozen=True, eq=False)
+class TableJudgement:
+    """What the drive makes of a table, judged.
+
+    Parameters
+    ----------
+    checks
+        All checks, in a fixed order.
+    cycle
+        One rebuilt cycle, over the master period ``[0, x_c]``.
+    wraps
+        Number of cycles that were run.
+    """
+
+    checks: tuple[Check, ...]
+    cycle: CamProfile
+    wraps: int
+
+    @property
+    def passed(self) -> bool:
+        """Whether every check passed."""
+        return all(check.passed for check in self.checks)
+
+
+def one_cycle(rebuilt: CamProfile, cut: Cut) -> CamProfile:
+    """Put a rebuilt cycle over the master period ``[0, x_c]`` exactly; its slave positions stay.
+
+    Raises
+    ------
+    InputError
+        The table's period is not the cut length, to `_SAME_PERIOD`.
+    """
+    if abs(rebuilt.length - cut.length) > _SAME_PERIOD * cut.length:
+        raise InputError(
+            f"the table's master period is {rebuilt.length * 1e3:.10g} mm, but the cut length is "
+            f"{cut.length * 1e3:.10g} mm; check the units, or name the job that the table was made for"
+        )
+    moved = rebuilt.shift(-rebuilt.start).scale(master=cut.length / rebuilt.length)
+    breaks = moved.breaks.copy()
+    breaks[-1] = cut.length
+    return CamProfile(breaks, moved.coefficients.copy())
+
+
+def judge_table(
+    rebuilt: CamProfile,
+    machine: Machine,
+    cut: Cut,
+    limits: Limits,
+    servo: Servo,
+    wraps: int = LEAST_WRAPS,
+) -> TableJudgement:
+    """Judge the motion that a drive makes of a table.
+
+    The cycle is repeated with the table's own period and advance, as the drive repeats it, and compared with the
+    material over all wraps: what the number format loses in one cycle adds up. Limits may be exceeded by `ALLOWANCE`;
+    a jerk, and an acceleration where the drive puts straight lines, is judged as the drive's own differences of its
+    positions at the servo's sample time, at every sampling phase. Errors in sync are those of the tool along the
+    material, for every machine.
+
+    Parameters
+    ----------
+    rebuilt
+        One cycle as the drive interpolates it, in SI units (slave unit). At the start of the master's period the slave
+        is at zero.
+    machine, cut, limits, servo
+        What it is judged by.
+    wraps
+        Number of cycles to run, at least `LEAST_WRAPS`.
+
+    Raises
+    ------
+    InputError
+        Too few wraps, or a table of another cut length.
+    """
+    if wraps < LEAST_WRAPS:
+        raise InputError(f"a table is run over at least {LEAST_WRAPS} wraps; got {wraps}")
+    cycle = one_cycle(rebuilt, cut)
+    run = rebuilt.shift(-rebuilt.start).repeat(wraps)
+    checks = (
+        *_closing(rebuilt, machine, cut, wraps),
+        *_sync(run, machine, cut, wraps),
+        *_limits(cycle, run, machine, cut, limits, servo),
+        *_stroke(cycle, machine, cut),
+        _shear_zone(cycle, machine, cut, servo),
+    )
+    return TableJudgement(checks, cycle, wraps)
+
+
+def _at_most(name: str, value: float, limit: float, unit: str, at: float | None, source: str) -> Check:
+    return Check(name, value <= limit, value, limit, unit, at, source)
+
+
+def _closing(rebuilt: CamProfile, machine: Machine, cut: Cut, wraps: int) -> list[Check]:
+    """Give what period and advance are off, added up over the wraps, and steps at the joins."""
+    step = greatest_jump(rebuilt, 0)
+    over = f"over {wraps} wraps, in the target's number format"
+    zone = machine.sync_start(cut) + machine.sync_profile(cut)(np.linspace(0.0, cut.sync_zone, 33))
+    lever = float(np.abs(machine.tool_ratio(zone)).max())
+    return [
+        _at_most(
+            "period",
+            wraps * abs(rebuilt.length - cut.length),
+            cut.sync_tolerance,
+            "m",
+            None,
+            f"period against cut length {over}",
+        ),
+        _at_most(
+            "closure",
+            wraps * abs(rebuilt.advance - machine.pitch) * lever,
+            cut.sync_tolerance,
+            "m",
+            None,
+            f"advance against pitch, at the tool in sync, {over}",
+        ),
+        _at_most(
+            "position_joins",
+            step.value,
+            _STEP * position_scale(rebuilt, machine),
+            machine.slave_unit,
+            step.at,
+            "no jump of the position at any join",
+        ),
+    ]
+
+
+def _sync(run: CamProfile, machine: Machine, cut: Cut, wraps: int) -> list[Check]:
+    """Tool against material in the sync zones of all wraps: position, and speed.
+
+    Where the slave is off by ``e`` from its coordinate ``c`` in sync, the tool is off by ``X(c + e) - X(c)``.
+    """
+    if cut.shaped:  # not the command but the axis is in sync, and judged beside this
+        return []
+    sync = machine.sync_profile(cut)
+    began = machine.sync_start(cut) - slave_at_start(machine, cut)  # of the zone, from the start of the cycle
+    zone = cut.return_start + cut.return_zone
+    edge = _EDGE * cut.length
+    points, middles, homes = [], [], []
+    for wrap in range(wraps):
+        for start, end in cut.sync_parts:
+            later = end == cut.length  # the zone that begins in this cycle
+            x = _places(run, wrap * cut.length + start, min(wrap * cut.length + end, run.end))
+            middle = 0.5 * (x[1:] + x[:-1])
+            points.append(x)
+            middles.append(middle[(middle > x[0] + edge) & (middle < x[-1] - edge)])
+            origin = wrap * cut.length + zone - (0.0 if later else cut.length)
+            homes.append((wrap * cut.length, origin, (wrap + (1 if later else 0)) * machine.pitch))
+
+    def off(parts: list[FloatArray]) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Places of all parts, the starts of their cycles, and the slave there: as it should be, and as it is."""
+        x = np.concatenate(parts)
+        cycle, origin, turns = np.repeat(np.array(homes).T, [len(part) for part in parts], axis=1)
+        along = sync(np.clip(x - origin, sync.start, sync.end))
+        meant = machine.sync_start(cut) + along
+        return x, cycle, meant, meant + run(x) - (began + along + turns)
+
+    def greatest(size: FloatArray, x: FloatArray, cycle: FloatArray) -> tuple[float, float | None]:
+        if not size.any():
+            return 0.0, None
+        worst = int(size.argmax())
+        return float(size[worst]), float(x[worst] - cycle[worst])
+
+    x, cycle, meant, found = off(points)
+    worst, at = greatest(np.abs(machine.tool(found) - machine.tool(meant)), x, cycle)
+    x, cycle, _, found = off(middles)
+    slip = np.abs(machine.tool_ratio(found) * run(x, 1) / cut.sync_ratio - 1.0)
+    ratio, ratio_at = greatest(slip, x, cycle)
+    return [
+        _at_most("sync_position", worst, cut.sync_tolerance, "m", at, f"tool against material, {wraps} wraps"),
+        _at_most(
+            "sync_ratio",
+            ratio,
+            cut.sync_tolerance / cut.sync_zone,
+            "1",
+            ratio_at,
+            "speed of the tool in the sync zone (S1), against the sync tolerance over the sync zone",
+        ),
+    ]
+
+
+def _places(run: CamProfile, start: float, end: float) -> FloatArray:
+    """Master positions between two, dense on every piece."""
+    inner = run.breaks[(run.breaks > start) & (run.breaks < end)]
+    breaks = np.concatenate([[start], inner, [end]])
+    return np.unique(np.concatenate([(breaks[:-1, None] + np.diff(breaks)[:, None] * _NODES).ravel(), [end]]))
+
+
+def _limits(
+    cycle: CamProfile, run: CamProfile, machine: Machine, cut: Cut, limits: Limits, servo: Servo
+) -> list[Check]:
+    """Speed, acceleration and reversal of the cycle; differences over all wraps."""
+    v = cut.line_speed
+    speed, least = _extremes(cycle, 1)
+    sampled = sampled_peaks(run, cut, servo)
+    scale, unit = ratio_scale(cycle, machine), machine.slave_unit
+    if greatest_jump(run, 1).value <= RATIO_JUMP * scale:
+        found, _ = _extremes(cycle, 2)
+        acceleration, at = v * v * found.value, found.at
+        how = "exact"
+    else:
+        acceleration, at = sampled[0]
+        how = "differences at the servo's sample time"
+    jerk, jerk_at = sampled[1]
+    allowed = 1.0 + ALLOWANCE
+    backward = limits.speed if limits.reversal or machine.turns_back else ALLOWANCE * v * scale
+    return [
+        _at_most("speed", v * speed.value, allowed * limits.speed, f"{unit}/s", speed.at, "exact"),
+        _at_most("acceleration", acceleration, allowed * limits.acceleration, f"{unit}/s^2", at, how),
+        _at_most("jerk", jerk, allowed * limits.jerk, f"{unit}/s^3", jerk_at, "differences at the servo's sample time"),
+        _at_most("reversal", max(0.0, -v * least.value), backward, f"{unit}/s", least.at, "greatest backward speed"),
+    ]
+
+
+def _extremes(cycle: CamProfile, order: int) -> tuple[Extremum, Extremum]:
+    """Find the greatest magnitude and the least value; constants on thousands of pieces need no roots."""
+    if cycle.degree > order:
+        least, greatest = cycle.extrema(order)
+        return Extremum(-least.value, least.at) if -least.value > greatest.value else greatest, least
+    value = cycle(cycle.breaks[:-1], order)
+    most, fewest = int(np.abs(value).argmax()), int(value.argmin())
+    return (
+        Extremum(float(abs(value[most])), float(cycle.breaks[most])),
+        Extremum(float(value[fewest]), float(cycle.breaks[fewest])),
+    )
+
+
+def _stroke(cycle: CamProfile, machine: Machine, cut: Cut) -> list[Check]:
+    """Whether a carriage stays on its guide; the rounding of a table may take it a sync tolerance beyond."""
+    if not isinstance(machine, LinearCarriage):
+        return []
+    x = _places(cycle, cycle.start, cycle.end)
+    inside = slave_at_start(machine, cut) - machine.home + cycle(x)
+    over = np.maximum(-inside, inside - machine.stroke)
+    return [
+        _at_most(
+            "stroke",
+            float(over.max()),
+            cut.sync_tolerance,
+            "m",
+            float(x[over.argmax()]),
+            "how far the carriage goes beyond its stroke, negative inside",
+        )
+    ]
+
+
+def _shear_zone(cycle: CamProfile, machine: Machine, cut: Cut, servo: Servo) -> Check:
+    """Tool of the real axis against material in the shear zone; no value if the servo is unstable."""
+    worst = None
+    if spectral_radius(servo) < 1.0:
+        worst = peak_shear_zone_error(simulate(cycle, cut, servo), cycle, machine, cut)
+    return Check(
+        "shear_zone_error",
+        worst is not None and worst <= cut.sync_tolerance,
+        worst,
+        cut.sync_tolerance,
+        "m",
+        None,
+        "tool against material in the shear zone, at every sampling phase",
+    )
+
+
+def sampled_peaks(run: CamProfile, cut: Cut, servo: Servo) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Greatest second and third difference of the positions at the servo's sample time, over all sampling phases.
+
+    That is what the drive is commanded: it knows the cam at its samples only. Where the cam is smooth over some samples
+    the differences approach the derivatives; where straight lines meet they stay finite.
+
+    Parameters
+    ----------
+    run
+        One or more cycles, SI units.
+    cut, servo
+        Line speed, and sample time.
+
+    Returns
+    -------
+    tuple
+        Acceleration and where its samples begin on the master (m), jerk and where.
+    """
+    step = cut.line_speed * servo.sample_time
+    joins = (run.breaks[:, None] - step * np.arange(4)).ravel()  # differences peak where a sample falls on a join
+    x = np.concatenate([np.linspace(0.0, cut.length, _PHASES, endpoint=False), joins[joins >= 0.0]])
+    x.sort()
+    # the straight line that a deviation leaves out has no second difference
+    y = [deviation(run, x + k * step) for k in range(4)]
+    y = [after - before for before, after in pairwise(y)]
+    found = []
+    for order in (2, 3):
+        y = [after - before for before, after in pairwise(y)]
+        size = np.abs(y[0]) / servo.sample_time**order
+        worst = int(size.argmax())
+        found.append((float(size[worst]), float(x[worst]) % cut.length))
+    return found[0], found[1]
+
+
+def differences(run: CamProfile, x: FloatArray, order: int, cut: Cut, servo: Servo) -> FloatArray:
+    """Second (acceleration) or third difference (jerk) of samples that begin at master positions ``x``, over time."""
+    step = cut.line_speed * servo.sample_time
+    y = [run(x + k * step, outside="repeat") for k in range(order + 1)]
+    for _ in range(order):
+        y = [after - before for before, after in pairwise(y)]
+    return y[0] / servo.sample_time**order

@@ -1,0 +1,123 @@
+"""How fast the axis itself moves: its speed and acceleration at every sampling phase, between the samples too."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from camwright.profiles.cut import Cut
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.servo import Servo, sample_plant
+from camwright.validation.check import Check
+from camwright.validation.motion import require_period
+from camwright.validation.servo.lifting import SUBSTEPS
+from camwright.validation.servo.simulation import (
+    PHASES,
+    deviation,
+    mean_ratio,
+    memory,
+    require_samples,
+)
+
+ALLOWANCE = 1e-3
+"""What the axis may exceed a limit by, relative to the limit: it is looked at on points, not everywhere."""
+
+
+@dataclass(frozen=True)
+class AxisPeaks:
+    """Extremes of the axis' motion over all sampling phases (slave unit).
+
+    Parameters
+    ----------
+    greatest_velocity, least_velocity
+        Signed (slave unit/s).
+    peak_acceleration
+        Greatest magnitude (slave unit/s²). The sampled reference jumps, so the axis' jerk knows no limit but the servo's.
+    """
+
+    greatest_velocity: float
+    least_velocity: float
+    peak_acceleration: float
+
+    @property
+    def peak_speed(self) -> float:
+        """Greatest magnitude of the velocity."""
+        return max(self.greatest_velocity, -self.least_velocity)
+
+
+def axis_peaks(profile: CamProfile, cut: Cut, servo: Servo) -> AxisPeaks:
+    """Simulate the servo sample by sample, all phases side by side, and take the extremes of the axis' motion.
+
+    Parameters
+    ----------
+    profile
+        One cycle over the master period ``[0, x_c]``.
+    cut, servo
+        As in `camwright.validation.servo.simulation.simulate`.
+
+    Raises
+    ------
+    InputError
+        The profile does not run over ``[0, x_c]``, the servo is unstable, or its memory too long to simulate.
+    """
+    require_period(profile, cut)
+    past = memory(servo.loop)
+    samples = math.ceil(cut.period / servo.sample_time) + 1
+    require_samples(cut, servo, past, samples)
+    step = servo.sample_time * cut.line_speed / PHASES
+    grid = cut.return_start - cut.line_speed * servo.delay + step * np.arange(-(past + 1.0) * PHASES, samples * PHASES)
+    command = deviation(profile, grid).reshape(-1, PHASES)
+    drive = servo.position_gain * command[1:] + servo.velocity_feedforward / servo.sample_time * np.diff(
+        command, axis=0
+    )
+    plant = sample_plant(servo, servo.sample_time)
+    parts = [sample_plant(servo, servo.sample_time * k / SUBSTEPS) for k in range(SUBSTEPS)]
+    between = np.array([part.transition[:2] for part in parts])  # rows of acceleration and velocity
+    pushed = np.array([part.input[:2] for part in parts])
+    state = np.zeros((3, PHASES))
+    velocity, acceleration = [], []
+    for k, input_ in enumerate(drive):
+        reference = input_ - servo.position_gain * state[2]
+        if k >= past:
+            points = between @ state + pushed[:, :, None] * reference
+            acceleration.append(points[:, 0])
+            velocity.append(points[:, 1])
+        state = plant.transition @ state + plant.input[:, None] * reference
+    speeds = np.array(velocity) + mean_ratio(profile) * cut.line_speed
+    return AxisPeaks(float(speeds.max()), float(speeds.min()), float(np.abs(np.array(acceleration)).max()))
+
+
+def axis_checks(peaks: AxisPeaks, speed: float, acceleration: float, least_velocity: float, unit: str) -> list[Check]:
+    """Check the axis' motion against the limits of speed, acceleration and reversal.
+
+    Parameters
+    ----------
+    peaks
+        The axis' motion.
+    speed, acceleration
+        Limits (slave unit/s, slave unit/s²).
+    least_velocity
+        Least velocity allowed (slave unit/s).
+    unit
+        Slave unit.
+    """
+    backward, allowed = max(0.0, -peaks.least_velocity), max(0.0, -least_velocity)
+    how = "of the axis itself, at every sampling phase (S1's servo)"
+    rows = (
+        ("axis_speed", peaks.peak_speed, speed, ALLOWANCE * speed, f"{unit}/s", f"peak speed {how}"),
+        (
+            "axis_acceleration",
+            peaks.peak_acceleration,
+            acceleration,
+            ALLOWANCE * acceleration,
+            f"{unit}/s^2",
+            f"peak acceleration {how}",
+        ),
+        ("axis_reversal", backward, allowed, ALLOWANCE * speed, f"{unit}/s", f"greatest backward speed {how}"),
+    )
+    return [
+        Check(name, value <= limit + room, value, limit, per, None, source)
+        for name, value, limit, room, per, source in rows
+    ]

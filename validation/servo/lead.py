@@ -1,0 +1,86 @@
+"""Where the cut falls at every line speed: what dead time does to it, and what a lead time makes up for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from camwright.profiles.cut import Cut
+from camwright.profiles.machines import Machine
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.servo import Servo, mean_lag
+from camwright.validation.motion import require_period
+from camwright.validation.servo.response import shear_zone_error
+from camwright.validation.servo.side_by_side import sampled_plants, shear_zone_run
+from camwright.validation.servo.simulation import PHASES, memory
+
+SHARES = (0.1, 0.25, 0.5, 1.0)
+"""Shares of the line speed at which the cut is looked at."""
+
+
+@dataclass(frozen=True)
+class LengthError:
+    """Where the cut falls at one line speed, against where it should; positive where the tool is late and the piece too long.
+
+    Parameters
+    ----------
+    share
+        Line speed as a share of the job's.
+    line_speed
+        Line speed (m/s).
+    offset
+        Mean distance of the tool behind the material in the shear zone, mean over the sampling phases (m). The same for every cut at
+        this line speed: it moves all cuts alike, and spoils a length where the line speed changes.
+    variation
+        Greatest minus least over the sampling phases (m): what changes from cut to cut.
+    offset_with_lead
+        The offset with the lead time that makes up for the mean lag (`camwright.profiles.servo.mean_lag`).
+    """
+
+    share: float
+    line_speed: float
+    offset: float
+    variation: float
+    offset_with_lead: float
+
+
+def length_errors(profile: CamProfile, machine: Machine, cut: Cut, servo: Servo) -> tuple[LengthError, ...]:
+    """Predict where the cut falls when the line runs slower: the same cam over the master, slower in time.
+
+    Parameters
+    ----------
+    profile
+        One cycle over the master period ``[0, x_c]``.
+    machine, cut
+        As in `camwright.validation.servo.response.servo_response`.
+    servo
+        The servo, its dead time and lead included.
+
+    Returns
+    -------
+    tuple
+        One entry for each of `SHARES`, in this order.
+
+    Raises
+    ------
+    InputError
+        The profile does not run over ``[0, x_c]``, or the servo is unstable or its memory too long to simulate.
+    """
+    require_period(profile, cut)
+    servos = (servo, replace(servo, lead_time=mean_lag(servo)))
+    plants, past = sampled_plants(servos), memory(servo.loop)
+    found = []
+    for share in SHARES:
+        slower = replace(cut, line_speed=share * cut.line_speed)
+        run = shear_zone_run(profile, slower, servos, plants, past)
+        master, error, slope = shear_zone_error(run, profile, machine, slower)
+        # mean of the cubics between the points, 0 wide where a row is filled up
+        step = np.diff(master, axis=1)
+        area = 0.5 * step * (error[:, :-1] + error[:, 1:]) + step**2 / 12 * (slope[:, :-1] - slope[:, 1:])
+        width = master[:, -1] - master[:, 0]
+        mean = area.sum(axis=1) / width if cut.shear_zone > 0 else error[:, 0]
+        late = -mean.reshape(len(servos), PHASES)
+        offset, with_lead = late.mean(axis=1).tolist()
+        found.append(LengthError(share, slower.line_speed, offset, float(np.ptp(late[0])), with_lead))
+    return tuple(found)

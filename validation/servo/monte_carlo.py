@@ -1,0 +1,72 @@
+"""The sync error in the shear zone over many servos at once: what a cam still does when the servo is not quite the one assumed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from camwright.profiles.cut import Cut
+from camwright.profiles.machines import Machine
+from camwright.profiles.polynomial.profile import CamProfile, FloatArray
+from camwright.profiles.servo import Servo
+from camwright.validation.motion import require_period
+from camwright.validation.servo.lifting import SUBSTEPS
+from camwright.validation.servo.response import shear_zone_error
+from camwright.validation.servo.side_by_side import closed_loops, sampled_plants, shear_zone_run
+from camwright.validation.servo.simulation import PHASES, memory_at
+
+_VALUES = 2**17
+"""Command values that are held at a time."""
+
+
+def shear_zone_errors(profile: CamProfile, machine: Machine, cut: Cut, servos: Sequence[Servo]) -> FloatArray:
+    """Greatest sync error in the shear zone of every servo, over all sampling phases.
+
+    The figure of `camwright.validation.servo.response.ServoResponse.shear_zone_error`, of many servos: nothing but the servo's memory
+    and the shear zone
+    is simulated, many servos side by side.
+
+    Parameters
+    ----------
+    profile
+        One cycle over the master period ``[0, x_c]``.
+    machine, cut
+        As in `camwright.validation.servo.response.servo_response`.
+    servos
+        The servos, e.g. of `camwright.profiles.servo_tolerance.ServoTolerance.draw`.
+
+    Returns
+    -------
+    ndarray
+        Greatest magnitude of the sync error (m), infinite for a servo that is unstable; shape ``(servos,)``.
+
+    Raises
+    ------
+    InputError
+        The profile does not run over ``[0, x_c]``, or the memory of a servo is too long to simulate.
+    """
+    require_period(profile, cut)
+    found = np.full(len(servos), np.inf)
+    if not len(servos):
+        return found
+    plants = sampled_plants(servos)
+    radii = np.abs(np.linalg.eigvals(closed_loops(plants[SUBSTEPS], servos))).max(axis=1)
+    past = np.array([memory_at(radius) if radius < 1.0 else 0 for radius in radii.tolist()])
+    for group in _groups(past):
+        chosen = [servos[i] for i in group.tolist()]
+        run = shear_zone_run(profile, cut, chosen, plants[:, group], int(past[group[0]]))
+        error = shear_zone_error(run, profile, machine, cut)[1]
+        found[group] = np.abs(error).reshape(len(group), -1).max(axis=1)
+    return found
+
+
+def _groups(past: NDArray[np.intp]) -> Iterator[NDArray[np.intp]]:
+    """Divide the stable servos into groups that fit, the longest memories first; gives their places."""
+    order = np.argsort(-past, kind="stable")
+    order = order[past[order] > 0]
+    while len(order):
+        size = max(1, _VALUES // (PHASES * int(past[order[0]])))
+        yield order[:size]
+        order = order[size:]

@@ -1,0 +1,311 @@
+"""What the real axis makes of a profile: when it meets the material, when it stays with it, how far it is off."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from camwright.profiles.cut import Cut
+from camwright.profiles.machines import Machine
+from camwright.profiles.polynomial.profile import CamProfile, FloatArray
+from camwright.profiles.returns import slave_zero
+from camwright.profiles.servo import Servo
+from camwright.validation.servo.simulation import (
+    AxisRun,
+    ServoRun,
+    hermite,
+    simulate,
+)
+
+ON_THE_LINE = 1e-9
+"""Part of the cut length within which the axis counts as lying on the ideal sync line; well above rounding, well
+below what a drive resolves."""
+
+_AS_GREAT = 1.0 - 1e-6
+"""Share of the greatest error that counts as it; the first such point is taken."""
+
+_Index = Any
+"""Anything that picks points of an array."""
+
+_ZERO = 1e-12
+"""Accuracy of a zero between two points of the axis, as a part of the step between them."""
+
+
+@dataclass(frozen=True)
+class ServoResponse:
+    """Response of the servo over all sampling phases, SI units (m).
+
+    Distances are master travel from the start of the sync zone. The sync error is that of the tool, along the material: where the axis
+    puts it, minus where it would move with the material.
+
+    Parameters
+    ----------
+    crossing
+        Where the sync error first changes its sign after it was greatest (the paper's criterion for the transition length), at
+        the phase where that is latest; 0 if the axis lies on the line throughout, ``None`` if at some phase it meets
+        the line nowhere in the zone.
+    settling
+        Beyond this distance the sync error stays within the tolerance, at every phase; 0 if it never leaves it,
+        ``None`` if at some phase it is outside at the end of the zone.
+    overshoot
+        Greatest sync error of the other sign after the crossing, at the worst phase; 0 without a crossing.
+    peak_following_error
+        Greatest magnitude of command minus axis over the whole cycle, at the tool where the slave is an angle.
+    shear_zone_error
+        Greatest magnitude of the sync error in the shear zone; at its place if its length is zero.
+    phases
+        Number of sampling phases simulated.
+    """
+
+    crossing: float | None
+    settling: float | None
+    overshoot: float
+    peak_following_error: float
+    shear_zone_error: float
+    phases: int
+
+
+def servo_response(
+    profile: CamProfile, machine: Machine, cut: Cut, servo: Servo, tolerance: float | None = None
+) -> ServoResponse:
+    """Simulate the servo on a profile and measure its response.
+
+    Parameters
+    ----------
+    profile
+        One cycle over the master period ``[0, x_c]``.
+    machine
+        The machine; it says what the ideal sync line is.
+    cut
+        Cut length, line speed and zones.
+    servo
+        The servo.
+    tolerance
+        Sync error allowed for the settling length (m); the cut's sync tolerance if not given.
+
+    Raises
+    ------
+    InputError
+        As `camwright.validation.servo.simulation.simulate`.
+    """
+    return measure_response(simulate(profile, cut, servo), profile, machine, cut, tolerance)
+
+
+def measure_response(
+    run: ServoRun, profile: CamProfile, machine: Machine, cut: Cut, tolerance: float | None = None
+) -> ServoResponse:
+    """Measure a simulated response; arguments as in `servo_response`."""
+    start = cut.return_start + cut.return_zone  # counted on like AxisRun.master
+    part = _in_sync(run, profile, machine, cut, start, start + cut.sync_zone)
+    distance, error = part.master - start, part.error()
+    crossing, overshoot = _crossing(distance, error, part.slope, ON_THE_LINE * cut.length)
+    settling = _settling(distance, error, part.slope, cut.sync_tolerance if tolerance is None else tolerance)
+    return ServoResponse(
+        crossing=crossing,
+        settling=settling,
+        overshoot=overshoot,
+        peak_following_error=_peak_following_error(run, profile, machine, cut),
+        shear_zone_error=peak_shear_zone_error(run, profile, machine, cut),
+        phases=run.phases,
+    )
+
+
+def sync_error(
+    run: AxisRun, profile: CamProfile, machine: Machine, cut: Cut, start: float, end: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Tool minus ideal sync line in a part of the sync zone, for every sampling phase.
+
+    The ideal line passes through the profile's position at the cut length ``x_c``, which lies in the sync zone with
+    either origin (S1: ``Y = X - x_c + y_c`` in the first cycle); for a shaped command, which is elsewhere there, through the pitch. With
+    the machine's map ``X`` and the slave coordinate ``c`` of that line the error is ``X(c + e) - X(c)`` for an axis that is off by ``e``.
+
+    Parameters
+    ----------
+    start, end
+        The part (m), counted like `camwright.validation.servo.simulation.AxisRun.master`.
+
+    Returns
+    -------
+    (master, error, slope)
+        Master position (m), error (m) and its derivative over the master; shapes ``(phases, n)``.
+    """
+    part = _in_sync(run, profile, machine, cut, start, end)
+    return part.master, part.error(), part.slope()
+
+
+@dataclass(frozen=True, eq=False)
+class _InSync:
+    """The axis beside the ideal sync line in a part of the sync zone, at every sampling phase; shapes ``(phases, n)``.
+
+    Parameters
+    ----------
+    machine, sync
+        The machine, and its slave in the sync zone.
+    master, along
+        Master position, counted on and from the start of the sync zone (m).
+    ideal, actual
+        Slave coordinate on the line, and of the axis (slave unit).
+    ratio
+        Ratio of the axis.
+    """
+
+    machine: Machine
+    sync: CamProfile
+    master: FloatArray
+    along: FloatArray
+    ideal: FloatArray
+    actual: FloatArray
+    ratio: FloatArray
+
+    def error(self) -> FloatArray:
+        """Tool minus ideal sync line (m)."""
+        return np.asarray(self.machine.tool(self.actual) - self.machine.tool(self.ideal))
+
+    def slope(self, at: _Index = ...) -> FloatArray:
+        """Give the derivative of the error over the master, at some of the points or at all."""
+        moves = self.machine.tool_ratio(self.actual[at]) * self.ratio[at]
+        return np.asarray(moves - self.machine.tool_ratio(self.ideal[at]) * self.sync(self.along[at], 1))
+
+
+def _in_sync(run: AxisRun, profile: CamProfile, machine: Machine, cut: Cut, start: float, end: float) -> _InSync:
+    """Put the axis beside the ideal sync line; arguments as in `sync_error`."""
+    zone = cut.return_start + cut.return_zone
+    sync = machine.sync_profile(cut)
+    master, axis, ratio = run.window(start, end)
+    along = np.minimum(np.maximum(master - zone, sync.start), sync.end)
+    travel = sync(along)
+    met = machine.pitch if cut.shaped else float(profile(profile.end))
+    line = travel + (met - float(sync(min(max(cut.length - zone, sync.start), sync.end))))
+    ideal = machine.sync_start(cut) + travel
+    return _InSync(machine, sync, master, along, ideal, ideal + (axis - line), ratio)
+
+
+def shear_zone_error(
+    run: AxisRun, profile: CamProfile, machine: Machine, cut: Cut
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Sync error in the shear zone; as `sync_error`."""
+    return sync_error(run, profile, machine, cut, *_shear_zone(cut))
+
+
+def peak_shear_zone_error(run: AxisRun, profile: CamProfile, machine: Machine, cut: Cut) -> float:
+    """Greatest magnitude of the sync error in the shear zone, at every sampling phase (m); arguments as in `sync_error`."""
+    return float(np.abs(_in_sync(run, profile, machine, cut, *_shear_zone(cut)).error()).max())
+
+
+def _shear_zone(cut: Cut) -> tuple[float, float]:
+    """Start and end of the shear zone, counted on like `AxisRun.master`."""
+    zone = cut.return_start + cut.return_zone
+    start = zone + cut.shear_zone_at
+    return start, min(start + cut.shear_zone, zone + cut.sync_zone)
+
+
+def _peak_following_error(run: ServoRun, profile: CamProfile, machine: Machine, cut: Cut) -> float:
+    """Greatest magnitude of command minus axis; for a slave in rad at the tool (m).
+
+    The tool of a slave that is off by ``e`` is off by at most the greatest lever times ``e``, so it is computed only where that may be
+    the greatest.
+    """
+    off = np.abs(run.command - run.axis)
+    if machine.slave_unit == "m":
+        return float(off.max())
+    start = slave_zero(profile, machine, cut)
+
+    def at_tool(at: _Index) -> FloatArray:
+        return np.asarray(np.abs(machine.tool(start + run.command[at]) - machine.tool(start + run.axis[at])))
+
+    found = float(at_tool(np.unravel_index(off.argmax(), off.shape)))
+    return float(at_tool(off * _lever(machine) >= found).max(initial=found))
+
+
+@lru_cache(maxsize=64)
+def _lever(machine: Machine) -> float:
+    """Bound the tool's travel per slave travel, of a slave in rad: its greatest value around the turn, and a percent more."""
+    return 1.01 * float(np.abs(machine.tool_ratio(np.linspace(0.0, 2 * np.pi, 3601))).max())
+
+
+def _crossing(
+    distance: FloatArray, error: FloatArray, slope: Callable[[_Index], FloatArray], floor: float
+) -> tuple[float | None, float]:
+    """Latest over the phases of the first change of sign after the greatest error, and the greatest error beyond it.
+
+    What is left of the return before may have put the axis on the other side of the line by a little: it crosses the line at once, only
+    then to swing out. The transition is over when it meets the line again.
+    """
+    size = np.abs(error)
+    greatest = size.max(axis=1)
+    rows = np.nonzero(greatest > floor)[0]
+    if len(rows) == 0:
+        return 0.0, 0.0
+    first = (size[rows] >= _AS_GREAT * greatest[rows, None]).argmax(axis=1)
+    side = np.sign(error[rows, first])[:, None]
+    before = np.arange(error.shape[1]) <= first[:, None]
+    met = (side * error[rows] <= 0.0) & ~before
+    at = met.argmax(axis=1)
+    crossed = met.any(axis=1)
+    after = np.arange(error.shape[1]) >= at[:, None]
+    beyond = np.where(after & crossed[:, None], -side * error[rows], 0.0)
+    overshoot = max(0.0, float(beyond.max()))
+    if not crossed.all():
+        return None, overshoot
+    pairs = _pairs(rows, at - 1)
+    return _latest_zero(distance[pairs], error[pairs], slope(pairs)), overshoot
+
+
+def _settling(
+    distance: FloatArray, error: FloatArray, slope: Callable[[_Index], FloatArray], tolerance: float
+) -> float | None:
+    """Distance beyond which no phase is outside the tolerance."""
+    outside = np.abs(error) > tolerance
+    if outside[:, -1].any():
+        return None
+    rows = np.nonzero(outside.any(axis=1))[0]
+    if len(rows) == 0:
+        return 0.0
+    last = error.shape[1] - 1 - outside[rows, ::-1].argmax(axis=1)
+    pairs = _pairs(rows, last)
+    edge = np.sign(error[rows, last])[:, None] * tolerance
+    return _latest_zero(distance[pairs], error[pairs] - edge, slope(pairs))
+
+
+def _pairs(rows: NDArray[np.intp], left: NDArray[np.intp]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Index of the points ``left`` and ``left + 1`` of rows; shapes ``(n, 1)`` and ``(n, 2)``."""
+    return rows[:, None], left[:, None] + np.arange(2)
+
+
+def _latest_zero(place: FloatArray, error: FloatArray, slope: FloatArray) -> float:
+    """Greatest zero of the cubics between two points each, where the sign changes; all of shape ``(n, 2)``."""
+    latest = 0.0
+    rows = zip(place.tolist(), error.tolist(), slope.tolist(), strict=True)
+    for (x, beyond), value, slopes in sorted(rows, reverse=True):
+        if beyond <= latest:  # it ends before a zero that is known
+            continue
+        step = beyond - x
+        if latest > x and hermite((latest - x) / step, step, value, slopes)[0] * value[0] < 0.0:
+            continue  # its sign has changed before
+        latest = max(latest, x + step * _zero_part(step, value, slopes))
+    return latest
+
+
+def _zero_part(step: float, value: list[float], slopes: list[float]) -> float:
+    """Zero of the cubic through two points of different sign, as a part of the step: safeguarded Newton."""
+    low, high, part = 0.0, 1.0, value[0] / (value[0] - value[1])
+    line, rise = step * slopes[0], value[1] - value[0]  # as `hermite`, its powers made once
+    square, cube = 3 * rise - step * (2 * slopes[0] + slopes[1]), step * (slopes[0] + slopes[1]) - 2 * rise
+    while True:
+        error = value[0] + part * (line + part * (square + part * cube))
+        slope = (line + part * (2 * square + part * 3 * cube)) / step
+        if error * value[0] > 0.0:
+            low = part
+        else:
+            high = part
+        guess = part - error / (slope * step) if slope else low
+        if not low < guess < high:
+            guess = 0.5 * (low + high)
+        if abs(guess - part) <= _ZERO:
+            return guess
+        part = guess
