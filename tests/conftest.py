@@ -1,12 +1,20 @@
-"""What all tests share: no display, and property tests that run the same way every time."""
+"""What all tests share: this checkout, no display, and property tests that run the same way every time."""
 
 from __future__ import annotations
+
+import os
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
 
+ROOT = Path(__file__).resolve().parents[1]
+
 settings.register_profile("camwright", deadline=None, derandomize=True)
 settings.load_profile("camwright")
+
+# Processes that a test starts see this checkout first, as the tests themselves do (pythonpath of pytest), not a copy installed earlier.
+os.environ["PYTHONPATH"] = os.pathsep.join([str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])])
 
 
 @pytest.fixture(autouse=True)

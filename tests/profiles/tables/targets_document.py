@@ -1,4 +1,4 @@
-"""Makes ``docs/targets.md`` from the registry and files written here: ``python tests/tables/targets_document.py``."""
+"""Makes ``docs/targets.md`` from the registry and files written here: ``python tests/profiles/tables/targets_document.py``."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from knives import chosen, written
 from camwright.profiles.tables.target import SAFETY_NOTE, Target
 from camwright.profiles.tables.targets import TARGETS
 
-DOCUMENT = Path(__file__).parents[2] / "docs" / "targets.md"
+DOCUMENT = Path(__file__).parents[3] / "docs" / "targets.md"
 
 _HEAD = f"""# Targets
 

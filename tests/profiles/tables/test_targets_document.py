@@ -12,7 +12,7 @@ from camwright.profiles.tables.targets import TARGETS
 def test_the_document_is_up_to_date() -> None:
     made = re.sub(r"[0-9.e-]{6,}", "#", document())  # the last digits may differ from machine to machine
     assert re.sub(r"[0-9.e-]{6,}", "#", DOCUMENT.read_text(encoding="utf-8")) == made, (
-        "run python tests/tables/targets_document.py"
+        "run python tests/profiles/tables/targets_document.py"
     )
 
 
