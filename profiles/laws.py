@@ -52,15 +52,7 @@ def from_acceleration(widths: list[float], levels: list[float]) -> CamProfile:
         v += h * (a + b) / 2
         x += h
         breaks.append(x)
-    profile = CamProfile.from_arrays(breaks, rows).scale(master=1 / x, slave=1 / s)
-    return _ending_at_one(profile)
-
-
-def _ending_at_one(profile: CamProfile) -> CamProfile:
-    """Put the last break on 1 exactly; it is there but for rounding."""
-    breaks = profile.breaks.copy()
-    breaks[-1] = 1.0
-    return CamProfile(breaks, profile.coefficients.copy())
+    return CamProfile.from_arrays(breaks, rows).scale(master=1 / x, slave=1 / s).over(0.0, 1.0)
 
 
 def _sine(frequency: float, phase: float, origin: float) -> FloatArray:

@@ -37,10 +37,7 @@ def place_law(name: str, length: float, height: float, ratio: float = 1.0) -> Ca
         Ratio at both ends of the sync zone (slave unit per m).
     """
     correction = height - ratio * length
-    placed = law(name).scale(master=length, slave=correction).add_line(ratio)
-    breaks = placed.breaks.copy()
-    breaks[-1] = length  # the law ends at 1 exactly, its image at the length but for rounding
-    return CamProfile(breaks, placed.coefficients.copy())
+    return law(name).scale(master=length, slave=correction).add_line(ratio).over(0.0, length)
 
 
 def baseline_names(machine: Machine, cut: Cut) -> tuple[str, ...]:
@@ -154,9 +151,7 @@ def assemble(back: CamProfile, machine: Machine, cut: Cut) -> CamProfile:
     cycle = join(back, sync.shift(back.end - sync.start, height - float(sync(sync.start))))
     if cut.origin == "cut":
         cycle = cycle.roll(cut.length - 0.5 * cut.sync_zone)
-    breaks = cycle.breaks.copy()
-    breaks[-1] = cut.length  # there but for rounding
-    return CamProfile(breaks, cycle.coefficients.copy())
+    return cycle.over(0.0, cut.length)
 
 
 def slave_at_start(machine: Machine, cut: Cut) -> float:

@@ -16,7 +16,7 @@ from camwright.profiles.errors import InputError
 from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile, Extremum, FloatArray
 from camwright.profiles.returns import is_straight, slave_zero
-from camwright.validation.composed import compose, integral
+from camwright.validation.composed import compose
 
 RATIO_JUMP = 1e-9
 """Jump of the ratio above which acceleration and jerk count as unbounded, relative to `ratio_scale`."""
@@ -134,7 +134,7 @@ def tool_profile(profile: CamProfile, machine: Machine, cut: Cut) -> CamProfile:
     if machine.slave_unit == "m":
         return profile
     start = slave_zero(profile, machine, cut)
-    return integral(compose(lambda y, ratio, _: np.asarray(machine.tool_ratio(start + y) * ratio), profile))
+    return compose(lambda y, ratio, _: np.asarray(machine.tool_ratio(start + y) * ratio), profile).integral()
 
 
 @lru_cache(maxsize=8)  # a measure of the motion, and a check
@@ -159,8 +159,7 @@ def _tool_in_sync(part: CamProfile, profile: CamProfile, machine: Machine, cut: 
     """Ratio of the tool over the master in a part of the sync zone."""
     if is_straight(machine, cut):  # so the tool's ratio to the slave is constant too: what the sync zone says
         per_slave = cut.sync_ratio / float(machine.sync_profile(cut)(0.0, 1))
-        ratios = part.coefficients[:, 1:] * np.arange(1, part.degree + 1) * per_slave
-        return CamProfile(part.breaks.copy(), ratios)
+        return part.derivative().scale(slave=per_slave)
     start = slave_zero(profile, machine, cut)
     if part.end > 0.5 * cut.length:  # the next pitch is the next blade, and the formulas speak of the blade that cuts
         start -= machine.pitch

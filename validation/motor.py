@@ -10,15 +10,9 @@ import numpy as np
 from camwright.profiles.cut import Cut
 from camwright.profiles.machines import Machine
 from camwright.profiles.motor import MotorCurve
-from camwright.profiles.polynomial.profile import CamProfile, Extremum, FloatArray
+from camwright.profiles.polynomial.profile import CamProfile, Extremum, FloatArray, steps
 from camwright.profiles.returns import slave_zero
-from camwright.validation.composed import (
-    compose,
-    integral,
-    recut,
-    split,
-    zeros,
-)
+from camwright.validation.composed import compose
 from camwright.validation.motion import greatest_magnitude, is_steady, require_period
 
 _STANDING = 1e-9
@@ -115,12 +109,10 @@ def motor_torque(profile: CamProfile, machine: Machine, cut: Cut) -> CamProfile:
         place = start + y
         return np.asarray(v**2 / ratio * (machine.inertia(place) * bend + machine.inertia_slope(place) * slope**2 / 2))
 
-    one_way = split(profile, zeros(profile, 1))
+    one_way = profile.split(profile.roots(1))
     torque = compose(inertial, one_way)
-    direction = _direction(one_way)[np.searchsorted(one_way.breaks[1:-1], torque.breaks[:-1], side="right")]
-    table = torque.coefficients.copy()
-    table[:, 0] += machine.friction / ratio * direction
-    return CamProfile(torque.breaks.copy(), table)
+    direction = _direction(one_way)[one_way.holding(torque.breaks[:-1])]
+    return torque.plus(steps(torque.breaks, machine.friction / ratio * direction))
 
 
 def greatest_load(profile: CamProfile, machine: Machine, cut: Cut, curve: MotorCurve) -> tuple[Extremum, float]:
@@ -136,21 +128,18 @@ def greatest_load(profile: CamProfile, machine: Machine, cut: Cut, curve: MotorC
     """
     torque = motor_torque(profile, machine, cut)
     pace = cut.line_speed * machine.motor_ratio
-    velocity = CamProfile(profile.breaks.copy(), pace * profile.coefficients[:, 1:] * np.arange(1, profile.degree + 1))
-    places = [zeros(torque), zeros(velocity)]
-    places += [zeros(velocity.shift(slave=-way * speed)) for speed, _ in curve.points[1:] for way in (1, -1)]
-    parts = split(torque, np.unique(np.concatenate(places)))
-    pull, run = parts.coefficients, recut(velocity, parts.breaks).coefficients
+    velocity = profile.derivative().scale(slave=pace)
+    places = [torque.roots(), velocity.roots()]
+    places += [velocity.shift(slave=-way * speed).roots() for speed, _ in curve.points[1:] for way in (1, -1)]
+    parts = torque.split(np.unique(np.concatenate(places)))
     middle = 0.5 * (parts.breaks[:-1] + parts.breaks[1:])
     speeds, torques = np.array(curve.points).T
     segment = np.searchsorted(speeds, np.abs(velocity(middle)), side="right") - 1
     fall = np.append(np.diff(torques) / np.diff(speeds), 0.0)[segment]
     base = np.where(segment < len(speeds) - 1, torques[segment] - fall * speeds[segment], 0.0)
-    over = np.zeros((parts.pieces, max(pull.shape[1], run.shape[1])))
-    over[:, : pull.shape[1]] = np.sign(parts(middle))[:, None] * pull
-    over[:, : run.shape[1]] -= (fall * np.sign(velocity(middle)))[:, None] * run
-    over[:, 0] -= base
-    worst = CamProfile(parts.breaks.copy(), over).extrema(0)[1]
+    pull = parts.times(steps(parts.breaks, np.sign(parts(middle))))
+    gives = velocity.recut(parts.breaks).times(steps(parts.breaks, fall * np.sign(velocity(middle))))
+    worst = pull.plus(gives.plus(steps(parts.breaks, base)).scale(slave=-1.0)).extrema(0)[1]
     available = float(curve.torque(float(velocity(worst.at))))
     return Extremum(worst.value + available, worst.at), available
 
@@ -164,11 +153,7 @@ def _direction(one_way: CamProfile) -> FloatArray:
 
 def _energies(torque: CamProfile, profile: CamProfile, machine: Machine) -> tuple[float, float]:
     """Energy drawn and energy fed back in one cycle (J): the work over the slave's travel, split where it changes its sign."""
-    parts = split(torque, zeros(torque))
-    travel = recut(profile, parts.breaks)
-    turn = machine.motor_ratio * travel.coefficients[:, 1:] * np.arange(1, travel.degree + 1)
-    product = np.zeros((parts.pieces, parts.degree + travel.degree))
-    for power in range(parts.degree + 1):
-        product[:, power : power + travel.degree] += parts.coefficients[:, power, None] * turn
-    work = np.diff(integral(CamProfile(parts.breaks.copy(), product))(parts.breaks))
+    parts = torque.split(torque.roots())
+    turn = profile.recut(parts.breaks).derivative().scale(slave=machine.motor_ratio)
+    work = np.diff(parts.times(turn).integral()(parts.breaks))
     return float(work[work > 0].sum()), float(-work[work < 0].sum())

@@ -80,10 +80,7 @@ def one_cycle(rebuilt: CamProfile, cut: Cut) -> CamProfile:
             f"the table's master period is {rebuilt.length * 1e3:.10g} mm, but the cut length is "
             f"{cut.length * 1e3:.10g} mm; check the units, or name the job that the table was made for"
         )
-    moved = rebuilt.shift(-rebuilt.start).scale(master=cut.length / rebuilt.length)
-    breaks = moved.breaks.copy()
-    breaks[-1] = cut.length
-    return CamProfile(breaks, moved.coefficients.copy())
+    return rebuilt.shift(-rebuilt.start).scale(master=cut.length / rebuilt.length).over(0.0, cut.length)
 
 
 def judge_table(

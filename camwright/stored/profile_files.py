@@ -8,8 +8,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from camwright.house.files import read_text
 from camwright.house.provenance import provenance
 from camwright.jobs.job import Job
@@ -121,6 +119,4 @@ def _one_cycle(profile: CamProfile, length: float, place: str) -> CamProfile:
             f"but a cycle of the job from 0 mm to {length * 1e3:.10g} mm ([cut] length); "
             "name the job that the file was made for"
         )
-    breaks = np.array(profile.breaks)
-    breaks[0], breaks[-1] = 0.0, length
-    return CamProfile(breaks, profile.coefficients.copy())
+    return profile.over(0.0, length)

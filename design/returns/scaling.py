@@ -130,6 +130,4 @@ def resolved(problem: ReturnProblem) -> ReturnProblem:
 def unscale_profile(profile: CamProfile, problem: ReturnProblem, scale: float) -> CamProfile:
     """Bring a solution of the scaled problem back to the master and the slave."""
     back = profile.scale(master=problem.length, slave=scale).add_line(problem.start_ratio)
-    breaks = back.breaks.copy()
-    breaks[-1] = problem.length
-    return CamProfile(breaks, back.coefficients.copy())
+    return back.over(0.0, problem.length)

@@ -10,7 +10,7 @@ import numpy as np
 
 from camwright.profiles.cut import Cut
 from camwright.profiles.machines import Machine
-from camwright.profiles.polynomial.profile import CamProfile, FloatArray
+from camwright.profiles.polynomial.profile import CamProfile, FloatArray, join
 
 Command = Literal["in_sync", "shaped"]
 """What a design may choose: the return alone, or the whole cycle."""
@@ -118,14 +118,8 @@ class CommandBasis:
         coefficients = self.matrix @ unknowns + self.constant
         windows = np.lib.stride_tricks.sliding_window_view(coefficients, 4)
         powers = np.einsum("npc,nc->np", self.pieces, windows)
-        if self.sync is None:
-            return CamProfile.from_arrays(self.nodes, powers)
-        table = np.zeros((len(powers) + self.sync.pieces, max(4, self.sync.degree + 1)))
-        table[: len(powers), :4] = powers
-        table[len(powers) :, : self.sync.degree + 1] = self.sync.coefficients
-        breaks = np.concatenate([self.nodes[:-1], self.sync.breaks])
-        breaks[-1] = self.length
-        return CamProfile.from_arrays(breaks, table)
+        free = CamProfile.from_arrays(self.nodes, powers)
+        return free if self.sync is None else join(free, self.sync).over(0.0, self.length)
 
 
 def spline_pieces(knots: FloatArray) -> FloatArray:

@@ -6,8 +6,6 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from camwright.design.returns.problem import ReturnProblem
 from camwright.design.returns.scaling import motion_scale, scale_problem, unscale_profile
 from camwright.design.returns.solver import ALLOWED_EXCESS, excess, solve_return
@@ -129,9 +127,7 @@ def _guesses(
         solve_return(replace(problem, objective=name))[0] for name in ("peak_acceleration", "rms_acceleration")
     ]
     profiles.append(quintic_between(machine.sync_profile(cut), problem.length, problem.height))
-    scaled = [
-        profile.add_line(-problem.start_ratio).scale(master=1.0 / problem.length, slave=1.0 / scale)
+    return [
+        profile.add_line(-problem.start_ratio).scale(master=1.0 / problem.length, slave=1.0 / scale).over(0.0, 1.0)
         for profile in profiles
     ]
-    # the scaled master ends at one but for rounding
-    return [CamProfile(np.append(profile.breaks[:-1], 1.0), profile.coefficients.copy()) for profile in scaled]

@@ -42,21 +42,12 @@ def fit_profile(ratio: Callable[[FloatArray], FloatArray], start: float, end: fl
         between = np.linspace(start, end, 41 * count + 1)
         truth = ratio(between)
         if np.abs(CamProfile(breaks.copy(), rows.copy())(between) - truth).max() <= TOLERANCE * np.abs(truth).max():
-            return _integrated(breaks, rows)
+            return CamProfile(breaks, rows).integral()
         count *= 2
     raise InputError(
         f"a motion between master {start!r} and {end!r} m is too abrupt to be carried as polynomials: {MOST_PIECES} pieces of degree "
         f"{DEGREE} are not enough; shorten the sync zone"
     )
-
-
-def _integrated(breaks: FloatArray, rows: FloatArray) -> CamProfile:
-    """Position from zero, continuous, of a ratio given piece by piece."""
-    powers = np.arange(1, rows.shape[1] + 1)
-    table = np.concatenate([np.zeros((len(rows), 1)), rows / powers], axis=1)
-    rise = np.sum(table * np.diff(breaks)[:, None] ** np.arange(table.shape[1]), axis=1)
-    table[1:, 0] = np.cumsum(rise)[:-1]
-    return CamProfile(breaks, table)
 
 
 def _interpolate(ratio: Callable[[FloatArray], FloatArray], breaks: FloatArray) -> FloatArray:

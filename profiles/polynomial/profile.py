@@ -13,11 +13,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from camwright.profiles.errors import InputError
-from camwright.profiles.polynomial.roots import recentred, roots_between
+from camwright.profiles.polynomial import rows
+from camwright.profiles.polynomial.roots import roots_between
 
 FloatArray = NDArray[np.float64]
 Side = Literal["left", "right"]
 Outside = Literal["raise", "repeat"]
+
+_ROUNDING = 1e-9
+"""Part of a profile's length that its ends may be off by rounding: a thousand times what scaling and joining leave behind."""
 
 
 @dataclass(frozen=True)
@@ -87,10 +91,10 @@ class CamProfile:
     @classmethod
     def from_arrays(cls, breaks: ArrayLike, coefficients: Sequence[ArrayLike] | ArrayLike) -> CamProfile:
         """Make a profile from anything array-like; rows of coefficients may differ in length."""
-        rows = [np.atleast_1d(np.asarray(row, dtype=np.float64)) for row in coefficients]  # type: ignore[union-attr]
-        width = max((len(row) for row in rows), default=0)
-        table = np.zeros((len(rows), width))
-        for target, row in zip(table, rows, strict=True):
+        listed = [np.atleast_1d(np.asarray(row, dtype=np.float64)) for row in coefficients]  # type: ignore[union-attr]
+        width = max((len(row) for row in listed), default=0)
+        table = np.zeros((len(listed), width))
+        for target, row in zip(table, listed, strict=True):
             target[: len(row)] = row
         return cls(np.array(breaks, dtype=np.float64), table)
 
@@ -118,6 +122,11 @@ class CamProfile:
         for coefficient in reversed(self.coefficients[-1].tolist()):  # Horner
             end = end * width + coefficient
         return end - float(self.coefficients[0, 0])
+
+    @property
+    def mean_ratio(self) -> float:
+        """Advance of the slave over that of the master: slope of the straight line that the repeated profile follows."""
+        return self.advance / self.length
 
     @property
     def degree(self) -> int:
@@ -192,10 +201,30 @@ class CamProfile:
             return self.coefficients
         known = self._derivatives.get(order)
         if known is None:
-            before = self._derived(order - 1)
-            known = before[:, 1:] * np.arange(1, before.shape[1]) if before.shape[1] > 1 else np.zeros((self.pieces, 1))
-            self._derivatives[order] = known
+            known = self._derivatives[order] = rows.differentiated(self._derived(order - 1))
         return known
+
+    def on_pieces(self, piece: NDArray[np.intp], local: FloatArray, order: int = 0) -> FloatArray:
+        """Evaluate by the pieces that are named, whatever lies at a break.
+
+        Parameters
+        ----------
+        piece
+            Numbers of the pieces, of a shape that broadcasts to that of ``local``.
+        local
+            Distances on the master from the start of that piece (m), any shape.
+        order
+            Order of the derivative.
+        """
+        return rows.values(self._derived(order), piece, local)
+
+    def holding(self, x: FloatArray) -> NDArray[np.intp]:
+        """Name the piece that holds a master position by its number, at a break the right one; shape of ``x``."""
+        return np.asarray(self.breaks[1:-1].searchsorted(x, side="right"))
+
+    def within_degree(self, degree: int) -> NDArray[np.bool_]:
+        """Say of each piece whether it is a polynomial of at most this degree; shape ``(pieces,)``."""
+        return np.asarray(~self.coefficients[:, degree + 1 :].any(axis=1))
 
     def jumps(self, order: int = 0, *, seam: bool = True) -> FloatArray:
         """Jump of a derivative (right minus left) at every inner break, and last at the seam of the repeated cycle.
@@ -203,11 +232,8 @@ class CamProfile:
         At the seam the position (``order=0``) is compared with its own advance, so it never jumps: use `advance` and the
         machine's pitch to judge closure of the position.
         """
-        table, width = self._derived(order), self.breaks[1:] - self.breaks[:-1]
-        ends = np.zeros(self.pieces)
-        for coefficient in table.T[::-1]:  # Horner
-            ends *= width
-            ends += coefficient
+        table = self._derived(order)
+        ends = rows.at_ends(table, self.breaks[1:] - self.breaks[:-1])
         value = np.empty(self.pieces)
         np.subtract(table[1:, 0], ends[:-1], out=value[:-1])
         value[-1] = 0.0 if order == 0 else table[0, 0] - ends[-1]
@@ -235,17 +261,14 @@ class CamProfile:
             return self._peaks[order]
         first, last = self.start if start is None else start, self.end if end is None else end
         left, right = np.maximum(first, self.breaks[:-1]), np.minimum(last, self.breaks[1:])
-        rows = np.nonzero((right > left) | ((right == left) & (first >= last)))[0]
-        if not len(rows):
+        piece = np.nonzero((right > left) | ((right == left) & (first >= last)))[0]
+        if not len(piece):
             return Extremum(math.inf, first), Extremum(-math.inf, first)
-        origin = self.breaks[rows]
-        a, b = left[rows] - origin, right[rows] - origin
-        where = np.column_stack([a, roots_between(self._derived(order + 1)[rows], a, b), b])
+        origin = self.breaks[piece]
+        a, b = left[piece] - origin, right[piece] - origin
+        where = np.column_stack([a, roots_between(self._derived(order + 1)[piece], a, b), b])
         where = np.where(np.isnan(where), a[:, None], where)
-        values = np.zeros_like(where)
-        for coefficient in self._derived(order)[rows].T[::-1]:  # Horner
-            values *= where
-            values += coefficient[:, None]
+        values = self.on_pieces(piece[:, None], where, order)
 
         def extremum(index: int) -> Extremum:
             return Extremum(float(values.flat[index]), float(origin[index // where.shape[1]] + where.flat[index]))
@@ -255,6 +278,19 @@ class CamProfile:
             self._peaks[order] = found
         return found
 
+    def roots(self, order: int = 0) -> FloatArray:
+        """Master positions inside the pieces where a derivative is zero, ascending.
+
+        A piece on which it is zero throughout has none.
+        """
+        table, width = self._derived(order), np.diff(self.breaks)
+        size = np.abs(table * width[:, None] ** np.arange(table.shape[1]))
+        may = np.nonzero(size[:, 0] <= size[:, 1:].sum(axis=1))[0]  # elsewhere the constant term outweighs the rest
+        if not len(may):
+            return np.zeros(0)
+        found = self.breaks[may, None] + roots_between(table[may], np.zeros(len(may)), width[may])
+        return np.unique(found[~np.isnan(found)])
+
     def mean_square(self, order: int, start: float | None = None, end: float | None = None) -> float:
         """Mean of the squared derivative over a part of the domain, exactly (Gauss-Legendre of sufficient degree)."""
         first, last = self.start if start is None else start, self.end if end is None else end
@@ -263,9 +299,7 @@ class CamProfile:
         node, weight = _gauss(table.shape[1])
         width = part.breaks[1:] - part.breaks[:-1]
         local = 0.5 * width[:, None] * (node + 1.0)
-        value = np.zeros_like(local)
-        for power in range(table.shape[1] - 1, -1, -1):
-            value = value * local + table[:, power, None]
+        value = part.on_pieces(np.arange(part.pieces)[:, None], local, order)
         return float(np.sum(0.5 * width[:, None] * weight * value**2) / part.length)
 
     # -- making new profiles from old -------------------------------------------------------------------------------
@@ -285,11 +319,48 @@ class CamProfile:
 
     def add_line(self, slope: float) -> CamProfile:
         """Add the straight line that passes through zero at the start of the domain with the given slope."""
-        table = np.zeros((self.pieces, max(2, self.degree + 1)))
-        table[:, : self.degree + 1] = self.coefficients
-        table[:, 0] += slope * (self.breaks[:-1] - self.start)
-        table[:, 1] += slope
-        return CamProfile(self.breaks.copy(), table)
+        line = np.column_stack([slope * (self.breaks[:-1] - self.start), np.full(self.pieces, slope)])
+        return CamProfile(self.breaks.copy(), rows.added(self.coefficients, line))
+
+    def derivative(self, order: int = 1) -> CamProfile:
+        """Make the derivative over the master a profile of its own."""
+        return CamProfile(self.breaks.copy(), self._derived(order).copy())
+
+    def integral(self) -> CamProfile:
+        """Antiderivative over the master, continuous, zero at the start."""
+        return CamProfile(self.breaks.copy(), rows.integrated(self.coefficients, np.diff(self.breaks)))
+
+    def plus(self, other: CamProfile) -> CamProfile:
+        """Sum of two profiles over the same breaks."""
+        self._require_breaks(other)
+        return CamProfile(self.breaks.copy(), rows.added(self.coefficients, other.coefficients))
+
+    def times(self, other: CamProfile) -> CamProfile:
+        """Product of two profiles over the same breaks."""
+        self._require_breaks(other)
+        return CamProfile(self.breaks.copy(), rows.multiplied(self.coefficients, other.coefficients))
+
+    def _require_breaks(self, other: CamProfile) -> None:
+        """Refuse a profile whose pieces are not those of this one."""
+        if not np.array_equal(self.breaks, other.breaks):
+            raise InputError(
+                "profiles can be added or multiplied piece by piece only: they have other breaks; recut one"
+            )
+
+    def over(self, start: float, end: float) -> CamProfile:
+        """Put both ends exactly where they are but for rounding; the pieces stay what they are.
+
+        Raises
+        ------
+        InputError
+            An end is away from there by more than 1e-9 of the length: this would be another motion.
+        """
+        if max(abs(self.start - start), abs(self.end - end)) > _ROUNDING * (end - start):
+            raise InputError(
+                f"a profile from {self.start!r} m to {self.end!r} m cannot be put over {start!r} m to {end!r} m: "
+                "its ends must be there but for rounding; scale it first"
+            )
+        return CamProfile(np.concatenate([[start], self.breaks[1:-1], [end]]), self.coefficients.copy())
 
     def restrict(self, start: float, end: float) -> CamProfile:
         """Cut out the part between two master positions inside the domain."""
@@ -301,7 +372,19 @@ class CamProfile:
         breaks = np.concatenate([[start], inner, [end]])
         index = np.clip(np.searchsorted(self.breaks, breaks[:-1], side="right") - 1, 0, self.pieces - 1)
         offset = breaks[:-1] - self.breaks[index]
-        return CamProfile(breaks, recentred(self.coefficients[index], offset))
+        return CamProfile(breaks, rows.recentred(self.coefficients[index], offset))
+
+    def recut(self, breaks: FloatArray) -> CamProfile:
+        """Cut the profile at other breaks: each new piece belongs to the old piece that holds its middle."""
+        piece = self.holding(0.5 * (breaks[:-1] + breaks[1:]))
+        return CamProfile(breaks.copy(), rows.recentred(self.coefficients[piece], breaks[:-1] - self.breaks[piece]))
+
+    def split(self, places: FloatArray) -> CamProfile:
+        """Give the profile further breaks, none nearer to another than 1e-12 of its length."""
+        least = 1e-12 * self.length
+        apart = [float(x) for x in places if np.abs(self.breaks - x).min() > least]
+        kept = [x for i, x in enumerate(apart) if i == 0 or x - apart[i - 1] > least]
+        return self.recut(np.union1d(self.breaks, kept)) if kept else self
 
     def repeat(self, cycles: int) -> CamProfile:
         """Repeat the cycle, the slave advancing by `advance` each time."""
@@ -334,14 +417,14 @@ class CamProfile:
         powers = np.arange(self.degree + 1)
         weight = float(width.max()) ** powers
         size = np.maximum(np.abs(self.coefficients * weight).max(axis=0), 1e-300)
-        breaks, rows = [float(self.breaks[0])], [self.coefficients[0]]
+        breaks, kept = [float(self.breaks[0])], [self.coefficients[0]]
         for i in range(1, self.pieces):
-            carried = recentred(rows[-1][None, :], np.array([self.breaks[i] - breaks[-1]]))[0]
+            carried = rows.recentred(kept[-1][None, :], np.array([self.breaks[i] - breaks[-1]]))[0]
             if (np.abs(carried - self.coefficients[i]) * weight <= tolerance * size).all():
                 continue
             breaks.append(float(self.breaks[i]))
-            rows.append(self.coefficients[i])
-        return CamProfile.from_arrays([*breaks, self.end], rows)
+            kept.append(self.coefficients[i])
+        return CamProfile.from_arrays([*breaks, self.end], kept)
 
     # -- storage ----------------------------------------------------------------------------------------------------
 
@@ -360,6 +443,11 @@ class CamProfile:
         except (TypeError, ValueError) as error:
             raise InputError(f"a profile's breaks and coefficients must be lists of numbers: {error}") from error
         return cls(breaks, coefficients)
+
+
+def steps(breaks: FloatArray, levels: FloatArray) -> CamProfile:
+    """Constant on every piece: ``levels``, shape ``(pieces,)``."""
+    return CamProfile(breaks.copy(), levels[:, None].copy())
 
 
 def join(*parts: CamProfile) -> CamProfile:

@@ -1,11 +1,10 @@
-"""Polynomials in rows, all at once: moved to other origins, and their roots in intervals."""
+"""Roots of polynomials in rows, in intervals, all at once."""
 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-_Rows = NDArray[np.float64]
+from camwright.profiles.polynomial.rows import Rows, recentred
 
 _NONE = 1e-15
 """Part of the greatest contribution on the interval below which the highest powers count as none."""
@@ -14,33 +13,7 @@ _REAL = 1e-6
 """Imaginary part up to which a root counts as real: a double root splits into a pair of about sqrt(eps) off."""
 
 
-def recentred(table: _Rows, offset: _Rows) -> _Rows:
-    """Taylor shift: coefficients about a new origin that lies ``offset`` to the right.
-
-    Parameters
-    ----------
-    table
-        Shape ``(n, m)``, ascending powers, one polynomial a row.
-    offset
-        Shape ``(n,)``.
-
-    Returns
-    -------
-    ndarray
-        Shape ``(n, m)``.
-    """
-    moved = np.array(table, dtype=np.float64)
-    rows = np.nonzero(offset)[0]
-    if len(rows):
-        part, by = moved[rows], offset[rows]
-        for k in range(part.shape[1] - 1):  # synthetic division, once for each power
-            for p in range(part.shape[1] - 2, k - 1, -1):
-                part[:, p] += by * part[:, p + 1]
-        moved[rows] = part
-    return moved
-
-
-def roots_between(table: _Rows, a: _Rows, b: _Rows) -> _Rows:
+def roots_between(table: Rows, a: Rows, b: Rows) -> Rows:
     """Real roots of polynomials inside the open intervals ``(a, b)``, found on the unit interval for the sake of scaling.
 
     Parameters
@@ -76,7 +49,7 @@ def roots_between(table: _Rows, a: _Rows, b: _Rows) -> _Rows:
     return a[:, None] + (b - a)[:, None] * found
 
 
-def _by_companion(table: _Rows) -> _Rows:
+def _by_companion(table: Rows) -> Rows:
     """Real roots as eigenvalues of the companion matrices, turned so that the large coefficients come first; NaN for the others."""
     count, degree = table.shape[0], table.shape[1] - 1
     matrices = np.zeros((count, degree, degree))

@@ -202,7 +202,7 @@ def sample_profile(profile: CamProfile, x: FloatArray, units: Units, law: PieceL
         columns.append(value * (master**order / slave))
     laws: tuple[PieceLaw, ...] = (law,) * (len(x) - 1)
     if law == "quintic":
-        straight = ~np.asarray(profile.coefficients[:, 2:].any(axis=1))
+        straight = profile.within_degree(1)
         piece = np.searchsorted(profile.breaks, 0.5 * (x[1:] + x[:-1]), side="right") - 1
         whole = np.searchsorted(profile.breaks, x[1:], side="left") - 1 == piece  # the span holds no break inside
         laws = tuple("line" if flat else "quintic" for flat in straight[piece] & whole)

@@ -95,14 +95,7 @@ def _bounded(profile: CamProfile, rebuilt: CamProfile) -> bool:
 
 def _on_pieces(profile: CamProfile, middle: FloatArray, x: FloatArray) -> Iterator[FloatArray]:
     """Evaluate position, ratio and ratio slope at places ``x``, shape ``(n, pieces)``, by the pieces that hold the middles."""
-    index = np.clip(np.searchsorted(profile.breaks, middle, side="right") - 1, 0, profile.pieces - 1)
-    local = x - profile.breaks[index]
-    table = profile.coefficients
+    piece = profile.holding(middle)
+    local = x - profile.breaks[piece]
     for order in range(3):
-        if order:
-            table = table[:, 1:] * np.arange(1, table.shape[1])
-        value = np.zeros_like(local)
-        for coefficient in table.T[::-1]:  # Horner
-            value *= local
-            value += coefficient[index]
-        yield value
+        yield profile.on_pieces(piece, local, order)

@@ -38,13 +38,8 @@ _METRES = Units(Unit("m", 1.0), Unit("m", 1.0))
 
 def zone_ends(profile: CamProfile) -> FloatArray:
     """Where straight pieces begin or end inside the cycle: the ends of the sync zone of most machines."""
-    straight = straight_pieces(profile)
+    straight = profile.within_degree(1)
     return np.asarray(profile.breaks[1:-1][straight[1:] != straight[:-1]])
-
-
-def straight_pieces(profile: CamProfile) -> NDArray[np.bool_]:
-    """Say of each piece whether the ratio is constant on it; shape ``(pieces,)``."""
-    return np.asarray(~profile.coefficients[:, 2:].any(axis=1))
 
 
 def required_points(profile: CamProfile, zones: Sequence[float] | FloatArray) -> FloatArray:
@@ -166,8 +161,8 @@ def _subdivided(
     piece = np.searchsorted(profile.breaks[1:-1], 0.5 * (breaks[1:] + breaks[:-1]), side="right")
     near = _SAME * profile.length
     whole = (profile.breaks[piece] <= breaks[:-1] + near) & (profile.breaks[piece + 1] >= breaks[1:] - near)
-    straight = straight_pieces(profile)[piece] & whole
-    carried = ~np.asarray(profile.coefficients[:, 4 if spline else 2 :].any(axis=1))[piece] & whole
+    straight = profile.within_degree(1)[piece] & whole
+    carried = profile.within_degree(3 if spline else 1)[piece] & whole
     width = np.diff(breaks)
     reach = float(width[~straight].sum()) or profile.length
 

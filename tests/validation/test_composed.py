@@ -1,8 +1,6 @@
-"""Formulas along a cycle as polynomials, their integrals, zeros and cuts."""
+"""Formulas along a cycle as polynomials."""
 
 from __future__ import annotations
-
-import math
 
 import numpy as np
 import pytest
@@ -11,13 +9,7 @@ from hypothesis import strategies as st
 
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import CamProfile
-from camwright.validation.composed import (
-    compose,
-    integral,
-    recut,
-    split,
-    zeros,
-)
+from camwright.validation.composed import compose
 
 WAVE = CamProfile.from_arrays([0.0, 0.4, 1.0], [[0.0, 1.0, 2.0, -3.0], [0.528, 1.16, -1.6, 2.0]])
 
@@ -69,21 +61,3 @@ def test_formulas_without_a_value_or_not_smooth_are_refused() -> None:
         compose(lambda y, *_: np.sqrt(y - 0.5), WAVE)
     with pytest.raises(InputError, match=r"not smooth at master 0\.\d+ m"):
         compose(lambda y, *_: np.sign(y - 0.3), WAVE)
-
-
-def test_integral_recut_and_split() -> None:
-    area = integral(WAVE)
-    assert area.advance == pytest.approx(0.4**2 / 2 + 2 / 3 * 0.4**3 - 3 / 4 * 0.4**4 + sum(
-        c * 0.6 ** (p + 1) / (p + 1) for p, c in enumerate([0.528, 1.16, -1.6, 2.0])), rel=1e-14)  # fmt: skip
-    x = np.linspace(0.0, 1.0, 101)
-    assert np.abs(recut(WAVE, np.array([0.0, 0.1, 0.4, 0.77, 1.0]))(x) - WAVE(x)).max() <= 1e-15
-    finer = split(WAVE, np.array([0.3, 0.3 + 1e-15, 0.4 + 1e-15, 0.9]))
-    assert finer.breaks.tolist() == [0.0, 0.3, 0.4, 0.9, 1.0]
-    assert split(WAVE, np.zeros(0)) is WAVE
-
-
-def test_zeros_of_a_profile_and_its_derivative() -> None:
-    cosine = compose(lambda y, *_: np.cos(y), CamProfile.from_arrays([0.0, 10.0], [[0.0, 1.0]]))
-    assert zeros(cosine) == pytest.approx([math.pi / 2, 3 * math.pi / 2, 5 * math.pi / 2], abs=1e-12)
-    assert zeros(cosine, 1) == pytest.approx([math.pi, 2 * math.pi, 3 * math.pi], abs=1e-11)
-    assert zeros(CamProfile.from_arrays([0.0, 1.0], [[2.0]])).size == 0

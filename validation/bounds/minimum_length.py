@@ -205,9 +205,7 @@ class _Laws:
         # rounding may ask for a little more than the limit at the shortest return
         least = min(acceleration, least_acceleration(rise, length, speed - 1, jerk))
         motion = in_time(rise, length, speed - 1, least, jerk).profile()
-        breaks = motion.breaks.copy()
-        breaks[-1] = length  # equal but for rounding
-        return assemble(CamProfile(breaks, motion.coefficients.copy()).add_line(1.0), self.machine, shape)
+        return assemble(motion.over(0.0, length).add_line(1.0), self.machine, shape)
 
     def holds(self, shape: Cut) -> bool:
         """Whether the axis is within tolerance in the whole shear zone at every phase."""

@@ -179,8 +179,7 @@ def _free_bound(
         return Bound(math.sqrt(720) * unit, QUINTIC)
     start = cut.return_start
     back = profile.restrict(start, start + length).shift(-start, -float(profile(start)))
-    scaled = back.add_line(-ratio).scale(master=1.0 / length, slave=1.0 / height)
-    scaled = CamProfile(np.append(scaled.breaks[:-1], 1.0), scaled.coefficients.copy())
+    scaled = back.add_line(-ratio).scale(master=1.0 / length, slave=1.0 / height).over(0.0, 1.0)
     return Bound(math.sqrt(max(0.0, _dual_bound(scaled, job))) * unit, DUAL)
 
 

@@ -16,7 +16,7 @@ from scipy.integrate import quad
 from scipy.interpolate import PPoly
 
 from camwright.profiles.errors import InputError
-from camwright.profiles.polynomial.profile import CamProfile, join
+from camwright.profiles.polynomial.profile import CamProfile, join, steps
 
 FloatArray = NDArray[np.float64]
 
@@ -376,3 +376,93 @@ def test_operations_outside_their_domain_are_refused(call: Any, message: str) ->
 def test_foreign_data_are_refused(data: object, message: str) -> None:
     with pytest.raises(InputError, match=message):
         CamProfile.from_dict(data)
+
+
+# -- calculus and algebra ----------------------------------------------------------------------------------------------
+
+
+@given(profiles(), st.integers(1, 4))
+def test_derivative_and_integral_are_those_of_scipy(profile: CamProfile, order: int) -> None:
+    x = np.concatenate([inside(profile), profile.breaks])
+    found = profile.derivative(order)
+    assert np.array_equal(found.breaks, profile.breaks)
+    assert np.abs(found(x) - as_ppoly(profile, order)(x)).max() <= 1e-13 * size(profile, order)
+    area, true = profile.integral(), as_ppoly(profile).antiderivative()
+    assert np.abs(area(x) - true(x)).max() <= 1e-13 * size(area)
+    assert np.array_equal(area.derivative().coefficients.shape, profile.coefficients.shape)
+    assert np.abs(area.derivative()(x) - profile(x)).max() <= 1e-13 * size(profile)
+
+
+@given(profiles(), profiles())
+def test_sum_and_product_are_those_of_the_values(left: CamProfile, right: CamProfile) -> None:
+    stretched = (
+        right.shift(-right.start).scale(master=left.length / right.length).shift(left.start).over(left.start, left.end)
+    )
+    breaks = np.union1d(left.breaks, stretched.breaks)
+    a, b = left.recut(breaks), stretched.recut(breaks)
+    x = inside(a)
+    assert np.abs(a.plus(b)(x) - (a(x) + b(x))).max() <= 1e-13 * (size(a) + size(b))
+    assert np.abs(a.times(b)(x) - a(x) * b(x)).max() <= 1e-12 * size(a) * size(b)
+    if not np.array_equal(left.breaks, breaks):
+        with pytest.raises(InputError, match="they have other breaks; recut one"):
+            left.plus(b)
+        with pytest.raises(InputError, match="they have other breaks; recut one"):
+            left.times(b)
+
+
+@given(profiles(), st.integers(0, 2))
+def test_roots_are_where_the_derivative_changes_its_sign(profile: CamProfile, order: int) -> None:
+    roots, scale = profile.roots(order), size(profile, order)
+    assert (np.diff(roots) > 0).all()
+    assert np.abs(profile(roots, order)).max(initial=0.0) <= 1e-9 * scale + 1e-6 * np.abs(
+        profile(roots, order + 1)
+    ).max(initial=0.0)
+    for start, end in pairwise(profile.breaks):
+        x = np.linspace(start, end, 203)[1:-1]
+        values = profile(x, order)
+        turns = np.flatnonzero(
+            (values[1:] * values[:-1] < 0) & (np.abs(values[1:]) > 1e-9 * scale) & (np.abs(values[:-1]) > 1e-9 * scale)
+        )
+        assert all(((roots >= x[i]) & (roots <= x[i + 1])).any() for i in turns)
+
+
+def test_roots_in_closed_form() -> None:
+    rising = CamProfile.from_arrays([0.0, 1.0, 3.0], [[-0.25, 1.0], [0.5, 0.0, -0.5]])
+    assert rising.roots() == pytest.approx([0.25, 2.0], abs=1e-15)
+    assert CamProfile.from_arrays([0.0, 1.0], [[2.0]]).roots().size == 0
+    assert CamProfile.from_arrays([0.0, 1.0], [[0.0, 0.0]]).roots().size == 0
+
+
+def test_recut_and_split() -> None:
+    wave = CamProfile.from_arrays([0.0, 0.4, 1.0], [[0.0, 1.0, 2.0, -3.0], [0.528, 1.16, -1.6, 2.0]])
+    x = np.linspace(0.0, 1.0, 101)
+    assert np.abs(wave.recut(np.array([0.0, 0.1, 0.4, 0.77, 1.0]))(x) - wave(x)).max() <= 1e-15
+    finer = wave.split(np.array([0.3, 0.3 + 1e-15, 0.4 + 1e-15, 0.9]))
+    assert finer.breaks.tolist() == [0.0, 0.3, 0.4, 0.9, 1.0]
+    assert wave.split(np.zeros(0)) is wave
+
+
+@given(profiles(), st.floats(-1e-10, 1e-10), st.floats(-1e-10, 1e-10))
+def test_ends_are_put_where_they_belong_to_the_last_bit(profile: CamProfile, first: float, last: float) -> None:
+    start, end = profile.start + first * profile.length, profile.end + last * profile.length
+    placed = profile.over(start, end)
+    assert (placed.start, placed.end) == (start, end)
+    assert np.array_equal(placed.breaks[1:-1], profile.breaks[1:-1])
+    assert np.array_equal(placed.coefficients, profile.coefficients)
+    for wrong in ((start, end + 1e-8 * profile.length), (start - 1e-8 * profile.length, end)):
+        with pytest.raises(InputError, match="must be there but for rounding; scale it first"):
+            profile.over(*wrong)
+
+
+def test_pieces_answer_by_their_number() -> None:
+    profile = CamProfile.from_arrays([0.0, 1.0, 3.0], [[1.0, 1.0], [5.0, -1.0, 0.0, 2.0]])
+    assert profile.holding(np.array([-1.0, 0.0, 1.0, 3.0])).tolist() == [0, 0, 1, 1]
+    assert profile.on_pieces(np.array([[0], [1]]), np.array([[0.0, 1.0], [0.0, 1.0]])).tolist() == [
+        [1.0, 2.0],
+        [5.0, 6.0],
+    ]
+    assert profile.on_pieces(np.array([1, 0]), np.array([1.0, 1.0]), 1).tolist() == [5.0, 1.0]
+    assert profile.within_degree(1).tolist() == [True, False]
+    assert profile.within_degree(3).tolist() == [True, True]
+    assert profile.mean_ratio == profile.advance / 3.0
+    assert steps(profile.breaks, np.array([2.0, 7.0]))(np.array([0.5, 1.0, 2.0])).tolist() == [2.0, 7.0, 7.0]

@@ -7,7 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from camwright.profiles.polynomial.profile import CamProfile
-from camwright.profiles.polynomial.roots import recentred, roots_between
+from camwright.profiles.polynomial.roots import roots_between
+from camwright.profiles.polynomial.rows import recentred
 
 NUMBER = st.integers(-40, 40).map(lambda tenths: tenths / 10)
 
