@@ -27,6 +27,7 @@ from camwright.profiles.machines import Machine
 from camwright.profiles.motor import MotorCurve
 from camwright.profiles.servo import Servo
 from camwright.profiles.servo_tolerance import ServoTolerance
+from camwright.profiles.task import Task
 
 BUNDLED_JOB = Path(__file__).parent / "paper-600.toml"
 """The paper's job, read when no job file is named."""
@@ -95,6 +96,11 @@ class Job:
     output: Output
     text: str
     sha256: str
+
+    @property
+    def task(self) -> Task:
+        """The job's machine, cut and limits."""
+        return Task(self.machine, self.cut, self.limits)
 
 
 def load_job(path: str | Path | None = None) -> Job:
