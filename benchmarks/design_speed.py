@@ -47,6 +47,7 @@ from camwright.design.optimise import solve
 from camwright.design.returns.closed_starts import known_start
 from camwright.design.returns.problem import Objective, return_problem
 from camwright.design.returns.scaling import ScaledProblem, motion_scale, scale_problem
+from camwright.profiles.task import Task
 from camwright.validation.bounds.optimality import QUINTIC, lower_bound
 
 RESULTS = Path(__file__).parent / "results"
@@ -175,16 +176,17 @@ def drawn(rng: np.random.Generator, wanted: Objective) -> tuple[Job, ScaledProbl
     """Draw a feasible job, its normalised return and the least objective of that (of a mean square the square)."""
     while True:
         machine, cut, limits, _ = random_job(rng)
+        task = Task(machine, cut, limits)
         job = machine, cut, limits, wanted
-        if not is_feasible(machine, cut, limits):
+        if not is_feasible(task):
             continue
-        problem = return_problem(*job)
+        problem = return_problem(task, wanted)
         scale = motion_scale(problem)
         scaled = scale_problem(problem, scale)
         known = known_start(scaled)
         if known is not None:
             return job, scaled, known[0].objective
-        own = solve(*job)
+        own = solve(task, wanted)
         bound = lower_bound(own.profile, machine, cut, limits, wanted)
         if bound.method != QUINTIC and bound.value > own.objective * (1 - CONFIRMED):
             return job, scaled, normalised(own.objective, job, scale) ** 2
@@ -200,7 +202,8 @@ def normalised(value: float, job: Job, scale: float) -> float:
 def measure(job: Job, scaled: ScaledProblem, exact: float) -> dict[str, object] | None:
     """Check and time the roads on one job; None if no grid of `COUNTS` is accurate enough."""
     machine, cut, limits, objective = job
-    own = normalised(solve(machine, cut, limits, objective).objective, job, motion_scale(return_problem(*job)))
+    task = Task(machine, cut, limits)
+    own = normalised(solve(task, objective).objective, job, motion_scale(return_problem(task, objective)))
     own_error = (own if objective.startswith("peak") else own**2) / exact - 1
     if abs(own_error) > OWN_ACCURACY:
         raise AssertionError(f"camwright is {own_error:.1e} off the exact optimum: {job}")
@@ -216,7 +219,7 @@ def measure(job: Job, scaled: ScaledProblem, exact: float) -> dict[str, object] 
     rockit_error = accuracy(by_rockit(objective, scaled, few), objective, exact)
     rockit_time = process_time() - start
     times = {
-        "camwright": timed(lambda: solve(machine, cut, limits, objective), REPEATS),
+        "camwright": timed(lambda: solve(task, objective), REPEATS),
         "rockit": rockit_time,
         "cvxpy": timed(lambda: convex(objective, count).solve(scaled), 3),
         "cvxpy_warm": timed(lambda: programme.solve(scaled), 3),

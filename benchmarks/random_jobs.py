@@ -32,6 +32,7 @@ from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InfeasibleError, SolverError
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import RotaryKnife
+from camwright.profiles.task import Task
 from camwright.validation.bounds.optimality import lower_bound
 
 RESULTS = Path(__file__).parent / "results"
@@ -76,7 +77,8 @@ def worst_excess(result: Solution, job: Job) -> float:
 
 def is_extreme(result: Solution, job: Job) -> bool:
     """Whether the answer is the closed-form extreme motion and not a solver's."""
-    problem = return_problem(*job)
+    machine, cut, limits, objective = job
+    problem = return_problem(Task(machine, cut, limits), objective)
     scaled = scale_problem(problem, motion_scale(problem))
     extreme = extreme_motion(scaled)
     if extreme is None:
@@ -122,7 +124,7 @@ def measure(number: int, job: Job) -> dict[str, object]:
     start = process_time()
     with recorded_grids() as grids:
         try:
-            result = solve(machine, cut, limits, objective)
+            result = solve(Task(machine, cut, limits), objective)
         except (InfeasibleError, SolverError) as error:
             row["status"] = type(error).__name__
             return row

@@ -213,7 +213,7 @@ def apply(job: RandomJob, suggestion: Suggestion) -> RandomJob:
 
 def judge(job: RandomJob) -> tuple[str, str]:
     """Design a job and validate it; how it ended, and what failed with its numbers."""
-    solution = solve(job.machine, job.cut, job.limits, job.objective)
+    solution = solve(job.task, job.objective)
     report = validate(solution.profile, solution.machine, job.cut, job.limits, servo_for(job.cut), sweep=False)
     failed = [check for check in report.checks if not check.passed]
     numbers = "; ".join(f"{check.name} {check.value!r} limit {check.limit!r} at {check.at!r}" for check in failed)

@@ -53,7 +53,7 @@ def ended(job: RandomJob, servo: Servo, command: Command, objective: AxisObjecti
     """Design a job; how it ended, and what there is to say about it."""
     cut = replace(job.cut, shaped=command == "shaped")
     try:
-        solution = solve_axis(job.machine, cut, job.limits, objective, command, (servo,), suggest=False)
+        solution = solve_axis(job.task.with_cut(cut), objective, command, (servo,), suggest=False)
     except InfeasibleError as error:
         return "infeasible", error.binding
     except InputError as error:

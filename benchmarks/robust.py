@@ -21,6 +21,7 @@ from camwright.profiles.limits import Limits
 from camwright.profiles.machines import RotaryKnife
 from camwright.profiles.servo import Servo
 from camwright.profiles.servo_tolerance import ServoTolerance
+from camwright.profiles.task import Task
 from camwright.studies.axis_study import DRAWS, SEED
 from camwright.validation.servo.monte_carlo import shear_zone_errors
 
@@ -42,7 +43,7 @@ def main() -> int:
     for length, promised in PROMISED.items():
         cut = Cut(length, 80 / 60, 0.06, 0.04, 0.02, 1e-4, shaped=True)
         begun = process_time()
-        found = solve_axis(MACHINE, cut, LIMITS, "sync_error", "shaped", servos, between)
+        found = solve_axis(Task(MACHINE, cut, LIMITS), "sync_error", "shaped", servos, between)
         seconds = process_time() - begun
         if found.axis is None:
             raise TypeError("a servo-aware design says nothing of its axis")

@@ -33,6 +33,7 @@ from camwright.profiles.limits import Limits
 from camwright.profiles.machines import RotaryKnife
 from camwright.profiles.servo import Servo
 from camwright.profiles.servo_tolerance import ServoTolerance
+from camwright.profiles.task import Task
 from camwright.validation.servo.monte_carlo import shear_zone_errors
 from camwright.validation.servo.response import servo_response
 
@@ -80,7 +81,7 @@ def measure(
     between = RANGES.between(SERVO) if robust else ()
 
     def aware() -> Solution:
-        return solve_axis(MACHINE, placed, LIMITS, objective, command, servos, between)
+        return solve_axis(Task(MACHINE, placed, LIMITS), objective, command, servos, between)
 
     solution = aware()
     axis = solution.axis
@@ -88,7 +89,7 @@ def measure(
         raise TypeError("a servo-aware design says nothing of its axis")
     simulated = servo_response(solution.profile, MACHINE, placed, SERVO).shear_zone_error
     plain: Objective = "peak_acceleration" if objective == "sync_error" else objective
-    before, after = shortest(1 if robust else RUNS, lambda: solve(MACHINE, cut, LIMITS, plain), aware)
+    before, after = shortest(1 if robust else RUNS, lambda: solve(Task(MACHINE, cut, LIMITS), plain), aware)
     row: dict[str, object] = {
         "cut_mm": f"{cut.length * 1e3:g}",
         "command": command,

@@ -28,6 +28,7 @@ from camwright.profiles.limits import Limits
 from camwright.profiles.machines import CrankSlider, Machine
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import assemble
+from camwright.profiles.task import Task
 
 if TYPE_CHECKING:
     from camwright.design.servo_aware.axis_motion import AxisMotion
@@ -107,12 +108,12 @@ class Solution:
     axis: AxisMotion | None = None
 
 
-def solve(machine: Machine, cut: Cut, limits: Limits, objective: Objective, *, suggest: bool = True) -> Solution:
+def solve(task: Task, objective: Objective, *, suggest: bool = True) -> Solution:
     """Design the optimal cycle of a cutting machine.
 
     Parameters
     ----------
-    machine, cut, limits, objective
+    task, objective
         The job.
     suggest
         Whether an `InfeasibleError` says what would work; finding that takes longer than finding what binds.
@@ -128,24 +129,27 @@ def solve(machine: Machine, cut: Cut, limits: Limits, objective: Objective, *, s
 
     Examples
     --------
+    >>> from camwright.profiles.cut import Cut
+    >>> from camwright.profiles.limits import Limits
     >>> from camwright.profiles.machines import RotaryKnife
     >>> knife = RotaryKnife(circumference=0.4)
     >>> cut = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4)
-    >>> result = solve(knife, cut, Limits(200 / 60, 30.0, 3000.0), "peak_acceleration")
+    >>> result = solve(Task(knife, cut, Limits(200 / 60, 30.0, 3000.0)), "peak_acceleration")
     >>> result.status.value, round(result.objective, 3), result.profile.pieces
     ('optimal', 9.072, 6)
     """
+    machine, cut = task.machine, task.cut
     if isinstance(machine, CrankSlider) and math.isnan(machine.sync_at):
-        return _solve_free_crank(machine, cut, limits, objective, suggest)
+        return _solve_free_crank(machine, cut, task.limits, objective, suggest)
     machine.sync_start(cut)
-    if limits.motor is not None:
-        return _solve_for_motor(machine, cut, limits, objective, suggest)
-    require_feasible(machine, cut, limits, suggest=suggest)
+    if task.limits.motor is not None:
+        return _solve_for_motor(task, objective, suggest)
+    require_feasible(task, suggest=suggest)
     require_moving(machine, objective)
     decisive = motion_objective(machine, objective)
     if decisive is None:
-        return _solve_torque(machine, cut, limits, objective, valleys=1)
-    problem = return_problem(machine, cut, limits, decisive)
+        return _solve_torque(task, objective, valleys=1)
+    problem = return_problem(task, decisive)
     back, status, iterations = solve_return(problem)
     if decisive in PEAKS and not _unique(problem):
         back = _smoothest(problem, back)
@@ -158,7 +162,7 @@ def _over_time(back: CamProfile, objective: MotionObjective, cut: Cut) -> float:
     return objective_value(back, objective) * cut.line_speed ** (2 if objective.endswith("acceleration") else 3)
 
 
-def _solve_for_motor(machine: Machine, cut: Cut, limits: Limits, objective: Objective, suggest: bool) -> Solution:
+def _solve_for_motor(task: Task, objective: Objective, suggest: bool) -> Solution:
     """Solve without the motor's torque, which is the answer if it keeps to the curve; else within the curve, and take the best.
 
     Within the curve are its rectangles, of which the grid tells the best. Where they do not do, or say little, a programme knows the whole
@@ -171,29 +175,31 @@ def _solve_for_motor(machine: Machine, cut: Cut, limits: Limits, objective: Obje
     """
     from camwright.design.torque.within_curve import keeps_curve, least_load, solve_within_curve
 
+    machine, limits = task.machine, task.limits
     curve, plain = limits.motor, motor_speed_limits(machine, limits)
     assert curve is not None  # noqa: S101 - that is what this function is for
-    if not is_feasible(machine, cut, plain):
-        raise infeasible(machine, cut, limits, suggest=suggest)
-    free = solve(machine, cut, plain, objective)
-    if keeps_curve(free.profile, machine, cut, curve):
+    if not is_feasible(task.with_limits(plain)):
+        raise infeasible(task, suggest=suggest)
+    free = solve(task.with_limits(plain), objective)
+    if keeps_curve(free.profile, task, curve):
         return free
     found: list[Solution] = []
     decisive = motion_objective(machine, objective)
-    rectangles = [each for each in motor_limits(machine, limits) if is_feasible(machine, cut, each)]
+    rectangles = [each for each in motor_limits(machine, limits) if is_feasible(task.with_limits(each))]
     if rectangles:
         rough = [
-            grid_objective(return_problem(machine, cut, each, decisive or "rms_acceleration")) for each in rectangles
+            grid_objective(return_problem(task.with_limits(each), decisive or "rms_acceleration"))
+            for each in rectangles
         ]
-        found.append(solve(machine, cut, rectangles[int(np.argmin(rough))], objective))
+        found.append(solve(task.with_limits(rectangles[int(np.argmin(rough))]), objective))
     easiest = None
     if not found or isinstance(machine, CrankSlider):  # a rectangle says little where the torque depends on the place
-        easiest = least_load(machine, cut, limits)
+        easiest = least_load(task)
         starts = [solution.back for solution in found] + ([] if easiest is None else [easiest.back])
-        within = solve_within_curve(machine, cut, limits, decisive or objective, starts)
+        within = solve_within_curve(task, decisive or objective, starts)
         if within is not None:
-            value = within.value if decisive is None else _over_time(within.back, decisive, cut)
-            profile = assemble(within.back, machine, cut)
+            value = within.value if decisive is None else _over_time(within.back, decisive, task.cut)
+            profile = assemble(within.back, machine, task.cut)
             agreed = Starts(within.starts, within.agreeing, within.spread, within.residual, 1)
             found.append(
                 Solution(
@@ -201,7 +207,7 @@ def _solve_for_motor(machine: Machine, cut: Cut, limits: Limits, objective: Obje
                 )
             )
     if not found:
-        raise infeasible(machine, cut, limits, suggest=suggest, load=None if easiest is None else easiest.value)
+        raise infeasible(task, suggest=suggest, load=None if easiest is None else easiest.value)
     return min(found, key=lambda solution: solution.objective)
 
 
@@ -248,20 +254,22 @@ def motion_objective(machine: Machine, objective: Objective) -> MotionObjective 
     return "peak_acceleration" if objective == "peak_torque" and not machine.friction else None
 
 
-def _solve_torque(machine: Machine, cut: Cut, limits: Limits, objective: Objective, valleys: int) -> Solution:
+def _solve_torque(task: Task, objective: Objective, valleys: int) -> Solution:
     from camwright.design.torque.torque_return import solve_torque
 
-    problem = return_problem(machine, cut, limits, "peak_acceleration")
-    found = solve_torque(machine, cut, problem, objective)
+    problem = return_problem(task, "peak_acceleration")
+    found = solve_torque(task, problem, objective)
     starts = Starts(found.starts, found.agreeing, found.spread, found.residual, valleys)
-    profile = assemble(found.back, machine, cut)
-    return Solution(machine, profile, found.back, SolveStatus.ON_GRID, objective, found.value, found.iterations, starts)
+    profile = assemble(found.back, task.machine, task.cut)
+    return Solution(
+        task.machine, profile, found.back, SolveStatus.ON_GRID, objective, found.value, found.iterations, starts
+    )
 
 
 def _solve_free_crank(machine: CrankSlider, cut: Cut, limits: Limits, objective: Objective, suggest: bool) -> Solution:
     """Choose the place of the sync zone first, by the objective of the motion or by the mean square of the torque."""
     placement = place_for(machine, cut, limits, objective)
-    solution = solve(placement.machine, cut, limits, objective, suggest=suggest)
+    solution = solve(Task(placement.machine, cut, limits), objective, suggest=suggest)
     if solution.starts is None:
         return replace(solution, starts=Starts(1, 1, 0.0, 0.0, placement.valleys))
     return replace(solution, starts=replace(solution.starts, valleys=placement.valleys))

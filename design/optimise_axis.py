@@ -34,6 +34,7 @@ from camwright.profiles.machines import CrankSlider, Machine
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import assemble
 from camwright.profiles.servo import Servo
+from camwright.profiles.task import Task
 
 AxisObjective = Objective | Literal["sync_error"]
 """What a servo-aware design may be asked for."""
@@ -49,9 +50,7 @@ LONGEST, SLOWEST = 8.0, 0.02
 
 
 def solve_axis(
-    machine: Machine,
-    cut: Cut,
-    limits: Limits,
+    task: Task,
     objective: AxisObjective,
     command: Command,
     servos: tuple[Servo, ...],
@@ -65,7 +64,7 @@ def solve_axis(
 
     Parameters
     ----------
-    machine, cut, limits
+    task
         As for `camwright.design.optimise.solve`; the cut's sync tolerance is what the axis may be off.
     objective
         What is made least.
@@ -88,33 +87,34 @@ def solve_axis(
     SolverError
         The solver failed.
     """
+    machine, limits = task.machine, task.limits
     require_moving(machine, objective)
     cost = _cost(machine, objective)
     blind = None
     if command == "in_sync" or (isinstance(machine, CrankSlider) and math.isnan(machine.sync_at)):
-        blind = solve(machine, cut, limits, "peak_acceleration" if cost == "sync_error" else cost, suggest=suggest)
+        blind = solve(task, "peak_acceleration" if cost == "sync_error" else cost, suggest=suggest)
     placed = machine if blind is None else blind.machine
     structure = None if blind is None or command == "shaped" else blind.back
-    problem = AxisProblem(placed, cut, limits, command, servos, True, structure, between)
+    problem = AxisProblem(task.with_machine(placed), command, servos, True, structure, between)
     order = 2 if cost.endswith("acceleration") else 3 if cost.endswith("jerk") else 0
     # the servo-blind optimum keeps the motor's curve, though it may lie in none of the rectangles that stand for it
-    by_motor = replace(problem, limits=motor_speed_limits(placed, limits))
+    by_motor = _within(problem, motor_speed_limits(placed, limits))
     motions = _kept(by_motor, cost) if limits.motor is not None else []
     if not motions:
-        found = [_either(replace(problem, limits=each), cost) for each in motor_limits(placed, limits)]
+        found = [_either(_within(problem, each), cost) for each in motor_limits(placed, limits)]
         motions = [motion for motion in found if motion is not None]
     if not motions and limits.motor is not None:
         motions = _kept(replace(by_motor, axis_limits=False), cost)
     if not motions and blind is not None and command == "in_sync":
         motions = _without_choice(
-            problem, blind, None if cost == "sync_error" else blind.objective / cut.line_speed**order
+            problem, blind, None if cost == "sync_error" else blind.objective / task.cut.line_speed**order
         )
     if not motions:
-        loosest = replace(problem, limits=motor_speed_limits(placed, limits), axis_limits=False)
+        loosest = _within(replace(problem, axis_limits=False), motor_speed_limits(placed, limits))
 
         def settles(other: Cut) -> bool:
             try:
-                solve_axis(machine, other, limits, objective, command, servos, between, suggest=False)
+                solve_axis(task.with_cut(other), objective, command, servos, between, suggest=False)
             except (InfeasibleError, InputError, SolverError):
                 return False
             return True
@@ -122,7 +122,12 @@ def solve_axis(
         raise _infeasible(loosest, settles if suggest else None)
     motion = min(motions, key=lambda each: each.value)
     status = blind.status if blind is not None and not motion.programmes else SolveStatus.ON_GRID
-    return _solution(motion, status, placed, cut, objective, order)
+    return _solution(motion, status, task.with_machine(placed), objective, order)
+
+
+def _within(problem: AxisProblem, limits: Limits) -> AxisProblem:
+    """Put a problem within other limits."""
+    return replace(problem, task=problem.task.with_limits(limits))
 
 
 def _kept(problem: AxisProblem, cost: Cost) -> list[AxisMotion]:
@@ -131,17 +136,16 @@ def _kept(problem: AxisProblem, cost: Cost) -> list[AxisMotion]:
     return [] if kept is None else [kept]
 
 
-def _solution(
-    motion: AxisMotion, status: SolveStatus, machine: Machine, cut: Cut, objective: AxisObjective, order: int
-) -> Solution:
+def _solution(motion: AxisMotion, status: SolveStatus, task: Task, objective: AxisObjective, order: int) -> Solution:
     """Put a motion as the cycle that was asked for."""
+    cut = task.cut
     profile = motion.profile
     back = profile.restrict(0.0, cut.return_zone)
     if cut.origin == "cut":
-        profile = _from_mid_sync(profile, machine, cut)
+        profile = _from_mid_sync(profile, task)
     name: Objective = "peak_acceleration" if objective == "sync_error" else objective
     value = motion.value * cut.line_speed**order
-    return Solution(machine, profile, back, status, name, value, motion.programmes, axis=motion)
+    return Solution(task.machine, profile, back, status, name, value, motion.programmes, axis=motion)
 
 
 def _cost(machine: Machine, objective: AxisObjective) -> Cost:
@@ -157,7 +161,7 @@ def _either(problem: AxisProblem, cost: Cost) -> AxisMotion | None:
         strict = design_axis(problem, cost)
     except SolverError:
         strict = None
-    if strict is not None and strict.axis_limits and strict.error <= problem.cut.sync_tolerance:
+    if strict is not None and strict.axis_limits and strict.error <= problem.task.cut.sync_tolerance:
         return strict
     return design_axis(replace(problem, axis_limits=False), cost)
 
@@ -167,33 +171,35 @@ def _without_choice(problem: AxisProblem, blind: Solution, value: float | None) 
     programme = AxisProgramme(replace(problem, axis_limits=False))
     if programme.least_share() is not None:
         return []
-    profile = assemble(blind.back, problem.machine, replace(problem.cut, origin="return"))
+    profile = assemble(blind.back, problem.task.machine, problem.task.from_return().cut)
     errors = programme.errors(profile)
-    if value is not None and max(errors) > problem.cut.sync_tolerance:
+    if value is not None and max(errors) > problem.task.cut.sync_tolerance:
         return []
     kept = programme.keeps_axis_limits(profile)
     return [AxisMotion(profile, errors, max(errors) if value is None else value, programme.solved, kept)]
 
 
-def _from_mid_sync(profile: CamProfile, machine: Machine, cut: Cut) -> CamProfile:
+def _from_mid_sync(profile: CamProfile, task: Task) -> CamProfile:
     """Count master and slave from mid sync zone, the slave from where the machine is in sync there."""
+    cut = task.cut
     at = cut.length - 0.5 * cut.sync_zone
-    sync = machine.sync_profile(cut)
-    in_sync = machine.pitch - sync.advance + float(sync(0.5 * cut.sync_zone)) - float(sync(sync.start))
+    sync = task.sync
+    in_sync = task.height + float(sync(0.5 * cut.sync_zone)) - float(sync(sync.start))
     return profile.roll(at).shift(slave=float(profile(at)) - in_sync)
 
 
 def _infeasible(problem: AxisProblem, settles: Callable[[Cut], bool] | None) -> InfeasibleError:
     """Say by how much the tolerance is missed, and, of a way to tell whether a cut can be designed, what would keep it."""
-    tolerance, cut = problem.cut.sync_tolerance, problem.cut
+    cut = problem.task.cut
+    tolerance = cut.sync_tolerance
     share = AxisProgramme(problem).least_share()
     if share is None:
         if problem.structure is None:
-            require_feasible(problem.machine, cut, problem.limits, suggest=settles is not None)
+            require_feasible(problem.task, suggest=settles is not None)
             raise SolverError(
                 "a servo-aware design found no command that keeps the limits although the job allows one; report this job"
             )
-        only = assemble(problem.structure, problem.machine, replace(cut, origin="return"))
+        only = assemble(problem.structure, problem.task.machine, problem.task.from_return().cut)
         share = max(AxisProgramme(problem).errors(only)) / tolerance
     needed = max(1.0, share) * tolerance
     suggestions = () if settles is None else tuple(_suggestions(problem, needed, settles))
@@ -213,7 +219,7 @@ def _infeasible(problem: AxisProblem, settles: Callable[[Cut], bool] | None) -> 
 
 def _suggestions(problem: AxisProblem, needed: float, settles: Callable[[Cut], bool]) -> Iterator[Suggestion]:
     """Search a tolerance, a line speed and a cut length that work, each alone and each designed once."""
-    cut = problem.cut
+    cut = problem.task.cut
     for factor in WIDER:
         if settles(replace(cut, sync_tolerance=factor * needed)):
             yield Suggestion("sync_tolerance", factor * needed * 1e3, "mm")
@@ -225,7 +231,7 @@ def _suggestions(problem: AxisProblem, needed: float, settles: Callable[[Cut], b
     for name, unit, per, most, changed in changes:
 
         def works(share: float, changed: Callable[[float], Cut] = changed) -> bool:
-            return _works(replace(problem, cut=changed(share), structure=None))
+            return _works(replace(problem, task=problem.task.with_cut(changed(share)), structure=None))
 
         found = _nearest(works, most)
         if found is None:

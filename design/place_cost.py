@@ -18,7 +18,8 @@ from camwright.design.torque.within_curve import load
 from camwright.profiles.cut import Cut
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import CrankSlider
-from camwright.profiles.returns import baseline, slave_at_start
+from camwright.profiles.returns import baseline
+from camwright.profiles.task import Task
 
 MISSING = 1e30
 """Where limits are not enough the cost is this, far above any objective, times the factor on the limits that would be."""
@@ -46,16 +47,17 @@ def place_for(
     """
 
     def cost(placed: CrankSlider) -> float:
-        if not is_feasible(placed, cut, limits):
-            return MISSING * _missing(placed, cut, limits)
+        task = Task(placed, cut, limits)
+        if not is_feasible(task):
+            return MISSING * _missing(task)
         match objective:
             case "peak_acceleration":
-                return least_limit(placed, cut, limits, "acceleration")
+                return least_limit(task, "acceleration")
             case "peak_jerk":
-                return least_limit(placed, cut, limits, "jerk")
+                return least_limit(task, "jerk")
             case "rms_acceleration" | "rms_jerk":
-                return _rms(placed, cut, limits, objective)
-        return _torque(placed, cut)
+                return _rms(task, objective)
+        return _torque(task)
 
     found = place_sync(machine, cut, cost)
     if found is None:
@@ -64,32 +66,35 @@ def place_for(
     return found
 
 
-def _missing(machine: CrankSlider, cut: Cut, limits: Limits) -> float:
+def _missing(task: Task) -> float:
     """How much is missing at a place: torque of the motor, told by the quintic, or far worse, what the slave itself may do."""
-    plain = motor_speed_limits(machine, limits)
-    if limits.motor is not None and is_feasible(machine, cut, plain):
-        return load(baseline("poly_3_4_5", machine, cut), machine, cut, limits.motor)
-    return FAR * margin(machine, cut, plain)
+    limits = task.limits
+    plain = motor_speed_limits(task.machine, limits)
+    if limits.motor is not None and is_feasible(task.with_limits(plain)):
+        return load(baseline("poly_3_4_5", task.machine, task.cut), task, limits.motor)
+    return FAR * margin(task.with_limits(plain))
 
 
-def _rms(machine: CrankSlider, cut: Cut, limits: Limits, objective: Objective) -> float:
+def _rms(task: Task, objective: Objective) -> float:
     """Objective on the coarse grid within the best of the motor's limits, or, where the grid is too coarse for them, of any motion."""
     costs = []
-    for each in motor_limits(machine, limits):
-        if is_feasible(machine, cut, each):
-            problem = return_problem(machine, cut, each, objective)
+    for each in motor_limits(task.machine, task.limits):
+        if is_feasible(task.with_limits(each)):
+            problem = return_problem(task.with_limits(each), objective)
             value = grid_objective(problem)
             costs.append(value if math.isfinite(value) else possible_rms(problem))
     return min(costs)
 
 
-def _torque(machine: CrankSlider, cut: Cut) -> float:
+def _torque(task: Task) -> float:
     """Mean square torque of the quintic: a fast stand-in for the torque's own optimum.
 
     The place matters through the inertia's change in the sync zone and the speeds that the return must join, which both share.
     """
-    cycle = baseline("poly_3_4_5", machine, replace(cut, origin="return"))
+    task = task.from_return()
+    machine = task.machine
+    cycle = baseline("poly_3_4_5", machine, task.cut)
     x = np.linspace(cycle.start, cycle.end, ANGLES)
-    y = slave_at_start(machine, replace(cut, origin="return")) + cycle(x)
+    y = task.slave_at_start + cycle(x)
     torque = machine.inertia(y) * cycle(x, 2) + machine.inertia_slope(y) * cycle(x, 1) ** 2 / 2
     return float(np.mean(torque**2))

@@ -115,7 +115,7 @@ def _limit(job: Job) -> Limit | None:
 
     if isinstance(job.machine, CrankSlider) and math.isnan(job.machine.sync_at):
         return None
-    return Limit(*fastest_line(job.machine, job.cut, job.limits))
+    return Limit(*fastest_line(job.task))
 
 
 def _designed(job: Job) -> Design:

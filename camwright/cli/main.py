@@ -180,7 +180,7 @@ def _limits(job: _GivenJob, as_json: _Json = False, quiet: _Quiet = False) -> in
         from camwright.design.feasible.extremes import extremes
 
         step("finding the highest line speed and the shortest cut")
-        far = extremes(asked.machine, asked.cut, asked.limits)
+        far = extremes(asked.task)
         step("finding minimum cut lengths")
         lengths = cut_lengths(asked)
         step("finding minimum cut lengths with the axis in sync")

@@ -9,6 +9,7 @@ from camwright.jobs.job import Job
 from camwright.profiles.cut import Cut
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import LinearCarriage, Machine
+from camwright.profiles.task import Task
 from camwright.recipe.model import Edge, WorkingRange
 
 LONGEST = 4.0
@@ -39,7 +40,7 @@ def working_range(job: Job) -> WorkingRange:
     """
     from camwright.design.feasible.extremes import extremes
 
-    far = extremes(job.machine, job.cut, job.limits)
+    far = extremes(job.task)
     return WorkingRange(
         min_length=Edge(far.min_cut_length, far.cut_length_binding),
         max_length=longest_cut(job.machine, job.cut, job.limits),
@@ -65,14 +66,14 @@ def longest_cut(machine: Machine, cut: Cut, limits: Limits) -> Edge:
         return Edge(None, NO_END)
 
     def works(length: float) -> bool:
-        return is_feasible(machine, replace(cut, length=length), limits)
+        return is_feasible(Task(machine, replace(cut, length=length), limits))
 
     far = LONGEST * cut.length
     if works(far) or not works(cut.length):
         return Edge(None, NOT_FOUND)
     found = edge(works, cut.length, far, _ACCURACY)
     beyond = replace(cut, length=(found or cut.length) * (1 + _BEYOND))
-    return Edge(found, binding_limit(machine, beyond, limits, needed_limits(machine, beyond, limits)))
+    return Edge(found, binding_limit(Task(machine, beyond, limits), needed_limits(Task(machine, beyond, limits))))
 
 
 def can_rest(machine: Machine, cut: Cut, limits: Limits) -> bool:

@@ -67,7 +67,7 @@ def axis_lengths(job: Job) -> AxisLengths | None:
     def search(command: Command, *, axis_limits: bool) -> ZoneSearch:
         def holds(shape: Cut) -> bool:
             try:
-                return AxisProgramme(AxisProblem(machine, shape, limits, command, servos, axis_limits)).reaches()
+                return AxisProgramme(AxisProblem(job.task.with_cut(shape), command, servos, axis_limits)).reaches()
             except SolverError:  # at the edge of what double precision resolves
                 return False
 

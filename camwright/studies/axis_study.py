@@ -105,10 +105,10 @@ def solve_job(job: Job, *, suggest: bool = True) -> Solution:
 
         objective = "sync_error" if job.minimise_sync_error else job.objective
         servos, between = servos_of(job), between_of(job)
-        return solve_axis(job.machine, job.cut, job.limits, objective, job.command, servos, between, suggest=suggest)
+        return solve_axis(job.task, objective, job.command, servos, between, suggest=suggest)
     from camwright.design.optimise import solve
 
-    return solve(job.machine, job.cut, job.limits, job.objective, suggest=suggest)
+    return solve(job.task, job.objective, suggest=suggest)
 
 
 def axis_study(job: Job, solution: Solution) -> AxisStudy | None:

@@ -130,7 +130,7 @@ def envelope_answer(job: Job, points: int, step: Step = ignore) -> EnvelopeAnswe
     fastest = job.limits.speed / sync_pace(job.machine, job.cut)
     speeds = np.linspace(fastest / points, fastest, points)
     objective = cast("Objective", "rms_acceleration" if job.objective in TORQUE_OBJECTIVES else job.objective)
-    found = envelope(job.machine, job.cut, job.limits, objective, lengths.tolist(), speeds.tolist(), step)
+    found = envelope(job.task, objective, lengths.tolist(), speeds.tolist(), step)
     return EnvelopeAnswer(job, objective, found)
 
 

@@ -153,7 +153,7 @@ def trade_off(job: Job, step: Step = ignore) -> TradeOff:
     for objective in objectives:
         step(f"solving for the least {words(objective)}")
         try:
-            solution = solve(job.machine, job.cut, job.limits, objective)
+            solution = solve(job.task, objective)
         except SolverError as error:
             failures.append(Failure(objective, str(error)))
             continue

@@ -4,19 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from camwright.design.feasible.extremes import BEYOND, max_line_speed, placed_fastest
 from camwright.design.feasible.feasibility import binding_limit, needed_limits
 from camwright.design.returns.problem import Objective, return_problem
 from camwright.design.returns.solver import objective_value, solve_return
 from camwright.profiles.cross_cutter import quintic_return
-from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError, SolverError
-from camwright.profiles.limits import Limits
 from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile
-from camwright.profiles.returns import assemble, is_straight, quintic_between
+from camwright.profiles.returns import assemble, quintic_between
+from camwright.profiles.task import Task
 
 # Rounding that a baseline may exceed a limit by.
 ROUNDING = 1e-9
@@ -86,9 +85,7 @@ class Envelope:
 
 
 def envelope(
-    machine: Machine,
-    cut: Cut,
-    limits: Limits,
+    task: Task,
     objective: Objective,
     lengths: Sequence[float],
     line_speeds: Sequence[float],
@@ -98,7 +95,7 @@ def envelope(
 
     Parameters
     ----------
-    machine, cut, limits, objective
+    task, objective
         The job; its cut length and line speed are replaced by those of the points. A crank whose sync zone is free has it, at each cut
         length, where the line can run fastest.
     lengths, line_speeds
@@ -111,6 +108,7 @@ def envelope(
     InputError
         A cut length is not above the sync zone.
     """
+    cut = task.cut
     short = [length for length in lengths if length <= cut.sync_zone]
     if short:
         raise InputError(
@@ -120,71 +118,70 @@ def envelope(
     rows, points = [], []
     for length in lengths:
         step(f"cut length {length * 1e3:.4g} mm")
-        at_length = replace(cut, length=length)
-        row = _row(placed_fastest(machine, at_length, limits), at_length, limits)
+        at_length = task.with_length(length)
+        placed = at_length.with_machine(placed_fastest(at_length))
+        row = _row(placed)
         rows.append(row)
-        points += list(_points(row.machine, at_length, limits, objective, line_speeds, row, step))
+        points += list(_points(placed, objective, line_speeds, row, step))
     return Envelope(tuple(points), tuple(rows))
 
 
-def _row(machine: Machine, cut: Cut, limits: Limits) -> EnvelopeRow:
-    fastest = max_line_speed(machine, cut, limits)
-    beyond = replace(cut, line_speed=(fastest or cut.line_speed) * (1 + BEYOND))
-    binding = binding_limit(machine, beyond, limits, needed_limits(machine, beyond, limits))
-    return EnvelopeRow(
-        cut.length, machine, fastest, quintic_speed(machine, cut, limits), linear_speed(machine, cut, limits), binding
-    )
+def _row(task: Task) -> EnvelopeRow:
+    cut = task.cut
+    fastest = max_line_speed(task)
+    beyond = task.at_speed((fastest or cut.line_speed) * (1 + BEYOND))
+    binding = binding_limit(beyond, needed_limits(beyond))
+    return EnvelopeRow(cut.length, task.machine, fastest, quintic_speed(task), linear_speed(task), binding)
 
 
 def _points(
-    machine: Machine,
-    cut: Cut,
-    limits: Limits,
+    task: Task,
     objective: Objective,
     line_speeds: Sequence[float],
     row: EnvelopeRow,
     step: Callable[[str], None],
 ) -> Iterator[EnvelopePoint]:
     # where closed forms tell what a point lacks it is asked at the point, elsewhere at the edge of its cut length
-    straight = machine.slave_unit == "m" and is_straight(machine, cut)
+    cut = task.cut
+    straight = task.machine.slave_unit == "m" and task.straight
     for v in line_speeds:
         step(f"cut length {cut.length * 1e3:.4g} mm at {v * 60:.4g} m/min")
-        here = replace(cut, line_speed=v)
+        here = task.at_speed(v)
         possible = row.optimised is not None and v <= row.optimised
-        value = _objective(machine, here, limits, objective) if possible else None
+        value = _objective(here, objective) if possible else None
         binding = row.binding
         if not possible and straight:
-            binding = binding_limit(machine, here, limits, needed_limits(machine, here, limits))
+            binding = binding_limit(here, needed_limits(here))
         quintic = row.quintic is not None and v <= row.quintic
         linear = row.linear is not None and v <= row.linear
         yield EnvelopePoint(cut.length, v, value, binding, quintic, linear)
 
 
-def _objective(machine: Machine, cut: Cut, limits: Limits, objective: Objective) -> float | None:
+def _objective(task: Task, objective: Objective) -> float | None:
     try:
-        back = solve_return(return_problem(machine, cut, limits, objective))[0]
+        back = solve_return(return_problem(task, objective))[0]
     except SolverError:
         return None
     order = 2 if objective.endswith("acceleration") else 3
-    return objective_value(back, objective) * cut.line_speed**order
+    return objective_value(back, objective) * task.cut.line_speed**order
 
 
-def quintic_speed(machine: Machine, cut: Cut, limits: Limits) -> float | None:
+def quintic_speed(task: Task) -> float | None:
     """Highest line speed at which the quintic return keeps all limits, exactly: its shape over the master does not depend on the speed.
 
     None if it reverses where it may not, or leaves the stroke.
     """
-    problem = return_problem(machine, replace(cut, line_speed=1.0), limits, "peak_acceleration")
-    sync = machine.sync_profile(cut)
-    straight = is_straight(machine, cut) and cut.sync_ratio == 1.0
+    cut, limits = task.cut, task.limits
+    problem = return_problem(task.at_speed(1.0), "peak_acceleration")
+    straight = task.straight and cut.sync_ratio == 1.0
     back = (
         quintic_return(cut.return_zone, problem.height)
         if straight
-        else quintic_between(sync, cut.return_zone, problem.height)
+        else quintic_between(task.sync, cut.return_zone, problem.height)
     )
-    cycle = assemble(back, machine, replace(cut, origin="return"))
+    cycle = assemble(back, task.machine, task.from_return().cut)
     low, high = cycle.extrema(1)
-    if low.value < -ROUNDING * high.value and not (limits.reversal or machine.turns_back):
+    if low.value < -ROUNDING * high.value and not task.reverses:
         return None
     place = back.extrema(0)
     if place[0].value < problem.least_position or place[1].value > problem.greatest_position:
@@ -196,13 +193,12 @@ def quintic_speed(machine: Machine, cut: Cut, limits: Limits) -> float | None:
     return min(bounds)
 
 
-def linear_speed(machine: Machine, cut: Cut, limits: Limits) -> float | None:
+def linear_speed(task: Task) -> float | None:
     """Highest line speed at which the linear return keeps the speed limit (S1, eq. 8); None if it would reverse where it may not."""
-    sync = machine.sync_profile(cut)
-    ratio = (machine.pitch - sync.advance) / cut.return_zone
-    if ratio < 0 and not (limits.reversal or machine.turns_back):
+    ratio = task.height / task.cut.return_zone
+    if ratio < 0 and not task.reverses:
         return None
-    return limits.speed / max(abs(ratio), sync.extrema(1)[1].value)
+    return task.limits.speed / max(abs(ratio), task.sync.extrema(1)[1].value)
 
 
 def _peak(profile: CamProfile, order: int) -> float:

@@ -18,6 +18,7 @@ from camwright.design.place import place_sync
 from camwright.profiles.cut import Cut
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import CrankSlider, Machine
+from camwright.profiles.task import Task
 
 # Edges are found to rounding; to this share while a place on the crank is looked for.
 EDGE = 1e-13
@@ -50,37 +51,39 @@ class Extremes:
     cut_length_binding: str
 
 
-def extremes(machine: Machine, cut: Cut, limits: Limits) -> Extremes:
+def extremes(task: Task) -> Extremes:
     """Find the highest line speed and the shortest cut length of a job, and what binds there.
 
     A crank whose sync zone is free has it, for each of the two, at the place that lets it go farthest.
     """
-    speed, speed_binding = fastest_line(machine, cut, limits)
-    placed = _placed(machine, cut, limits, lambda there: min_cut_length(there, cut, limits, COARSE) or math.inf)
-    length = min_cut_length(placed, cut, limits)
-    beyond = replace(cut, length=(length or cut.length) * (1 - BEYOND))
-    return Extremes(speed, speed_binding, length, _binding(placed, beyond, limits))
+    speed, speed_binding = fastest_line(task)
+    placed = task.with_machine(
+        _placed(task, lambda there: min_cut_length(task.with_machine(there), COARSE) or math.inf)
+    )
+    length = min_cut_length(placed)
+    beyond = placed.with_length((length or task.cut.length) * (1 - BEYOND))
+    return Extremes(speed, speed_binding, length, _binding(beyond))
 
 
-def fastest_line(machine: Machine, cut: Cut, limits: Limits) -> tuple[float | None, str]:
+def fastest_line(task: Task) -> tuple[float | None, str]:
     """Highest line speed at the job's cut length (m/s), None if no line speed works, and what binds there."""
-    placed = placed_fastest(machine, cut, limits)
-    speed = max_line_speed(placed, cut, limits)
-    beyond = replace(cut, line_speed=(speed or cut.line_speed) * (1 + BEYOND))
-    return speed, _binding(placed, beyond, limits)
+    placed = task.with_machine(placed_fastest(task))
+    speed = max_line_speed(placed)
+    return speed, _binding(placed.at_speed((speed or task.cut.line_speed) * (1 + BEYOND)))
 
 
-def placed_fastest(machine: Machine, cut: Cut, limits: Limits) -> Machine:
+def placed_fastest(task: Task) -> Machine:
     """Place the sync zone of a crank that leaves it free where the line can run fastest."""
-    return _placed(machine, cut, limits, lambda there: -slowdown(there, cut, limits, COARSE) or math.inf)
+    return _placed(task, lambda there: -slowdown(task.with_machine(there), COARSE) or math.inf)
 
 
-def _placed(machine: Machine, cut: Cut, limits: Limits, cost: Callable[[CrankSlider], float]) -> Machine:
+def _placed(task: Task, cost: Callable[[CrankSlider], float]) -> Machine:
     """Place the sync zone of a crank that leaves it free where a cost is least, or, where nothing works, where most room is left."""
+    machine = task.machine
     if not (isinstance(machine, CrankSlider) and math.isnan(machine.sync_at)):
         return machine
-    placement = place_sync(machine, cut, cost)
-    return roomiest(machine, cut, limits) if placement is None else placement.machine
+    placement = place_sync(machine, task.cut, cost)
+    return roomiest(machine, task.cut, task.limits) if placement is None else placement.machine
 
 
 def roomiest(machine: CrankSlider, cut: Cut, limits: Limits) -> CrankSlider:
@@ -91,23 +94,24 @@ def roomiest(machine: CrankSlider, cut: Cut, limits: Limits) -> CrankSlider:
     InputError
         The sync zone is longer than the crank's stroke.
     """
-    placement = place_sync(machine, cut, lambda placed: margin(placed, cut, limits))
+    placement = place_sync(machine, cut, lambda placed: margin(Task(placed, cut, limits)))
     if placement is not None:
         return placement.machine
     least, greatest = machine.sync_range(cut)
     return replace(machine, sync_at=0.5 * (least + greatest))
 
 
-def max_line_speed(machine: Machine, cut: Cut, limits: Limits) -> float | None:
+def max_line_speed(task: Task) -> float | None:
     """Highest line speed at the job's cut length (m/s); None if no line speed works."""
-    return slowdown(machine, cut, limits, EDGE) * cut.line_speed or None
+    return slowdown(task, EDGE) * task.cut.line_speed or None
 
 
-def min_cut_length(machine: Machine, cut: Cut, limits: Limits, tolerance: float = EDGE) -> float | None:
+def min_cut_length(task: Task, tolerance: float = EDGE) -> float | None:
     """Shortest cut length at the job's line speed and sync zone (m); None if no cut length works."""
+    machine, cut = task.machine, task.cut
 
     def works(length: float) -> bool:
-        return length > cut.sync_zone and is_feasible(machine, replace(cut, length=length), limits)
+        return length > cut.sync_zone and is_feasible(task.with_length(length))
 
     starts = [machine.pitch / cut.sync_ratio] if machine.slave_unit == "m" and machine.pitch > 0 else []
     factor = 1.0
@@ -118,8 +122,8 @@ def min_cut_length(machine: Machine, cut: Cut, limits: Limits, tolerance: float 
     return None if start is None else edge(works, start, cut.sync_zone, tolerance)
 
 
-def _binding(machine: Machine, beyond: Cut, limits: Limits) -> str:
+def _binding(beyond: Task) -> str:
     """Name what binds a little beyond an edge."""
-    if beyond.length <= beyond.sync_zone:
+    if beyond.cut.length <= beyond.cut.sync_zone:
         return "sync_zone"
-    return binding_limit(machine, beyond, limits, needed_limits(machine, beyond, limits))
+    return binding_limit(beyond, needed_limits(beyond))

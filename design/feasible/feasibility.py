@@ -23,6 +23,7 @@ from camwright.profiles.errors import InputError
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import LinearCarriage, Machine
 from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.task import Task
 
 LIMIT_NAMES = ("speed", "acceleration", "jerk")
 # The sync zone may use this much more than a limit: rounding.
@@ -81,13 +82,13 @@ class Demand:
         return is_possible(resolved(problem))
 
 
-def demands(machine: Machine, cut: Cut, limits: Limits) -> tuple[Demand, ...]:
+def demands(task: Task) -> tuple[Demand, ...]:
     """Make a job's demand on each of the limits that its motor's curve stands for; none if the machine cannot be in sync at all."""
     found = []
-    for each in motor_limits(machine, limits):
+    for each in motor_limits(task.machine, task.limits):
         try:
-            problem = return_problem(machine, cut, each, "peak_acceleration")
-            ratio, slope, jerk = _sync_peaks(machine.sync_profile(cut))
+            problem = return_problem(task.with_limits(each), "peak_acceleration")
+            ratio, slope, jerk = _sync_peaks(task.sync)
         except InputError:
             return ()
         shares = (ratio / problem.greatest_ratio, slope / problem.greatest_slope, jerk / problem.greatest_jerk)
@@ -102,36 +103,36 @@ def _sync_peaks(sync: CamProfile) -> tuple[float, float, float]:
     return sync.extrema(1)[1].value, slope, jerk
 
 
-def is_feasible(machine: Machine, cut: Cut, limits: Limits) -> bool:
+def is_feasible(task: Task) -> bool:
     """Tell whether some motion keeps the limits. A zone that the machine cannot be in sync over counts as infeasible."""
-    return any(demand.met() for demand in demands(machine, cut, limits))
+    return any(demand.met() for demand in demands(task))
 
 
-def margin(machine: Machine, cut: Cut, limits: Limits) -> float:
+def margin(task: Task) -> float:
     """Least common factor on the limits with which the machine can do the cut, sync zone and return; at most 1 if it can.
 
     Infinite where the machine cannot be in sync over the zone at all, or where no limits would be enough.
     """
-    found = [least_factor(lambda f, each=demand: each.met(f, f, f)) for demand in demands(machine, cut, limits)]  # type: ignore[misc]
+    found = [least_factor(lambda f, each=demand: each.met(f, f, f)) for demand in demands(task)]  # type: ignore[misc]
     return min(found, default=math.inf)
 
 
-def least_limit(machine: Machine, cut: Cut, limits: Limits, name: str) -> float:
+def least_limit(task: Task, name: str) -> float:
     """Least value of one limit that is enough for sync zone and return, the others as they are; infinite if the given one is not enough."""
     place = LIMIT_NAMES.index(name)
     found = [
         least_factor(lambda f, each=demand: f <= 1.0 and each.met(*(f if k == place else 1.0 for k in range(3))), PEAK)  # type: ignore[misc]
-        for demand in demands(machine, cut, limits)
+        for demand in demands(task)
         if demand.met()
     ]
-    return float(getattr(limits, name)) * min(found, default=math.inf)
+    return float(getattr(task.limits, name)) * min(found, default=math.inf)
 
 
-def slowdown(machine: Machine, cut: Cut, limits: Limits, tolerance: float = EDGE) -> float:
+def slowdown(task: Task, tolerance: float = EDGE) -> float:
     """Greatest factor on the line speed with which the machine can do the cut; zero if it cannot at any speed."""
     found = [
         least_factor(lambda f, each=demand: each.met(f, f**2, f**3), tolerance)  # type: ignore[misc]
-        for demand in demands(machine, cut, limits)
+        for demand in demands(task)
     ]
     return 1.0 / min(found, default=math.inf)
 
@@ -155,24 +156,25 @@ def least_factor(works: Callable[[float], bool], tolerance: float = EDGE) -> flo
     return math.inf if found is None else found
 
 
-def needed_limits(machine: Machine, cut: Cut, limits: Limits) -> dict[str, float]:
+def needed_limits(task: Task) -> dict[str, float]:
     """Least value of each limit that would do, the others as they are (over time, slave unit), infinite where none does.
 
     For a carriage also its ``"stroke"`` (m).
     """
-    asked = demands(machine, cut, limits)
+    limits = task.limits
+    asked = demands(task)
 
     def works(name: str, factor: float) -> bool:
         if limits.motor is None:  # then a limit's factor is its demand's
             return any(demand.met(**{name: factor}) for demand in asked)
-        return is_feasible(machine, cut, with_limit(limits, name, float(getattr(limits, name)) * factor))
+        return is_feasible(task.with_limits(with_limit(limits, name, float(getattr(limits, name)) * factor)))
 
     def alone(name: str) -> float:
         return float(getattr(limits, name)) * least_factor(lambda f: f >= 1.0 and works(name, f))
 
     need = {name: alone(name) for name in LIMIT_NAMES}
-    if isinstance(machine, LinearCarriage):
-        need["stroke"] = _stroke_needed(machine, cut, limits)
+    if isinstance(task.machine, LinearCarriage):
+        need["stroke"] = _stroke_needed(task.machine, task.cut, limits)
     return need
 
 
@@ -181,7 +183,7 @@ def _stroke_needed(machine: LinearCarriage, cut: Cut, limits: Limits) -> float:
     travel = cut.sync_ratio * cut.sync_zone
     wide = replace(machine, stroke=max(machine.stroke, 2 * travel))
     found = math.inf
-    for demand in demands(wide, cut, limits):
+    for demand in demands(Task(wide, cut, limits)):
         problem = resolved(demand.problem)
         bounds = Bounds(problem.least_ratio, problem.greatest_ratio, problem.greatest_slope, problem.greatest_jerk)
         beyond = least_overshoot(problem.length, problem.start_ratio, -problem.height, bounds)
@@ -190,7 +192,7 @@ def _stroke_needed(machine: LinearCarriage, cut: Cut, limits: Limits) -> float:
     return found
 
 
-def binding_limit(machine: Machine, cut: Cut, limits: Limits, need: dict[str, float]) -> str:
+def binding_limit(task: Task, need: dict[str, float]) -> str:
     """Name the limit that binds: the one that would have to give least, were it the only one to give.
 
     Where no single limit would be enough it is the one whose release helps most; ``"reversal"`` where running backwards would be
@@ -201,20 +203,23 @@ def binding_limit(machine: Machine, cut: Cut, limits: Limits, need: dict[str, fl
     need
         What `needed_limits` says.
     """
-    if limits.motor is not None:
-        alone = replace(limits, motor=None)
-        if is_feasible(machine, cut, alone):
+    if task.limits.motor is not None:
+        task = task.with_limits(replace(task.limits, motor=None))
+        if is_feasible(task):
             return "motor"
-        limits, need = alone, needed_limits(machine, cut, alone)
-    if not demands(machine, cut, limits):
+        need = needed_limits(task)
+    limits = task.limits
+    if not demands(task):
         return "sync_zone"
-    if not (limits.reversal or machine.turns_back) and is_feasible(machine, cut, replace(limits, reversal=True)):
+    if not task.reverses and is_feasible(task.with_limits(replace(limits, reversal=True))):
         return "reversal"
-    share = {name: value / _have(machine, limits, name) for name, value in need.items()}
+    share = {name: value / _have(task.machine, limits, name) for name, value in need.items()}
     binding = min(share, key=lambda name: share[name])
     if math.isfinite(share[binding]):
         return binding
-    rest = {name: margin(machine, cut, with_limit(limits, name, FREE * getattr(limits, name))) for name in LIMIT_NAMES}
+    rest = {
+        name: margin(task.with_limits(with_limit(limits, name, FREE * getattr(limits, name)))) for name in LIMIT_NAMES
+    }
     return min(rest, key=lambda name: rest[name])
 
 

@@ -16,11 +16,10 @@ from camwright.design.feasible.feasibility import (
     slowdown,
     with_limit,
 )
-from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InfeasibleError, Suggestion
-from camwright.profiles.limits import Limits
-from camwright.profiles.machines import LinearCarriage, Machine
+from camwright.profiles.machines import LinearCarriage
 from camwright.profiles.motor import MotorCurve
+from camwright.profiles.task import Task
 
 # Suggested values are rounded to this many digits, towards the safe side; to more where that misses.
 DIGITS = (4, 6, 9, 15)
@@ -38,12 +37,12 @@ _UNITS = {
 }
 
 
-def require_feasible(machine: Machine, cut: Cut, limits: Limits, *, suggest: bool = True) -> None:
+def require_feasible(task: Task, *, suggest: bool = True) -> None:
     """Refuse a job that no motion can do.
 
     Parameters
     ----------
-    machine, cut, limits
+    task
         The job.
     suggest
         Whether to look for what would work.
@@ -53,18 +52,16 @@ def require_feasible(machine: Machine, cut: Cut, limits: Limits, *, suggest: boo
     InfeasibleError
         With the limit that binds, by how much, and the nearest line speed, cut length or limit that works.
     """
-    if not is_feasible(machine, cut, limits):
-        raise infeasible(machine, cut, limits, suggest=suggest)
+    if not is_feasible(task):
+        raise infeasible(task, suggest=suggest)
 
 
-def infeasible(
-    machine: Machine, cut: Cut, limits: Limits, *, suggest: bool = True, load: float | None = None
-) -> InfeasibleError:
+def infeasible(task: Task, *, suggest: bool = True, load: float | None = None) -> InfeasibleError:
     """Say why a job is infeasible and, if asked, what would work; every suggestion has been checked.
 
     Parameters
     ----------
-    machine, cut, limits
+    task
         The job.
     suggest
         Whether to look for what would work.
@@ -72,17 +69,18 @@ def infeasible(
         Least share of the motor's torque that a motion needs, if that is known; else the motor's rectangles tell
         (`camwright.design.returns.curve_limits.motor_limits`).
     """
-    need = needed_limits(machine, cut, limits)
-    binding = binding_limit(machine, cut, limits, need)
-    torque = _torque_needed(machine, cut, limits) if load is None else load
-    excess, unit, words = _words(binding, need, torque, machine, limits, cut)
+    cut = task.cut
+    need = needed_limits(task)
+    binding = binding_limit(task, need)
+    torque = _torque_needed(task) if load is None else load
+    excess, unit, words = _words(task, binding, need, torque)
     message = (
         f"no motion returns the slave in time: {words} ([cut] length {cut.length * 1e3:g} mm at [cut] line_speed "
         f"{cut.line_speed * 60:g} m/min, sync zone {cut.sync_zone * 1e3:g} mm)"
     )
     if not suggest:
         return InfeasibleError(message, binding, excess, unit, ())
-    suggestions = tuple(_suggestions(machine, cut, limits, need, torque))
+    suggestions = tuple(_suggestions(task, need, torque))
     offers = "; ".join(_offer(suggestion) for suggestion in suggestions)
     return InfeasibleError(
         f"{message}. "
@@ -94,27 +92,27 @@ def infeasible(
     )
 
 
-def _torque_needed(machine: Machine, cut: Cut, limits: Limits) -> float:
+def _torque_needed(task: Task) -> float:
     """Factor on the torque of the motor's curve that would do; infinite if there is no curve, or no torque is enough."""
-    curve = limits.motor
+    curve = task.limits.motor
     if curve is None:
         return math.inf
-    return least_factor(lambda f: f >= 1.0 and is_feasible(machine, cut, replace(limits, motor=_stronger(curve, f))))
+    return least_factor(
+        lambda f: f >= 1.0 and is_feasible(task.with_limits(replace(task.limits, motor=_stronger(curve, f))))
+    )
 
 
 def _stronger(curve: MotorCurve, factor: float) -> MotorCurve:
     return MotorCurve(tuple((speed, torque * factor) for speed, torque in curve.points))
 
 
-def _words(
-    binding: str, need: dict[str, float], torque: float, machine: Machine, limits: Limits, cut: Cut
-) -> tuple[float | None, str, str]:
+def _words(task: Task, binding: str, need: dict[str, float], torque: float) -> tuple[float | None, str, str]:
     """By how much the binding limit is exceeded, its unit, and both in words."""
     if binding == "reversal":
         return (
             None,
             "",
-            f"[limits] reversal = false binds, the slave would have to run backwards from {cut.line_speed * 60:g} m/min",
+            f"[limits] reversal = false binds, the slave would have to run backwards from {task.cut.line_speed * 60:g} m/min",
         )
     if binding == "sync_zone":
         return None, "", "[cut] sync_zone binds, the machine cannot be in sync over it"
@@ -123,11 +121,12 @@ def _words(
             return None, "%", "[limits] motor binds, the motor does not reach the speed that is needed"
         more = 100 * (torque - 1)
         return more, "%", f"[limits] motor binds, {more:.3g} % more torque is needed at the speeds of the motion"
+    machine = task.machine
     if binding == "stroke" and isinstance(machine, LinearCarriage):
         have, needed, unit, place = machine.stroke * 1e3, need["stroke"] * 1e3, "mm", "[machine] stroke"
     else:
         factor, unit = _UNITS[machine.slave_unit][binding]
-        have, needed, place = getattr(limits, binding) * factor, need[binding] * factor, f"[limits] {binding}"
+        have, needed, place = getattr(task.limits, binding) * factor, need[binding] * factor, f"[limits] {binding}"
     if not math.isfinite(needed):
         return None, unit, f"{place} {have:g} {unit} binds, and no other value of it alone would do"
     share = 100 * (needed / have - 1)
@@ -138,27 +137,26 @@ def _words(
     )
 
 
-def _suggestions(
-    machine: Machine, cut: Cut, limits: Limits, need: dict[str, float], torque: float
-) -> Iterator[Suggestion]:
+def _suggestions(task: Task, need: dict[str, float], torque: float) -> Iterator[Suggestion]:
     """Nearest changes that work: line speed, cut length, stroke, each limit, motor, reversal; each checked as it is written."""
+    machine, cut, limits = task.machine, task.cut, task.limits
 
     def at_speed(v: float) -> bool:
-        return is_feasible(machine, replace(cut, line_speed=v), limits)
+        return is_feasible(task.at_speed(v))
 
     def at_length(length: float) -> bool:
-        return length > cut.sync_zone and is_feasible(machine, replace(cut, length=length), limits)
+        return length > cut.sync_zone and is_feasible(task.with_length(length))
 
-    slower = slowdown(machine, cut, limits)
+    slower = slowdown(task)
     if slower > 0:
         yield from _written("line_speed", slower * cut.line_speed, 60.0, "m/min", False, at_speed)
-    length = _nearest_length(at_length, machine, cut)
+    length = _nearest_length(at_length, task)
     if length is not None:
         yield from _written("length", length, 1e3, "mm", length > cut.length, at_length)
     if isinstance(machine, LinearCarriage) and machine.stroke < need["stroke"] < math.inf:
 
         def with_stroke(stroke: float) -> bool:
-            return is_feasible(replace(machine, stroke=stroke), cut, limits)
+            return is_feasible(task.with_machine(replace(machine, stroke=stroke)))
 
         yield from _written("stroke", need["stroke"], 1e3, "mm", True, with_stroke)
     for name in LIMIT_NAMES:
@@ -166,13 +164,13 @@ def _suggestions(
             continue
 
         def with_value(value: float, name: str = name) -> bool:
-            return is_feasible(machine, cut, with_limit(limits, name, value))
+            return is_feasible(task.with_limits(with_limit(limits, name, value)))
 
         factor, unit = _UNITS[machine.slave_unit][name]
         yield from _written(name, need[name], factor, unit, True, with_value)
     if limits.motor is not None and 1.0 < torque < math.inf:
         yield from _written("motor", torque, 100.0, "%", True, lambda factor: factor > torque)
-    if not (limits.reversal or machine.turns_back) and is_feasible(machine, cut, replace(limits, reversal=True)):
+    if not task.reverses and is_feasible(task.with_limits(replace(limits, reversal=True))):
         yield Suggestion("reversal", 1.0, "")
 
 
@@ -188,13 +186,14 @@ def _written(
             return
 
 
-def _nearest_length(works: Callable[[float], bool], machine: Machine, cut: Cut) -> float | None:
+def _nearest_length(works: Callable[[float], bool], task: Task) -> float | None:
     """Find the cut length nearest to the job's that works, looking at longer and shorter ones in steps; None if none does.
 
     Among them is the one at which a slave as fast as it leaves the sync zone would be back just in time: it can be the only one.
     """
-    sync = machine.sync_profile(cut)
-    easy = (cut.sync_zone + (machine.pitch - sync.advance) / float(sync(sync.end, 1))) / cut.length
+    cut = task.cut
+    sync = task.sync
+    easy = (cut.sync_zone + task.height / float(sync(sync.end, 1))) / cut.length
     count = 1 + round(math.log(LONGEST) / math.log(STEP))
     factors = [STEP**number for number in range(1 - count, count)]
     factors += [easy] if easy > 0 else []

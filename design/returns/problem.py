@@ -7,10 +7,9 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Literal
 
-from camwright.profiles.cut import Cut
-from camwright.profiles.limits import Limits
-from camwright.profiles.machines import LinearCarriage, Machine
+from camwright.profiles.machines import LinearCarriage
 from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.task import Task
 
 Objective = Literal["peak_acceleration", "rms_acceleration", "peak_jerk", "rms_jerk"]
 """Objectives of the motion alone."""
@@ -60,26 +59,24 @@ class ReturnProblem:
     greatest_position: float = math.inf
 
 
-def return_problem(machine: Machine, cut: Cut, limits: Limits, objective: Objective) -> ReturnProblem:
+def return_problem(task: Task, objective: Objective) -> ReturnProblem:
     """Put the return of a cutting machine into numbers: the sync zone's ends give the return's boundary values."""
-    sync = machine.sync_profile(cut)
-    ends = _ends(sync)
-    v = cut.line_speed
+    machine, ends = task.machine, _ends(task.sync)
     least, greatest = -math.inf, math.inf
     if isinstance(machine, LinearCarriage):
-        end = machine.sync_start(cut) + sync.advance
+        end = task.slave_at_sync_start + task.sync.advance
         least, greatest = machine.home - end, machine.home + machine.stroke - end
     return ReturnProblem(
-        length=cut.return_zone,
-        height=machine.pitch - sync.advance,
+        length=task.cut.return_zone,
+        height=task.height,
         start_ratio=ends[0],
         end_ratio=ends[1],
         start_slope=ends[2],
         end_slope=ends[3],
-        least_ratio=(-limits.speed if machine.turns_back else limits.least_velocity) / v,
-        greatest_ratio=limits.speed / v,
-        greatest_slope=limits.acceleration / v**2,
-        greatest_jerk=limits.jerk / v**3,
+        least_ratio=task.least_ratio,
+        greatest_ratio=task.greatest_ratio,
+        greatest_slope=task.greatest_slope,
+        greatest_jerk=task.greatest_jerk,
         objective=objective,
         least_position=least,
         greatest_position=greatest,

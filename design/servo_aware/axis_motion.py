@@ -6,7 +6,7 @@ mean squares quadratic ones, and both hold at every sampling phase and for every
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from camwright.design.returns.problem import Objective
 from camwright.design.returns.solver import objective_value
@@ -116,7 +116,7 @@ def servo_blind_optimum(programme: AxisProgramme, objective: Objective | TorqueC
     problem = programme.problem
     if problem.structure is None:
         return None
-    profile = assemble(problem.structure, problem.machine, replace(problem.cut, origin="return"))
+    profile = assemble(problem.structure, problem.task.machine, problem.task.from_return().cut)
     if not programme.holds(profile):
         return None
     if objective == "rms_torque" or objective == "peak_torque" or objective == "energy":

@@ -15,10 +15,9 @@ from camwright.design.servo_aware.servo_weights import (
     sampled_states,
     servo_weights,
 )
-from camwright.profiles.cut import Cut
-from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.servo import Servo, sample_plant
+from camwright.profiles.task import Task
 
 # Sampling phases, and points between two samples, on which a design is judged: those of the validation.
 PHASES = 16
@@ -37,38 +36,35 @@ class Axis:
 
     Parameters
     ----------
-    machine
-        The machine, its sync zone placed.
-    cut
-        The cut.
+    task
+        The machine, its sync zone placed, and the cut.
     servo
         The servo.
     """
 
-    machine: Machine
-    cut: Cut
+    task: Task
     servo: Servo
 
     @property
     def sample(self) -> float:
         """Master travel in a sampling period (m)."""
-        return self.servo.sample_time * self.cut.line_speed
+        return self.servo.sample_time * self.task.cut.line_speed
 
     @property
     def shear_zone(self) -> tuple[float, float]:
         """Shear zone (m)."""
-        start = self.cut.return_zone + self.cut.shear_zone_at
-        return start, min(start + self.cut.shear_zone, self.cut.length)
+        start = self.task.cut.return_zone + self.task.cut.shear_zone_at
+        return start, min(start + self.task.cut.shear_zone, self.task.cut.length)
 
     def ideal(self, places: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Slave, ratio, and slave coordinate of the machine in sync, at places in the sync zone."""
-        sync = self.machine.sync_profile(self.cut)
-        inside = np.clip(places - self.cut.return_zone, sync.start, sync.end)
+        sync = self.task.sync
+        inside = np.clip(places - self.task.cut.return_zone, sync.start, sync.end)
         travel = sync(inside)
         return (
-            travel + (self.machine.pitch - sync.advance - float(sync(sync.start))),
+            travel + (self.task.height - float(sync(sync.start))),
             sync(inside, 1),
-            self.machine.sync_start(self.cut) + travel,
+            self.task.slave_at_sync_start + travel,
         )
 
     def band(self, places: FloatArray, tolerance: float) -> tuple[FloatArray, FloatArray]:
@@ -76,13 +72,17 @@ class Axis:
         coordinate = self.ideal(places)[2]
         edges = []
         for sign in (-1.0, 1.0):
-            slope = np.asarray(self.machine.tool_ratio(coordinate)) + np.zeros_like(coordinate)
+            slope = np.asarray(self.task.machine.tool_ratio(coordinate)) + np.zeros_like(coordinate)
             deviation = sign * tolerance / slope
             for _ in range(
                 _NEWTON
             ):  # the tool's map is monotonic in the sync zone and nearly straight over a tolerance
-                off = self.machine.tool(coordinate + deviation) - self.machine.tool(coordinate) - sign * tolerance
-                deviation = deviation - off / self.machine.tool_ratio(coordinate + deviation)
+                off = (
+                    self.task.machine.tool(coordinate + deviation)
+                    - self.task.machine.tool(coordinate)
+                    - sign * tolerance
+                )
+                deviation = deviation - off / self.task.machine.tool_ratio(coordinate + deviation)
             edges.append(deviation)
         return np.minimum(*edges), np.maximum(*edges)
 
@@ -108,7 +108,7 @@ class Axis:
         for part in (slice(start, start + step) for start in range(0, len(places), step)):
             past = (times[part] + self.servo.delay)[:, None] + samples
             matrix[part], constant[part] = basis.rows(
-                places[part, None] - self.cut.line_speed * past, weights[index[part]]
+                places[part, None] - self.task.cut.line_speed * past, weights[index[part]]
             )
         return matrix, constant
 
@@ -158,12 +158,16 @@ class Axis:
         """
         zone = self._zone
         found = zone.coordinate + (self._in_zone(profile, 0) - zone.slave)
-        return zone.places, zone.times, np.asarray(self.machine.tool(found) - self.machine.tool(zone.coordinate))
+        return (
+            zone.places,
+            zone.times,
+            np.asarray(self.task.machine.tool(found) - self.task.machine.tool(zone.coordinate)),
+        )
 
     def zone_ratios(self, profile: CamProfile) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Error of the tool's ratio in the shear zone at every phase; as `zone_errors`."""
         zone = self._zone
-        off = (self._in_zone(profile, 1) - zone.ratio) * self.machine.tool_ratio(zone.coordinate)
+        off = (self._in_zone(profile, 1) - zone.ratio) * self.task.machine.tool_ratio(zone.coordinate)
         return zone.places, zone.times, np.asarray(off)
 
     @cached_property
@@ -175,7 +179,7 @@ class Axis:
         steps = np.clip(np.arange(first, last + 1) * step, start, end)
         after = np.arange(SUBSTEPS) * (self.servo.sample_time / SUBSTEPS)
         edges = np.repeat(list(dict.fromkeys((start, end))), PHASES)
-        edge_times = (edges / self.cut.line_speed) % (self.servo.sample_time / PHASES)
+        edge_times = (edges / self.task.cut.line_speed) % (self.servo.sample_time / PHASES)
         edge_times += np.tile(np.arange(PHASES), len(edges) // PHASES) * (self.servo.sample_time / PHASES)
         places = np.concatenate([np.tile(steps, SUBSTEPS), edges])
         times = np.concatenate([np.repeat(after, len(steps)), edge_times])
@@ -194,12 +198,14 @@ class Axis:
     def _after_sample(self, times: FloatArray, order: int) -> tuple[FloatArray, FloatArray]:
         """Give what state and held reference at a sampling instant contribute to a derivative over the master, times (s) after it."""
         turned, pushed = _sampled_plants(self.servo.loop, tuple(times.tolist()))
-        return turned[:, 2 - order] / self.cut.line_speed**order, pushed[:, 2 - order] / self.cut.line_speed**order
+        return turned[:, 2 - order] / self.task.cut.line_speed**order, pushed[
+            :, 2 - order
+        ] / self.task.cut.line_speed**order
 
     def _weights(self, time: float, order: int) -> FloatArray:
         """Weights of the command's samples for the axis or a derivative over the master, a time (s) after a sample."""
         weights = servo_weights(self.servo.loop, time)
-        return (weights.position, weights.velocity, weights.acceleration)[order] / self.cut.line_speed**order
+        return (weights.position, weights.velocity, weights.acceleration)[order] / self.task.cut.line_speed**order
 
 
 @dataclass(frozen=True, eq=False)
@@ -226,7 +232,7 @@ def _grid_states(axis: Axis, profile: CamProfile, first: int, count: int) -> tup
     """States of the plant and held references as if each step of the common grid were a sampling instant."""
     past = memory(axis.servo.loop)
     ahead = _shared(past)
-    delay = axis.cut.line_speed * axis.servo.delay
+    delay = axis.task.cut.line_speed * axis.servo.delay
     command = _on_steps(profile, axis.sample / PHASES, delay, first - ahead * PHASES, first + count)
     command = command[(ahead - past) * PHASES :]
     windows = np.lib.stride_tricks.sliding_window_view(command, past * PHASES + 1)[:, ::-PHASES]  # newest first
@@ -242,7 +248,7 @@ def _edge_states(axis: Axis, profile: CamProfile) -> tuple[FloatArray, FloatArra
     """States of the plant and held references at the sampling instants before the ends of the shear zone."""
     zone = axis._zone
     past = memory(axis.servo.loop)
-    newest = zone.edges - axis.cut.line_speed * (zone.edge_times + axis.servo.delay)
+    newest = zone.edges - axis.task.cut.line_speed * (zone.edge_times + axis.servo.delay)
     commands = _before(profile, tuple(newest.tolist()), axis.sample, _shared(past) + 1)
     return sampled_states(axis.servo, commands[:, : past + 1])
 

@@ -8,9 +8,8 @@ from typing import Literal
 
 import numpy as np
 
-from camwright.profiles.cut import Cut
-from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray, join
+from camwright.profiles.task import Task
 
 Command = Literal["in_sync", "shaped"]
 """What a design may choose: the return alone, or the whole cycle."""
@@ -161,7 +160,7 @@ def _times(powers: FloatArray) -> FloatArray:
 
 
 def command_basis(
-    machine: Machine, cut: Cut, command: Command, structure: CamProfile | None = None, *, robust: bool = False
+    task: Task, command: Command, structure: CamProfile | None = None, *, robust: bool = False
 ) -> CommandBasis:
     """Basis of the commands that a servo-aware design may choose from.
 
@@ -175,6 +174,7 @@ def command_basis(
     robust
         Whether the command is for several servos, and needs more freedom.
     """
+    machine, cut = task.machine, task.cut
     count = round(INTERVALS[command] * (ROBUST_SHARE if robust else 1.0))
     if command == "shaped":
         step = cut.length / count
@@ -187,9 +187,9 @@ def command_basis(
             machine.pitch * (places - 1) / count, dtype=np.float64
         )  # the coefficients of a motion of even speed
         return CommandBasis(cut.length, machine.pitch, knots, matrix, even, None)
-    sync = machine.sync_profile(cut)
+    sync = task.sync
     nodes = _nodes(cut.return_zone, count, structure)
-    placed = sync.shift(nodes[-1] - sync.start, machine.pitch - sync.advance - float(sync(sync.start)))
+    placed = sync.shift(nodes[-1] - sync.start, task.height - float(sync(sync.start)))
     count = len(nodes) - 1
     before = nodes[0] - (nodes[1] - nodes[0]) * np.arange(_DEGREE, 0, -1)
     behind = nodes[-1] + (nodes[-1] - nodes[-2]) * np.arange(1, _DEGREE + 1)

@@ -27,12 +27,11 @@ from camwright.design.servo_aware.rows import (
     worst_places,
 )
 from camwright.design.servo_aware.torque import AxisTorque, TorqueCost
-from camwright.profiles.cut import Cut
 from camwright.profiles.errors import SolverError
-from camwright.profiles.limits import Limits
-from camwright.profiles.machines import LinearCarriage, Machine
+from camwright.profiles.machines import LinearCarriage
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.servo import Servo
+from camwright.profiles.task import Task
 
 Cost = Literal[
     "sync_error",
@@ -81,12 +80,8 @@ class AxisProblem:
 
     Parameters
     ----------
-    machine
-        The machine, its sync zone placed.
-    cut
-        The cut; its sync tolerance is the band of the axis.
-    limits
-        Limits of the command.
+    task
+        The machine, its sync zone placed, the cut, whose sync tolerance is the band of the axis, and the limits of the command.
     command
         What may be chosen: the return alone, or the whole cycle.
     servos
@@ -99,9 +94,7 @@ class AxisProblem:
         Servos between the corners of the ranges, whose error must not be much larger than that of the others.
     """
 
-    machine: Machine
-    cut: Cut
-    limits: Limits
+    task: Task
     command: Command
     servos: tuple[Servo, ...]
     axis_limits: bool
@@ -119,13 +112,11 @@ class AxisProgramme:
     def __init__(self, problem: AxisProblem, wider: float = 1.0) -> None:
         self.problem = problem
         self._wider = wider
-        self._unseen = [Axis(problem.machine, problem.cut, servo) for servo in problem.between]
+        self._unseen = [Axis(problem.task, servo) for servo in problem.between]
         self._seen: list[Axis] = []
-        self.axes = tuple(Axis(problem.machine, problem.cut, servo) for servo in problem.servos)
-        self.basis = command_basis(
-            problem.machine, problem.cut, problem.command, problem.structure, robust=len(problem.servos) > 1
-        )
-        self.scale = max(abs(problem.machine.pitch), abs(problem.machine.sync_profile(problem.cut).advance))
+        self.axes = tuple(Axis(problem.task, servo) for servo in problem.servos)
+        self.basis = command_basis(problem.task, problem.command, problem.structure, robust=len(problem.servos) > 1)
+        self.scale = max(abs(problem.task.machine.pitch), abs(problem.task.sync.advance))
         self.solved = 0
         self._bands: list[AxisRows] = []
         self._ratios: list[AxisRows] = []
@@ -261,7 +252,7 @@ class AxisProgramme:
         if "band" not in self._begun:
             self._begun.add("band")
             self._bands += [band_rows(axis, self.basis, *first_places(axis, *first)) for axis in self.axes]
-        if ratio and "ratio" not in self._begun and self.problem.cut.shear_zone:
+        if ratio and "ratio" not in self._begun and self.problem.task.cut.shear_zone:
             self._begun.add("ratio")
             self._ratios.append(ratio_rows(self.axes[0], self.basis, *first_places(self.axes[0], *first)))
 
@@ -331,7 +322,7 @@ class AxisProgramme:
     @cached_property
     def torque(self) -> AxisTorque:
         """Torque of the commands."""
-        return AxisTorque(self.problem.machine, self.problem.cut, self.basis, self.scale)
+        return AxisTorque(self.problem.task, self.basis, self.scale)
 
     def _mean_square(self, programme: ConvexProgramme, order: int, *, sure: bool) -> tuple[FloatArray, float] | None:
         """Least mean square of a derivative: linear between the nodes (order 2) or constant on the intervals (order 3)."""
@@ -355,20 +346,18 @@ class AxisProgramme:
 
     def _limits(self) -> dict[int, tuple[float, float]]:
         """Limits of the command over the master, by order of the derivative."""
-        machine, cut, limits = self.problem.machine, self.problem.cut, self.problem.limits
-        v = cut.line_speed
-        least = -limits.speed if machine.turns_back else limits.least_velocity
-        slope, jerk = limits.acceleration / v**2, limits.jerk / v**3
-        found = {1: (least / v, limits.speed / v), 2: (-slope, slope), 3: (-jerk, jerk)}
+        task = self.problem.task
+        machine, slope, jerk = task.machine, task.greatest_slope, task.greatest_jerk
+        found = {1: (task.least_ratio, task.greatest_ratio), 2: (-slope, slope), 3: (-jerk, jerk)}
         if isinstance(machine, LinearCarriage):
-            end = machine.sync_start(cut) + machine.sync_profile(cut).advance
+            end = task.slave_at_sync_start + task.sync.advance
             found[0] = (machine.home - end, machine.home + machine.stroke - end)
         return found
 
     def _add_worst(self, profile: CamProfile, band: float, *, ratio: bool) -> bool:
         """Add rows where a command leaves its band, or the nominal axis breaks a limit; whether there were any."""
         nearly = 1.0 if band == 1.0 else 1.0 + NEARLY
-        limit = max(band, LEAST_ERROR) * self.problem.cut.sync_tolerance * nearly
+        limit = max(band, LEAST_ERROR) * self.problem.task.cut.sync_tolerance * nearly
         added = False
         for axis in self.axes:
             places, times, errors = axis.zone_errors(profile)
@@ -376,7 +365,7 @@ class AxisProgramme:
             if len(worst):
                 self._bands.append(band_rows(axis, self.basis, places[worst], times[worst]))
                 added = True
-        if ratio and self.problem.cut.shear_zone:
+        if ratio and self.problem.task.cut.shear_zone:
             added |= self._add_ratio(profile, max(1.0, band))
         if self.problem.axis_limits:
             added |= self._add_own(profile)
@@ -400,7 +389,7 @@ class AxisProgramme:
 
     def _add_ratio(self, profile: CamProfile, band: float) -> bool:
         """Add rows where the ratio of the nominal axis leaves its band, widened to a share of itself."""
-        axis, cut = self.axes[0], self.problem.cut
+        axis, cut = self.axes[0], self.problem.task.cut
         places, times, errors = axis.zone_ratios(profile)
         worst = worst_places(np.abs(errors) - band * RATIO * cut.sync_tolerance / cut.shear_zone)
         if len(worst):
@@ -439,7 +428,7 @@ class AxisProgramme:
             return self._excess[order]
         low, high = self._own_limits()[order]
         axis = self.axes[0]
-        count = math.ceil(self.problem.cut.length / (axis.sample / PHASES))
+        count = math.ceil(self.problem.task.cut.length / (axis.sample / PHASES))
         values = axis.on_grid(profile, 0, count, order)
         self._excess[order] = np.maximum(values - high, low - values)
         return self._excess[order]

@@ -49,7 +49,7 @@ def band_rows(axis: Axis, basis: CommandBasis, places: FloatArray, times: FloatA
         The factor.
     """
     matrix, constant = axis.rows(basis, places, times)
-    low, high = axis.band(places, wider * axis.cut.sync_tolerance)
+    low, high = axis.band(places, wider * axis.task.cut.sync_tolerance)
     return AxisRows(matrix, constant - axis.ideal(places)[0], low, high)
 
 
@@ -57,8 +57,8 @@ def ratio_rows(axis: Axis, basis: CommandBasis, places: FloatArray, times: Float
     """Make rows that keep the ratio of an axis to that of the sync zone; arguments as in `band_rows`."""
     matrix, constant = axis.rows(basis, places, times, 1)
     _, ratio, coordinate = axis.ideal(places)
-    lever = np.abs(axis.machine.tool_ratio(coordinate) + np.zeros(len(places)))
-    room = RATIO * axis.cut.sync_tolerance / axis.cut.shear_zone / lever
+    lever = np.abs(axis.task.machine.tool_ratio(coordinate) + np.zeros(len(places)))
+    room = RATIO * axis.task.cut.sync_tolerance / axis.task.cut.shear_zone / lever
     return AxisRows(matrix, constant - ratio, -room, room)
 
 

@@ -12,10 +12,9 @@ from camwright.design.returns.ipopt import QUIET
 from camwright.design.servo_aware.command_basis import CommandBasis
 from camwright.design.servo_aware.convex import Rows, sparse
 from camwright.design.torque.programme import LOBATTO, ROUNDING
-from camwright.profiles.cut import Cut
 from camwright.profiles.errors import SolverError
-from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
+from camwright.profiles.task import Task
 
 TorqueCost = Literal["rms_torque", "peak_torque", "energy"]
 """What is minimised at the slave over the free part of the cycle: root mean square, peak, or mean power drawn."""
@@ -38,7 +37,7 @@ class AxisTorque:
 
     Parameters
     ----------
-    machine, cut
+    task
         The machine, its sync zone placed, and its cut.
     basis
         The commands; their slave zero is the machine at the end of its sync zone.
@@ -46,10 +45,9 @@ class AxisTorque:
         Slave travel that is 1 in the unknowns.
     """
 
-    def __init__(self, machine: Machine, cut: Cut, basis: CommandBasis, scale: float) -> None:
-        self._machine, self._cut, self._scale = machine, cut, scale
-        sync = machine.sync_profile(cut)
-        self._start = machine.sync_start(cut) + float(sync(sync.end))
+    def __init__(self, task: Task, basis: CommandBasis, scale: float) -> None:
+        self._machine, self._cut, self._scale = task.machine, task.cut, scale
+        self._start = task.slave_at_sync_end
         self._derivatives = _at_points(basis)
         widths = np.diff(basis.nodes)
         self._shares = (widths[:, None] * _WEIGHTS).ravel() / widths.sum()

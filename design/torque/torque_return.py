@@ -11,12 +11,11 @@ from camwright.design.returns.scaling import motion_scale, scale_problem, unscal
 from camwright.design.returns.solver import ALLOWED_EXCESS, excess, solve_return
 from camwright.design.returns.structure import tidy
 from camwright.design.torque.programme import Aim, TorqueProgramme, TorqueTask
-from camwright.profiles.cut import Cut
 from camwright.profiles.errors import SolverError
-from camwright.profiles.machines import Machine
 from camwright.profiles.motor import MotorCurve
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import quintic_between
+from camwright.profiles.task import Task
 
 AGREEMENT = 1e-4
 """Starts whose objectives differ by less than this share have found the same optimum."""
@@ -52,8 +51,7 @@ class TorqueSolution:
 
 
 def solve_torque(
-    machine: Machine,
-    cut: Cut,
+    task: Task,
     problem: ReturnProblem,
     aim: Aim,
     curve: MotorCurve | None = None,
@@ -64,7 +62,7 @@ def solve_torque(
 
     Parameters
     ----------
-    machine, cut
+    task
         The machine and its cycle.
     problem
         The return as numbers over the master; its own objective does not count.
@@ -85,13 +83,11 @@ def solve_torque(
     """
     scale = motion_scale(problem)
     scaled = scale_problem(problem, scale)
-    sync = machine.sync_profile(cut)
-    start = machine.sync_start(cut) + float(sync(sync.end))
-    programme = TorqueProgramme(TorqueTask(machine, cut, problem, scale, start, aim, curve))
+    programme = TorqueProgramme(TorqueTask(task.machine, task.cut, problem, scale, task.slave_at_sync_end, aim, curve))
     accepted = keeps or (lambda _: True)
     found: list[tuple[float, CamProfile, float]] = []
     iterations = 0
-    guesses = _guesses(machine, cut, problem, scale, starts)
+    guesses = _guesses(task, problem, scale, starts)
     for guess in guesses:
         answer = programme.solve(scaled, guess)
         iterations += answer.iterations
@@ -119,14 +115,12 @@ def solve_torque(
     return TorqueSolution(best[1], best[0], spread, converged, agreeing, best[2], iterations)
 
 
-def _guesses(
-    machine: Machine, cut: Cut, problem: ReturnProblem, scale: float, starts: Sequence[CamProfile]
-) -> list[CamProfile]:
+def _guesses(task: Task, problem: ReturnProblem, scale: float, starts: Sequence[CamProfile]) -> list[CamProfile]:
     """Scaled first guesses: the quintic, and the given starts or the optima of the motion alone."""
     profiles = list(starts) or [
         solve_return(replace(problem, objective=name))[0] for name in ("peak_acceleration", "rms_acceleration")
     ]
-    profiles.append(quintic_between(machine.sync_profile(cut), problem.length, problem.height))
+    profiles.append(quintic_between(task.sync, problem.length, problem.height))
     return [
         profile.add_line(-problem.start_ratio).scale(master=1.0 / problem.length, slave=1.0 / scale).over(0.0, 1.0)
         for profile in profiles

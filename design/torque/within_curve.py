@@ -12,13 +12,11 @@ from camwright.design.returns.curve_limits import motor_speed_limits
 from camwright.design.returns.problem import return_problem
 from camwright.design.torque.programme import CURVE_DRAWN_IN, Aim
 from camwright.design.torque.torque_return import TorqueSolution, solve_torque
-from camwright.profiles.cut import Cut
 from camwright.profiles.errors import SolverError
-from camwright.profiles.limits import Limits
-from camwright.profiles.machines import Machine
 from camwright.profiles.motor import MotorCurve
 from camwright.profiles.polynomial.profile import CamProfile
-from camwright.profiles.returns import assemble, slave_at_start
+from camwright.profiles.returns import assemble
+from camwright.profiles.task import Task
 
 POINTS = 4001
 """Places of the cycle, besides its breaks, at which the torque is held against the curve."""
@@ -27,18 +25,21 @@ SAMPLED = 1e-6
 """Share of the torque that is kept free, for what happens between these places."""
 
 
-def keeps_curve(profile: CamProfile, machine: Machine, cut: Cut, curve: MotorCurve) -> bool:
+def keeps_curve(profile: CamProfile, task: Task, curve: MotorCurve) -> bool:
     """Tell whether the motor reaches the speed of a cycle and gives the torque that it needs, at each of its speeds."""
-    fastest = cut.line_speed * machine.motor_ratio * max(abs(extremum.value) for extremum in profile.extrema(1))
-    return fastest <= curve.top_speed * (1 + ROUNDING) and load(profile, machine, cut, curve) <= 1.0 - SAMPLED
+    fastest = (
+        task.cut.line_speed * task.machine.motor_ratio * max(abs(extremum.value) for extremum in profile.extrema(1))
+    )
+    return fastest <= curve.top_speed * (1 + ROUNDING) and load(profile, task, curve) <= 1.0 - SAMPLED
 
 
-def load(profile: CamProfile, machine: Machine, cut: Cut, curve: MotorCurve) -> float:
+def load(profile: CamProfile, task: Task, curve: MotorCurve) -> float:
     """Greatest share of the motor's torque at its speed that a cycle uses; beyond the motor's top speed, of that which it gives there."""
+    machine = task.machine
     x = np.concatenate([np.linspace(profile.start, profile.end, POINTS), profile.breaks])
-    v, worst = cut.line_speed, 0.0
+    v, worst = task.cut.line_speed, 0.0
     for side in ("left", "right"):
-        y = slave_at_start(machine, cut) - float(profile(profile.start)) + profile(x)
+        y = task.slave_at_start - float(profile(profile.start)) + profile(x)
         pace, bend = v * profile(x, 1), v**2 * profile(x, 2, side=side)
         force = machine.inertia(y) * bend + machine.inertia_slope(y) * pace**2 / 2 + machine.friction * np.sign(pace)
         speed = np.minimum(np.abs(pace) * machine.motor_ratio, curve.top_speed)
@@ -47,36 +48,34 @@ def load(profile: CamProfile, machine: Machine, cut: Cut, curve: MotorCurve) -> 
     return worst
 
 
-def least_load(machine: Machine, cut: Cut, limits: Limits) -> TorqueSolution | None:
+def least_load(task: Task) -> TorqueSolution | None:
     """Return that uses the least share of the motor's torque, that share being its value; None where the other limits are not enough.
 
     The share is not below 1 where the curve forbids the job, as far as the programme's starts tell.
     """
-    curve, plain = limits.motor, motor_speed_limits(machine, limits)
-    if curve is None or not is_feasible(machine, cut, plain):
+    curve, plain = task.limits.motor, motor_speed_limits(task.machine, task.limits)
+    if curve is None or not is_feasible(task.with_limits(plain)):
         return None
     try:
-        found = solve_torque(machine, cut, return_problem(machine, cut, plain, "peak_acceleration"), "load", curve)
+        found = solve_torque(task, return_problem(task.with_limits(plain), "peak_acceleration"), "load", curve)
     except SolverError:
         return None
     return replace(
-        found, value=load(assemble(found.back, machine, cut), machine, cut, curve) / (1 - 2 * CURVE_DRAWN_IN)
+        found, value=load(assemble(found.back, task.machine, task.cut), task, curve) / (1 - 2 * CURVE_DRAWN_IN)
     )
 
 
-def solve_within_curve(
-    machine: Machine, cut: Cut, limits: Limits, aim: Aim, starts: Sequence[CamProfile]
-) -> TorqueSolution | None:
+def solve_within_curve(task: Task, aim: Aim, starts: Sequence[CamProfile]) -> TorqueSolution | None:
     """Minimise an objective within the curve, from starts among others; None if no start led to a return that keeps it."""
-    curve, plain = limits.motor, motor_speed_limits(machine, limits)
+    curve, plain = task.limits.motor, motor_speed_limits(task.machine, task.limits)
     if curve is None:
         return None
 
     def keeps(back: CamProfile) -> bool:
-        return keeps_curve(assemble(back, machine, cut), machine, cut, curve)
+        return keeps_curve(assemble(back, task.machine, task.cut), task, curve)
 
-    problem = return_problem(machine, cut, plain, "peak_acceleration")
+    problem = return_problem(task.with_limits(plain), "peak_acceleration")
     try:
-        return solve_torque(machine, cut, problem, aim, curve, keeps, starts)
+        return solve_torque(task, problem, aim, curve, keeps, starts)
     except SolverError:
         return None

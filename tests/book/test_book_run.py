@@ -67,12 +67,12 @@ def test_the_index_says_what_designs_made_one_by_one_say(done: Path) -> None:
         ends.add(row["status"])
         if row["status"] == "infeasible":
             with pytest.raises(InfeasibleError) as caught:
-                solve(own.machine, cut, own.limits, own.objective)
+                solve(own.task.with_cut(cut), own.objective)
             assert row["binding"] == caught.value.binding
             assert str(caught.value).startswith(row["reason"])
             assert not row["folder"]
             continue
-        solution = solve(own.machine, cut, own.limits, own.objective)
+        solution = solve(own.task.with_cut(cut), own.objective)
         report = validate(solution.profile, own.machine, cut, own.limits, own.servo)
         (table,) = export(solution.profile, own, ["csv"])
         assert (row["status"] == "passed") == (report.passed and table.passed)
@@ -114,7 +114,7 @@ def test_the_limit_table_gives_the_highest_speed_and_what_forbids_the_next(done:
             assert row["binding"] == beyond[0]["binding"]
         elif beyond:
             assert set(row["binding"].split()) <= set(re.split("; (?:csv: )?|csv: ", beyond[0]["failed_checks"]))
-        far = extremes(job.machine, replace(job.cut, length=float(row["length_mm"]) / 1e3), job.limits)
+        far = extremes(job.task.with_cut(replace(job.cut, length=float(row["length_mm"]) / 1e3)))
         assert far.max_line_speed is not None
         found = float(row["physical_line_speed_m_per_min"])
         assert far.max_line_speed * 60 * (1 - 1e-6) <= found <= far.max_line_speed * 60
@@ -280,7 +280,7 @@ def test_a_disk_that_is_full_keeps_what_is_done(done: Path, tmp_path: Path, monk
 def test_a_solver_that_fails_is_listed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     import camwright.design.optimise
 
-    def solve(machine: object, cut: object, *rest: object, **named: object) -> None:
+    def solve(*given: object, **named: object) -> None:
         raise SolverError("the solver ended without an answer")
 
     monkeypatch.setattr(camwright.design.optimise, "solve", solve)

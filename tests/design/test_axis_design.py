@@ -19,6 +19,7 @@ from camwright.profiles.motor import MotorCurve
 from camwright.profiles.returns import slave_zero
 from camwright.profiles.servo import Servo
 from camwright.profiles.servo_tolerance import ServoTolerance
+from camwright.profiles.task import Task
 from camwright.validation.motor import greatest_load
 from camwright.validation.servo.monte_carlo import shear_zone_errors
 from camwright.validation.servo.response import servo_response
@@ -38,9 +39,9 @@ def peak_acceleration(solution: Solution, cut: Cut) -> float:
 @pytest.mark.parametrize(("command", "dearer"), [("shaped", 0.5), ("in_sync", 1.3)])
 def test_a_micrometre_at_600_mm_and_what_it_costs(command: Command, dearer: float) -> None:
     cut = replace(CUT, shaped=command == "shaped")
-    solution = solve_axis(KNIFE, cut, LIMITS, "sync_error", command, (PAPER,))
+    solution = solve_axis(Task(KNIFE, cut, LIMITS), "sync_error", command, (PAPER,))
     assert servo_response(solution.profile, KNIFE, cut, PAPER).shear_zone_error <= 1e-6
-    blind = solve(KNIFE, CUT, LIMITS, "peak_acceleration")
+    blind = solve(Task(KNIFE, CUT, LIMITS), "peak_acceleration")
     # a command that need not be in sync all over its sync zone is even softer than the servo-blind one: asked for is 1.05
     assert peak_acceleration(solution, cut) <= dearer * peak_acceleration(blind, CUT)
 
@@ -49,7 +50,7 @@ def test_a_micrometre_at_600_mm_and_what_it_costs(command: Command, dearer: floa
 def robust(length: float) -> tuple[Solution, Cut]:
     cut = replace(CUT, length=length, sync_zone=0.12, shear_zone_at=0.08, shaped=True)
     servos = (PAPER, *RANGES.vertices(PAPER))
-    return solve_axis(KNIFE, cut, LIMITS, "sync_error", "shaped", servos, RANGES.between(PAPER)), cut
+    return solve_axis(Task(KNIFE, cut, LIMITS), "sync_error", "shaped", servos, RANGES.between(PAPER)), cut
 
 
 @pytest.mark.parametrize(("length", "worst"), [(0.213, 1.3e-3), (0.267, 0.15e-3), (0.320, 0.02e-3)])
@@ -71,7 +72,7 @@ def test_servos_drawn_from_the_ranges_are_hardly_worse_than_its_corners(length: 
 
 def test_a_nominal_design_is_far_worse_at_the_corners_than_a_robust_one() -> None:
     solution, cut = robust(0.213)
-    nominal = solve_axis(KNIFE, cut, LIMITS, "sync_error", "shaped", (PAPER,))
+    nominal = solve_axis(Task(KNIFE, cut, LIMITS), "sync_error", "shaped", (PAPER,))
     corners = RANGES.vertices(PAPER)
     assert shear_zone_errors(nominal.profile, KNIFE, cut, (PAPER,)).max() < 2e-6
     worst = shear_zone_errors(nominal.profile, KNIFE, cut, corners).max()
@@ -82,7 +83,7 @@ def test_a_nominal_design_is_far_worse_at_the_corners_than_a_robust_one() -> Non
 def test_both_origins_are_one_design(command: Command) -> None:
     cut = replace(CUT, length=0.45, shaped=command == "shaped")
     one, other = (
-        solve_axis(KNIFE, replace(cut, origin=origin), LIMITS, "peak_acceleration", command, (PAPER,))
+        solve_axis(Task(KNIFE, replace(cut, origin=origin), LIMITS), "peak_acceleration", command, (PAPER,))
         for origin in ("return", "cut")
     )
     from_cut = replace(cut, origin="cut")
@@ -108,7 +109,7 @@ UNITS = {"sync_tolerance": 1e-3, "line_speed": 1 / 60, "length": 1e-3}
 def test_a_tolerance_that_no_command_keeps_is_refused_with_ways_out_that_work(name: str) -> None:
     cut, command = INFEASIBLE[name]
     with pytest.raises(InfeasibleError, match="twice the tolerance over the shear zone") as refused:
-        solve_axis(KNIFE, cut, LIMITS, "peak_acceleration", command, (PAPER,))
+        solve_axis(Task(KNIFE, cut, LIMITS), "peak_acceleration", command, (PAPER,))
     error = refused.value
     assert error.excess is not None
     assert (error.binding, error.unit) == ("sync_tolerance", "mm")
@@ -120,18 +121,18 @@ def test_a_tolerance_that_no_command_keeps_is_refused_with_ways_out_that_work(na
         changed = replace(
             cut, length=values["length"], line_speed=values["line_speed"], sync_tolerance=values["sync_tolerance"]
         )
-        found = solve_axis(KNIFE, changed, LIMITS, "peak_acceleration", command, (PAPER,))
+        found = solve_axis(Task(KNIFE, changed, LIMITS), "peak_acceleration", command, (PAPER,))
         assert servo_response(found.profile, KNIFE, changed, PAPER).shear_zone_error <= changed.sync_tolerance
     wider = next(each for each in error.suggestions if each.change == "sync_tolerance")
     assert cut.sync_tolerance * 1e3 + error.excess == pytest.approx(wider.value, rel=5e-3)
     least = replace(cut, sync_tolerance=0.98 * (cut.sync_tolerance + error.excess * 1e-3))
     with pytest.raises(InfeasibleError):
-        solve_axis(KNIFE, least, LIMITS, "peak_acceleration", command, (PAPER,), suggest=False)
+        solve_axis(Task(KNIFE, least, LIMITS), "peak_acceleration", command, (PAPER,), suggest=False)
 
 
 def test_the_sync_error_alone_is_made_least_whatever_the_tolerance() -> None:
     cut, command = INFEASIBLE["one command only"]
-    solution = solve_axis(KNIFE, cut, LIMITS, "sync_error", command, (PAPER,))
+    solution = solve_axis(Task(KNIFE, cut, LIMITS), "sync_error", command, (PAPER,))
     # the limits leave one motion between the sync zones, that of the servo-blind design
     assert solution.objective == pytest.approx(
         servo_response(solution.profile, KNIFE, cut, PAPER).shear_zone_error, abs=1e-9
@@ -144,7 +145,7 @@ def test_the_sync_error_alone_is_made_least_whatever_the_tolerance() -> None:
 def test_without_suggestions_none_are_looked_for() -> None:
     cut, command = INFEASIBLE["position"]
     with pytest.raises(InfeasibleError) as refused:
-        solve_axis(KNIFE, cut, LIMITS, "peak_acceleration", command, (PAPER,), suggest=False)
+        solve_axis(Task(KNIFE, cut, LIMITS), "peak_acceleration", command, (PAPER,), suggest=False)
     assert refused.value.suggestions == ()
     assert "what works" not in str(refused.value)
 
@@ -153,7 +154,7 @@ def test_without_suggestions_none_are_looked_for() -> None:
 def test_a_motion_beyond_the_limits_is_the_servo_blind_refusal(command: Command) -> None:
     cut = replace(CUT, length=0.15, sync_zone=0.08, shear_zone_at=0.04, shaped=command == "shaped")
     with pytest.raises(InfeasibleError, match="no motion returns the slave in time"):
-        solve_axis(KNIFE, cut, LIMITS, "peak_acceleration", command, (PAPER,))
+        solve_axis(Task(KNIFE, cut, LIMITS), "peak_acceleration", command, (PAPER,))
 
 
 def test_the_torque_of_a_carriage_without_friction_is_its_acceleration() -> None:
@@ -161,7 +162,7 @@ def test_the_torque_of_a_carriage_without_friction_is_its_acceleration() -> None
     cut = replace(CUT, length=1.2, line_speed=0.7, sync_zone=0.25, shear_zone_at=0.2)
     limits = Limits(3.0, 30.0, 2000.0)
     torque, acceleration = (
-        solve_axis(carriage, cut, limits, objective, "in_sync", (PAPER,))
+        solve_axis(Task(carriage, cut, limits), objective, "in_sync", (PAPER,))
         for objective in ("rms_torque", "rms_acceleration")
     )
     assert torque.objective == pytest.approx(acceleration.objective, rel=1e-9)
@@ -171,10 +172,10 @@ def test_the_torque_of_a_carriage_without_friction_is_its_acceleration() -> None
 def test_a_motors_curve_is_kept() -> None:
     knife = RotaryKnife(0.4, gear_ratio=5.0, drum_inertia=0.05)
     cut = replace(CUT, length=0.5, shaped=True)
-    free = solve_axis(knife, cut, LIMITS, "peak_jerk", "shaped", (PAPER,))
+    free = solve_axis(Task(knife, cut, LIMITS), "peak_jerk", "shaped", (PAPER,))
     torque = peak_acceleration(free, cut) * 0.05 / knife.radius / 5.0
     curve = MotorCurve(((0.0, 0.8 * torque), (300.0, 0.8 * torque)))
-    held = solve_axis(knife, cut, replace(LIMITS, motor=curve), "peak_jerk", "shaped", (PAPER,))
+    held = solve_axis(Task(knife, cut, replace(LIMITS, motor=curve)), "peak_jerk", "shaped", (PAPER,))
     load, available = greatest_load(held.profile, knife, cut, curve)
     assert abs(load.value) <= available * (1 + 1e-9)
     assert held.objective >= free.objective * (1 - 1e-6)
@@ -185,14 +186,14 @@ def test_a_crank_that_is_free_is_placed_as_for_the_servo_blind_design() -> None:
     cut = replace(CUT, length=0.9, line_speed=0.5, sync_zone=0.15, shear_zone_at=0.1, sync_tolerance=5e-4, shaped=True)
     limits = Limits(31.0, 400.0, 20_000.0)
     stiff = Servo(600.0, 0.8, 150.0, 0.001, 1.0)
-    solution = solve_axis(crank, cut, limits, "peak_acceleration", "shaped", (stiff,))
-    assert solution.machine == solve(crank, cut, limits, "peak_acceleration").machine
+    solution = solve_axis(Task(crank, cut, limits), "peak_acceleration", "shaped", (stiff,))
+    assert solution.machine == solve(Task(crank, cut, limits), "peak_acceleration").machine
     assert servo_response(solution.profile, solution.machine, cut, stiff).shear_zone_error <= cut.sync_tolerance
 
 
 def test_an_unstable_servo_is_refused() -> None:
     with pytest.raises(InputError, match=r"the servo is unstable, its largest pole .* it is stable below"):
-        solve_axis(KNIFE, CUT, LIMITS, "sync_error", "shaped", (replace(PAPER, position_gain=200.0),))
+        solve_axis(Task(KNIFE, CUT, LIMITS), "sync_error", "shaped", (replace(PAPER, position_gain=200.0),))
 
 
 def test_under_a_motors_curve_the_blind_optimum_is_taken_where_its_axis_will_do() -> None:
@@ -209,8 +210,8 @@ def test_under_a_motors_curve_the_blind_optimum_is_taken_where_its_axis_will_do(
     limits = Limits(1.908045202395662, 10.04167043281933, 452.6442649083416, True, curve)
     time = zone / cut.line_speed
     servo = Servo(200.0 / time, 0.8, 40.0 / time, time / 1000, velocity_feedforward=1.0)
-    blind = solve(knife, cut, limits, "rms_jerk")
-    found = solve_axis(knife, cut, limits, "rms_jerk", "in_sync", (servo,))
+    blind = solve(Task(knife, cut, limits), "rms_jerk")
+    found = solve_axis(Task(knife, cut, limits), "rms_jerk", "in_sync", (servo,))
     assert found.axis is not None
     assert found.axis.error <= cut.sync_tolerance
     assert found.objective == pytest.approx(blind.objective, rel=1e-9)

@@ -15,6 +15,7 @@ from camwright.profiles.cut import Cut
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import CrankSlider
 from camwright.profiles.motor import MotorCurve
+from camwright.profiles.task import Task
 from camwright.validation.motion import measure_motion
 
 CRANK = CrankSlider(0.15, 0.6, 0.0, 0.5, 20.0, 5.0)
@@ -25,7 +26,7 @@ LIMITS = Limits(60.0, 2000.0, 400000.0)
 
 def peak(placed: CrankSlider, cut: Cut, objective: Objective) -> float:
     """Peak of the whole cycle that is optimal at a place."""
-    motion = measure_motion(solve(placed, cut, LIMITS, objective).profile, placed, cut)
+    motion = measure_motion(solve(Task(placed, cut, LIMITS), objective).profile, placed, cut)
     value = motion.peak_acceleration if objective == "peak_acceleration" else motion.peak_jerk
     assert value is not None
     return value
@@ -39,7 +40,7 @@ def test_no_other_place_has_a_lower_peak_of_the_whole_cycle(objective: Objective
     least, greatest = CRANK.sync_range(cut)
     for angle in np.linspace(least, greatest, 8)[1:-1]:
         there = replace(CRANK, sync_at=float(angle))
-        if is_feasible(there, cut, LIMITS):
+        if is_feasible(Task(there, cut, LIMITS)):
             assert peak(there, cut, objective) >= best * (1 - 1e-3)
 
 
@@ -49,7 +50,7 @@ def test_the_sync_zone_can_have_the_higher_peak() -> None:
     placed = place_for(CRANK, cut, LIMITS, "peak_acceleration").machine
     sync = placed.sync_profile(cut)
     in_sync = max(abs(extremum.value) for extremum in sync.extrema(2)) * cut.line_speed**2
-    assert least_limit(placed, cut, LIMITS, "acceleration") >= in_sync * (1 - 1e-5)
+    assert least_limit(Task(placed, cut, LIMITS), "acceleration") >= in_sync * (1 - 1e-5)
     middle = replace(placed, sync_at=placed.sync_at + 0.15)
     sync = middle.sync_profile(cut)
     there = max(abs(extremum.value) for extremum in sync.extrema(2)) * cut.line_speed**2
@@ -60,7 +61,7 @@ def test_where_no_place_will_do_it_is_the_one_where_least_is_missing() -> None:
     cut = replace(LONG, line_speed=6.0)
     placed = place_for(CRANK, cut, LIMITS, "rms_acceleration").machine
     assert not math.isnan(placed.sync_at)
-    assert not is_feasible(placed, cut, LIMITS)
+    assert not is_feasible(Task(placed, cut, LIMITS))
 
 
 def test_a_motor_too_weak_for_its_rectangles_is_placed_by_torque() -> None:

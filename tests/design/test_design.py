@@ -29,6 +29,7 @@ from camwright.profiles.limits import Limits
 from camwright.profiles.machines import RotaryKnife
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import BASELINES, baseline
+from camwright.profiles.task import Task
 
 OBJECTIVES: tuple[Objective, ...] = get_args(Objective)
 Job = tuple[RotaryKnife, Cut, Limits, Objective]
@@ -45,7 +46,7 @@ def correction(
 ) -> float:
     """Optimal objective of the motion of height D in time T, in units of D/T² or D/T³, its limits in such units too."""
     limits = Limits(min(1.0 + speed * D / T, 1e3), min(acceleration * D / T**2, 1e9), min(jerk * D / T**3, 1e12))
-    result = solve(RotaryKnife(1.5 + D), Cut(1.5, 1.0, 0.5, 0.0, 0.0, 1e-4), limits, objective)
+    result = solve(Task(RotaryKnife(1.5 + D), Cut(1.5, 1.0, 0.5, 0.0, 0.0, 1e-4), limits), objective)
     assert result.status is SolveStatus.OPTIMAL
     return result.objective / (D / T ** order_of(objective))
 
@@ -142,7 +143,7 @@ def test_peaks_under_a_speed_limit(speed: float) -> None:
 
 def test_the_paper_job() -> None:
     machine, cut, limits = PAPER
-    result = solve(machine, cut, limits, "peak_acceleration")
+    result = solve(Task(machine, cut, limits), "peak_acceleration")
     check_cycle(result, machine, cut, limits)
     assert result.objective == pytest.approx(least_acceleration(0.2, 0.3, 80 / 60, 3000.0), rel=1e-8)
     assert result.profile.pieces <= 8
@@ -219,7 +220,7 @@ def test_root_mean_squares_lie_on_their_tangent(
     """No motion is better to first order: a convex objective that is least along its tangent is least."""
     machine, cut = RotaryKnife(1.5 + D), Cut(1.5, 1.0, 0.5, 0.0, 0.0, 1e-4)
     limits = Limits(1 + speed * D, acceleration * D, jerk * D)
-    result = solve(machine, cut, limits, objective)
+    result = solve(Task(machine, cut, limits), objective)
     check_cycle(result, machine, cut, limits)
     order, count = order_of(objective), 400
     motion = result.back.add_line(-1.0).scale(slave=1 / D)
@@ -288,7 +289,7 @@ def check_suggestions(error: InfeasibleError, job: Job) -> None:
     assert error.suggestions
     for suggestion in error.suggestions:
         other_cut, other_limits = changed(cut, limits, suggestion.change, suggestion.value)
-        check_cycle(solve(machine, other_cut, other_limits, objective), machine, other_cut, other_limits)
+        check_cycle(solve(Task(machine, other_cut, other_limits), objective), machine, other_cut, other_limits)
 
 
 # Laws without a jump of the acceleration, which a limit of the jerk asks for.
@@ -316,7 +317,7 @@ def check_tightening(result: Solution, job: Job, tightened: str, factor: float) 
     machine, cut, limits, objective = job
     harder = replace(limits, **{tightened: factor * getattr(limits, tightened)})
     try:
-        tighter = solve(machine, cut, harder, objective)
+        tighter = solve(Task(machine, cut, harder), objective)
     except InfeasibleError:
         return
     check_cycle(tighter, machine, cut, harder)
@@ -329,9 +330,9 @@ limit_names = st.sampled_from(["speed", "acceleration", "jerk"])
 @settings(max_examples=60)
 @given(jobs())
 def test_random_jobs(job: Job) -> None:
-    machine, cut, limits, _ = job
+    machine, cut, limits, objective = job
     try:
-        result = solve(*job)
+        result = solve(Task(machine, cut, limits), objective)
     except InfeasibleError as error:
         suggestions = error.suggestions
     else:
@@ -343,9 +344,9 @@ def test_random_jobs(job: Job) -> None:
 
 
 def check_job(job: Job, tightened: str, factor: float) -> None:
-    machine, cut, limits, _ = job
+    machine, cut, limits, objective = job
     try:
-        result = solve(*job)
+        result = solve(Task(machine, cut, limits), objective)
     except InfeasibleError as error:
         check_suggestions(error, job)
         return
@@ -402,7 +403,7 @@ def test_limits_that_are_only_touched(scaled: tuple[float, float, float, float],
 @pytest.mark.parametrize("origin", ["return", "cut"])
 def test_cut_as_long_as_the_circumference_is_a_straight_line(objective: Objective, origin: str) -> None:
     cut = Cut(0.4, 1.0, 0.1, 0.0, 0.0, 1e-4, origin)  # type: ignore[arg-type]
-    result = solve(RotaryKnife(0.4), cut, Limits(1.0, 1e-3, 1e-3), objective)
+    result = solve(Task(RotaryKnife(0.4), cut, Limits(1.0, 1e-3, 1e-3)), objective)
     assert result.objective == pytest.approx(0.0, abs=1e-12)
     x = np.linspace(0, 0.4, 101)
     assert np.abs(result.profile(x) - x).max() <= 1e-15
@@ -412,7 +413,7 @@ def test_cut_as_long_as_the_circumference_is_a_straight_line(objective: Objectiv
 @pytest.mark.parametrize("off", [1e-3, -1e-3, 1e-6, -1e-6, 1e-9, -1e-9, 1e-12])
 def test_cut_just_off_the_circumference(objective: Objective, off: float) -> None:
     machine, cut, limits = RotaryKnife(0.4), Cut(0.4 + off, 1.0, 0.1, 0.0, 0.0, 1e-4), Limits(2.0, 10.0, 1e4)
-    result = solve(machine, cut, limits, objective)
+    result = solve(Task(machine, cut, limits), objective)
     check_cycle(result, machine, cut, limits)
     unit = abs(machine.pitch - cut.length) / (cut.return_zone / cut.line_speed) ** order_of(objective)
     least = {"peak_acceleration": 4, "rms_acceleration": math.sqrt(12), "peak_jerk": 32, "rms_jerk": math.sqrt(720)}
@@ -435,10 +436,10 @@ def test_shortest_possible_return(objective: Objective, share: float) -> None:
     machine, limits, v, sync = RotaryKnife(0.4), Limits(3.0, 80.0, 4e3), 1.2, 0.1
     shortest = shortest_return_length(0.3, 3.0 / v, 80.0 / v**2, 4e3 / v**3)
     cut = Cut(shortest * share + sync, v, sync, 0.0, 0.0, 1e-4)
-    result = solve(machine, cut, limits, objective)
+    result = solve(Task(machine, cut, limits), objective)
     check_cycle(result, machine, cut, limits)
     with pytest.raises(InfeasibleError):
-        solve(machine, replace(cut, length=shortest * (1 - 1e-6) + sync), limits, objective)
+        solve(Task(machine, replace(cut, length=shortest * (1 - 1e-6) + sync), limits), objective)
     if share == 1.0:
         rest = 0.3 - shortest
         assert shortest_time(rest, 3.0 - v, 80.0, 4e3) == pytest.approx(cut.return_zone / v, rel=1e-6)
@@ -450,7 +451,7 @@ def test_very_long_cuts_with_reversal(objective: Objective) -> None:
     """With reversal the knife swings back and the objective is the free one; without it the knife stands still for a while."""
     machine, cut = RotaryKnife(0.4), Cut(2.0, 1.0, 0.2, 0.0, 0.0, 1e-4)
     swinging = Limits(3.0, 100.0, 1e6, reversal=True)
-    free = solve(machine, cut, swinging, objective)
+    free = solve(Task(machine, cut, swinging), objective)
     check_cycle(free, machine, cut, swinging)
     assert free.profile.extrema(1)[0].value < -0.05
     unit = 1.6 / 1.8 ** order_of(objective)
@@ -458,7 +459,7 @@ def test_very_long_cuts_with_reversal(objective: Objective) -> None:
     assert free.objective == pytest.approx(least[objective] * unit, rel=1e-3)
 
     standing = replace(swinging, reversal=False)
-    result = solve(machine, cut, standing, objective)
+    result = solve(Task(machine, cut, standing), objective)
     check_cycle(result, machine, cut, standing)
     assert result.objective > free.objective
     ratio = result.profile(np.linspace(0.0, 1.8, 1001), 1)
@@ -470,7 +471,7 @@ def test_very_long_cuts_with_reversal(objective: Objective) -> None:
 def test_huge_jerk_limits(objective: Objective, jerk: float) -> None:
     machine, cut, _ = PAPER
     limits = Limits(200 / 60, 30.0, jerk)
-    result = solve(machine, cut, limits, objective)
+    result = solve(Task(machine, cut, limits), objective)
     check_cycle(result, machine, cut, limits)
     least = {"peak_acceleration": 4, "rms_acceleration": math.sqrt(12), "peak_jerk": 32, "rms_jerk": math.sqrt(720)}
     unit = 0.2 / 0.3 ** order_of(objective)
@@ -483,8 +484,8 @@ def test_huge_jerk_limits(objective: Objective, jerk: float) -> None:
 @pytest.mark.parametrize("objective", OBJECTIVES)
 def test_the_origin_only_moves_the_cycle(objective: Objective) -> None:
     machine, cut, limits = PAPER
-    from_return = solve(machine, cut, limits, objective)
-    from_cut = solve(machine, replace(cut, origin="cut"), limits, objective)
+    from_return = solve(Task(machine, cut, limits), objective)
+    from_cut = solve(Task(machine, replace(cut, origin="cut"), limits), objective)
     assert from_cut.objective == from_return.objective
     x = np.linspace(0.0, 0.6, 601)
     moved = from_return.profile(x + 0.5, outside="repeat") - float(from_return.profile(0.5))
@@ -492,7 +493,7 @@ def test_the_origin_only_moves_the_cycle(objective: Objective) -> None:
 
 
 def test_same_job_same_bits() -> None:
-    first, second = (solve(*PAPER, "rms_jerk").profile for _ in range(2))
+    first, second = (solve(Task(*PAPER), "rms_jerk").profile for _ in range(2))
     assert first.to_dict() == second.to_dict()
 
 
@@ -501,14 +502,14 @@ def test_same_job_same_bits() -> None:
 def test_objective_scales_with_the_line_speed(objective: Objective, v: float) -> None:
     """The same cam at another line speed: limits and objective go with v, v² and v³."""
     cut = Cut(0.6, v, 0.2, 0.0, 0.0, 1e-4)
-    result = solve(RotaryKnife(0.4), cut, Limits(2.5 * v, 17 * v**2, 1265 * v**3), objective)
-    unit = solve(RotaryKnife(0.4), replace(cut, line_speed=1.0), Limits(2.5, 17, 1265), objective)
+    result = solve(Task(RotaryKnife(0.4), cut, Limits(2.5 * v, 17 * v**2, 1265 * v**3)), objective)
+    unit = solve(Task(RotaryKnife(0.4), replace(cut, line_speed=1.0), Limits(2.5, 17, 1265)), objective)
     assert result.objective == pytest.approx(unit.objective * v ** order_of(objective), rel=1e-7)
 
 
 def test_least_jerk_is_the_closed_form() -> None:
     machine, cut, limits = PAPER
-    result = solve(machine, cut, limits, "peak_jerk")
+    result = solve(Task(machine, cut, limits), "peak_jerk")
     assert result.objective == pytest.approx(least_jerk(0.2, 0.3, 80 / 60, 30.0), rel=1e-7)
 
 

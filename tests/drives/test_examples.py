@@ -42,7 +42,7 @@ class Written:
 def written(name: str) -> Written:
     job = load_job(EXAMPLES[name])
     if name in SOLVED:
-        profile = solve(job.machine, job.cut, job.limits, job.objective).profile
+        profile = solve(job.task, job.objective).profile
     else:
         if isinstance(job.machine, CrankSlider):
             job = replace(job, machine=replace(job.machine, sync_at=sum(job.machine.sync_range(job.cut)) / 2))

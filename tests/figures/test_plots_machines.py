@@ -30,7 +30,7 @@ def comparison_of(name: str) -> Comparison:
     job = load_job(EXAMPLES / f"{name}.toml")
     if isinstance(job.machine, CrankSlider):
         job = replace(job, machine=replace(job.machine, sync_at=math.radians(98.0)))
-    optimum = solve(job.machine, job.cut, job.limits, "rms_acceleration")
+    optimum = solve(job.task, "rms_acceleration")
     drawn = ["linear_return", "poly_3_4_5", *(["crank_tabulated"] if name == "chasing-shear" else [])]
     return compare(job, optimum.profile, drawn)
 
@@ -151,7 +151,7 @@ def test_the_crank_figure_is_about_cranks(saw: Comparison) -> None:
 @pytest.mark.parametrize("origin", ["return", "cut"])
 def test_maps_hold_with_either_origin(origin: str, crank: Comparison) -> None:
     job = replace(crank.job, cut=replace(crank.job.cut, origin=origin))
-    optimum = solve(job.machine, job.cut, job.limits, "rms_acceleration")
+    optimum = solve(job.task, "rms_acceleration")
     travel = crank_figure(compare(job, optimum.profile, ["crank_tabulated"])).axes[1]
     _, y = curve(travel, LINES["optimised"]["color"])
     start = slave_at_start(job.machine, job.cut)

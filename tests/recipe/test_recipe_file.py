@@ -17,6 +17,7 @@ from camwright.jobs.job import BUNDLED_JOB, load_job
 from camwright.profiles.closed_forms.reach import greatest_reach
 from camwright.profiles.errors import InputError
 from camwright.profiles.limits import Limits
+from camwright.profiles.task import Task
 from camwright.recipe import build
 from camwright.recipe.build import MadeRecipe, designed, make_recipe
 from camwright.recipe.recipe_file import (
@@ -131,7 +132,7 @@ def test_the_lead_time_cancels_dead_time_and_lag() -> None:
 
 def test_the_working_range_is_that_of_the_limits(made: MadeRecipe, paper_design) -> None:
     job, far = paper_design.job, made.recipe.working_range
-    known = extremes(job.machine, job.cut, job.limits)
+    known = extremes(job.task)
     assert (far.min_length.value, far.min_length.binding) == (known.min_cut_length, known.cut_length_binding)
     assert (far.max_line_speed.value, far.max_line_speed.binding) == (known.max_line_speed, known.line_speed_binding)
     assert (far.min_line_speed.value, far.max_length.value) == (None, None)
@@ -155,8 +156,8 @@ def test_a_knife_without_room_to_stop_has_a_longest_cut(paper_design) -> None:
     found = longest_cut(job.machine, cut, limits)
     assert found.value is not None
     assert found.binding == "acceleration"
-    assert is_feasible(job.machine, replace(cut, length=found.value), limits)
-    assert not is_feasible(job.machine, replace(cut, length=found.value * 1.0001), limits)
+    assert is_feasible(Task(job.machine, replace(cut, length=found.value), limits))
+    assert not is_feasible(Task(job.machine, replace(cut, length=found.value * 1.0001), limits))
 
 
 def test_targets_that_cannot_take_the_cam_are_named_or_refused(paper_design, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -23,17 +23,16 @@ from camwright.design.optimise import (
 from camwright.figures.tradeoff import tradeoff_figure
 from camwright.house.output import Voice
 from camwright.jobs.job import Job, load_job
-from camwright.profiles.cut import Cut
 from camwright.profiles.errors import SolverError
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import (
     CrankSlider,
     LinearCarriage,
-    Machine,
     RotaryKnife,
 )
 from camwright.profiles.machines.screw_equivalent import screw_equivalent
 from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.task import Task
 from camwright.studies.comparison import Comparison, compare
 from camwright.studies.screw import ScrewCarriage, reversals, screw_carriage
 from camwright.studies.tradeoff import (
@@ -63,7 +62,7 @@ def crank() -> tuple[Job, Comparison]:
     job = load_job(EXAMPLES / "chasing-shear.toml")
     assert isinstance(job.machine, CrankSlider)
     job = replace(job, machine=replace(job.machine, sync_at=math.radians(98.0)))
-    return job, compare(job, solve(job.machine, job.cut, job.limits, job.objective).profile)
+    return job, compare(job, solve(job.task, job.objective).profile)
 
 
 @pytest.fixture(scope="module")
@@ -122,10 +121,10 @@ def test_a_law_that_leaves_the_stroke_breaks_a_limit(carriage: TradeOff) -> None
 def failing(names: set[str]) -> Callable[..., Solution]:
     """Solver that fails on some objectives."""
 
-    def solve_or_fail(machine: Machine, cut: Cut, limits: Limits, objective: Objective) -> Solution:
+    def solve_or_fail(task: Task, objective: Objective) -> Solution:
         if objective in names:
             raise SolverError(f"no luck with {objective}")
-        return solve(machine, cut, limits, objective)
+        return solve(task, objective)
 
     return solve_or_fail
 

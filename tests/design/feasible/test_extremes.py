@@ -20,6 +20,7 @@ from camwright.profiles.machines import (
     RotaryKnife,
 )
 from camwright.profiles.returns import assemble
+from camwright.profiles.task import Task
 
 KNIFE = (RotaryKnife(0.4), Cut(0.35, 80 / 60, 0.1, 0.04, 0.06, 1e-4), Limits(200 / 60, 30.0, 3000.0))
 CARRIAGE = (
@@ -52,14 +53,14 @@ def ruckig_time(height: float, ratio_start: float, limits: Limits, backwards: bo
 
 @pytest.mark.parametrize(("machine", "cut", "limits"), ALL)
 def test_an_edge_works_and_a_step_beyond_does_not(machine: Machine, cut: Cut, limits: Limits) -> None:
-    found = extremes(machine, cut, limits)
+    found = extremes(Task(machine, cut, limits))
     assert found.max_line_speed is not None
     assert found.min_cut_length is not None
     share = 1e-5
-    assert is_feasible(machine, replace(cut, line_speed=found.max_line_speed * (1 - share)), limits)
-    assert not is_feasible(machine, replace(cut, line_speed=found.max_line_speed * (1 + share)), limits)
-    assert is_feasible(machine, replace(cut, length=found.min_cut_length * (1 + share)), limits)
-    assert not is_feasible(machine, replace(cut, length=found.min_cut_length * (1 - share)), limits)
+    assert is_feasible(Task(machine, replace(cut, line_speed=found.max_line_speed * (1 - share)), limits))
+    assert not is_feasible(Task(machine, replace(cut, line_speed=found.max_line_speed * (1 + share)), limits))
+    assert is_feasible(Task(machine, replace(cut, length=found.min_cut_length * (1 + share)), limits))
+    assert not is_feasible(Task(machine, replace(cut, length=found.min_cut_length * (1 - share)), limits))
     assert found.line_speed_binding in {"speed", "acceleration", "jerk", "reversal", "stroke"}
     assert found.cut_length_binding in {"speed", "acceleration", "jerk", "reversal", "stroke", "sync_zone"}
 
@@ -67,7 +68,7 @@ def test_an_edge_works_and_a_step_beyond_does_not(machine: Machine, cut: Cut, li
 @pytest.mark.parametrize("speed", [40 / 60, 80 / 60, 120 / 60])
 def test_shortest_cut_of_a_knife_against_ruckig(speed: float) -> None:
     machine, cut, limits = KNIFE
-    length = min_cut_length(machine, replace(cut, line_speed=speed), limits)
+    length = min_cut_length(Task(machine, replace(cut, line_speed=speed), limits))
     assert length is not None
     time = ruckig_time(machine.pitch - cut.sync_zone, speed, limits, backwards=False)
     assert length == pytest.approx(cut.sync_zone + speed * time, rel=1e-6)
@@ -76,7 +77,7 @@ def test_shortest_cut_of_a_knife_against_ruckig(speed: float) -> None:
 @pytest.mark.parametrize("speed", [0.6, 1.0, 1.4])
 def test_shortest_cut_of_a_carriage_against_ruckig(speed: float) -> None:
     machine, cut, limits = CARRIAGE
-    length = min_cut_length(machine, replace(cut, line_speed=speed), limits)
+    length = min_cut_length(Task(machine, replace(cut, line_speed=speed), limits))
     assert length is not None
     assert length == pytest.approx(
         cut.sync_zone + speed * ruckig_time(-cut.sync_zone, speed, limits, backwards=True), rel=1e-6
@@ -85,14 +86,14 @@ def test_shortest_cut_of_a_carriage_against_ruckig(speed: float) -> None:
 
 def test_margin_is_one_at_an_edge() -> None:
     machine, cut, limits = THICK
-    speed = max_line_speed(machine, cut, limits)
+    speed = max_line_speed(Task(machine, cut, limits))
     assert speed is not None
-    assert margin(machine, replace(cut, line_speed=speed), limits) == pytest.approx(1.0, abs=1e-6)
+    assert margin(Task(machine, replace(cut, line_speed=speed), limits)) == pytest.approx(1.0, abs=1e-6)
 
 
 def test_quintic_speed_is_where_its_own_extrema_meet_a_limit() -> None:
     machine, cut, limits = KNIFE
-    speed = quintic_speed(machine, cut, limits)
+    speed = quintic_speed(Task(machine, cut, limits))
     assert speed is not None
     cycle = assemble(quintic_return(cut.return_zone, machine.pitch - cut.sync_zone), machine, cut)
     shares = [
@@ -105,7 +106,7 @@ def test_quintic_speed_is_where_its_own_extrema_meet_a_limit() -> None:
 
 def test_linear_speed_is_equation_8() -> None:
     machine, cut, limits = KNIFE
-    speed = linear_speed(machine, cut, limits)
+    speed = linear_speed(Task(machine, cut, limits))
     assert speed is not None
     assert (machine.pitch - cut.sync_zone) / limits.speed == pytest.approx(cut.return_zone / speed, rel=1e-12)
 
@@ -114,7 +115,7 @@ def test_linear_speed_is_equation_8() -> None:
 def test_the_optimised_region_contains_the_quintic(machine: Machine, cut: Cut, limits: Limits) -> None:
     lengths = np.linspace(max(1.1 * cut.sync_zone, 0.4 * cut.length), 2.0 * cut.length, 4).tolist()
     speeds = (np.linspace(0.3, 2.0, 4) * cut.line_speed).tolist()
-    found = envelope(machine, cut, limits, "peak_acceleration", lengths, speeds)
+    found = envelope(Task(machine, cut, limits), "peak_acceleration", lengths, speeds)
     assert len(found.points) == 16
     assert any(point.optimised for point in found.points)
     for point in found.points:
@@ -129,4 +130,4 @@ def test_an_envelope_that_begins_inside_the_sync_zone_is_refused() -> None:
     with pytest.raises(
         InputError, match=r"cut length of 100 mm: it must be above the sync zone, \[cut\] sync_zone = 100 mm"
     ):
-        envelope(machine, cut, limits, "peak_acceleration", [0.1, 0.2], [1.0])
+        envelope(Task(machine, cut, limits), "peak_acceleration", [0.1, 0.2], [1.0])

@@ -16,6 +16,7 @@ from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InfeasibleError, Suggestion
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import RotaryKnife
+from camwright.profiles.task import Task
 
 KNIFE = RotaryKnife(0.4)
 CUT = Cut(0.3, 1.0, 0.1, 0.0, 0.0, 1e-4)  # 0.3 m of knife in 0.2 s: 0.1 m over the line
@@ -24,7 +25,7 @@ LIMITS = Limits(2.5, 30.0, 3000.0)
 
 def refusal(machine: RotaryKnife, cut: Cut, limits: Limits) -> InfeasibleError:
     with pytest.raises(InfeasibleError) as raised:
-        require_feasible(machine, cut, limits)
+        require_feasible(Task(machine, cut, limits))
     assert raised.value.exit_code == 3
     return raised.value
 
@@ -44,7 +45,7 @@ def test_feasible_is_what_the_reach_allows(
     reach = greatest_reach(cut.return_zone, max(room, 1e-300), limits.acceleration, limits.jerk)
     if abs(reach / max(distance, 1e-300) - 1) < 1e-9:
         return
-    assert is_feasible(KNIFE, cut, limits) == (reach >= distance)
+    assert is_feasible(Task(KNIFE, cut, limits)) == (reach >= distance)
 
 
 @pytest.mark.parametrize(
@@ -64,8 +65,8 @@ def test_the_binding_limit_is_named_with_what_is_missing(limits: Limits, binding
     least = getattr(limits, binding) + error.excess / factor
     if needed is not None:
         assert least == pytest.approx(needed, rel=1e-9)
-    assert is_feasible(KNIFE, CUT, replace(limits, **{binding: least * (1 + 1e-9)}))
-    assert not is_feasible(KNIFE, CUT, replace(limits, **{binding: least * (1 - 1e-6)}))
+    assert is_feasible(Task(KNIFE, CUT, replace(limits, **{binding: least * (1 + 1e-9)})))
+    assert not is_feasible(Task(KNIFE, CUT, replace(limits, **{binding: least * (1 - 1e-6)})))
     assert f"[limits] {binding} binds" in str(error)
     assert error.unit in str(error)
     assert "[cut] length 300 mm at [cut] line_speed 60 m/min, sync zone 100 mm" in str(error)
@@ -78,13 +79,13 @@ def test_the_refusal_offers_changes_that_work_and_are_the_nearest() -> None:
     assert {"line_speed", "length", "speed"} <= set(offers)
     slower = offers["line_speed"]
     assert slower.unit == "m/min"
-    assert is_feasible(KNIFE, replace(CUT, line_speed=slower.value / 60), limits)
-    assert not is_feasible(KNIFE, replace(CUT, line_speed=1.002 * slower.value / 60), limits)
+    assert is_feasible(Task(KNIFE, replace(CUT, line_speed=slower.value / 60), limits))
+    assert not is_feasible(Task(KNIFE, replace(CUT, line_speed=1.002 * slower.value / 60), limits))
     longer = offers["length"]
     assert longer.unit == "mm"
     assert 300 < longer.value < 400
-    assert is_feasible(KNIFE, replace(CUT, length=longer.value / 1e3), limits)
-    assert not is_feasible(KNIFE, replace(CUT, length=0.998 * longer.value / 1e3), limits)
+    assert is_feasible(Task(KNIFE, replace(CUT, length=longer.value / 1e3), limits))
+    assert not is_feasible(Task(KNIFE, replace(CUT, length=0.998 * longer.value / 1e3), limits))
     for suggestion in error.suggestions:
         if suggestion.change != "reversal":
             assert f'"{suggestion.value:.15g} {suggestion.unit}"' in str(error)
@@ -93,19 +94,19 @@ def test_the_refusal_offers_changes_that_work_and_are_the_nearest() -> None:
 def test_a_cut_so_long_that_the_knife_would_run_backwards() -> None:
     cut = replace(CUT, length=2.4, sync_zone=0.3)
     for limits in (Limits(2.0, 30.0, 300.0), Limits(2.0, 3.6, 30.0)):
-        if is_feasible(KNIFE, cut, limits):
+        if is_feasible(Task(KNIFE, cut, limits)):
             continue
         error = refusal(KNIFE, cut, limits)
         for suggestion in error.suggestions:
             if suggestion == Suggestion("reversal", 1.0, ""):
-                assert is_feasible(KNIFE, cut, replace(limits, reversal=True))
+                assert is_feasible(Task(KNIFE, cut, replace(limits, reversal=True)))
 
 
 def test_reversal_is_offered_where_it_alone_works() -> None:
     """Standing still is not enough: 1.6 m behind the line in 1.7 s, with ramps that need their time."""
     cut, limits = replace(CUT, length=2.0, sync_zone=0.3), Limits(2.0, 8.0, 60.0)
-    assert not is_feasible(KNIFE, cut, limits)
-    assert is_feasible(KNIFE, cut, replace(limits, reversal=True))
+    assert not is_feasible(Task(KNIFE, cut, limits))
+    assert is_feasible(Task(KNIFE, cut, replace(limits, reversal=True)))
     error = refusal(KNIFE, cut, limits)
     assert Suggestion("reversal", 1.0, "") in error.suggestions
     assert "[limits] reversal = true" in str(error)

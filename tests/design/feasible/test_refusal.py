@@ -24,6 +24,7 @@ from camwright.profiles.machines import (
     RotaryKnife,
 )
 from camwright.profiles.motor import MotorCurve
+from camwright.profiles.task import Task
 
 CARRIAGE = LinearCarriage(1.0, mass=50.0, travel_per_turn=0.02)
 SAW = Cut(1.5, 1.0, 0.3, 0.1, 0.2, 1e-4)
@@ -35,7 +36,7 @@ RPM = 0.10471975511965977
 
 def offers(machine: Machine, cut: Cut, limits: Limits) -> tuple[InfeasibleError, dict[str, Suggestion]]:
     with pytest.raises(InfeasibleError) as raised:
-        require_feasible(machine, cut, limits)
+        require_feasible(Task(machine, cut, limits))
     return raised.value, {suggestion.change: suggestion for suggestion in raised.value.suggestions}
 
 
@@ -45,17 +46,18 @@ def test_a_stroke_that_is_too_short_is_named_with_the_one_that_is_needed() -> No
     assert (error.binding, error.unit) == ("stroke", "mm")
     assert error.excess is not None
     needed = 0.38 + error.excess / 1e3
-    assert is_feasible(replace(short, stroke=needed * (1 + 1e-9)), SAW, limits)
-    assert not is_feasible(replace(short, stroke=needed * (1 - 1e-9)), SAW, limits)
+    assert is_feasible(Task(replace(short, stroke=needed * (1 + 1e-9)), SAW, limits))
+    assert not is_feasible(Task(replace(short, stroke=needed * (1 - 1e-9)), SAW, limits))
     assert "[machine] stroke binds" in str(error)
     assert found["stroke"].value == pytest.approx(needed * 1e3, rel=2.1e-3)
     assert found["stroke"].value > needed * 1e3
     assert (
-        solve(replace(short, stroke=found["stroke"].value / 1e3), SAW, limits, "rms_acceleration").profile is not None
+        solve(Task(replace(short, stroke=found["stroke"].value / 1e3), SAW, limits), "rms_acceleration").profile
+        is not None
     )
     slower = found["line_speed"].value / 60
-    assert is_feasible(short, replace(SAW, line_speed=slower), limits)
-    assert not is_feasible(short, replace(SAW, line_speed=slower * 1.003), limits)
+    assert is_feasible(Task(short, replace(SAW, line_speed=slower), limits))
+    assert not is_feasible(Task(short, replace(SAW, line_speed=slower * 1.003), limits))
 
 
 @pytest.mark.parametrize(
@@ -70,24 +72,24 @@ def test_a_stroke_that_is_too_short_is_named_with_the_one_that_is_needed() -> No
 def test_each_limit_offered_is_the_least_that_works(machine: Machine, cut: Cut, limits: Limits, binding: str) -> None:
     error, found = offers(machine, cut, limits)
     assert error.binding == binding
-    need = needed_limits(machine, cut, limits)
+    need = needed_limits(Task(machine, cut, limits))
     for name in ("speed", "acceleration", "jerk"):
         if name not in found:
             continue
         factor = RPM if found[name].unit == "rpm" else 1 / 60 if found[name].unit == "m/min" else 1.0
         value = found[name].value * factor
         assert need[name] <= value <= need[name] * 1.003
-        assert is_feasible(machine, cut, replace(limits, **{name: value}))
-        assert not is_feasible(machine, cut, replace(limits, **{name: need[name] * (1 - 1e-6)}))
+        assert is_feasible(Task(machine, cut, replace(limits, **{name: value})))
+        assert not is_feasible(Task(machine, cut, replace(limits, **{name: need[name] * (1 - 1e-6)})))
     assert binding in found
     assert {"line_speed", "length"} <= set(found)
     for change, applied in (("line_speed", found["line_speed"].value / 60), ("length", found["length"].value / 1e3)):
-        solution = solve(machine, replace(cut, **{change: applied}), limits, "peak_jerk")
+        solution = solve(Task(machine, replace(cut, **{change: applied}), limits), "peak_jerk")
         assert solution.profile.pieces > 0
 
 
 def test_no_ways_out_are_looked_for_if_none_are_asked_for() -> None:
-    error = infeasible(CARRIAGE, SAW, Limits(2.0, 4.0, 300.0), suggest=False)
+    error = infeasible(Task(CARRIAGE, SAW, Limits(2.0, 4.0, 300.0)), suggest=False)
     assert error.suggestions == ()
     assert "What works" not in str(error)
     assert error.binding == "acceleration"
@@ -96,7 +98,7 @@ def test_no_ways_out_are_looked_for_if_none_are_asked_for() -> None:
 def test_a_motor_that_is_too_weak_says_how_much_torque_is_needed() -> None:
     limits = Limits(30.0, 200.0, 20000.0, motor=MotorCurve(((0.0, 1.5), (100.0, 1.5), (150.0, 0.8))))
     with pytest.raises(InfeasibleError, match=r"\[limits\] motor binds, .* % more torque is needed") as raised:
-        solve(CRANK, SHEAR, limits, "rms_torque")
+        solve(Task(CRANK, SHEAR, limits), "rms_torque")
     assert (raised.value.binding, raised.value.unit) == ("motor", "%")
     found = {suggestion.change: suggestion for suggestion in raised.value.suggestions}
     share = found["motor"].value / 100
@@ -105,7 +107,7 @@ def test_a_motor_that_is_too_weak_says_how_much_torque_is_needed() -> None:
     assert f"[limits] motor with {found['motor'].value:.15g} % of its torque" in str(raised.value)
     assert limits.motor is not None
     stronger = MotorCurve(tuple((speed, torque * share) for speed, torque in limits.motor.points))
-    assert solve(CRANK, SHEAR, replace(limits, motor=stronger), "rms_torque").objective > 0
+    assert solve(Task(CRANK, SHEAR, replace(limits, motor=stronger)), "rms_torque").objective > 0
 
 
 def test_the_least_factor_is_found_on_either_side_of_one() -> None:

@@ -16,6 +16,7 @@ from camwright.profiles.cut import Cut
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import LinearCarriage
 from camwright.profiles.polynomial.profile import FloatArray
+from camwright.profiles.task import Task
 from camwright.validation.bounds.optimality import lower_bound
 
 SAW = LinearCarriage(stroke=1.2, home=0.0)
@@ -29,19 +30,19 @@ V = CUT.line_speed
 
 
 def scaled(cut: Cut, limits: Limits, objective: Objective = "peak_acceleration") -> ScaledProblem:
-    problem = return_problem(SAW, cut, limits, objective)
+    problem = return_problem(Task(SAW, cut, limits), objective)
     return scale_problem(problem, motion_scale(problem))
 
 
 def test_the_least_jerk_is_that_of_turning_round_in_the_room_there_is() -> None:
     # from line speed to standstill with jerk j alone: t = sqrt(2 v / j), v t 2 / 3 of way, so that j = 8 v³ / (9 way²)
-    solution = solve(SAW, CUT, LOOSE, "peak_jerk")
+    solution = solve(Task(SAW, CUT, LOOSE), "peak_jerk")
     assert solution.objective == pytest.approx(8 * V**3 / (9 * ROOM**2), rel=1e-9)
     assert solution.status.name == "OPTIMAL"
 
 
 def test_the_least_acceleration_is_that_of_braking_in_the_room_there_is() -> None:
-    solution = solve(SAW, CUT, LOOSE, "peak_acceleration")
+    solution = solve(Task(SAW, CUT, LOOSE), "peak_acceleration")
     assert solution.objective == pytest.approx(V**2 / (2 * ROOM), rel=1e-3)
     assert solution.objective >= V**2 / (2 * ROOM)  # and never less: the jerk is limited
     place = solution.back.extrema(0)
@@ -110,7 +111,7 @@ def test_a_slower_line_asks_for_no_more_of_a_mean_square(objective: Objective) -
     for speed in (1.5, 0.8, 0.33):
         cut = replace(CUT, length=6.0, line_speed=speed)
         order = 2 if objective == "rms_acceleration" else 3
-        values.append(solve(SAW, cut, LIMITS, objective).objective / speed**order)
+        values.append(solve(Task(SAW, cut, LIMITS), objective).objective / speed**order)
     assert values[1] <= values[0] * (1 + 3e-3)
     assert values[2] <= values[1] * (1 + 3e-3)
 
@@ -130,7 +131,7 @@ def test_a_way_back_without_a_forward_part_is_no_way_to_a_lower_peak() -> None:
     saw = LinearCarriage(0.17309405007867273)
     cut = Cut(0.704980846682741, 1.1821578129602466, 0.01793840619453351, 0.0035876812389, 0.01435072495563, 1e-3)
     limits = Limits(1.5628178544773472, 65.94676435257745, 1340.5896721788567)
-    found = solve(saw, cut, limits, "peak_jerk")
+    found = solve(Task(saw, cut, limits), "peak_jerk")
     bound = lower_bound(found.profile, saw, cut, limits, "peak_jerk")
     assert found.status.name == "OPTIMAL"
     assert bound.value <= found.objective <= 1.01 * bound.value

@@ -10,6 +10,7 @@ import pytest
 from camwright.design.servo_aware.axis_response import Axis
 from camwright.design.servo_aware.command_basis import Command, command_basis
 from camwright.profiles.cut import Cut
+from camwright.profiles.limits import Limits
 from camwright.profiles.machines import (
     CrankSlider,
     LinearCarriage,
@@ -18,11 +19,13 @@ from camwright.profiles.machines import (
 )
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.servo import Servo
+from camwright.profiles.task import Task
 from camwright.validation.servo.response import shear_zone_error
 from camwright.validation.servo.simulation import simulate
 
 PAPER = Servo(120.0, 0.7, 35.0, 0.004, 1.0)
 LATE = replace(PAPER, velocity_feedforward=0.9, dead_time=0.0037, lead_time=0.0021)
+FREE = Limits(float("inf"), float("inf"), float("inf"))  # nothing here asks for limits
 CUT = Cut(0.6, 80 / 60, 0.2, 0.04, 0.13, 1e-4)
 MACHINES: dict[str, tuple[Machine, Cut]] = {
     "tangential": (RotaryKnife(0.4), CUT),
@@ -37,7 +40,7 @@ SERVOS = pytest.mark.parametrize("servo", [PAPER, LATE], ids=["paper", "late"])
 
 def some_command(machine: Machine, cut: Cut, command: Command) -> CamProfile:
     """Return a command near the motion of even speed, bent at random."""
-    basis = command_basis(machine, cut, command)
+    basis = command_basis(Task(machine, cut, FREE), command)
     travel = machine.pitch or cut.sync_zone
     return basis.profile(np.random.default_rng(4).normal(0.0, 0.01 * travel, size=(basis.matrix.shape[1],)))
 
@@ -57,7 +60,7 @@ def test_errors_in_the_shear_zone_are_those_of_the_simulation(name: str, command
     machine, cut = MACHINES[name]
     cut = replace(cut, shaped=command == "shaped")
     profile = some_command(machine, cut, command)
-    places, times, errors = Axis(machine, cut, servo).zone_errors(profile)
+    places, times, errors = Axis(Task(machine, cut, FREE), servo).zone_errors(profile)
     found = np.abs(errors).max()
     assert found > 1e-4
     for origin in ("return", "cut"):
@@ -78,7 +81,7 @@ def test_the_grid_is_the_simulation_point_by_point(name: str, command: Command) 
     machine, cut = MACHINES[name]
     cut = replace(cut, shaped=command == "shaped")
     profile = some_command(machine, cut, command)
-    axis = Axis(machine, cut, LATE)
+    axis = Axis(Task(machine, cut, FREE), LATE)
     run = simulate(profile, cut, LATE)
     grid = axis.on_grid(profile, 0, 400)
     slopes = axis.on_grid(profile, 0, 400, 1)
@@ -100,8 +103,8 @@ def test_the_grid_is_the_simulation_point_by_point(name: str, command: Command) 
 @pytest.mark.parametrize("order", [0, 1, 2])
 def test_rows_are_the_response(name: str, command: Command, order: int) -> None:
     machine, cut = MACHINES[name]
-    basis = command_basis(machine, cut, command)
-    axis = Axis(machine, cut, LATE)
+    basis = command_basis(Task(machine, cut, FREE), command)
+    axis = Axis(Task(machine, cut, FREE), LATE)
     unknowns = np.random.default_rng(5).normal(0.0, 0.1, size=(basis.matrix.shape[1],))
     response = axis.on_grid(basis.profile(unknowns), 0, 60, order)
     steps = np.tile(np.arange(60.0), 8)
@@ -116,7 +119,7 @@ def test_rows_are_the_response(name: str, command: Command, order: int) -> None:
 @EVERY
 def test_the_band_is_where_the_tool_leaves_the_tolerance(name: str) -> None:
     machine, cut = MACHINES[name]
-    axis = Axis(machine, cut, PAPER)
+    axis = Axis(Task(machine, cut, FREE), PAPER)
     places = np.linspace(*axis.shear_zone, 9)
     low, high = axis.band(places, 3e-4)
     coordinate = axis.ideal(places)[2]
@@ -129,7 +132,7 @@ def test_the_band_is_where_the_tool_leaves_the_tolerance(name: str) -> None:
 @EVERY
 def test_the_ideal_axis_ends_a_cycle_where_the_next_begins(name: str) -> None:
     machine, cut = MACHINES[name]
-    axis = Axis(machine, cut, PAPER)
+    axis = Axis(Task(machine, cut, FREE), PAPER)
     travel, ratio, coordinate = axis.ideal(np.array([cut.return_zone, cut.length]))
     assert travel[1] == pytest.approx(machine.pitch, abs=1e-14)
     sync = machine.sync_profile(cut)
@@ -143,7 +146,7 @@ def test_a_shear_zone_between_two_steps_of_the_grid_is_seen_at_its_ends() -> Non
     machine, cut = MACHINES["tangential"]
     step = PAPER.sample_time * cut.line_speed / 16
     cut = replace(cut, shear_zone=0.2 * step, shear_zone_at=0.13)
-    axis = Axis(machine, cut, PAPER)
+    axis = Axis(Task(machine, cut, FREE), PAPER)
     profile = some_command(machine, cut, "shaped")
     places, times, errors = axis.zone_errors(profile)
     assert len(errors) >= 32

@@ -23,6 +23,7 @@ from camwright.profiles.machines import (
 )
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.servo import Servo
+from camwright.profiles.task import Task
 from camwright.validation.motor import measure_motor
 from camwright.validation.report import validate
 
@@ -43,10 +44,10 @@ def at_the_motor(machine: Machine, cut: Cut, profile: CamProfile, cost: TorqueCo
 @pytest.mark.parametrize(("machine", "cut"), [(CRANK, CUT), (SAW, SAW_CUT)], ids=["crank", "carriage"])
 def test_the_root_mean_square_is_that_of_the_validation(machine: Machine, cut: Cut, command: Command) -> None:
     cut = replace(cut, shaped=command == "shaped")
-    basis = command_basis(machine, cut, command)
+    basis = command_basis(Task(machine, cut, LIMITS), command)
     travel = machine.pitch or cut.sync_zone
     unknowns = np.random.default_rng(2).normal(0.0, 0.002, size=(basis.matrix.shape[1],))
-    found = AxisTorque(machine, cut, basis, travel).value(unknowns, "rms_torque") / machine.motor_ratio
+    found = AxisTorque(Task(machine, cut, LIMITS), basis, travel).value(unknowns, "rms_torque") / machine.motor_ratio
     profile = basis.profile(unknowns * travel)
     whole = at_the_motor(machine, cut, profile, "rms_torque")
     if command == "shaped":
@@ -58,8 +59,10 @@ def test_the_root_mean_square_is_that_of_the_validation(machine: Machine, cut: C
 @pytest.mark.parametrize("cost", COSTS)
 def test_a_shaped_design_needs_less_than_designs_for_the_motion(cost: TorqueCost) -> None:
     cut = replace(CUT, shaped=True)
-    found = solve_axis(CRANK, cut, LIMITS, cost, "shaped", (STIFF,))
-    others = [solve_axis(CRANK, cut, LIMITS, name, "shaped", (STIFF,)) for name in ("rms_acceleration", "rms_jerk")]
+    found = solve_axis(Task(CRANK, cut, LIMITS), cost, "shaped", (STIFF,))
+    others = [
+        solve_axis(Task(CRANK, cut, LIMITS), name, "shaped", (STIFF,)) for name in ("rms_acceleration", "rms_jerk")
+    ]
     least = at_the_motor(CRANK, cut, found.profile, cost)
     assert all(least <= at_the_motor(CRANK, cut, other.profile, cost) for other in others)
     # the constraints are convex, so a mix of two commands that keep them keeps them too: towards no other command does it fall
@@ -90,8 +93,8 @@ def test_a_shaped_design_needs_less_than_designs_for_the_motion(cost: TorqueCost
 def test_in_sync_the_blind_optimum_is_kept_where_it_will_do(cost: TorqueCost) -> None:
     cut, slow = replace(CUT, sync_tolerance=1e-3), replace(CUT, sync_tolerance=1e-3, line_speed=0.3)
     for each in (cut, slow):
-        blind = solve(CRANK, each, LIMITS, cost)
-        found = solve_axis(CRANK, each, LIMITS, cost, "in_sync", (STIFF,))
+        blind = solve(Task(CRANK, each, LIMITS), cost)
+        found = solve_axis(Task(CRANK, each, LIMITS), cost, "in_sync", (STIFF,))
         assert found.axis is not None
         assert found.axis.error <= each.sync_tolerance
         before = at_the_motor(CRANK, each, blind.profile, cost)
@@ -102,15 +105,15 @@ def test_in_sync_the_blind_optimum_is_kept_where_it_will_do(cost: TorqueCost) ->
 def test_a_knife_with_friction_is_designed_for_its_torque(cost: TorqueCost) -> None:
     knife = RotaryKnife(0.4, drum_inertia=0.02, drum_friction=2.0, gear_ratio=3.0)
     cut, limits = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4, shaped=True), Limits(200 / 60, 100.0, 20_000.0)
-    torque = solve_axis(knife, cut, limits, cost, "shaped", (STIFF,))
-    motion = solve_axis(knife, cut, limits, "peak_acceleration", "shaped", (STIFF,))
+    torque = solve_axis(Task(knife, cut, limits), cost, "shaped", (STIFF,))
+    motion = solve_axis(Task(knife, cut, limits), "peak_acceleration", "shaped", (STIFF,))
     values = [at_the_motor(knife, cut, each.profile, cost) for each in (torque, motion)]
     assert values[0] <= values[1] * (1 + 1e-3)
 
 
 def test_a_start_far_from_any_answer_ends_in_an_error_that_says_what_to_do(monkeypatch: pytest.MonkeyPatch) -> None:
     cut = replace(CUT, shaped=True)
-    programme = AxisProgramme(AxisProblem(CRANK, cut, LIMITS, "shaped", (STIFF,), axis_limits=False))
+    programme = AxisProgramme(AxisProblem(Task(CRANK, cut, LIMITS), "shaped", (STIFF,), axis_limits=False))
     monkeypatch.setattr(
         "camwright.design.servo_aware.torque._OPTIONS",
         {"ipopt.max_iter": 1, "print_time": False, "ipopt.print_level": 0},
@@ -122,11 +125,11 @@ def test_a_start_far_from_any_answer_ends_in_an_error_that_says_what_to_do(monke
 def test_what_stands_at_even_speed_needs_no_torque() -> None:
     knife = RotaryKnife(0.4, drum_inertia=0.02)
     cut = Cut(0.4, 1.0, 0.1, 0.04, 0.06, 1e-4, shaped=True)
-    found = solve_axis(knife, cut, Limits(3.0, 100.0, 20_000.0), "energy", "shaped", (STIFF,))
+    found = solve_axis(Task(knife, cut, Limits(3.0, 100.0, 20_000.0)), "energy", "shaped", (STIFF,))
     assert abs(at_the_motor(knife, cut, found.profile, "energy")) < 1e-9
 
 
 def test_a_machine_that_moves_nothing_has_no_torque() -> None:
     cut = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4, shaped=True)
     with pytest.raises(InputError, match="'energy' needs to know what the motor moves"):
-        solve_axis(RotaryKnife(0.4), cut, Limits(3.0, 100.0, 20_000.0), "energy", "shaped", (STIFF,))
+        solve_axis(Task(RotaryKnife(0.4), cut, Limits(3.0, 100.0, 20_000.0)), "energy", "shaped", (STIFF,))

@@ -27,7 +27,9 @@ from camwright.profiles.machines import (
     RotaryKnife,
 )
 from camwright.profiles.polynomial.profile import FloatArray
+from camwright.profiles.task import Task
 
+FREE = Limits(float("inf"), float("inf"), float("inf"))  # nothing here asks for limits
 CUT = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4)
 MACHINES: dict[str, tuple[Machine, Cut]] = {
     "knife": (RotaryKnife(0.4), CUT),
@@ -62,7 +64,7 @@ def test_pieces_are_scipys_b_splines(widths: list[float]) -> None:
 @BOTH
 def test_the_profile_is_one_cycle_with_a_continuous_second_derivative(name: str, command: Command) -> None:
     machine, cut = MACHINES[name]
-    basis = command_basis(machine, cut, command)
+    basis = command_basis(Task(machine, cut, FREE), command)
     profile = basis.profile(any_unknowns(basis.matrix.shape[1]) * 0.01)
     assert (profile.start, profile.end) == (0.0, cut.length)
     assert profile.advance == pytest.approx(machine.pitch, abs=1e-12)
@@ -78,7 +80,7 @@ def test_the_profile_is_one_cycle_with_a_continuous_second_derivative(name: str,
 @EVERY
 def test_an_in_sync_command_is_the_machine_in_its_sync_zone(name: str) -> None:
     machine, cut = MACHINES[name]
-    basis = command_basis(machine, cut, "in_sync")
+    basis = command_basis(Task(machine, cut, FREE), "in_sync")
     profile = basis.profile(any_unknowns(basis.matrix.shape[1]))
     sync = machine.sync_profile(cut)
     at = np.linspace(sync.start, sync.end, 50)[:-1]
@@ -91,7 +93,7 @@ def test_an_in_sync_command_is_the_machine_in_its_sync_zone(name: str) -> None:
 @BOTH
 def test_coefficients_of_the_derivatives_are_their_hull(name: str, command: Command) -> None:
     machine, cut = MACHINES[name]
-    basis = command_basis(machine, cut, command)
+    basis = command_basis(Task(machine, cut, FREE), command)
     unknowns = any_unknowns(basis.matrix.shape[1])
     profile = basis.profile(unknowns).restrict(0.0, float(basis.nodes[-1]))
     nodes = basis.nodes
@@ -113,7 +115,7 @@ def test_coefficients_of_the_derivatives_are_their_hull(name: str, command: Comm
 @BOTH
 def test_rows_are_weighted_sums_of_the_profile(name: str, command: Command) -> None:
     machine, cut = MACHINES[name]
-    basis = command_basis(machine, cut, command)
+    basis = command_basis(Task(machine, cut, FREE), command)
     unknowns = any_unknowns(basis.matrix.shape[1])
     generator = np.random.default_rng(2)
     places = generator.uniform(-3 * cut.length, 2 * cut.length, (30, 9))
@@ -127,8 +129,8 @@ def test_rows_are_weighted_sums_of_the_profile(name: str, command: Command) -> N
 
 def test_the_arcs_of_a_structure_become_nodes_and_its_return_is_among_the_commands() -> None:
     machine = RotaryKnife(0.4)
-    back = solve(machine, CUT, Limits(200 / 60, 30.0, 3000.0), "peak_acceleration").back
-    basis = command_basis(machine, CUT, "in_sync", back)
+    back = solve(Task(machine, CUT, Limits(200 / 60, 30.0, 3000.0)), "peak_acceleration").back
+    basis = command_basis(Task(machine, CUT, FREE), "in_sync", back)
     assert all(np.abs(basis.nodes - place).min() <= 1e-12 for place in back.breaks)
     assert abs(len(basis.nodes) - 1 - INTERVALS["in_sync"]) <= back.pieces
     at = np.linspace(0.0, back.end, 300)
@@ -140,10 +142,10 @@ def test_the_arcs_of_a_structure_become_nodes_and_its_return_is_among_the_comman
 
 def test_arcs_of_next_to_no_length_get_no_node() -> None:
     machine = RotaryKnife(0.4)
-    back = solve(machine, CUT, Limits(200 / 60, 30.0, 3000.0), "peak_acceleration").back
+    back = solve(Task(machine, CUT, Limits(200 / 60, 30.0, 3000.0)), "peak_acceleration").back
     sliver = back.breaks.copy()
     sliver[1] = 1e-9
-    basis = command_basis(machine, CUT, "in_sync", replace(back, breaks=sliver))
+    basis = command_basis(Task(machine, CUT, FREE), "in_sync", replace(back, breaks=sliver))
     assert np.diff(basis.nodes).min() > 0.1 * back.end / INTERVALS["in_sync"]
     assert math.isclose(float(basis.nodes[-1]), CUT.return_zone, rel_tol=1e-15)
 
@@ -151,7 +153,7 @@ def test_arcs_of_next_to_no_length_get_no_node() -> None:
 @EVERY
 def test_without_more_a_shaped_command_is_a_motion_of_even_speed(name: str) -> None:
     machine, cut = MACHINES[name]
-    basis = command_basis(machine, cut, "shaped")
+    basis = command_basis(Task(machine, cut, FREE), "shaped")
     profile = basis.profile(np.zeros(basis.matrix.shape[1]))
     at = np.linspace(0.0, cut.length, 50)
     assert profile(at) == pytest.approx(machine.pitch * at / cut.length, abs=1e-13)
@@ -161,6 +163,6 @@ def test_without_more_a_shaped_command_is_a_motion_of_even_speed(name: str) -> N
 @EVERY
 def test_without_more_a_command_in_sync_returns_along_a_line_but_for_its_ends(name: str) -> None:
     machine, cut = MACHINES[name]
-    basis = command_basis(machine, cut, "in_sync")
+    basis = command_basis(Task(machine, cut, FREE), "in_sync")
     inside = basis.profile(np.zeros(basis.matrix.shape[1]))(basis.nodes[4:-5] + 1e-6, 2)
     assert np.abs(inside).max() <= 1e-6

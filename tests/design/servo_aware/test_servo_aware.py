@@ -35,6 +35,7 @@ from camwright.profiles.machines import (
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.returns import assemble
 from camwright.profiles.servo import Servo
+from camwright.profiles.task import Task
 from camwright.validation.report import validate
 from camwright.validation.servo.response import servo_response
 
@@ -47,12 +48,12 @@ BOTH = pytest.mark.parametrize("command", ["in_sync", "shaped"])
 
 
 def problem(command: Command, *, axis_limits: bool = False) -> AxisProblem:
-    return AxisProblem(KNIFE, CUT, LIMITS, command, (PAPER,), axis_limits)
+    return AxisProblem(Task(KNIFE, CUT, LIMITS), command, (PAPER,), axis_limits)
 
 
 def rows_of_its_own(command: Command, places: int, *, banded: bool) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Rows ``matrix @ z <= high`` made once at evenly spread places and times, and those of the sync error over the tolerance."""
-    basis, axis = command_basis(KNIFE, CUT, command), Axis(KNIFE, CUT, PAPER)
+    basis, axis = command_basis(Task(KNIFE, CUT, LIMITS), command), Axis(Task(KNIFE, CUT, LIMITS), PAPER)
     v = CUT.line_speed
     matrices, highs = [], []
 
@@ -85,7 +86,7 @@ def test_the_least_peak_is_that_of_scipy(command: Command, cost: Cost, order: in
     found = design_axis(problem(command), cost)
     assert found is not None
     matrix, high, _ = rows_of_its_own(command, 9, banded=True)
-    peak, constant = command_basis(KNIFE, CUT, command).differences[order]
+    peak, constant = command_basis(Task(KNIFE, CUT, LIMITS), command).differences[order]
     ones = np.ones((len(peak), 1))
     bounded = np.hstack([matrix, np.zeros((len(matrix), 1))])
     goal = np.zeros(matrix.shape[1] + 1)
@@ -109,7 +110,7 @@ def test_the_least_mean_square_lies_on_its_own_tangent(command: Command, cost: C
     found = AxisProgramme(problem(command)).solve(cost, 1.0)
     assert found is not None
     at = found[0] * KNIFE.pitch
-    basis = command_basis(KNIFE, CUT, command)
+    basis = command_basis(Task(KNIFE, CUT, LIMITS), command)
     matrix, constant = basis.differences[order]
     values, widths = matrix @ at + constant, np.diff(basis.nodes) / basis.nodes[-1]
     if order == 3:
@@ -132,7 +133,7 @@ def test_the_least_sync_error_is_that_of_scipy(command: Command) -> None:
     found = AxisProgramme(problem(command)).solve("sync_error", None)
     assert found is not None
     matrix, high, at = rows_of_its_own(command, 9, banded=False)
-    basis, axis = command_basis(KNIFE, CUT, command), Axis(KNIFE, CUT, PAPER)
+    basis, axis = command_basis(Task(KNIFE, CUT, LIMITS), command), Axis(Task(KNIFE, CUT, LIMITS), PAPER)
     error, constant = axis.rows(basis, at, np.repeat(np.arange(16) * 0.004 / 16, 9))
     error, constant = error / CUT.sync_tolerance, (constant - axis.ideal(at)[0]) / CUT.sync_tolerance
     ones = np.ones((len(error), 1))
@@ -189,7 +190,7 @@ CASES: dict[str, tuple[Machine, Cut, Limits, Servo]] = {
 def test_every_machine_keeps_limits_closure_and_tolerance(name: str, command: Command, objective: Cost) -> None:
     machine, cut, limits, servo = CASES[name]
     cut = replace(cut, shaped=command == "shaped")
-    solution = solve_axis(machine, cut, limits, objective, command, (servo,))
+    solution = solve_axis(Task(machine, cut, limits), objective, command, (servo,))
     profile, axis = solution.profile, solution.axis
     assert axis is not None
     assert profile.advance == pytest.approx(machine.pitch, abs=1e-12)
@@ -206,7 +207,7 @@ def test_every_machine_keeps_limits_closure_and_tolerance(name: str, command: Co
 def test_with_dead_time_and_lead_the_prediction_is_the_simulation(command: Command) -> None:
     servo = replace(PAPER, velocity_feedforward=0.95, dead_time=0.0043, lead_time=0.004)
     cut = replace(CUT, shaped=command == "shaped")
-    solution = solve_axis(KNIFE, cut, LIMITS, "sync_error", command, (servo,))
+    solution = solve_axis(Task(KNIFE, cut, LIMITS), "sync_error", command, (servo,))
     assert solution.axis is not None
     simulated = servo_response(solution.profile, KNIFE, cut, servo).shear_zone_error
     assert solution.axis.error == pytest.approx(simulated, abs=1e-9)
@@ -232,7 +233,7 @@ def test_random_knife_jobs_end_in_a_design_that_holds_or_in_a_way_out(
     cut = Cut(length, v, zone, min(shear, zone), zone - min(shear, zone), tolerance, shaped=command == "shaped")
     servo = replace(PAPER, sample_time=sample)
     try:
-        solution = solve_axis(KNIFE, cut, LIMITS, cost, command, (servo,), suggest=False)
+        solution = solve_axis(Task(KNIFE, cut, LIMITS), cost, command, (servo,), suggest=False)
     except InfeasibleError:
         return
     axis = solution.axis
@@ -269,20 +270,20 @@ def test_a_motion_of_even_speed_is_found_where_it_will_do() -> None:
     even = replace(CUT, length=0.4, shaped=True)  # the cut length is the pitch
     least: dict[Cost, float] = {"peak_acceleration": 1e-6, "peak_jerk": 1e-6, "rms_jerk": 1e-4 * LIMITS.jerk}
     for objective, rounding in least.items():
-        solution = solve_axis(KNIFE, even, LIMITS, objective, "shaped", (PAPER,))
+        solution = solve_axis(Task(KNIFE, even, LIMITS), objective, "shaped", (PAPER,))
         assert solution.objective == pytest.approx(0.0, abs=rounding)
         assert float(solution.profile(0.2, 1)) == pytest.approx(1.0, abs=1e-4)
 
 
 def test_the_limits_of_the_axis_are_given_up_only_for_the_tolerance() -> None:
     tight = replace(CUT, length=0.206, sync_zone=0.1, shear_zone_at=0.06, sync_tolerance=1e-5, shaped=True)
-    given_up = solve_axis(KNIFE, tight, LIMITS, "sync_error", "shaped", (PAPER,)).axis
-    loose = solve_axis(KNIFE, replace(tight, length=0.35), LIMITS, "sync_error", "shaped", (PAPER,)).axis
+    given_up = solve_axis(Task(KNIFE, tight, LIMITS), "sync_error", "shaped", (PAPER,)).axis
+    loose = solve_axis(Task(KNIFE, replace(tight, length=0.35), LIMITS), "sync_error", "shaped", (PAPER,)).axis
     assert given_up is not None
     assert loose is not None
     assert (given_up.axis_limits, loose.axis_limits) == (False, True)
     assert given_up.error < 1e-5
-    held = AxisProgramme(AxisProblem(KNIFE, tight, LIMITS, "shaped", (PAPER,), True))
+    held = AxisProgramme(AxisProblem(Task(KNIFE, tight, LIMITS), "shaped", (PAPER,), True))
     assert not held.reaches()
     assert INTERVALS["shaped"] == len(held.basis.nodes) - 1
 
@@ -291,8 +292,8 @@ LONG = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4)
 
 
 def test_the_blind_optimum_is_taken_where_its_axis_keeps_to_everything() -> None:
-    blind = solve(KNIFE, LONG, LIMITS, "rms_acceleration")
-    solution = solve_axis(KNIFE, LONG, LIMITS, "rms_acceleration", "in_sync", (PAPER,))
+    blind = solve(Task(KNIFE, LONG, LIMITS), "rms_acceleration")
+    solution = solve_axis(Task(KNIFE, LONG, LIMITS), "rms_acceleration", "in_sync", (PAPER,))
     assert solution.axis is not None
     assert solution.axis.programmes == 0
     assert solution.status == blind.status
@@ -304,8 +305,8 @@ def test_the_blind_optimum_is_taken_where_its_axis_keeps_to_everything() -> None
 
 def test_rows_begin_where_the_blind_optimum_fails() -> None:
     # its axis swings back beyond standstill by a little, which it may not: one more programme, no more
-    blind = solve(KNIFE, LONG, LIMITS, "rms_jerk")
-    programme = AxisProgramme(AxisProblem(KNIFE, LONG, LIMITS, "in_sync", (PAPER,), True, blind.back))
+    blind = solve(Task(KNIFE, LONG, LIMITS), "rms_jerk")
+    programme = AxisProgramme(AxisProblem(Task(KNIFE, LONG, LIMITS), "in_sync", (PAPER,), True, blind.back))
     assert not programme.holds(assemble(blind.back, KNIFE, LONG))
     assert AxisProgramme(replace(programme.problem, axis_limits=False)).holds(assemble(blind.back, KNIFE, LONG))
     found = programme.solve("rms_jerk", 1.0)
@@ -316,11 +317,11 @@ def test_rows_begin_where_the_blind_optimum_fails() -> None:
 
 def test_limits_of_a_shaped_command_hold_though_their_rows_come_late() -> None:
     cut = replace(LONG, length=0.38, shaped=True)
-    free = solve_axis(KNIFE, cut, LIMITS, "rms_jerk", "shaped", (PAPER,))
+    free = solve_axis(Task(KNIFE, cut, LIMITS), "rms_jerk", "shaped", (PAPER,))
     reached = free.profile.extrema(1)[1].value * cut.line_speed
     least = cut.line_speed * KNIFE.pitch / cut.length  # at even speed
     tight = replace(LIMITS, speed=0.5 * (reached + least))
-    solution = solve_axis(KNIFE, cut, tight, "rms_jerk", "shaped", (PAPER,))
+    solution = solve_axis(Task(KNIFE, cut, tight), "rms_jerk", "shaped", (PAPER,))
     greatest = solution.profile.extrema(1)[1].value * cut.line_speed
     # the hull of its coefficients keeps the limit, which its peak comes near to
     assert tight.speed * (1 - 5e-3) <= greatest <= tight.speed * (1 + 1e-9)

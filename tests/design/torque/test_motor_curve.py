@@ -18,6 +18,7 @@ from camwright.profiles.machines import CrankSlider, RotaryKnife
 from camwright.profiles.motor import MotorCurve
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import slave_at_start
+from camwright.profiles.task import Task
 
 KNIFE = RotaryKnife(0.4, gear_ratio=3.0, drum_inertia=0.05, drum_friction=0.4)
 CUT = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4)
@@ -73,7 +74,7 @@ def test_every_rectangle_lies_under_the_curve(steps: list[tuple[float, float]], 
 @pytest.mark.parametrize("torque", [20.0, 3.4])
 def test_a_design_keeps_the_curve(objective: str, torque: float) -> None:
     curve = MotorCurve(((0.0, torque), (50.0, torque), (110.0, 0.4 * torque)))
-    solution = solve(KNIFE, CUT, replace(LIMITS, motor=curve), objective)  # type: ignore[arg-type]
+    solution = solve(Task(KNIFE, CUT, replace(LIMITS, motor=curve)), objective)  # type: ignore[arg-type]
     speed, needed = used(solution.profile, KNIFE, CUT)
     assert (np.abs(needed) <= curve.torque(speed) * (1 + 1e-9)).all()
 
@@ -82,25 +83,26 @@ def test_a_crank_keeps_the_curve() -> None:
     crank = CrankSlider(0.15, 0.6, 0.0, 0.5, 20.0, 5.0)
     cut = Cut(0.9, 1.0, 0.1, 0.04, 0.06, 1e-4)
     curve = MotorCurve(((0.0, 12.0), (30.0, 12.0), (80.0, 6.0)))
-    solution = solve(crank, cut, Limits(30.0, 200.0, 20000.0, motor=curve), "peak_acceleration")
+    solution = solve(Task(crank, cut, Limits(30.0, 200.0, 20000.0, motor=curve)), "peak_acceleration")
     speed, needed = used(solution.profile, solution.machine, cut)  # type: ignore[arg-type]
     assert (np.abs(needed) <= curve.torque(speed) * (1 + 1e-9)).all()
 
 
 def test_a_strong_motor_changes_nothing() -> None:
-    plain = solve(KNIFE, CUT, LIMITS, "peak_acceleration")
-    strong = solve(KNIFE, CUT, replace(LIMITS, motor=MotorCurve(((0.0, 1e3), (1e4, 1e3)))), "peak_acceleration")
+    plain = solve(Task(KNIFE, CUT, LIMITS), "peak_acceleration")
+    strong = solve(Task(KNIFE, CUT, replace(LIMITS, motor=MotorCurve(((0.0, 1e3), (1e4, 1e3))))), "peak_acceleration")
     assert strong.objective == pytest.approx(plain.objective, rel=1e-9)
 
 
 def test_a_weak_motor_binds_and_the_suggestion_works() -> None:
     limits = replace(LIMITS, motor=MotorCurve(((0.0, 2.2), (110.0, 2.2))))
     with pytest.raises(InfeasibleError, match=r"\[limits\] motor binds") as caught:
-        solve(KNIFE, CUT, limits, "peak_acceleration")
+        solve(Task(KNIFE, CUT, limits), "peak_acceleration")
     assert caught.value.binding == "motor"
     slower = next(s for s in caught.value.suggestions if s.change == "line_speed")
     assert (
-        solve(KNIFE, replace(CUT, line_speed=slower.value / 60), limits, "peak_acceleration").status.value == "optimal"
+        solve(Task(KNIFE, replace(CUT, line_speed=slower.value / 60), limits), "peak_acceleration").status.value
+        == "optimal"
     )
 
 
@@ -113,34 +115,34 @@ def test_a_crank_keeps_its_motors_curve_where_no_rectangle_does(objective: Objec
     """The curve falls: much torque at low speed, little at the speed of the quick return."""
     limits = Limits(40.0, 400.0, 40000.0, motor=MotorCurve(((0.0, 30.0), (40.0, 20.0), (80.0, 7.0), (150.0, 4.0))))
     cut = replace(SHEAR, length=0.5)
-    assert not any(is_feasible(CRANK, cut, each) for each in motor_limits(CRANK, limits))
-    found = solve(CRANK, cut, limits, objective)
+    assert not any(is_feasible(Task(CRANK, cut, each)) for each in motor_limits(CRANK, limits))
+    found = solve(Task(CRANK, cut, limits), objective)
     speed, torque = used(found.profile, CRANK, cut)
     assert limits.motor is not None
     assert (np.abs(torque) <= limits.motor.torque(speed)).all()
-    assert keeps_curve(found.profile, CRANK, cut, limits.motor)
-    without = solve(CRANK, cut, replace(limits, motor=None), objective)
+    assert keeps_curve(found.profile, Task(CRANK, cut, LIMITS), limits.motor)
+    without = solve(Task(CRANK, cut, replace(limits, motor=None)), objective)
     assert found.objective >= without.objective * (1 - 1e-3)
-    load = least_load(CRANK, cut, limits)
+    load = least_load(Task(CRANK, cut, limits))
     assert load is not None
     assert load.value < 1.0
 
 
 def test_the_least_load_is_below_that_of_every_other_optimum() -> None:
     limits = Limits(40.0, 400.0, 40000.0, motor=MotorCurve(((0.0, 18.0), (80.0, 12.0), (150.0, 4.0))))
-    easiest = least_load(CRANK, SHEAR, limits)
+    easiest = least_load(Task(CRANK, SHEAR, limits))
     assert easiest is not None
     assert limits.motor is not None
     for objective in ("rms_torque", "rms_acceleration"):
-        other = solve(CRANK, SHEAR, replace(limits, motor=None), objective)
-        assert easiest.value <= load(other.profile, CRANK, SHEAR, limits.motor) * (1 + 1e-2)
+        other = solve(Task(CRANK, SHEAR, replace(limits, motor=None)), objective)
+        assert easiest.value <= load(other.profile, Task(CRANK, SHEAR, LIMITS), limits.motor) * (1 + 1e-2)
 
 
 def test_low_speeds_have_rectangles_where_the_torque_grows_with_the_speed() -> None:
     weak = Limits(40.0, 400.0, 40000.0, motor=MotorCurve(((0.0, 3.0), (150.0, 3.0))))
     speeds = [each.speed for each in motor_limits(CRANK, weak)]
     assert min(speeds) == pytest.approx(150.0 / 5.0 / 64)
-    assert is_feasible(CRANK, replace(SHEAR, line_speed=0.02), weak)
+    assert is_feasible(Task(CRANK, replace(SHEAR, line_speed=0.02), weak))
 
 
 def test_a_motor_that_cannot_overcome_friction_leaves_no_limits() -> None:

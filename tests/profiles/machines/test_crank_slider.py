@@ -17,6 +17,7 @@ from camwright.profiles.errors import InputError
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import CrankSlider
 from camwright.profiles.returns import baseline, slave_at_start
+from camwright.profiles.task import Task
 from camwright.validation.motion import sync_ratio_error
 from camwright.validation.motor import measure_motor
 
@@ -134,7 +135,7 @@ def test_cycles_of_both_origins_are_the_same_motion() -> None:
 
 @pytest.mark.parametrize("objective", ["rms_jerk", "rms_torque"])
 def test_the_designed_crank_never_turns_back_and_is_in_sync(objective: str) -> None:
-    found = solve(CRANK, CUT, LIMITS, objective)
+    found = solve(Task(CRANK, CUT, LIMITS), objective)
     assert isinstance(found.machine, CrankSlider)
     least, greatest = CRANK.sync_range(CUT)
     assert least < found.machine.sync_at < greatest

@@ -20,6 +20,7 @@ from camwright.profiles.machines import (
     RotaryKnife,
 )
 from camwright.profiles.returns import baseline
+from camwright.profiles.task import Task
 from camwright.validation.bounds.optimality import OBJECTIVES, lower_bound
 from camwright.validation.motor import measure_motor
 
@@ -32,7 +33,7 @@ KNIFE = RotaryKnife(0.4, gear_ratio=3.0, drum_inertia=0.02)
 @pytest.mark.parametrize("machine", [KNIFE, WIDE], ids=["knife", "carriage"])
 @pytest.mark.parametrize("objective", ["peak_acceleration", "rms_acceleration", "peak_jerk", "rms_jerk"])
 def test_designs_reach_the_bound_with_over_speed(machine: Machine, objective: str) -> None:
-    found = solve(machine, CUT, LIMITS, objective)
+    found = solve(Task(machine, CUT, LIMITS), objective)
     bound = lower_bound(found.profile, machine, CUT, LIMITS, objective)
     assert bound.value <= found.objective * (1 + 1e-9)
     assert bound.value == pytest.approx(found.objective, rel=1e-3)
@@ -40,7 +41,7 @@ def test_designs_reach_the_bound_with_over_speed(machine: Machine, objective: st
 
 def test_a_stroke_leaves_the_bound_below() -> None:
     narrow, limits = replace(WIDE, stroke=0.25), Limits(200 / 60, 200.0, 60_000.0)
-    found = solve(narrow, CUT, limits, "rms_acceleration")
+    found = solve(Task(narrow, CUT, limits), "rms_acceleration")
     bound = lower_bound(found.profile, narrow, CUT, limits, "rms_acceleration")
     assert 0.0 < bound.value < 0.999 * found.objective
 
@@ -50,7 +51,7 @@ def test_a_stroke_leaves_the_bound_below() -> None:
 def test_a_long_cut_is_as_good_as_braking_within_the_stroke_allows(objective: Objective, length: float) -> None:
     saw = LinearCarriage(1.2)
     cut, limits = Cut(length, 0.5, 0.7, 0.4, 0.2, 2e-4), Limits(100 / 60, 6.0, 200.0)
-    found = solve(saw, cut, limits, objective)
+    found = solve(Task(saw, cut, limits), objective)
     bound = lower_bound(found.profile, saw, cut, limits, objective)
     assert bound.value <= found.objective * (1 + 1e-9)
     if length == 7.0:  # there is time to spare: braking is all that counts
@@ -68,7 +69,7 @@ def test_a_wide_stroke_raises_no_bound_above_a_design(
 ) -> None:
     saw, cut = LinearCarriage(stroke), Cut(length, 0.5, zone, 0.2 * zone, 0.8 * zone, 1e-3)
     limits = Limits(100.0, 1e5, 1e8)
-    found = solve(saw, cut, limits, objective)
+    found = solve(Task(saw, cut, limits), objective)
     bound = lower_bound(found.profile, saw, cut, limits, objective)
     assert bound.value <= found.objective * (1 + 1e-9)
     assert bound.value >= 0.9 * found.objective
@@ -77,7 +78,7 @@ def test_a_wide_stroke_raises_no_bound_above_a_design(
 def test_no_room_to_turn_round_in_has_no_bound_below_infinity() -> None:
     # such a job has no design; a cycle of a longer stroke may still be held against it
     saw, cut, limits = LinearCarriage(1.2), Cut(3.0, 0.5, 0.7, 0.4, 0.2, 2e-4), Limits(100 / 60, 6.0, 200.0)
-    found = solve(saw, cut, limits, "peak_acceleration")
+    found = solve(Task(saw, cut, limits), "peak_acceleration")
     assert lower_bound(found.profile, replace(saw, stroke=0.7), cut, limits, "peak_acceleration").value == math.inf
 
 
@@ -97,7 +98,7 @@ def test_no_baseline_has_less_torque_than_the_bound(friction: float, length: flo
 
 @pytest.mark.parametrize("objective", ["rms_torque", "peak_torque"])
 def test_least_torque_without_friction_reaches_the_bound(objective: str) -> None:
-    found = solve(KNIFE, CUT, LIMITS, objective)
+    found = solve(Task(KNIFE, CUT, LIMITS), objective)
     value = getattr(measure_motor(found.profile, KNIFE, CUT), objective)
     assert lower_bound(found.profile, KNIFE, CUT, LIMITS, objective).value == pytest.approx(value, rel=1e-3)
 

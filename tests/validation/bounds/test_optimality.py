@@ -22,6 +22,7 @@ from camwright.profiles.limits import Limits
 from camwright.profiles.machines import RotaryKnife
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import BASELINES, baseline
+from camwright.profiles.task import Task
 from camwright.validation.bounds.optimality import (
     CLOSED_FORM,
     DUAL,
@@ -81,7 +82,7 @@ def test_no_motion_is_below_a_bound(
         reversal,
     )
     try:
-        optimum = solve(KNIFE, cut, limits, objective).profile
+        optimum = solve(Task(KNIFE, cut, limits), objective).profile
     except InputError:
         return
     motions = [profile for name in BASELINES if keeps(profile := baseline(name, KNIFE, cut), cut, limits)]
@@ -104,7 +105,7 @@ def test_no_motion_is_below_a_bound(
     ],
 )
 def test_gap_of_a_design_is_small(objective: Objective, gap: float, limits: Limits) -> None:
-    result = solve(KNIFE, CUT, limits, objective)
+    result = solve(Task(KNIFE, CUT, limits), objective)
     bound = lower_bound(result.profile, KNIFE, CUT, limits, objective)
     assert bound.method in (CLOSED_FORM, SOFTEST, QUINTIC, DUAL)
     assert 0.0 <= 1 - bound.value / result.objective + 1e-9 <= gap
@@ -114,8 +115,8 @@ def test_gap_of_a_design_is_small(objective: Objective, gap: float, limits: Limi
 @pytest.mark.parametrize("objective", ["rms_acceleration", "rms_jerk"])
 def test_bound_does_not_depend_on_the_origin(objective: Objective, origin: str) -> None:
     limits, cut = Limits(1.8, 13.0, 1100.0), replace(CUT, origin=origin)
-    result = solve(KNIFE, cut, limits, objective)
-    expected = lower_bound(solve(KNIFE, CUT, limits, objective).profile, KNIFE, CUT, limits, objective).value
+    result = solve(Task(KNIFE, cut, limits), objective)
+    expected = lower_bound(solve(Task(KNIFE, CUT, limits), objective).profile, KNIFE, CUT, limits, objective).value
     assert lower_bound(result.profile, KNIFE, cut, limits, objective).value == pytest.approx(expected, rel=1e-6)
 
 
@@ -162,7 +163,7 @@ def test_gap_of_the_least_rms_jerk_in_tight_jobs(speed: float, room: float) -> N
         share *= 0.999
     limits = Limits(1 + speed * 0.2, 20 * share * 0.2, 400 * share * 0.2)
     machine, cut = RotaryKnife(1.7), Cut(1.5, 1.0, 0.5, 0.0, 0.0, 1e-4)
-    result = solve(machine, cut, limits, "rms_jerk")
+    result = solve(Task(machine, cut, limits), "rms_jerk")
     bound = lower_bound(result.profile, machine, cut, limits, "rms_jerk")
     assert bound.method == DUAL
     assert bound.value <= result.objective * (1 + 1e-8)

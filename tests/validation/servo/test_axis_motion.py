@@ -10,6 +10,7 @@ import pytest
 from camwright.design.servo_aware.axis_response import Axis
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
+from camwright.profiles.limits import Limits
 from camwright.profiles.machines import (
     CrankSlider,
     LinearCarriage,
@@ -19,6 +20,7 @@ from camwright.profiles.machines import (
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import baseline
 from camwright.profiles.servo import Servo
+from camwright.profiles.task import Task
 from camwright.validation.servo.axis_motion import (
     ALLOWANCE,
     AxisPeaks,
@@ -30,6 +32,7 @@ from camwright.validation.servo.simulation import simulate
 KNIFE = RotaryKnife(0.4)
 PAPER = Servo(120.0, 0.7, 35.0, 0.004, 1.0)
 LATE = replace(PAPER, velocity_feedforward=0.8, dead_time=0.0037, lead_time=0.001)
+FREE = Limits(float("inf"), float("inf"), float("inf"))  # nothing here asks for limits
 CUT = Cut(0.6, 80 / 60, 0.2, 0.04, 0.13, 1e-4)
 MACHINES: dict[str, tuple[Machine, Cut]] = {
     "knife": (KNIFE, CUT),
@@ -46,7 +49,7 @@ def test_the_peaks_are_those_of_the_designs_rows(name: str, servo: Servo) -> Non
     profile = baseline("poly_3_4_5", machine, cut)
     peaks = axis_peaks(profile, cut, servo)
     from_return = profile.roll(cut.return_start) if cut.return_start else profile
-    axis = Axis(machine, replace(cut, origin="return"), servo)
+    axis = Axis(Task(machine, replace(cut, origin="return"), FREE), servo)
     count = round(cut.length / (axis.sample / 16)) + 1
     v = cut.line_speed
     velocity = axis.on_grid(from_return, 0, count, 1) * v
