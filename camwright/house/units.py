@@ -177,7 +177,8 @@ def _exact(text: str, kind: str, zero: bool, signed: bool, example: str) -> Frac
         raise InputError(
             f"{shown(text)}: {'negative' if exact < 0 else 'zero'}; {wanted.name} {least} is expected; {hint}"
         )
-    if not (wanted.least <= abs(exact) <= wanted.greatest):
+    # as decimals: the float 1e-9 is greater than the 1e-9 that a user writes
+    if not Fraction(repr(wanted.least)) <= abs(exact) <= Fraction(repr(wanted.greatest)):
         raise InputError(
             f"{shown(text)}: outside the range of {wanted.name}, "
             f"{wanted.least:g} to {wanted.greatest:g} {wanted.unit}; {hint}"
