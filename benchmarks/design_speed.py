@@ -45,8 +45,9 @@ from random_jobs import Job, random_job
 from camwright.design.feasible.feasibility import is_feasible
 from camwright.design.optimise import solve
 from camwright.design.returns.closed_starts import known_start
-from camwright.design.returns.problem import Objective, return_problem
+from camwright.design.returns.problem import return_problem
 from camwright.design.returns.scaling import ScaledProblem, motion_scale, scale_problem
+from camwright.profiles.objective import MotionObjective
 from camwright.profiles.task import Task
 from camwright.validation.bounds.optimality import QUINTIC, lower_bound
 
@@ -66,7 +67,7 @@ OWN_ACCURACY = 1e-6
 CONFIRMED = 1e-4
 """Largest gap to an independent lower bound where the design itself serves as the exact optimum."""
 
-OBJECTIVES: tuple[Objective, ...] = ("peak_acceleration", "rms_acceleration", "peak_jerk", "rms_jerk")
+OBJECTIVES: tuple[MotionObjective, ...] = ("peak_acceleration", "rms_acceleration", "peak_jerk", "rms_jerk")
 
 PROMISED = {"rockit": 10.0, "cvxpy": 1.0}
 """Least ratios of the medians."""
@@ -172,7 +173,7 @@ def timed(work: Callable[[], object], repeats: int) -> float:
     return statistics.median(times)
 
 
-def drawn(rng: np.random.Generator, wanted: Objective) -> tuple[Job, ScaledProblem, float]:
+def drawn(rng: np.random.Generator, wanted: MotionObjective) -> tuple[Job, ScaledProblem, float]:
     """Draw a feasible job, its normalised return and the least objective of that (of a mean square the square)."""
     while True:
         machine, cut, limits, _ = random_job(rng)
@@ -188,8 +189,8 @@ def drawn(rng: np.random.Generator, wanted: Objective) -> tuple[Job, ScaledProbl
             return job, scaled, known[0].objective
         own = solve(task, wanted)
         bound = lower_bound(own.profile, machine, cut, limits, wanted)
-        if bound.method != QUINTIC and bound.value > own.objective * (1 - CONFIRMED):
-            return job, scaled, normalised(own.objective, job, scale) ** 2
+        if bound.method != QUINTIC and bound.value > own.minimised * (1 - CONFIRMED):
+            return job, scaled, normalised(own.minimised, job, scale) ** 2
 
 
 def normalised(value: float, job: Job, scale: float) -> float:
@@ -203,7 +204,7 @@ def measure(job: Job, scaled: ScaledProblem, exact: float) -> dict[str, object] 
     """Check and time the roads on one job; None if no grid of `COUNTS` is accurate enough."""
     machine, cut, limits, objective = job
     task = Task(machine, cut, limits)
-    own = normalised(solve(task, objective).objective, job, motion_scale(return_problem(task, objective)))
+    own = normalised(solve(task, objective).minimised, job, motion_scale(return_problem(task, objective)))
     own_error = (own if objective.startswith("peak") else own**2) / exact - 1
     if abs(own_error) > OWN_ACCURACY:
         raise AssertionError(f"camwright is {own_error:.1e} off the exact optimum: {job}")

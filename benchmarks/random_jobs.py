@@ -25,13 +25,14 @@ import numpy as np
 
 from camwright.design.optimise import Solution, solve
 from camwright.design.returns import solver
-from camwright.design.returns.problem import Objective, return_problem
+from camwright.design.returns.problem import return_problem
 from camwright.design.returns.scaling import motion_scale, scale_problem
 from camwright.design.returns.structure import extreme_motion, from_extreme, tidy
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InfeasibleError, SolverError
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import RotaryKnife
+from camwright.profiles.objective import MotionObjective
 from camwright.profiles.task import Task
 from camwright.validation.bounds.optimality import lower_bound
 
@@ -40,8 +41,8 @@ RESULTS = Path(__file__).parent / "results"
 ALLOWED_EXCESS = 1e-9
 """Share by which a design may exceed a limit."""
 
-OBJECTIVES: tuple[Objective, ...] = get_args(Objective)
-Job = tuple[RotaryKnife, Cut, Limits, Objective]
+OBJECTIVES: tuple[MotionObjective, ...] = get_args(MotionObjective)
+Job = tuple[RotaryKnife, Cut, Limits, MotionObjective]
 
 
 def random_job(rng: np.random.Generator) -> Job:
@@ -133,8 +134,8 @@ def measure(number: int, job: Job) -> dict[str, object]:
     line = all(abs(e.value - 1) <= 1e-12 for e in result.profile.extrema(1))
     return row | {
         "status": result.status.value,
-        "value": result.objective,
-        "gap": 0.0 if line else result.objective / bound.value - 1 if bound.value > 0 else math.inf,
+        "value": result.minimised,
+        "gap": 0.0 if line else result.minimised / bound.value - 1 if bound.value > 0 else math.inf,
         "worst_excess": worst_excess(result, job),
         "pieces": result.profile.pieces,
         "iterations": result.iterations,

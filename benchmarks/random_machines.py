@@ -24,9 +24,6 @@ import numpy as np
 
 from camwright.design.feasible.feasibility import with_limit
 from camwright.design.optimise import (
-    MOTION_OBJECTIVES,
-    OBJECTIVES,
-    Objective,
     solve,
 )
 from camwright.profiles.cut import Cut
@@ -39,6 +36,7 @@ from camwright.profiles.machines import (
     RotaryKnife,
 )
 from camwright.profiles.motor import MotorCurve
+from camwright.profiles.objective import COMMAND_OBJECTIVES, MOTION_OBJECTIVES, CommandObjective
 from camwright.profiles.returns import baseline
 from camwright.profiles.servo import Servo
 from camwright.validation.motion import measure_motion
@@ -58,7 +56,7 @@ class RandomJob:
     machine: Machine
     cut: Cut
     limits: Limits
-    objective: Objective
+    objective: CommandObjective
 
 
 @dataclass(frozen=True)
@@ -185,7 +183,7 @@ def random_job(rng: np.random.Generator, kind: str) -> RandomJob:
     limits = Limits(
         quintic.peak_speed * float(speed), acceleration * float(bend), jerk * float(rise), bool(rng.integers(2)), curve
     )
-    names = OBJECTIVES if motor.peak_torque else MOTION_OBJECTIVES
+    names = COMMAND_OBJECTIVES if motor.peak_torque else MOTION_OBJECTIVES
     return RandomJob(machine, cut, limits, names[int(rng.integers(len(names)))])
 
 

@@ -22,10 +22,10 @@ from time import process_time
 import numpy as np
 from random_machines import MACHINES, RandomJob, random_job, spread
 
-from camwright.design.optimise import OBJECTIVES
-from camwright.design.optimise_axis import AxisObjective, solve_axis
+from camwright.design.optimise_axis import solve_axis
 from camwright.design.servo_aware.command_basis import Command
 from camwright.profiles.errors import CamwrightError, InfeasibleError, InputError
+from camwright.profiles.objective import OBJECTIVES, ObjectiveName
 from camwright.profiles.servo import Servo
 from camwright.validation.report import validate
 
@@ -49,7 +49,7 @@ def draw_servo(rng: np.random.Generator, job: RandomJob) -> Servo:
     )
 
 
-def ended(job: RandomJob, servo: Servo, command: Command, objective: AxisObjective) -> tuple[str, str]:
+def ended(job: RandomJob, servo: Servo, command: Command, objective: ObjectiveName) -> tuple[str, str]:
     """Design a job; how it ended, and what there is to say about it."""
     cut = replace(job.cut, shaped=command == "shaped")
     try:
@@ -84,7 +84,7 @@ def main() -> int:
     parser.add_argument("--out", type=Path, default=RESULTS / "random_servo_aware.csv")
     options = parser.parse_args()
     rows, other = [], 0
-    objectives: tuple[AxisObjective, ...] = (*OBJECTIVES, "sync_error")
+    objectives: tuple[ObjectiveName, ...] = tuple(OBJECTIVES)
     for kind in [options.machine] if options.machine else list(MACHINES):
         rng = np.random.default_rng([options.seed, list(MACHINES).index(kind), 77])
         counts: Counter[str] = Counter()

@@ -21,16 +21,15 @@ from pathlib import Path
 from time import process_time
 
 from camwright.design.optimise import (
-    MOTION_OBJECTIVES,
-    Objective,
     Solution,
     solve,
 )
-from camwright.design.optimise_axis import AxisObjective, solve_axis
+from camwright.design.optimise_axis import solve_axis
 from camwright.design.servo_aware.command_basis import Command
 from camwright.profiles.cut import Cut
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import RotaryKnife
+from camwright.profiles.objective import MOTION_OBJECTIVES, ObjectiveName, of_command
 from camwright.profiles.servo import Servo
 from camwright.profiles.servo_tolerance import ServoTolerance
 from camwright.profiles.task import Task
@@ -73,7 +72,7 @@ def shortest(runs: int, *designs: Callable[[], object]) -> list[float]:
 
 
 def measure(
-    cut: Cut, command: Command, objective: AxisObjective, *, robust: bool
+    cut: Cut, command: Command, objective: ObjectiveName, *, robust: bool
 ) -> tuple[dict[str, object], Solution]:
     """Check and time one design beside the plain one of the same job."""
     placed = replace(cut, shaped=command == "shaped")
@@ -88,7 +87,7 @@ def measure(
     if axis is None:
         raise TypeError("a servo-aware design says nothing of its axis")
     simulated = servo_response(solution.profile, MACHINE, placed, SERVO).shear_zone_error
-    plain: Objective = "peak_acceleration" if objective == "sync_error" else objective
+    plain = of_command(objective)
     before, after = shortest(1 if robust else RUNS, lambda: solve(Task(MACHINE, cut, LIMITS), plain), aware)
     row: dict[str, object] = {
         "cut_mm": f"{cut.length * 1e3:g}",
@@ -112,8 +111,8 @@ def main() -> int:
     kept = True
     rows = []
     print(",".join(COLUMNS))
-    objectives: tuple[AxisObjective, ...] = ("sync_error", *MOTION_OBJECTIVES)
-    cases: list[tuple[Cut, Command, AxisObjective, bool]] = [
+    objectives: tuple[ObjectiveName, ...] = ("sync_error", *MOTION_OBJECTIVES)
+    cases: list[tuple[Cut, Command, ObjectiveName, bool]] = [
         (CUT, command, objective, False) for command in ("in_sync", "shaped") for objective in objectives
     ]
     last = None

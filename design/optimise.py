@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,7 +13,6 @@ from camwright.design.feasible.refusal import infeasible, require_feasible
 from camwright.design.place_cost import place_for
 from camwright.design.returns.curve_limits import motor_limits, motor_speed_limits, moves_something
 from camwright.design.returns.ipopt import SolveStatus
-from camwright.design.returns.problem import Objective as MotionObjective
 from camwright.design.returns.problem import ReturnProblem, return_problem
 from camwright.design.returns.solver import (
     grid_objective,
@@ -21,26 +20,17 @@ from camwright.design.returns.solver import (
     smoothest,
     solve_return,
 )
-from camwright.design.returns.transcription import PEAKS
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import CrankSlider, Machine
+from camwright.profiles.objective import OBJECTIVES, CommandObjective, MotionObjective, ObjectiveName, of_motion
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import assemble
 from camwright.profiles.task import Task
 
 if TYPE_CHECKING:
     from camwright.design.servo_aware.axis_motion import AxisMotion
-
-TorqueObjective = Literal["rms_torque", "peak_torque", "energy"]
-Objective = Literal[
-    "peak_acceleration", "rms_acceleration", "peak_jerk", "rms_jerk", "rms_torque", "peak_torque", "energy"
-]
-OBJECTIVES: tuple[Objective, ...] = get_args(Objective)
-TORQUE_OBJECTIVES: tuple[TorqueObjective, ...] = get_args(TorqueObjective)
-MOTION_OBJECTIVES: tuple[MotionObjective, ...] = get_args(MotionObjective)
-
 
 # Share of a peak that its smoothest motion may give away.
 KEPT_PEAK = 1e-6
@@ -84,11 +74,11 @@ class Solution:
     status
         How the solver ended.
     objective_name
-        What was minimised.
-    objective
-        Its value over time at the job's line speed, of the slave: m/s² or m/s³ (rad for m with a crank), root mean squares over the return
-        zone; for torque objectives the value of the motion objective that decided, or where the torque itself did its root mean square or
-        peak (N or N·m), or the mean power drawn (W), at the slave over the return.
+        The objective that was asked for.
+    minimised
+        What the solver made least, over time at the job's line speed, of the slave: m/s² or m/s³ (rad for m with a crank), root mean
+        squares over the return zone; for torque objectives the value of the motion objective that decided, or where the torque itself
+        did its root mean square or peak (N or N·m), or the mean power drawn (W), at the slave over the return; the sync error in m.
     iterations
         Iterations of IPOPT, all together.
     starts
@@ -101,14 +91,14 @@ class Solution:
     profile: CamProfile
     back: CamProfile
     status: SolveStatus
-    objective_name: Objective
-    objective: float
+    objective_name: ObjectiveName
+    minimised: float
     iterations: int
     starts: Starts | None = None
     axis: AxisMotion | None = None
 
 
-def solve(task: Task, objective: Objective, *, suggest: bool = True) -> Solution:
+def solve(task: Task, objective: CommandObjective, *, suggest: bool = True) -> Solution:
     """Design the optimal cycle of a cutting machine.
 
     Parameters
@@ -135,7 +125,7 @@ def solve(task: Task, objective: Objective, *, suggest: bool = True) -> Solution
     >>> knife = RotaryKnife(circumference=0.4)
     >>> cut = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4)
     >>> result = solve(Task(knife, cut, Limits(200 / 60, 30.0, 3000.0)), "peak_acceleration")
-    >>> result.status.value, round(result.objective, 3), result.profile.pieces
+    >>> result.status.value, round(result.minimised, 3), result.profile.pieces
     ('optimal', 9.072, 6)
     """
     machine, cut = task.machine, task.cut
@@ -151,7 +141,7 @@ def solve(task: Task, objective: Objective, *, suggest: bool = True) -> Solution
         return _solve_torque(task, objective, valleys=1)
     problem = return_problem(task, decisive)
     back, status, iterations = solve_return(problem)
-    if decisive in PEAKS and not _unique(problem):
+    if OBJECTIVES[decisive].form == "peak" and not _unique(problem):
         back = _smoothest(problem, back)
     value = _over_time(back, decisive, cut)
     return Solution(machine, assemble(back, machine, cut), back, status, objective, value, iterations)
@@ -159,10 +149,10 @@ def solve(task: Task, objective: Objective, *, suggest: bool = True) -> Solution
 
 def _over_time(back: CamProfile, objective: MotionObjective, cut: Cut) -> float:
     """Objective of a return over time, at the line speed."""
-    return objective_value(back, objective) * cut.line_speed ** (2 if objective.endswith("acceleration") else 3)
+    return OBJECTIVES[objective].over_time(objective_value(back, objective), cut.line_speed)
 
 
-def _solve_for_motor(task: Task, objective: Objective, suggest: bool) -> Solution:
+def _solve_for_motor(task: Task, objective: CommandObjective, suggest: bool) -> Solution:
     """Solve without the motor's torque, which is the answer if it keeps to the curve; else within the curve, and take the best.
 
     Within the curve are its rectangles, of which the grid tells the best. Where they do not do, or say little, a programme knows the whole
@@ -208,7 +198,7 @@ def _solve_for_motor(task: Task, objective: Objective, suggest: bool) -> Solutio
             )
     if not found:
         raise infeasible(task, suggest=suggest, load=None if easiest is None else easiest.value)
-    return min(found, key=lambda solution: solution.objective)
+    return min(found, key=lambda solution: solution.minimised)
 
 
 def _unique(problem: ReturnProblem) -> bool:
@@ -224,7 +214,7 @@ def _smoothest(problem: ReturnProblem, back: CamProfile) -> CamProfile:
     return back if smooth is None else smooth
 
 
-def require_moving(machine: Machine, objective: str) -> None:
+def require_moving(machine: Machine, objective: ObjectiveName) -> None:
     """Refuse an objective of the motor for a machine that moves nothing.
 
     Raises
@@ -232,21 +222,21 @@ def require_moving(machine: Machine, objective: str) -> None:
     InputError
         A torque or energy is to be made least, and the machine has neither inertia nor mass nor friction.
     """
-    if objective in TORQUE_OBJECTIVES and not moves_something(machine):
+    if OBJECTIVES[objective].of == "motor" and not moves_something(machine):
         raise InputError(
             f"[objective] minimise = {objective!r} needs to know what the motor moves: give the machine's inertia or mass, or minimise "
             f"rms_acceleration"
         )
 
 
-def motion_objective(machine: Machine, objective: Objective) -> MotionObjective | None:
+def motion_objective(machine: Machine, objective: CommandObjective) -> MotionObjective | None:
     """Objective of the motion alone that has the same minimiser, if there is one.
 
     With constant inertia ``I`` and friction ``F`` that never changes its sign the mean square of the force is ``I² a_rms² + F²`` (the mean
     acceleration of a cycle is zero); without friction its peak is ``I a_max``.
     """
-    if objective in MOTION_OBJECTIVES:
-        return objective
+    if of_motion(objective) == objective:
+        return of_motion(objective)
     if isinstance(machine, CrankSlider) or objective == "energy":
         return None
     if objective == "rms_torque" and not (machine.turns_back and machine.friction):
@@ -254,7 +244,7 @@ def motion_objective(machine: Machine, objective: Objective) -> MotionObjective 
     return "peak_acceleration" if objective == "peak_torque" and not machine.friction else None
 
 
-def _solve_torque(task: Task, objective: Objective, valleys: int) -> Solution:
+def _solve_torque(task: Task, objective: CommandObjective, valleys: int) -> Solution:
     from camwright.design.torque.torque_return import solve_torque
 
     problem = return_problem(task, "peak_acceleration")
@@ -266,7 +256,9 @@ def _solve_torque(task: Task, objective: Objective, valleys: int) -> Solution:
     )
 
 
-def _solve_free_crank(machine: CrankSlider, cut: Cut, limits: Limits, objective: Objective, suggest: bool) -> Solution:
+def _solve_free_crank(
+    machine: CrankSlider, cut: Cut, limits: Limits, objective: CommandObjective, suggest: bool
+) -> Solution:
     """Choose the place of the sync zone first, by the objective of the motion or by the mean square of the torque."""
     placement = place_for(machine, cut, limits, objective)
     solution = solve(Task(placement.machine, cut, limits), objective, suggest=suggest)

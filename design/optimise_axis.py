@@ -5,12 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import Literal
 
 from camwright.design.feasible.refusal import require_feasible
 from camwright.design.optimise import (
-    MOTION_OBJECTIVES,
-    Objective,
     Solution,
     motion_objective,
     require_moving,
@@ -20,7 +17,7 @@ from camwright.design.returns.curve_limits import motor_limits, motor_speed_limi
 from camwright.design.returns.ipopt import SolveStatus
 from camwright.design.servo_aware.axis_motion import AxisMotion, design_axis, servo_blind_optimum
 from camwright.design.servo_aware.command_basis import Command
-from camwright.design.servo_aware.programme import AxisProblem, AxisProgramme, Cost
+from camwright.design.servo_aware.programme import AxisProblem, AxisProgramme
 from camwright.design.servo_aware.rows import RATIO
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import (
@@ -31,13 +28,11 @@ from camwright.profiles.errors import (
 )
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import CrankSlider, Machine
+from camwright.profiles.objective import OBJECTIVES, ObjectiveName, of_command
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import assemble
 from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
-
-AxisObjective = Objective | Literal["sync_error"]
-"""What a servo-aware design may be asked for."""
 
 # Suggested values are searched to this share, and stand aside by it from the edge.
 ASIDE = 2e-3
@@ -51,7 +46,7 @@ LONGEST, SLOWEST = 8.0, 0.02
 
 def solve_axis(
     task: Task,
-    objective: AxisObjective,
+    objective: ObjectiveName,
     command: Command,
     servos: tuple[Servo, ...],
     between: tuple[Servo, ...] = (),
@@ -92,11 +87,11 @@ def solve_axis(
     cost = _cost(machine, objective)
     blind = None
     if command == "in_sync" or (isinstance(machine, CrankSlider) and math.isnan(machine.sync_at)):
-        blind = solve(task, "peak_acceleration" if cost == "sync_error" else cost, suggest=suggest)
+        blind = solve(task, of_command(cost), suggest=suggest)
     placed = machine if blind is None else blind.machine
     structure = None if blind is None or command == "shaped" else blind.back
     problem = AxisProblem(task.with_machine(placed), command, servos, True, structure, between)
-    order = 2 if cost.endswith("acceleration") else 3 if cost.endswith("jerk") else 0
+    order = OBJECTIVES[cost].order
     # the servo-blind optimum keeps the motor's curve, though it may lie in none of the rectangles that stand for it
     by_motor = _within(problem, motor_speed_limits(placed, limits))
     motions = _kept(by_motor, cost) if limits.motor is not None else []
@@ -107,7 +102,7 @@ def solve_axis(
         motions = _kept(replace(by_motor, axis_limits=False), cost)
     if not motions and blind is not None and command == "in_sync":
         motions = _without_choice(
-            problem, blind, None if cost == "sync_error" else blind.objective / task.cut.line_speed**order
+            problem, blind, None if cost == "sync_error" else blind.minimised / task.cut.line_speed**order
         )
     if not motions:
         loosest = _within(replace(problem, axis_limits=False), motor_speed_limits(placed, limits))
@@ -130,32 +125,29 @@ def _within(problem: AxisProblem, limits: Limits) -> AxisProblem:
     return replace(problem, task=problem.task.with_limits(limits))
 
 
-def _kept(problem: AxisProblem, cost: Cost) -> list[AxisMotion]:
+def _kept(problem: AxisProblem, cost: ObjectiveName) -> list[AxisMotion]:
     """Take the servo-blind optimum of a job in sync where its axis keeps to everything."""
     kept = None if cost == "sync_error" else servo_blind_optimum(AxisProgramme(problem), cost)
     return [] if kept is None else [kept]
 
 
-def _solution(motion: AxisMotion, status: SolveStatus, task: Task, objective: AxisObjective, order: int) -> Solution:
+def _solution(motion: AxisMotion, status: SolveStatus, task: Task, objective: ObjectiveName, order: int) -> Solution:
     """Put a motion as the cycle that was asked for."""
     cut = task.cut
     profile = motion.profile
     back = profile.restrict(0.0, cut.return_zone)
     if cut.origin == "cut":
         profile = _from_mid_sync(profile, task)
-    name: Objective = "peak_acceleration" if objective == "sync_error" else objective
     value = motion.value * cut.line_speed**order
-    return Solution(task.machine, profile, back, status, name, value, motion.programmes, axis=motion)
+    return Solution(task.machine, profile, back, status, objective, value, motion.programmes, axis=motion)
 
 
-def _cost(machine: Machine, objective: AxisObjective) -> Cost:
+def _cost(machine: Machine, objective: ObjectiveName) -> ObjectiveName:
     """Objective of the motion that a programme can minimise."""
-    if objective == "sync_error" or objective in MOTION_OBJECTIVES:
-        return objective
-    return motion_objective(machine, objective) or objective
+    return objective if objective == "sync_error" else motion_objective(machine, objective) or objective
 
 
-def _either(problem: AxisProblem, cost: Cost) -> AxisMotion | None:
+def _either(problem: AxisProblem, cost: ObjectiveName) -> AxisMotion | None:
     """Design with the limits held by the axis too; without, where that costs the tolerance."""
     try:
         strict = design_axis(problem, cost)

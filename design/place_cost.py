@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Literal
 
 import numpy as np
 
@@ -12,12 +11,13 @@ from camwright.design.feasible.feasibility import is_feasible, least_limit, marg
 from camwright.design.place import Placement, place_sync
 from camwright.design.returns.curve_limits import motor_limits, motor_speed_limits
 from camwright.design.returns.possible import possible_rms
-from camwright.design.returns.problem import Objective, return_problem
+from camwright.design.returns.problem import return_problem
 from camwright.design.returns.solver import grid_objective
 from camwright.design.torque.within_curve import load
 from camwright.profiles.cut import Cut
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import CrankSlider
+from camwright.profiles.objective import CommandObjective, MotionObjective
 from camwright.profiles.returns import baseline
 from camwright.profiles.task import Task
 
@@ -33,7 +33,7 @@ def place_for(
     machine: CrankSlider,
     cut: Cut,
     limits: Limits,
-    objective: Objective | Literal["rms_torque", "peak_torque", "energy"],
+    objective: CommandObjective,
 ) -> Placement:
     """Place the sync zone where an objective is least, or, where the limits are not enough at any place, where least is missing.
 
@@ -75,7 +75,7 @@ def _missing(task: Task) -> float:
     return FAR * margin(task.with_limits(plain))
 
 
-def _rms(task: Task, objective: Objective) -> float:
+def _rms(task: Task, objective: MotionObjective) -> float:
     """Objective on the coarse grid within the best of the motor's limits, or, where the grid is too coarse for them, of any motion."""
     costs = []
     for each in motor_limits(task.machine, task.limits):

@@ -172,7 +172,7 @@ def _exported(number: int, design: Design, targets: Sequence[str], limit: Limit 
         number,
         "check_failed" if failed else "passed",
         objective=design.objective + 0.0,  # no negative zero
-        unit=objective_unit(design),
+        unit=objective_unit(design.job),
         peak_speed=tool.peak_speed,
         peak_acceleration=tool.peak_acceleration,
         rms_acceleration=tool.rms_acceleration,

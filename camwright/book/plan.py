@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
-from typing import Any, get_args
+from typing import Any
 
 from camwright.book.job_text import job_text
 from camwright.book.ranges import (
@@ -22,17 +22,14 @@ from camwright.drives.options import parse_targets
 from camwright.house.provenance import provenance
 from camwright.house.units import shown
 from camwright.jobs.job import Job, parse_job, read_job
-from camwright.jobs.structure import Objective
 from camwright.profiles.errors import InputError
+from camwright.profiles.objective import OBJECTIVES
 
 MOST_DESIGNS = 100_000
 """Most combinations of a book."""
 
 LAYOUT = 1
 """Version of the layout of a book's folder."""
-
-SYNC_ERROR = "sync_error"
-"""The objective that only servo-aware jobs have."""
 
 _LONGEST_NAME = 60
 
@@ -208,7 +205,7 @@ def plan_book(job: Job, length: str, line_speed: str, objectives: Sequence[str] 
 
     lengths = gathered(length, "--length", "length", "mm", 1000)
     speeds = gathered(line_speed, "--line-speed", "speed", "m/min", 60)
-    asked = tuple(dict.fromkeys(objectives)) or (SYNC_ERROR if job.minimise_sync_error else job.objective,)
+    asked = tuple(dict.fromkeys(objectives)) or (job.objective,)
     for name in asked:
         faults += _objective_faults(job, name)
     names: list[str] = []
@@ -234,9 +231,8 @@ def plan_book(job: Job, length: str, line_speed: str, objectives: Sequence[str] 
 
 def _objective_faults(job: Job, name: str) -> tuple[str, ...]:
     """Say what is wrong with an objective: there is none of that name, or it is none for this job."""
-    known = (*get_args(Objective), SYNC_ERROR)
-    if name not in known:
-        return (f"--objective {shown(name)}: there is no such objective; the objectives are {', '.join(known)}",)
+    if name not in OBJECTIVES:
+        return (f"--objective {shown(name)}: there is no such objective; the objectives are {', '.join(OBJECTIVES)}",)
     data = _data(job.text)
     text = job_text({**data, "objective": {**data.get("objective", {}), "minimise": name}})
     try:

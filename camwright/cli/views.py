@@ -46,15 +46,15 @@ def design_view(design: Design, files: Sequence[Path]) -> RenderableType:
 
 def _head(design: Design) -> list[str]:
     """Say how the design ended: objective and bound, what was chosen, how well several starts agree."""
-    from camwright.answers.objective import objective_name, objective_unit
+    from camwright.answers.objective import objective_unit
 
-    solution, unit = design.solution, objective_unit(design).replace("^2", "²").replace("^3", "³")
+    solution, unit = design.solution, objective_unit(design.job).replace("^2", "²").replace("^3", "³")
     bound = (
         "no lower bound is known"
         if design.gap is None
         else f"lower bound {_number(design.bound.value)} {unit} ({design.bound.method}), gap {design.gap:.1e}"
     )
-    ending = f"{design.job.name}: {solution.status.value}, {objective_name(design)} {_number(design.objective)} {unit}"
+    ending = f"{design.job.name}: {solution.status.value}, {design.job.objective} {_number(design.objective)} {unit}"
     lines = [f"{ending} in {design.profile.pieces} pieces; {bound}"]
     if isinstance(solution.machine, CrankSlider):
         lines.append(f"sync zone on the crank: its middle at {math.degrees(solution.machine.sync_at):.5g}°")

@@ -19,6 +19,7 @@ from camwright.figures.style import (
 )
 from camwright.profiles.cut import Cut
 from camwright.profiles.machines import LinearCarriage, Machine
+from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.returns import slave_at_start
 from camwright.studies.comparison import Comparison
@@ -79,7 +80,7 @@ def profile_figure(comparison: Comparison) -> Figure:
     figure.align_ylabels()
     figure.suptitle(
         f"{comparison.job.name}: {cut.length * 1e3:g} mm at {v * 60:g} m/min, "
-        f"least {comparison.job.objective.replace('_', ' ').replace('rms', 'RMS')}",
+        f"least {OBJECTIVES[comparison.job.objective].words}",
         fontsize=9.5,
     )
     _legend(figure, shown)

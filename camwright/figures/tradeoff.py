@@ -19,6 +19,7 @@ from camwright.figures.style import (
     WIDTH,
     title,
 )
+from camwright.profiles.objective import CommandObjective
 from camwright.studies.tradeoff import Row, TradeOff, words
 
 _SAME = 2e-3
@@ -53,8 +54,8 @@ def tradeoff_figure(result: TradeOff) -> Figure:
     bounded = [row for row in result.rows if row.values["peak_acceleration"] is not None]
     figure = Figure(figsize=(WIDTH, 7.6), layout="constrained")
     upper, lower = figure.subplots(2, 1, sharey=True)
-    heating = "rms_torque" if "rms_torque" in result.measures else "rms_acceleration"
-    panels = [(upper, heating), (lower, "peak_jerk")]
+    heating: CommandObjective = "rms_torque" if "rms_torque" in result.measures else "rms_acceleration"
+    panels: list[tuple[Axes, CommandObjective]] = [(upper, heating), (lower, "peak_jerk")]
     for axes, measure in panels:
         _scales(axes, [row.values[measure] for row in bounded], [row.values["peak_acceleration"] for row in bounded])
         axes.set_xlabel(f"{words(measure)} ({_unit(result, measure)})")
@@ -70,7 +71,7 @@ def tradeoff_figure(result: TradeOff) -> Figure:
     return figure
 
 
-def _unit(result: TradeOff, measure: str) -> str:
+def _unit(result: TradeOff, measure: CommandObjective) -> str:
     return result.unit(measure).replace("^2", "²").replace("^3", "³").replace(" ", "·")
 
 
@@ -138,7 +139,7 @@ def _range(values: Sequence[float]) -> tuple[float, float, bool]:
     return least, greatest, least > 0.0 and greatest > _WIDE * least
 
 
-def _draw(axes: Axes, rows: Sequence[Row], measure: str) -> None:
+def _draw(axes: Axes, rows: Sequence[Row], measure: CommandObjective) -> None:
     """Draw the points of a panel and label them; those at one place share a label."""
     figure = axes.get_figure(root=True)
     assert figure is not None  # noqa: S101 - axes belong to a figure

@@ -17,7 +17,6 @@ from camwright.jobs.servo_checks import tolerance_of
 from camwright.jobs.structure import (
     Command,
     JobFile,
-    Objective,
     read_structure,
 )
 from camwright.profiles.cut import Cut
@@ -25,6 +24,7 @@ from camwright.profiles.errors import InputError
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import Machine
 from camwright.profiles.motor import MotorCurve
+from camwright.profiles.objective import ObjectiveName
 from camwright.profiles.servo import Servo
 from camwright.profiles.servo_tolerance import ServoTolerance
 from camwright.profiles.task import Task
@@ -65,10 +65,7 @@ class Job:
     servo
         The discrete servo.
     objective
-        What is made least: ``"peak_acceleration"``, ``"rms_acceleration"``, ``"peak_jerk"``, ``"rms_jerk"``, ``"rms_torque"``,
-        ``"peak_torque"`` or ``"energy"``. Where the sync error is made least, the peak acceleration, for all that knows no sync error.
-    minimise_sync_error
-        Whether a servo-aware design makes the axis' sync error in the shear zone least.
+        What is made least, a key of `camwright.profiles.objective.OBJECTIVES`; ``"sync_error"`` only of servo-aware designs.
     servo_aware
         Whether the axis, not only its command, keeps the sync tolerance in the shear zone.
     command
@@ -88,8 +85,7 @@ class Job:
     cut: Cut
     limits: Limits
     servo: Servo
-    objective: Objective
-    minimise_sync_error: bool
+    objective: ObjectiveName
     servo_aware: bool
     command: Command
     servo_tolerance: ServoTolerance | None
@@ -197,8 +193,7 @@ def _job(file: JobFile, known: Known, machine: Machine, zone: float, text: str) 
             None if file.limits.motor is None else MotorCurve(file.limits.motor),
         ),
         servo=servo,
-        objective="peak_acceleration" if objective.minimise == "sync_error" else objective.minimise,
-        minimise_sync_error=objective.minimise == "sync_error",
+        objective=objective.minimise,
         servo_aware=objective.servo_aware,
         command=objective.command or "in_sync",
         servo_tolerance=None if file.servo.tolerance is None else tolerance_of(known, servo),

@@ -17,9 +17,7 @@ from camwright.profiles.machines import (
     RotaryKnife,
 )
 from camwright.profiles.machines.rotary_knife import GREATEST_ANGLE
-
-TORQUE_OBJECTIVES = frozenset({"rms_torque", "peak_torque", "energy"})
-"""Objectives that need to know what the motor moves."""
+from camwright.profiles.objective import OBJECTIVES, ObjectiveName
 
 _BISECTIONS = 60
 
@@ -57,7 +55,7 @@ def machine_conflicts(known: Known, machine: Machine | None) -> list[str]:
     return faults
 
 
-def moved_by_nothing(machine: Machine, objective: str, *, with_curve: bool) -> list[str]:
+def moved_by_nothing(machine: Machine, objective: ObjectiveName, *, with_curve: bool) -> list[str]:
     """Say what is missing where the objective or the motor's curve asks for torque and the machine gives nothing to move."""
     if isinstance(machine, CrankSlider):
         missing = machine.crank_inertia == machine.carriage_mass == 0.0
@@ -69,7 +67,7 @@ def moved_by_nothing(machine: Machine, objective: str, *, with_curve: bool) -> l
         keys = 'inertia = "0.05 kg m^2" or friction = "2 N m"'
     reason = f"the motor's torque depends on what it moves, which [machine] does not say; add e.g. {keys}"
     faults = []
-    if missing and objective in TORQUE_OBJECTIVES:
+    if missing and OBJECTIVES[objective].of == "motor":
         faults.append(f'[objective] minimise = {objective!r}: {reason}, or minimise "rms_acceleration"')
     if missing and with_curve:
         faults.append(f"[limits] motor: {reason}, or leave the motor's curve out")

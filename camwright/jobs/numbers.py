@@ -38,7 +38,7 @@ def job_numbers(job: Job) -> dict[str, Any]:
         "cut": asdict(job.cut),
         "limits": asdict(job.limits),
         "servo": asdict(job.servo),
-        "objective": "sync_error" if job.minimise_sync_error else job.objective,
+        "objective": job.objective,
         "servo_aware": job.servo_aware,
         "command": job.command,
         "servo_tolerance": None if job.servo_tolerance is None else asdict(job.servo_tolerance),

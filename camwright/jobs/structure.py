@@ -25,11 +25,7 @@ from camwright.jobs.fields import (
 )
 from camwright.jobs.machine_tables import TABLES, MachineTable
 from camwright.jobs.spread_fields import aware_only, number_spread, quantity_spread
-
-Objective = Literal[
-    "peak_acceleration", "rms_acceleration", "peak_jerk", "rms_jerk", "rms_torque", "peak_torque", "energy"
-]
-"""What is made least of the motion or the motor's load."""
+from camwright.profiles.objective import ObjectiveName
 
 Command = Literal["in_sync", "shaped"]
 """What a servo-aware design may do in the sync zone: the command in sync all over it, or shaped so that the axis is in the shear zone."""
@@ -126,7 +122,7 @@ class ObjectiveTable(Table):
         bool, Field(description="whether the axis, not only its command, keeps the sync tolerance")
     ] = False
     minimise: Annotated[
-        Literal[Objective, "sync_error"],
+        ObjectiveName,
         aware_only('minimise e.g. "peak_acceleration"', only="sync_error"),
         Field(description="what is made least; sync_error, that of the axis in the shear zone, only if servo_aware"),
     ] = "peak_acceleration"

@@ -15,7 +15,8 @@ from camwright.jobs.job import Job
 from camwright.jobs.numbers import job_numbers
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
-from camwright.profiles.polynomial.profile import FloatArray
+from camwright.profiles.objective import OBJECTIVES
+from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.returns import slave_at_start
 from camwright.profiles.servo import mean_lag
 from camwright.recipe.manifest import sha256
@@ -23,7 +24,7 @@ from camwright.recipe.model import (
     RECIPE_VERSION,
     JobRecord,
     Language,
-    Objective,
+    ObjectiveReached,
     Origin,
     Points,
     Profile,
@@ -38,6 +39,7 @@ from camwright.recipe.model import (
 from camwright.recipe.speeds import at_speeds
 from camwright.recipe.working_range import working_range
 from camwright.stored.design_file import StoredDesign
+from camwright.studies.axis_study import solve_job, sync_error
 
 if TYPE_CHECKING:
     from camwright.validation.check import Check
@@ -48,9 +50,6 @@ STEPS = 4
 
 TABLES = "tables"
 """Folder of the tables inside a recipe."""
-
-_UNITS = {"rms_torque": "N m", "peak_torque": "N m", "energy": "J"}
-_OVER_TIME = {"acceleration": "/s^2", "jerk": "/s^3"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,8 +70,6 @@ def designed(job: Job) -> StoredDesign:
     SolverError
         The solver failed.
     """
-    from camwright.studies.axis_study import solve_job
-
     solution = solve_job(job)
     return StoredDesign(solution.profile, replace(job, machine=solution.machine))
 
@@ -133,7 +130,7 @@ def make_recipe(
         slave_unit=job.machine.slave_unit,
         slave_start=slave_at_start(job.machine, job.cut),
         pitch=float(job.machine.pitch),
-        objective=_objective(job, report),
+        objective=_objective(job, profile, report),
         profile=Profile(tuple(profile.breaks.tolist()), tuple(map(tuple, profile.coefficients.tolist()))),
         zones=zones(job.cut),
         checks=_checks(report.checks),
@@ -151,12 +148,14 @@ def _path(name: str) -> str:
     return f"{TABLES}/{name}"
 
 
-def _objective(job: Job, report: ValidationReport) -> Objective:
+def _objective(job: Job, profile: CamProfile, report: ValidationReport) -> ObjectiveReached:
     """Give the value of the job's objective for a cam, whoever made it."""
-    name = job.objective
-    source = report.motor if name in _UNITS else report.motion
-    unit = _UNITS.get(name) or job.machine.slave_unit + _OVER_TIME[name.rpartition("_")[2]]
-    return Objective(name, getattr(source, name), unit)
+    objective = OBJECTIVES[job.objective]
+    if objective.of == "axis":
+        value = sync_error(profile, job)
+    else:
+        value = getattr(report.motor if objective.of == "motor" else report.motion, objective.name)
+    return ObjectiveReached(objective.name, value, objective.unit(job.machine.slave_unit))
 
 
 def zones(cut: Cut) -> Zones:

@@ -7,7 +7,7 @@ import json
 import math
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, Any
 
 from camwright.answers.axis import axis_answer, robust_answer
 from camwright.answers.objective import objective_answer, starts_answer
@@ -15,11 +15,11 @@ from camwright.house.files import read_text
 from camwright.house.provenance import SCHEMA_VERSION, provenance
 from camwright.jobs.job import Job, parse_job
 from camwright.jobs.numbers import job_numbers
-from camwright.jobs.structure import Objective
 from camwright.profiles.errors import InputError
 from camwright.profiles.machines import (
     CrankSlider,
 )
+from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.servo_tolerance import ServoTolerance
 
@@ -133,7 +133,8 @@ def design_schema() -> dict[str, Any]:
     """Make the JSON Schema of a design.json."""
     number, whole, text = {"type": "number"}, {"type": "integer"}, {"type": "string"}
     maybe = {"type": ["number", "null"]}
-    objectives = [*get_args(Objective), "sync_error"]
+    objectives = list(OBJECTIVES)
+    units = list(dict.fromkeys(each.unit(slave) for slave in ("m", "rad") for each in OBJECTIVES.values()))
     numbers = {"type": "array", "items": number, "minItems": 1}
 
     def table(**entries: Any) -> dict[str, Any]:
@@ -170,7 +171,7 @@ def design_schema() -> dict[str, Any]:
         objective=table(
             name={"enum": objectives},
             value=number,
-            unit={"enum": ["m/s^2", "m/s^3", "rad/s^2", "rad/s^3", "N m", "J", "m"]},
+            unit={"enum": units},
             lower_bound=maybe,
             gap={**maybe, "description": "(value - lower_bound) / value; null without a bound"},
         ),

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from camwright.jobs.job import Job
+from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.servo import Servo
 
@@ -103,12 +105,23 @@ def solve_job(job: Job, *, suggest: bool = True) -> Solution:
     if job.servo_aware:
         from camwright.design.optimise_axis import solve_axis
 
-        objective = "sync_error" if job.minimise_sync_error else job.objective
         servos, between = servos_of(job), between_of(job)
-        return solve_axis(job.task, objective, job.command, servos, between, suggest=suggest)
+        return solve_axis(job.task, job.objective, job.command, servos, between, suggest=suggest)
     from camwright.design.optimise import solve
 
+    if job.objective == "sync_error":
+        raise InputError(
+            '[objective] minimise = "sync_error": for servo-aware designs only; add servo_aware = true or minimise e.g. "peak_acceleration"'
+        )
     return solve(job.task, job.objective, suggest=suggest)
+
+
+def sync_error(profile: CamProfile, job: Job) -> float | None:
+    """Greatest sync error of the axis in the shear zone (m) with a job's servo and at the corners of its ranges; ``None`` without bound."""
+    from camwright.validation.servo.monte_carlo import shear_zone_errors
+
+    worst = float(shear_zone_errors(profile, job.machine, job.cut, servos_of(job)).max())
+    return worst if math.isfinite(worst) else None
 
 
 def axis_study(job: Job, solution: Solution) -> AxisStudy | None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from camwright.house.progress import Step, ignore
 from camwright.jobs.job import Job
+from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.studies.comparison import Comparison, compare
 from camwright.studies.cut_lengths import CutLengths, cut_lengths
@@ -63,12 +64,10 @@ class Design:
     @property
     def objective(self) -> float:
         """The objective at the job's line speed: m/s² or m/s³ (rad for m with a crank), N·m or J at the motor, m of sync error."""
-        motor = self.comparison["optimised"].motor
-        if self.job.minimise_sync_error:
-            return self.solution.objective
-        torques = {"rms_torque": motor.rms_torque, "peak_torque": motor.peak_torque, "energy": motor.energy}
-        value = torques.get(self.solution.objective_name)
-        return self.solution.objective if value is None else value
+        if OBJECTIVES[self.job.objective].of != "motor":
+            return self.solution.minimised
+        value: float | None = getattr(self.comparison["optimised"].motor, self.job.objective)
+        return math.inf if value is None else value
 
     @property
     def gap(self) -> float | None:
@@ -104,7 +103,7 @@ def optimise(job: Job, step: Step = ignore) -> Design:
     --------
     >>> from camwright import load_job
     >>> result = optimise(load_job())
-    >>> result.passed, round(result.solution.objective, 2)
+    >>> result.passed, round(result.objective, 2)
     (True, 9.07)
     """
     from camwright.studies.axis_study import axis_study, robustness, solve_job
@@ -116,9 +115,8 @@ def optimise(job: Job, step: Step = ignore) -> Design:
     solution = solve_job(job)
     placed = replace(job, machine=solution.machine)
     step("bounding the objective from below")
-    if job.cut.shaped or job.minimise_sync_error:  # what bounds a return bounds neither the whole cycle nor the axis
-        bound = Bound(math.nan, "none")
-    else:
+    bound = Bound(math.nan, "none")
+    if not job.cut.shaped:  # what bounds a return does not bound the whole cycle
         bound = lower_bound(solution.profile, placed.machine, job.cut, job.limits, job.objective)
     step("checking")
     report = judge(solution.profile, placed.machine, job.cut, job.limits, job.servo, servo_aware=job.servo_aware)

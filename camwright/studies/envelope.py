@@ -4,21 +4,21 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from camwright.house.progress import Step, ignore
 from camwright.house.provenance import provenance
 from camwright.jobs.job import Job
-from camwright.jobs.machine_checks import TORQUE_OBJECTIVES, sync_pace
+from camwright.jobs.machine_checks import sync_pace
 from camwright.profiles.machines import CrankSlider, Machine
+from camwright.profiles.objective import OBJECTIVES, MotionObjective, of_motion
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
     from camwright.design.feasible.envelope import Envelope
-    from camwright.design.returns.problem import Objective
 
 SHORTEST, LONGEST = 0.5, 2.0
 """Cut lengths of the map as parts of the job's; none of them is shorter than `LEAST_ZONE` of the sync zone."""
@@ -40,13 +40,13 @@ class EnvelopeAnswer:
     """
 
     job: Job
-    objective: Objective
+    objective: MotionObjective
     envelope: Envelope
 
     @property
     def unit(self) -> str:
         """Unit of the objective."""
-        return self.job.machine.slave_unit + ("/s^2" if self.objective.endswith("acceleration") else "/s^3")
+        return OBJECTIVES[self.objective].unit(self.job.machine.slave_unit)
 
     def to_dict(self) -> dict[str, Any]:
         """Give the object that ``--json`` prints."""
@@ -129,7 +129,7 @@ def envelope_answer(job: Job, points: int, step: Step = ignore) -> EnvelopeAnswe
     lengths = np.linspace(shortest, LONGEST * job.cut.length, points).round(6)
     fastest = job.limits.speed / sync_pace(job.machine, job.cut)
     speeds = np.linspace(fastest / points, fastest, points)
-    objective = cast("Objective", "rms_acceleration" if job.objective in TORQUE_OBJECTIVES else job.objective)
+    objective = of_motion(job.objective)
     found = envelope(job.task, objective, lengths.tolist(), speeds.tolist(), step)
     return EnvelopeAnswer(job, objective, found)
 

@@ -12,6 +12,7 @@ from camwright.profiles.errors import InfeasibleError
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import CrankSlider, LinearCarriage
 from camwright.profiles.machines.screw_equivalent import screw_equivalent
+from camwright.profiles.objective import of_command
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.task import Task
 
@@ -100,7 +101,7 @@ def screw_carriage(job: Job, crank: Measured) -> ScrewCarriage | None:
     motor_speed = crank.motor.peak_speed
     first = screw_equivalent(machine, tool.peak_speed, motor_speed)
     try:
-        profile = solve(Task(first, job.cut, limits), job.objective).profile
+        profile = solve(Task(first, job.cut, limits), of_command(job.objective)).profile
     except InfeasibleError:
         return None
     # the motion of a carriage does not depend on the lead: it is chosen last, by the speed that the carriage reaches

@@ -13,6 +13,7 @@ from camwright.house.progress import Step, ignore
 from camwright.jobs.job import Job
 from camwright.profiles.errors import SolverError
 from camwright.profiles.machines import LinearCarriage
+from camwright.profiles.objective import COMMAND_OBJECTIVES, OBJECTIVES, CommandObjective, of_command
 from camwright.profiles.returns import slave_zero
 
 if TYPE_CHECKING:
@@ -20,23 +21,19 @@ if TYPE_CHECKING:
 
     from rich.console import RenderableType
 
-    from camwright.design.optimise import Objective
     from camwright.profiles.polynomial.profile import CamProfile
     from camwright.validation.motion import Motion
 
 Kind = Literal["objective", "baseline"]
 
-MOTION_MEASURES = ("peak_acceleration", "rms_acceleration", "peak_jerk", "rms_jerk")
-TORQUE_MEASURES = ("rms_torque", "peak_torque", "energy")
-"""Measures, which are the objectives too; those of the torque only where the job says what the motor moves."""
+_COLUMNS = (2, 0, 3)
+"""Measures, which are the objectives of the command too, stand in the order of these orders: acceleration, motor, jerk."""
 
 _BEYOND = 1e-8
 """Part of a limit by which the solver's accuracy may exceed it."""
 
 _POINTS = 20_001
 """Points along the cycle at which torque and speed are held against the motor's curve."""
-
-_TORQUE_UNITS = {"rms_torque": "N m", "peak_torque": "N m", "energy": "J"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +57,7 @@ class Row:
     name: str
     kind: Kind
     profile: CamProfile
-    values: dict[str, float | None]
+    values: dict[CommandObjective, float | None]
     within_limits: bool
 
 
@@ -89,16 +86,16 @@ class TradeOff:
     """
 
     job: Job
-    measures: tuple[str, ...]
+    measures: tuple[CommandObjective, ...]
     rows: tuple[Row, ...]
     failures: tuple[Failure, ...] = ()
 
-    def best(self, measure: str) -> Row | None:
+    def best(self, measure: CommandObjective) -> Row | None:
         """Profile of the least value of a measure among those that keep the limits; none where it is unbounded in all of them."""
         able = [row for row in self.rows if row.within_limits and row.values[measure] is not None]
         return min(able, key=lambda row: _order(row.values[measure]), default=None)
 
-    def cost(self, row: Row, measure: str) -> float | None:
+    def cost(self, row: Row, measure: CommandObjective) -> float | None:
         """Give a measure of a profile as a multiple of the best; below 1 only where the profile breaks a limit.
 
         None where it is unbounded, or where the best is zero.
@@ -107,10 +104,14 @@ class TradeOff:
         least = None if best is None else best.values[measure]
         return value / least if value is not None and least else None
 
-    def unit(self, measure: str) -> str:
+    def unit(self, measure: CommandObjective) -> str:
         """Give the unit of a measure in ASCII, as JSON has it."""
-        slave = self.job.machine.slave_unit
-        return _TORQUE_UNITS.get(measure, f"{slave}/s^2" if measure.endswith("acceleration") else f"{slave}/s^3")
+        return OBJECTIVES[measure].unit(self.job.machine.slave_unit)
+
+    @property
+    def sorted_by(self) -> CommandObjective:
+        """The measure that sorts the profiles: the job's objective, or where that is the sync error the one that stands for it."""
+        return of_command(self.job.objective)
 
 
 def step_count(job: Job) -> int:
@@ -144,9 +145,7 @@ def trade_off(job: Job, step: Step = ignore) -> TradeOff:
     from camwright.studies.comparison import law_names, law_profile
 
     objectives = _objectives(job)
-    measures = tuple(
-        name for name in (*MOTION_MEASURES[:2], *TORQUE_MEASURES, *MOTION_MEASURES[2:]) if name in objectives
-    )
+    measures = tuple(name for order in _COLUMNS for name in objectives if OBJECTIVES[name].order == order)
     rows: list[Row] = []
     failures: list[Failure] = []
     placed = job
@@ -158,14 +157,14 @@ def trade_off(job: Job, step: Step = ignore) -> TradeOff:
             failures.append(Failure(objective, str(error)))
             continue
         here = replace(job, machine=solution.machine)
-        placed = here if objective == job.objective or not rows else placed
+        placed = here if objective == of_command(job.objective) or not rows else placed
         rows.append(_row(objective, "objective", solution.profile, here, measures))
     if not rows:
         raise SolverError(f"no objective was solved; the first, {failures[0].name}: {failures[0].reason}")
     for name in law_names(placed.machine, placed.cut):
         step(f"measuring {name}")
         rows.append(_row(name, "baseline", law_profile(name, placed.machine, placed.cut), placed, measures))
-    rows.sort(key=lambda row: _order(row.values[job.objective]))
+    rows.sort(key=lambda row: _order(row.values[of_command(job.objective)]))
     return TradeOff(placed, measures, tuple(rows), tuple(failures))
 
 
@@ -179,7 +178,7 @@ def tradeoff_answer(result: TradeOff, files: Sequence[Path]) -> dict[str, Any]:
     best = {measure: result.best(measure) for measure in result.measures}
     return {
         "job": result.job.name,
-        "sorted_by": result.job.objective,
+        "sorted_by": result.sorted_by,
         "measures": {
             name: {"unit": result.unit(name), "best": row and row.values[name], "best_of": row and row.name}
             for name, row in best.items()
@@ -205,16 +204,16 @@ def tradeoff_view(result: TradeOff) -> RenderableType:
     from rich.table import Table
     from rich.text import Text
 
-    table = Table(title=f"Objectives and laws, by {words(result.job.objective)}; × the best", title_justify="left")
+    table = Table(title=f"Objectives and laws, by {words(result.sorted_by)}; × the best", title_justify="left")
     table.add_column("least …, or law")
     for name in result.measures:
         unit = result.unit(name).replace("^2", "²").replace("^3", "³")
         table.add_column(f"{words(name).replace('acceleration', 'acc.')}\n{unit}", justify="right")
     for row in result.rows:
-        name = words(row.name) if row.kind == "objective" else row.name
+        title = words(row.name) if row.kind == "objective" else row.name
         cells = [_cell(row.values[measure], result.cost(row, measure)) for measure in result.measures]
         style = "bold" if row.kind == "objective" else ""
-        table.add_row(name + ("" if row.within_limits else " †"), *cells, style=style)
+        table.add_row(title + ("" if row.within_limits else " †"), *cells, style=style)
     for failure in result.failures:
         table.add_row(words(failure.name), "failed", *[""] * (len(result.measures) - 1), style="bold")
     broken = any(not row.within_limits for row in result.rows)
@@ -230,23 +229,22 @@ def _cell(value: float | None, cost: float | None) -> str:
     return f"{value:.4g}" if cost is None else f"{value:.4g} ×{cost:.2f}"
 
 
-def _objectives(job: Job) -> tuple[Objective, ...]:
+def _objectives(job: Job) -> tuple[CommandObjective, ...]:
     """Objectives that have a meaning for a job."""
-    from camwright.design.optimise import OBJECTIVES
     from camwright.validation.motor import moves_something
 
     moved = moves_something(job.machine)
-    return tuple(name for name in OBJECTIVES if moved or name not in TORQUE_MEASURES)
+    return tuple(name for name in COMMAND_OBJECTIVES if moved or OBJECTIVES[name].of != "motor")
 
 
-def _row(name: str, kind: Kind, profile: CamProfile, job: Job, measures: Sequence[str]) -> Row:
+def _row(name: str, kind: Kind, profile: CamProfile, job: Job, measures: Sequence[CommandObjective]) -> Row:
     """Measure one profile."""
     from camwright.validation.motion import measure_motion
     from camwright.validation.motor import measure_motor
 
     motion = measure_motion(profile, job.machine, job.cut)
     motor = measure_motor(profile, job.machine, job.cut)
-    values = {measure: getattr(motor if measure in TORQUE_MEASURES else motion, measure) for measure in measures}
+    values = {measure: getattr(motor if OBJECTIVES[measure].of == "motor" else motion, measure) for measure in measures}
     able = _keeps_limits(motion, job) and _keeps_stroke(profile, job) and _keeps_curve(profile, job)
     return Row(name, kind, profile, values, able)
 

@@ -8,11 +8,12 @@ from dataclasses import dataclass
 
 from camwright.design.feasible.extremes import BEYOND, max_line_speed, placed_fastest
 from camwright.design.feasible.feasibility import binding_limit, needed_limits
-from camwright.design.returns.problem import Objective, return_problem
+from camwright.design.returns.problem import return_problem
 from camwright.design.returns.solver import objective_value, solve_return
 from camwright.profiles.cross_cutter import quintic_return
 from camwright.profiles.errors import InputError, SolverError
 from camwright.profiles.machines import Machine
+from camwright.profiles.objective import OBJECTIVES, MotionObjective
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import assemble, quintic_between
 from camwright.profiles.task import Task
@@ -86,7 +87,7 @@ class Envelope:
 
 def envelope(
     task: Task,
-    objective: Objective,
+    objective: MotionObjective,
     lengths: Sequence[float],
     line_speeds: Sequence[float],
     step: Callable[[str], None] = lambda _: None,
@@ -136,7 +137,7 @@ def _row(task: Task) -> EnvelopeRow:
 
 def _points(
     task: Task,
-    objective: Objective,
+    objective: MotionObjective,
     line_speeds: Sequence[float],
     row: EnvelopeRow,
     step: Callable[[str], None],
@@ -157,13 +158,12 @@ def _points(
         yield EnvelopePoint(cut.length, v, value, binding, quintic, linear)
 
 
-def _objective(task: Task, objective: Objective) -> float | None:
+def _objective(task: Task, objective: MotionObjective) -> float | None:
     try:
         back = solve_return(return_problem(task, objective))[0]
     except SolverError:
         return None
-    order = 2 if objective.endswith("acceleration") else 3
-    return objective_value(back, objective) * task.cut.line_speed**order
+    return OBJECTIVES[objective].over_time(objective_value(back, objective), task.cut.line_speed)
 
 
 def quintic_speed(task: Task) -> float | None:

@@ -8,8 +8,9 @@ import numpy as np
 
 from camwright.design.returns.scaling import ScaledProblem
 from camwright.design.returns.structure import VANISHED, extreme_motion
-from camwright.design.returns.transcription import PEAKS, Arc, Motion
+from camwright.design.returns.transcription import Arc, Motion
 from camwright.profiles.closed_forms.softest import softest
+from camwright.profiles.objective import OBJECTIVES
 
 
 def known_start(problem: ScaledProblem) -> tuple[Motion, tuple[Arc, ...]] | None:
@@ -19,7 +20,7 @@ def known_start(problem: ScaledProblem) -> tuple[Motion, tuple[Arc, ...]] | None
     """
     if problem.objective == "rms_jerk" or not problem.rest_to_rest:
         return None
-    if problem.objective in PEAKS:
+    if OBJECTIVES[problem.objective].form == "peak":
         extreme = extreme_motion(problem)
         if extreme is None:
             return None

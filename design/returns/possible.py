@@ -16,6 +16,7 @@ from camwright.profiles.closed_forms.transfer import (
     farthest,
     nearest,
 )
+from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.polynomial.profile import FloatArray
 
 ROUNDING = 1e-12
@@ -95,7 +96,7 @@ def possible_rms(problem: ReturnProblem) -> float:
         return math.inf
     nodes, values = found
     h, left, right = np.diff(nodes), values[:-1], values[1:]
-    if problem.objective.endswith("acceleration"):
+    if OBJECTIVES[problem.objective].order == 2:
         return math.sqrt(float(h @ (left**2 + left * right + right**2)) / 3) * abs(scale) / problem.length**2
     return math.sqrt(float(((right - left) ** 2 / h).sum())) * abs(scale) / problem.length**3
 

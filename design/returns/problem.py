@@ -5,14 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Literal
 
 from camwright.profiles.machines import LinearCarriage
+from camwright.profiles.objective import MotionObjective
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.task import Task
-
-Objective = Literal["peak_acceleration", "rms_acceleration", "peak_jerk", "rms_jerk"]
-"""Objectives of the motion alone."""
 
 
 @dataclass(frozen=True)
@@ -54,12 +51,12 @@ class ReturnProblem:
     greatest_ratio: float
     greatest_slope: float
     greatest_jerk: float
-    objective: Objective
+    objective: MotionObjective
     least_position: float = -math.inf
     greatest_position: float = math.inf
 
 
-def return_problem(task: Task, objective: Objective) -> ReturnProblem:
+def return_problem(task: Task, objective: MotionObjective) -> ReturnProblem:
     """Put the return of a cutting machine into numbers: the sync zone's ends give the return's boundary values."""
     machine, ends = task.machine, _ends(task.sync)
     least, greatest = -math.inf, math.inf

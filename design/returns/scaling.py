@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from camwright.design.returns.problem import Objective, ReturnProblem
+from camwright.design.returns.problem import ReturnProblem
 from camwright.profiles.closed_forms.reach import least_acceleration
+from camwright.profiles.objective import MotionObjective
 from camwright.profiles.polynomial.profile import CamProfile
 
 # Limits far beyond what any motion of unit height in unit length needs (2, 8 and 60) are cut off to keep the solver's numbers small.
@@ -47,7 +48,7 @@ class ScaledProblem:
     greatest_ratio: float
     greatest_slope: float
     greatest_jerk: float
-    objective: Objective
+    objective: MotionObjective
     drift: float = 0.0
     least_position: float = -math.inf
     greatest_position: float = math.inf

@@ -11,7 +11,7 @@ import numpy as np
 from camwright.design.returns.closed_starts import known_start
 from camwright.design.returns.ipopt import SolveStatus, programme
 from camwright.design.returns.possible import possible_motion
-from camwright.design.returns.problem import Objective, ReturnProblem
+from camwright.design.returns.problem import ReturnProblem
 from camwright.design.returns.scaling import (
     ScaledProblem,
     motion_scale,
@@ -29,13 +29,13 @@ from camwright.design.returns.structure import (
     tidy,
 )
 from camwright.design.returns.transcription import (
-    PEAKS,
     Arc,
     Motion,
     Shape,
 )
 from camwright.profiles.closed_forms.reach import greatest_reach
 from camwright.profiles.errors import SolverError
+from camwright.profiles.objective import OBJECTIVES, MotionObjective
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 
 FREE: tuple[Arc, ...] = ("free",)
@@ -72,12 +72,12 @@ LEAST_ARC = 1e-5
 NO_MOTION = 1e-13
 
 
-def objective_value(back: CamProfile, objective: Objective) -> float:
+def objective_value(back: CamProfile, objective: MotionObjective) -> float:
     """Objective of a return over the master: peak or root mean square of ``y''`` or ``y'''``, exactly."""
-    order = 2 if objective.endswith("acceleration") else 3
-    if objective.startswith("rms"):
-        return math.sqrt(back.mean_square(order))
-    least, greatest = back.extrema(order)
+    of = OBJECTIVES[objective]
+    if of.form == "rms":
+        return math.sqrt(back.mean_square(of.order))
+    least, greatest = back.extrema(of.order)
     return max(-least.value, greatest.value, 0.0)
 
 
@@ -234,7 +234,7 @@ def _read_again(problem: ScaledProblem, polished: Motion) -> tuple[Motion, float
 
 
 def _extreme_is_optimal(problem: ScaledProblem) -> bool:
-    return problem.objective in PEAKS and problem.rest_to_rest and not problem.confined
+    return OBJECTIVES[problem.objective].form == "peak" and problem.rest_to_rest and not problem.confined
 
 
 def _better(profile: CamProfile, other: CamProfile | None, problem: ScaledProblem) -> CamProfile:
@@ -327,8 +327,9 @@ def grid_objective(problem: ReturnProblem) -> float:
     motion, success, _ = _on_grid(scaled, np.full(count, 1.0 / count), 0.0)
     if not success:
         return math.inf
-    value = motion.objective if problem.objective in PEAKS else math.sqrt(max(0.0, motion.objective))
-    return value * abs(scale) / problem.length ** (2 if problem.objective.endswith("acceleration") else 3)
+    of = OBJECTIVES[problem.objective]
+    value = motion.objective if of.form == "peak" else math.sqrt(max(0.0, motion.objective))
+    return value * abs(scale) / problem.length**of.order
 
 
 def _grids(problem: ScaledProblem, witness: Motion | None) -> Iterator[tuple[FloatArray, float, bool]]:

@@ -10,7 +10,8 @@ import numpy as np
 from camwright.design.returns.possible import possible_motion
 from camwright.design.returns.scaling import ScaledProblem
 from camwright.design.returns.structure import VANISHED
-from camwright.design.returns.transcription import PEAKS, Motion
+from camwright.design.returns.transcription import Motion
+from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.polynomial.profile import FloatArray
 
 # The least limit is found to this share, far below what counts as the same objective.
@@ -34,7 +35,7 @@ def least_peak_motion(problem: ScaledProblem) -> Motion | None:
     Motion or None
         ``None`` for other objectives, without a stroke, and where not even the given limits leave a motion.
     """
-    if problem.objective not in PEAKS or not problem.confined:
+    if OBJECTIVES[problem.objective].form != "peak" or not problem.confined:
         return None
     slope = problem.objective == "peak_acceleration"
 

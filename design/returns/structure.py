@@ -25,6 +25,7 @@ from camwright.profiles.closed_forms.reach import (
     least_acceleration,
     least_jerk,
 )
+from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.polynomial.profile import FloatArray
 
 SEVEN_ARCS: tuple[Arc, ...] = ("free", "hold", "free", "cruise", "free", "hold", "free")
@@ -214,7 +215,7 @@ def extreme_motion(problem: ScaledProblem) -> DoubleS | None:
     if problem.confined or not problem.rest_to_rest:
         return None
     height, speed = problem.height, problem.greatest_ratio
-    if problem.objective.endswith("jerk"):
+    if OBJECTIVES[problem.objective].order == 3:
         jerk = least_jerk(height, 1.0, speed, problem.greatest_slope)
         return in_time(height, 1.0, speed, problem.greatest_slope, jerk)
     acceleration = least_acceleration(height, 1.0, speed, problem.greatest_jerk)

@@ -23,11 +23,9 @@ from typing import Any, Literal
 import casadi as ca
 import numpy as np
 
-from camwright.design.returns.problem import Objective
 from camwright.design.returns.scaling import ScaledProblem
+from camwright.profiles.objective import OBJECTIVES, MotionObjective
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
-
-PEAKS: tuple[Objective, ...] = ("peak_acceleration", "peak_jerk")
 
 Arc = Literal["free", "ramp", "hold", "fall", "cruise"]
 """What a piece is known to be: nothing, linear in the acceleration, of constant acceleration, without acceleration at its end, of constant
@@ -64,7 +62,7 @@ class Shape:
     arcs: tuple[Arc, ...]
     degree: int
     free_lengths: bool
-    objective: Objective
+    objective: MotionObjective
     confined: bool = False
     at_nodes: bool = False
 
@@ -167,7 +165,7 @@ class Programme:
             "q": m + 1,
             "j": m * p if shape.objective == "rms_jerk" else 0,
             "h": m if shape.free_lengths else 0,
-            "t": 1 if shape.objective in PEAKS else 0,
+            "t": 1 if OBJECTIVES[shape.objective].form == "peak" else 0,
         }
         unknown = {name: ca.SX.sym(name, size) for name, size in self._sizes.items()}
         jerk_limit, drift = (ca.SX.sym(name) for name in "Jd")
@@ -427,7 +425,7 @@ def _known_arcs(shape: Shape, a: Any) -> list[Any]:
 
 def _cost(shape: Shape, unknown: dict[str, Any], lengths: Any) -> Any:
     """Objective: the bound of a peak, or the mean square by the Gram matrix of the Bernstein polynomials."""
-    if shape.objective in PEAKS:
+    if OBJECTIVES[shape.objective].form == "peak":
         return unknown["t"]
     p = shape.degree
     cost = ca.SX(0)

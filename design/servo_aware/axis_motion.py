@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from camwright.design.returns.problem import Objective
 from camwright.design.returns.solver import objective_value
 from camwright.design.servo_aware.axis_response import PHASES
 from camwright.design.servo_aware.programme import (
@@ -16,10 +15,9 @@ from camwright.design.servo_aware.programme import (
     LEAST_ERROR,
     AxisProblem,
     AxisProgramme,
-    Cost,
 )
-from camwright.design.servo_aware.torque import TorqueCost
 from camwright.profiles.errors import SolverError
+from camwright.profiles.objective import OBJECTIVES, CommandObjective, ObjectiveName
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.returns import assemble
 
@@ -66,7 +64,7 @@ class AxisMotion:
         return max(self.errors)
 
 
-def design_axis(problem: AxisProblem, objective: Cost) -> AxisMotion | None:
+def design_axis(problem: AxisProblem, objective: ObjectiveName) -> AxisMotion | None:
     """Design a command whose axis keeps to the material in the shear zone.
 
     With ``"sync_error"`` the largest sync error is made least, down to 0.5 % of the tolerance, then, within a thousandth of it, the peak
@@ -94,8 +92,9 @@ def design_axis(problem: AxisProblem, objective: Cost) -> AxisMotion | None:
         if found is None:
             return None
         value = found[1]
-        if objective in ("peak_acceleration", "peak_jerk"):
-            found = _smoothest(programme, found, 1.0, 2 if objective == "peak_acceleration" else 3)
+        of = OBJECTIVES[objective]
+        if of.form == "peak" and of.of == "motion":
+            found = _smoothest(programme, found, 1.0, of.order)
         return _motion(programme, found[0], value)
     band = LEAST_ERROR
     softer = _softest(programme, band) if len(problem.servos) == 1 else None  # no command suits several servos so well
@@ -111,7 +110,7 @@ def design_axis(problem: AxisProblem, objective: Cost) -> AxisMotion | None:
     return _motion(programme, found[0])
 
 
-def servo_blind_optimum(programme: AxisProgramme, objective: Objective | TorqueCost) -> AxisMotion | None:
+def servo_blind_optimum(programme: AxisProgramme, objective: CommandObjective) -> AxisMotion | None:
     """Take the servo-blind optimum, which the problem's structure is, where its axis keeps to everything: then nothing is better."""
     problem = programme.problem
     if problem.structure is None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal, cast, get_args
+from typing import cast
 
 import numpy as np
 
@@ -26,26 +26,13 @@ from camwright.design.servo_aware.rows import (
     ratio_rows,
     worst_places,
 )
-from camwright.design.servo_aware.torque import AxisTorque, TorqueCost
+from camwright.design.servo_aware.torque import AxisTorque
 from camwright.profiles.errors import SolverError
 from camwright.profiles.machines import LinearCarriage
+from camwright.profiles.objective import OBJECTIVES, MotorObjective, ObjectiveName
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
-
-Cost = Literal[
-    "sync_error",
-    "peak_acceleration",
-    "rms_acceleration",
-    "peak_jerk",
-    "rms_jerk",
-    "rms_torque",
-    "peak_torque",
-    "energy",
-]
-"""What a programme minimises."""
-
-TORQUES = get_args(TorqueCost)
 
 # Limits are drawn in by this share, twice what an answer may break its rows by.
 LIMIT_MARGIN = 2 * ACCEPTED
@@ -70,8 +57,6 @@ LEAST_PEAK = 1e-6
 MOST_SERVOS = 12
 # Least band that is asked for (share of the tolerance): below it the motion matters more.
 LEAST_ERROR = 5e-3
-_ORDER = {"peak_acceleration": 2, "rms_acceleration": 2, "peak_jerk": 3, "rms_jerk": 3}
-_LINEAR = ("sync_error", "peak_acceleration", "peak_jerk")
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,7 +116,7 @@ class AxisProgramme:
         self._excess: dict[int, FloatArray] = {}
 
     def solve(
-        self, cost: Cost, band: float | None, caps: dict[int, float] | None = None, rounds: int = ROUNDS
+        self, cost: ObjectiveName, band: float | None, caps: dict[int, float] | None = None, rounds: int = ROUNDS
     ) -> tuple[FloatArray, float] | None:
         """Find the command with the least cost.
 
@@ -202,7 +187,7 @@ class AxisProgramme:
             before = found[1]
         return share
 
-    def _feasible(self, cost: Cost, caps: dict[int, float]) -> tuple[FloatArray, float] | None:
+    def _feasible(self, cost: ObjectiveName, caps: dict[int, float]) -> tuple[FloatArray, float] | None:
         """Solve within the tolerance; at its very edge, where the solver cannot tell, by how far it would have to be widened."""
         try:
             return self._solve_rows(cost, 1.0, caps)
@@ -231,11 +216,11 @@ class AxisProgramme:
         )
 
     def _solve_rows(
-        self, cost: Cost, band: float | None, caps: dict[int, float], *, elastic: bool = False
+        self, cost: ObjectiveName, band: float | None, caps: dict[int, float], *, elastic: bool = False
     ) -> tuple[FloatArray, float] | None:
         """Solve with the rows there are; ``elastic`` widens the ratio's band with that of the position."""
         self._begin(cost, ratio=elastic or band == 1.0)
-        if cost in TORQUES or cost == "sync_error":
+        if OBJECTIVES[cost].of == "motor" or cost == "sync_error":
             # the former are not quickly solved again; in the latter nothing but limits holds what the shear zone does not see
             self._tight = set(range(4))
         while True:
@@ -243,9 +228,9 @@ class AxisProgramme:
             if found is None or not self._tighten(found[0]):
                 return found
 
-    def _begin(self, cost: Cost, *, ratio: bool) -> None:
+    def _begin(self, cost: ObjectiveName, *, ratio: bool) -> None:
         """Make the first rows of a design, unless a mean square is made least of a command in sync, which may well need none."""
-        in_sync, mean = self.problem.command == "in_sync", cost not in _LINEAR
+        in_sync, mean = self.problem.command == "in_sync", not _linear(cost)
         if in_sync and mean:
             return
         first = FEW if in_sync or mean or len(self.axes) > 1 else MORE
@@ -270,12 +255,12 @@ class AxisProgramme:
         return bool(broken)
 
     def _solve_once(
-        self, cost: Cost, band: float | None, caps: dict[int, float], *, elastic: bool
+        self, cost: ObjectiveName, band: float | None, caps: dict[int, float], *, elastic: bool
     ) -> tuple[FloatArray, float] | None:
         """Solve with those rows of the limits that have been found to matter."""
         self.solved += 1
         count = self.basis.matrix.shape[1]
-        peak = cost in _LINEAR
+        peak = _linear(cost)
         programme = ConvexProgramme(count + peak)
         bounds = self._limits()
         for order, (low, high) in bounds.items():
@@ -298,19 +283,19 @@ class AxisProgramme:
         for rows in self._own:
             matrix, constant = rows.matrix * (self.scale / rows.size)[:, None], rows.constant / rows.size
             programme.add(matrix, rows.low / rows.size - constant, rows.high / rows.size - constant, BAND_ACCEPTED)
-        if cost in TORQUES:
-            return self._least_torque(programme, cast(TorqueCost, cost))
+        if OBJECTIVES[cost].of == "motor":
+            return self._least_torque(programme, cast(MotorObjective, cost))
         if not peak:
-            return self._mean_square(programme, _ORDER[cost], sure=not caps)
+            return self._mean_square(programme, OBJECTIVES[cost].order, sure=not caps)
         unit = 1.0
         if cost != "sync_error":
-            unit = bounds[_ORDER[cost]][1]
-            matrix, constant = self.basis.differences[_ORDER[cost]]
+            unit = bounds[OBJECTIVES[cost].order][1]
+            matrix, constant = self.basis.differences[OBJECTIVES[cost].order]
             programme.add_peak(matrix * (self.scale / unit), constant / unit, -1.0, 1.0)
         answer = programme.solve(np.append(np.zeros(count), 1.0))
         return None if answer is None else (answer[:-1], max(0.0, float(answer[-1])) * unit)
 
-    def _least_torque(self, programme: ConvexProgramme, cost: TorqueCost) -> tuple[FloatArray, float] | None:
+    def _least_torque(self, programme: ConvexProgramme, cost: MotorObjective) -> tuple[FloatArray, float] | None:
         """Least torque or energy, from the command of least mean square acceleration, and from the answer with fewer rows before."""
         gentle = self._mean_square(programme, 2, sure=True)
         if gentle is None:
@@ -437,3 +422,8 @@ class AxisProgramme:
 def _stands_still(value: float, before: float, band: float) -> bool:
     """Whether more rows are of no use: beyond the tolerance bands are scaled, and the tool of a crank is off by more than that."""
     return band > 1.0 and math.isclose(value, before, rel_tol=STILL)
+
+
+def _linear(cost: ObjectiveName) -> bool:
+    """Whether the programme is linear: a greatest magnitude of what is linear in the command, which a torque is not."""
+    return OBJECTIVES[cost].form == "peak" and OBJECTIVES[cost].of != "motor"

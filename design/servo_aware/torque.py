@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Literal
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -13,11 +13,9 @@ from camwright.design.servo_aware.command_basis import CommandBasis
 from camwright.design.servo_aware.convex import Rows, sparse
 from camwright.design.torque.programme import LOBATTO, ROUNDING
 from camwright.profiles.errors import SolverError
+from camwright.profiles.objective import MotorObjective
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.task import Task
-
-TorqueCost = Literal["rms_torque", "peak_torque", "energy"]
-"""What is minimised at the slave over the free part of the cycle: root mean square, peak, or mean power drawn."""
 
 # A slave that turns back has its friction smoothed over this share of the line speed.
 SMOOTH = 0.01
@@ -52,19 +50,19 @@ class AxisTorque:
         widths = np.diff(basis.nodes)
         self._shares = (widths[:, None] * _WEIGHTS).ravel() / widths.sum()
 
-    def value(self, unknowns: FloatArray, cost: TorqueCost) -> float:
+    def value(self, unknowns: FloatArray, cost: MotorObjective) -> float:
         """Objective of a command (N or N·m, or W)."""
         motion = [(matrix @ unknowns) * self._scale + known for matrix, known in self._derivatives]
         return self._value(motion, self._shares, cost)
 
-    def value_of(self, back: CamProfile, cost: TorqueCost) -> float:
+    def value_of(self, back: CamProfile, cost: MotorObjective) -> float:
         """Objective of a return that counts from the end of the sync zone."""
         widths = np.diff(back.breaks)
         x = (back.breaks[:-1, None] + widths[:, None] * _PLACES).ravel()
         shares = (widths[:, None] * _WEIGHTS).ravel() / back.length
         return self._value([back(x), back(x, 1), back(x, 2)], shares, cost)
 
-    def _value(self, motion: list[FloatArray], shares: FloatArray, cost: TorqueCost) -> float:
+    def _value(self, motion: list[FloatArray], shares: FloatArray, cost: MotorObjective) -> float:
         force, power = (np.asarray(part, dtype=np.float64).ravel() for part in self._force(*motion))
         if cost == "rms_torque":
             return math.sqrt(float(shares @ force**2))
@@ -78,7 +76,7 @@ class AxisTorque:
         force = force + machine.friction * (np.tanh(velocity / (SMOOTH * v)) if machine.turns_back else 1.0)
         return force, force * velocity
 
-    def minimise(self, cost: TorqueCost, rows: Rows, start: FloatArray) -> FloatArray:
+    def minimise(self, cost: MotorObjective, rows: Rows, start: FloatArray) -> FloatArray:
         """Find a command of least torque or energy that keeps rows, near a start.
 
         Parameters

@@ -15,19 +15,19 @@ import casadi as ca
 import numpy as np
 
 from camwright.design.returns.ipopt import QUIET
-from camwright.design.returns.problem import Objective, ReturnProblem
+from camwright.design.returns.problem import ReturnProblem
 from camwright.design.returns.scaling import ScaledProblem
 from camwright.design.returns.transcription import Motion
 from camwright.profiles.cut import Cut
 from camwright.profiles.machines import Machine
 from camwright.profiles.motor import MotorCurve
+from camwright.profiles.objective import MOTION_OBJECTIVES, CommandObjective
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 
 # NumPy's functions on CasADi's symbols are meant: a machine is written once, for numbers and symbols alike.
 ca.GlobalOptions.setNumpyMode(1)
 
-TorqueObjective = Literal["rms_torque", "peak_torque", "energy"]
-Aim = TorqueObjective | Objective | Literal["load"]
+Aim = CommandObjective | Literal["load"]
 """What is minimised; the load is the greatest share of the motor's torque at its speed that is used."""
 
 INTERVALS = 80
@@ -214,7 +214,7 @@ class TorqueProgramme:
         n = INTERVALS
         start = self._state(guess, 1.5)
         torque, power, _ = (np.asarray(part).ravel() for part in self._measure(start))
-        motion = self._task.aim.endswith(("acceleration", "jerk"))
+        motion = self._task.aim in MOTION_OBJECTIVES
         unit = self._value(start) if motion else float(np.sqrt(np.mean(torque**2)))
         units = [max(unit, 1e-300), max(float(np.abs(power).max()), 1e-300)]
         if self._drawn:

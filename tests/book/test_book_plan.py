@@ -47,7 +47,6 @@ def test_the_job_of_a_combination_is_the_job_with_its_numbers(file: Path) -> Non
         name=found.name,
         cut=cut,
         objective="rms_acceleration",
-        minimise_sync_error=False,
         text=found.text,
         sha256=found.sha256,
     )

@@ -79,7 +79,7 @@ def test_the_index_says_what_designs_made_one_by_one_say(done: Path) -> None:
         failed = [check.name for check in report.checks if not check.passed]
         failed += [f"csv: {check.name}" for check in table.judgement.checks if not check.passed]
         assert row["failed_checks"] == "; ".join(failed)
-        assert float(row["value"]) == solution.objective
+        assert float(row["value"]) == solution.minimised
         assert float(row["rms_acceleration_m_per_s2"]) == report.tool.rms_acceleration
         assert report.servo is not None
         assert float(row["following_error_mm"]) == report.servo.peak_following_error * 1e3

@@ -134,7 +134,7 @@ def test_the_sync_error_alone_is_made_least_whatever_the_tolerance() -> None:
     cut, command = INFEASIBLE["one command only"]
     solution = solve_axis(Task(KNIFE, cut, LIMITS), "sync_error", command, (PAPER,))
     # the limits leave one motion between the sync zones, that of the servo-blind design
-    assert solution.objective == pytest.approx(
+    assert solution.minimised == pytest.approx(
         servo_response(solution.profile, KNIFE, cut, PAPER).shear_zone_error, abs=1e-9
     )
     assert peak_acceleration(solution, cut) == pytest.approx(LIMITS.acceleration, rel=1e-6)
@@ -165,7 +165,7 @@ def test_the_torque_of_a_carriage_without_friction_is_its_acceleration() -> None
         solve_axis(Task(carriage, cut, limits), objective, "in_sync", (PAPER,))
         for objective in ("rms_torque", "rms_acceleration")
     )
-    assert torque.objective == pytest.approx(acceleration.objective, rel=1e-9)
+    assert torque.minimised == pytest.approx(acceleration.minimised, rel=1e-9)
     assert torque.objective_name == "rms_torque"
 
 
@@ -178,7 +178,7 @@ def test_a_motors_curve_is_kept() -> None:
     held = solve_axis(Task(knife, cut, replace(LIMITS, motor=curve)), "peak_jerk", "shaped", (PAPER,))
     load, available = greatest_load(held.profile, knife, cut, curve)
     assert abs(load.value) <= available * (1 + 1e-9)
-    assert held.objective >= free.objective * (1 - 1e-6)
+    assert held.minimised >= free.minimised * (1 - 1e-6)
 
 
 def test_a_crank_that_is_free_is_placed_as_for_the_servo_blind_design() -> None:
@@ -214,4 +214,4 @@ def test_under_a_motors_curve_the_blind_optimum_is_taken_where_its_axis_will_do(
     found = solve_axis(Task(knife, cut, limits), "rms_jerk", "in_sync", (servo,))
     assert found.axis is not None
     assert found.axis.error <= cut.sync_tolerance
-    assert found.objective == pytest.approx(blind.objective, rel=1e-9)
+    assert found.minimised == pytest.approx(blind.minimised, rel=1e-9)

@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 
 from camwright.design.feasible.feasibility import is_feasible, least_limit
-from camwright.design.optimise import Objective, solve
+from camwright.design.optimise import solve
 from camwright.design.place_cost import place_for
 from camwright.profiles.cut import Cut
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import CrankSlider
 from camwright.profiles.motor import MotorCurve
+from camwright.profiles.objective import CommandObjective
 from camwright.profiles.task import Task
 from camwright.validation.motion import measure_motion
 
@@ -24,7 +25,7 @@ LONG = Cut(0.9, 1.0, 0.2, 0.04, 0.1, 1e-4)
 LIMITS = Limits(60.0, 2000.0, 400000.0)
 
 
-def peak(placed: CrankSlider, cut: Cut, objective: Objective) -> float:
+def peak(placed: CrankSlider, cut: Cut, objective: CommandObjective) -> float:
     """Peak of the whole cycle that is optimal at a place."""
     motion = measure_motion(solve(Task(placed, cut, LIMITS), objective).profile, placed, cut)
     value = motion.peak_acceleration if objective == "peak_acceleration" else motion.peak_jerk
@@ -34,7 +35,7 @@ def peak(placed: CrankSlider, cut: Cut, objective: Objective) -> float:
 
 @pytest.mark.parametrize("objective", ["peak_acceleration", "peak_jerk"])
 @pytest.mark.parametrize("cut", [LONG, replace(LONG, length=2.0)])
-def test_no_other_place_has_a_lower_peak_of_the_whole_cycle(objective: Objective, cut: Cut) -> None:
+def test_no_other_place_has_a_lower_peak_of_the_whole_cycle(objective: CommandObjective, cut: Cut) -> None:
     found = place_for(CRANK, cut, LIMITS, objective).machine
     best = peak(found, cut, objective)
     least, greatest = CRANK.sync_range(cut)

@@ -34,9 +34,7 @@ def faults(text: str) -> tuple[str, ...]:
 def test_the_papers_job_has_no_dead_time_and_is_not_servo_aware() -> None:
     job = load_job()
     assert (job.servo.dead_time, job.servo.lead_time) == (0.0, 0.0)
-    assert (job.servo_aware, job.command, job.servo_tolerance, job.minimise_sync_error) == (
-        False, "in_sync", None, False
-    )  # fmt: skip
+    assert (job.servo_aware, job.command, job.servo_tolerance) == (False, "in_sync", None)
 
 
 def test_dead_time_and_lead_are_read_in_seconds() -> None:
@@ -47,13 +45,9 @@ def test_dead_time_and_lead_are_read_in_seconds() -> None:
 
 def test_a_servo_aware_job_says_so() -> None:
     job = parse_job(changed(objective=AWARE), "")
-    assert (job.servo_aware, job.command, job.objective, job.minimise_sync_error) == (
-        True, "in_sync", "peak_acceleration", False
-    )  # fmt: skip
+    assert (job.servo_aware, job.command, job.objective) == (True, "in_sync", "peak_acceleration")
     job = parse_job(changed(objective='servo_aware = true\ncommand = "shaped"\nminimise = "sync_error"'), "")
-    assert (job.servo_aware, job.command, job.objective, job.minimise_sync_error) == (
-        True, "shaped", "peak_acceleration", True
-    )  # fmt: skip
+    assert (job.servo_aware, job.command, job.objective) == (True, "shaped", "sync_error")
 
 
 def test_ranges_are_read_as_percentages_and_as_ends() -> None:

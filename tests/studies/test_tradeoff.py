@@ -14,9 +14,6 @@ from matplotlib.figure import Figure
 
 from camwright.cli.objectives import compare_objectives
 from camwright.design.optimise import (
-    MOTION_OBJECTIVES,
-    OBJECTIVES,
-    Objective,
     Solution,
     solve,
 )
@@ -31,6 +28,7 @@ from camwright.profiles.machines import (
     RotaryKnife,
 )
 from camwright.profiles.machines.screw_equivalent import screw_equivalent
+from camwright.profiles.objective import COMMAND_OBJECTIVES, MOTION_OBJECTIVES, CommandObjective
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.task import Task
 from camwright.studies.comparison import Comparison, compare
@@ -83,7 +81,11 @@ def test_each_objective_is_best_in_its_own_measure(paper: TradeOff, carriage: Tr
 
 def test_torque_objectives_need_something_to_move(paper: TradeOff, carriage: TradeOff) -> None:
     assert {row.name for row in paper.rows if row.kind == "objective"} == set(MOTION_OBJECTIVES) == set(paper.measures)
-    assert {row.name for row in carriage.rows if row.kind == "objective"} == set(OBJECTIVES) == set(carriage.measures)
+    assert (
+        {row.name for row in carriage.rows if row.kind == "objective"}
+        == set(COMMAND_OBJECTIVES)
+        == set(carriage.measures)
+    )
 
 
 def test_torques_of_a_carriage_follow_from_its_acceleration(carriage: TradeOff) -> None:
@@ -121,7 +123,7 @@ def test_a_law_that_leaves_the_stroke_breaks_a_limit(carriage: TradeOff) -> None
 def failing(names: set[str]) -> Callable[..., Solution]:
     """Solver that fails on some objectives."""
 
-    def solve_or_fail(task: Task, objective: Objective) -> Solution:
+    def solve_or_fail(task: Task, objective: CommandObjective) -> Solution:
         if objective in names:
             raise SolverError(f"no luck with {objective}")
         return solve(task, objective)
@@ -148,7 +150,7 @@ def test_an_objective_that_fails_is_listed_and_the_rest_goes_on(
 
 
 def test_where_every_objective_fails_so_does_the_trade_off(paper: TradeOff, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("camwright.design.optimise.solve", failing(set(OBJECTIVES)))
+    monkeypatch.setattr("camwright.design.optimise.solve", failing(set(COMMAND_OBJECTIVES)))
     with pytest.raises(SolverError, match="no objective was solved; the first, peak_acceleration: no luck"):
         trade_off(paper.job)
 

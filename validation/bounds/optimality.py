@@ -22,12 +22,12 @@ from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import LinearCarriage, Machine
+from camwright.profiles.objective import OBJECTIVES, ObjectiveName
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.returns import is_straight
 from camwright.validation.bounds.quadratic import multipliers
 from camwright.validation.motor import moves_something
 
-OBJECTIVES = ("peak_acceleration", "rms_acceleration", "peak_jerk", "rms_jerk", "rms_torque", "peak_torque", "energy")
 INTERVALS = 140
 """Intervals of half a motion."""
 GREATEST = 1e3
@@ -62,7 +62,7 @@ class _Return:
     jerk: float
 
 
-def lower_bound(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits, objective: str) -> Bound:
+def lower_bound(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits, objective: ObjectiveName) -> Bound:
     """Lower bound of what any return of this job can reach.
 
     Bounds are known where the slave's ratio is constant in sync: then the return is a straight line plus a motion from rest to rest. Of the
@@ -77,7 +77,7 @@ def lower_bound(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits,
     objective
         ``"peak_acceleration"``, ``"rms_acceleration"``, ``"peak_jerk"`` or ``"rms_jerk"``; root mean squares over the return zone. Or
         ``"rms_torque"`` (over the whole cycle), ``"peak_torque"`` or ``"energy"`` at the motor, as `camwright.validation.motor`
-        measures them.
+        measures them. None is known of the energy, and of the sync error, which is not the return's.
 
     Raises
     ------
@@ -86,7 +86,7 @@ def lower_bound(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits,
     """
     if objective not in OBJECTIVES:
         raise InputError(f"there is no objective {objective!r}; the objectives are {', '.join(OBJECTIVES)}")
-    if not is_straight(machine, cut) or objective == "energy":
+    if not is_straight(machine, cut) or objective in ("energy", "sync_error"):
         return Bound(math.nan, NONE)
     if objective in ("rms_torque", "peak_torque"):
         return _torque_bound(profile, machine, cut, limits, objective)
@@ -103,7 +103,7 @@ def lower_bound(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits,
     return _free_bound(profile, machine, cut, limits, objective, height)
 
 
-def _braking(velocity: float, room: float, way: float, time: float, limits: Limits, objective: str) -> float:
+def _braking(velocity: float, room: float, way: float, time: float, limits: Limits, objective: ObjectiveName) -> float:
     """Bound of a carriage that comes out of its sync zone at a velocity and must turn round within half of what the stroke leaves.
 
     On one side of the zone there is no more room than that, and by mirroring the time both ends of the return are alike.
@@ -150,7 +150,7 @@ def _softest_turns(velocity: float, room: float, way: float, time: float) -> flo
 
 
 def _free_bound(
-    profile: CamProfile, machine: Machine, cut: Cut, limits: Limits, objective: str, height: float
+    profile: CamProfile, machine: Machine, cut: Cut, limits: Limits, objective: ObjectiveName, height: float
 ) -> Bound:
     """Bound without the stroke, of a motion over the line that covers a height."""
     length, v = cut.return_zone, cut.line_speed
@@ -183,7 +183,7 @@ def _free_bound(
     return Bound(math.sqrt(max(0.0, _dual_bound(scaled, job))) * unit, DUAL)
 
 
-def _torque_bound(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits, objective: str) -> Bound:
+def _torque_bound(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits, objective: ObjectiveName) -> Bound:
     """Bound of a torque at the motor where the inertia ``I`` is constant, as it is where the slave's ratio in sync is.
 
     The mean of ``ÿ sign(ẏ)`` over a closed cycle is zero, so the mean square of the force is ``I²`` times that of the acceleration, plus
@@ -191,9 +191,10 @@ def _torque_bound(profile: CamProfile, machine: Machine, cut: Cut, limits: Limit
     """
     if not moves_something(machine) or (objective == "peak_torque" and machine.friction > 0):
         return Bound(math.nan, NONE)
-    motion = lower_bound(profile, machine, cut, limits, objective.replace("torque", "acceleration"))
+    peak = objective == "peak_torque"
+    motion = lower_bound(profile, machine, cut, limits, "peak_acceleration" if peak else "rms_acceleration")
     inertial = float(machine.inertia(0.0)) * motion.value / machine.motor_ratio
-    if objective == "peak_torque":
+    if peak:
         return Bound(inertial, motion.method)
     way = abs(machine.pitch - machine.sync_profile(cut).advance)
     moving = min(1.0, (cut.sync_zone + cut.line_speed * way / limits.speed) / cut.length)

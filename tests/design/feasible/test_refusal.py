@@ -107,7 +107,7 @@ def test_a_motor_that_is_too_weak_says_how_much_torque_is_needed() -> None:
     assert f"[limits] motor with {found['motor'].value:.15g} % of its torque" in str(raised.value)
     assert limits.motor is not None
     stronger = MotorCurve(tuple((speed, torque * share) for speed, torque in limits.motor.points))
-    assert solve(Task(CRANK, SHEAR, replace(limits, motor=stronger)), "rms_torque").objective > 0
+    assert solve(Task(CRANK, SHEAR, replace(limits, motor=stronger)), "rms_torque").minimised > 0
 
 
 def test_the_least_factor_is_found_on_either_side_of_one() -> None:

@@ -9,12 +9,13 @@ import pytest
 from scipy.optimize import linprog
 
 from camwright.design.optimise import solve
-from camwright.design.returns.problem import Objective, return_problem
+from camwright.design.returns.problem import return_problem
 from camwright.design.returns.scaling import ScaledProblem, motion_scale, scale_problem
 from camwright.design.returns.stroke import least_peak_motion
 from camwright.profiles.cut import Cut
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import LinearCarriage
+from camwright.profiles.objective import MotionObjective
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.profiles.task import Task
 from camwright.validation.bounds.optimality import lower_bound
@@ -29,7 +30,7 @@ LOOSE = Limits(100.0, 1e4, 1e7)
 V = CUT.line_speed
 
 
-def scaled(cut: Cut, limits: Limits, objective: Objective = "peak_acceleration") -> ScaledProblem:
+def scaled(cut: Cut, limits: Limits, objective: MotionObjective = "peak_acceleration") -> ScaledProblem:
     problem = return_problem(Task(SAW, cut, limits), objective)
     return scale_problem(problem, motion_scale(problem))
 
@@ -37,14 +38,14 @@ def scaled(cut: Cut, limits: Limits, objective: Objective = "peak_acceleration")
 def test_the_least_jerk_is_that_of_turning_round_in_the_room_there_is() -> None:
     # from line speed to standstill with jerk j alone: t = sqrt(2 v / j), v t 2 / 3 of way, so that j = 8 v³ / (9 way²)
     solution = solve(Task(SAW, CUT, LOOSE), "peak_jerk")
-    assert solution.objective == pytest.approx(8 * V**3 / (9 * ROOM**2), rel=1e-9)
+    assert solution.minimised == pytest.approx(8 * V**3 / (9 * ROOM**2), rel=1e-9)
     assert solution.status.name == "OPTIMAL"
 
 
 def test_the_least_acceleration_is_that_of_braking_in_the_room_there_is() -> None:
     solution = solve(Task(SAW, CUT, LOOSE), "peak_acceleration")
-    assert solution.objective == pytest.approx(V**2 / (2 * ROOM), rel=1e-3)
-    assert solution.objective >= V**2 / (2 * ROOM)  # and never less: the jerk is limited
+    assert solution.minimised == pytest.approx(V**2 / (2 * ROOM), rel=1e-3)
+    assert solution.minimised >= V**2 / (2 * ROOM)  # and never less: the jerk is limited
     place = solution.back.extrema(0)
     assert place[1].value == pytest.approx(ROOM, rel=1e-9)
 
@@ -94,7 +95,7 @@ def least_peak_by_linear_programme(problem: ScaledProblem, order: int, pieces: i
 
 @pytest.mark.parametrize(("length", "speed"), [(3.6, 1.3), (4.5, 0.5), (6.0, 1.5)])
 @pytest.mark.parametrize(("objective", "order"), [("peak_acceleration", 2), ("peak_jerk", 3)])
-def test_it_is_that_of_a_linear_programme(length: float, speed: float, objective: Objective, order: int) -> None:
+def test_it_is_that_of_a_linear_programme(length: float, speed: float, objective: MotionObjective, order: int) -> None:
     problem = scaled(replace(CUT, length=length, line_speed=speed), LIMITS, objective)
     motion = least_peak_motion(problem)
     assert motion is not None
@@ -105,13 +106,13 @@ def test_it_is_that_of_a_linear_programme(length: float, speed: float, objective
 
 
 @pytest.mark.parametrize("objective", ["rms_acceleration", "rms_jerk"])
-def test_a_slower_line_asks_for_no_more_of_a_mean_square(objective: Objective) -> None:
+def test_a_slower_line_asks_for_no_more_of_a_mean_square(objective: MotionObjective) -> None:
     # over the master the limits are the wider the slower the line, and nothing else changes
     values = []
     for speed in (1.5, 0.8, 0.33):
         cut = replace(CUT, length=6.0, line_speed=speed)
         order = 2 if objective == "rms_acceleration" else 3
-        values.append(solve(Task(SAW, cut, LIMITS), objective).objective / speed**order)
+        values.append(solve(Task(SAW, cut, LIMITS), objective).minimised / speed**order)
     assert values[1] <= values[0] * (1 + 3e-3)
     assert values[2] <= values[1] * (1 + 3e-3)
 
@@ -134,4 +135,4 @@ def test_a_way_back_without_a_forward_part_is_no_way_to_a_lower_peak() -> None:
     found = solve(Task(saw, cut, limits), "peak_jerk")
     bound = lower_bound(found.profile, saw, cut, limits, "peak_jerk")
     assert found.status.name == "OPTIMAL"
-    assert bound.value <= found.objective <= 1.01 * bound.value
+    assert bound.value <= found.minimised <= 1.01 * bound.value

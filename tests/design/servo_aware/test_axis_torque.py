@@ -11,7 +11,7 @@ from camwright.design.optimise import solve
 from camwright.design.optimise_axis import solve_axis
 from camwright.design.servo_aware.command_basis import Command, command_basis
 from camwright.design.servo_aware.programme import AxisProblem, AxisProgramme
-from camwright.design.servo_aware.torque import AxisTorque, TorqueCost
+from camwright.design.servo_aware.torque import AxisTorque
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError, SolverError
 from camwright.profiles.limits import Limits
@@ -21,6 +21,7 @@ from camwright.profiles.machines import (
     Machine,
     RotaryKnife,
 )
+from camwright.profiles.objective import MotorObjective
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
@@ -33,10 +34,10 @@ CUT = Cut(0.9, 0.5, 0.15, 0.05, 0.08, 1e-4)
 LIMITS = Limits(31.0, 400.0, 60_000.0)
 SAW = LinearCarriage(1.2, mass=100.0, travel_per_turn=0.04)
 SAW_CUT = Cut(2.0, 0.6, 0.4, 0.2, 0.2, 2e-4)
-COSTS: tuple[TorqueCost, ...] = ("rms_torque", "peak_torque", "energy")
+COSTS: tuple[MotorObjective, ...] = ("rms_torque", "peak_torque", "energy")
 
 
-def at_the_motor(machine: Machine, cut: Cut, profile: CamProfile, cost: TorqueCost) -> float:
+def at_the_motor(machine: Machine, cut: Cut, profile: CamProfile, cost: MotorObjective) -> float:
     return float(getattr(measure_motor(profile, machine, cut), cost))
 
 
@@ -57,7 +58,7 @@ def test_the_root_mean_square_is_that_of_the_validation(machine: Machine, cut: C
 
 
 @pytest.mark.parametrize("cost", COSTS)
-def test_a_shaped_design_needs_less_than_designs_for_the_motion(cost: TorqueCost) -> None:
+def test_a_shaped_design_needs_less_than_designs_for_the_motion(cost: MotorObjective) -> None:
     cut = replace(CUT, shaped=True)
     found = solve_axis(Task(CRANK, cut, LIMITS), cost, "shaped", (STIFF,))
     others = [
@@ -72,7 +73,7 @@ def test_a_shaped_design_needs_less_than_designs_for_the_motion(cost: TorqueCost
         path = np.stack([(1 - share) * found.profile(x, order) + share * other[order] for order in range(3)])
         return objective(path, cost)
 
-    def objective(path: FloatArray, cost: TorqueCost) -> float:
+    def objective(path: FloatArray, cost: MotorObjective) -> float:
         sync = CRANK.sync_profile(cut)
         place = CRANK.sync_start(cut) + float(sync(sync.end)) + path[0]
         velocity = cut.line_speed * path[1]
@@ -90,7 +91,7 @@ def test_a_shaped_design_needs_less_than_designs_for_the_motion(cost: TorqueCost
 
 
 @pytest.mark.parametrize("cost", COSTS)
-def test_in_sync_the_blind_optimum_is_kept_where_it_will_do(cost: TorqueCost) -> None:
+def test_in_sync_the_blind_optimum_is_kept_where_it_will_do(cost: MotorObjective) -> None:
     cut, slow = replace(CUT, sync_tolerance=1e-3), replace(CUT, sync_tolerance=1e-3, line_speed=0.3)
     for each in (cut, slow):
         blind = solve(Task(CRANK, each, LIMITS), cost)
@@ -102,7 +103,7 @@ def test_in_sync_the_blind_optimum_is_kept_where_it_will_do(cost: TorqueCost) ->
 
 
 @pytest.mark.parametrize("cost", ["peak_torque", "energy"])
-def test_a_knife_with_friction_is_designed_for_its_torque(cost: TorqueCost) -> None:
+def test_a_knife_with_friction_is_designed_for_its_torque(cost: MotorObjective) -> None:
     knife = RotaryKnife(0.4, drum_inertia=0.02, drum_friction=2.0, gear_ratio=3.0)
     cut, limits = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4, shaped=True), Limits(200 / 60, 100.0, 20_000.0)
     torque = solve_axis(Task(knife, cut, limits), cost, "shaped", (STIFF,))

@@ -20,7 +20,6 @@ from camwright.design.servo_aware.programme import (
     LEAST_ERROR,
     AxisProblem,
     AxisProgramme,
-    Cost,
 )
 from camwright.design.servo_aware.rows import RATIO
 from camwright.profiles.cut import Cut
@@ -32,6 +31,7 @@ from camwright.profiles.machines import (
     Machine,
     RotaryKnife,
 )
+from camwright.profiles.objective import ObjectiveName
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.returns import assemble
 from camwright.profiles.servo import Servo
@@ -43,7 +43,7 @@ KNIFE = RotaryKnife(0.4)
 PAPER = Servo(120.0, 0.7, 35.0, 0.004, 1.0)
 CUT = Cut(0.45, 80 / 60, 0.15, 0.04, 0.11, 1e-4)
 LIMITS = Limits(200 / 60, 100.0, 20_000.0)
-COSTS: tuple[Cost, ...] = ("sync_error", "peak_acceleration", "rms_acceleration", "peak_jerk", "rms_jerk")
+COSTS: tuple[ObjectiveName, ...] = ("sync_error", "peak_acceleration", "rms_acceleration", "peak_jerk", "rms_jerk")
 BOTH = pytest.mark.parametrize("command", ["in_sync", "shaped"])
 
 
@@ -82,7 +82,7 @@ def rows_of_its_own(command: Command, places: int, *, banded: bool) -> tuple[Flo
 
 @BOTH
 @pytest.mark.parametrize(("cost", "order"), [("peak_acceleration", 2), ("peak_jerk", 3)])
-def test_the_least_peak_is_that_of_scipy(command: Command, cost: Cost, order: int) -> None:
+def test_the_least_peak_is_that_of_scipy(command: Command, cost: ObjectiveName, order: int) -> None:
     found = design_axis(problem(command), cost)
     assert found is not None
     matrix, high, _ = rows_of_its_own(command, 9, banded=True)
@@ -105,7 +105,7 @@ def test_the_least_peak_is_that_of_scipy(command: Command, cost: Cost, order: in
 
 @BOTH
 @pytest.mark.parametrize(("cost", "order"), [("rms_acceleration", 2), ("rms_jerk", 3)])
-def test_the_least_mean_square_lies_on_its_own_tangent(command: Command, cost: Cost, order: int) -> None:
+def test_the_least_mean_square_lies_on_its_own_tangent(command: Command, cost: ObjectiveName, order: int) -> None:
     # of a convex function f at the answer p: f >= f(p) + f'(p) (z - p), whose least value is a linear programme
     found = AxisProgramme(problem(command)).solve(cost, 1.0)
     assert found is not None
@@ -187,7 +187,9 @@ CASES: dict[str, tuple[Machine, Cut, Limits, Servo]] = {
 @pytest.mark.parametrize("name", CASES)
 @BOTH
 @pytest.mark.parametrize("objective", ["sync_error", "peak_acceleration", "rms_jerk"])
-def test_every_machine_keeps_limits_closure_and_tolerance(name: str, command: Command, objective: Cost) -> None:
+def test_every_machine_keeps_limits_closure_and_tolerance(
+    name: str, command: Command, objective: ObjectiveName
+) -> None:
     machine, cut, limits, servo = CASES[name]
     cut = replace(cut, shaped=command == "shaped")
     solution = solve_axis(Task(machine, cut, limits), objective, command, (servo,))
@@ -227,7 +229,14 @@ def test_with_dead_time_and_lead_the_prediction_is_the_simulation(command: Comma
     st.sampled_from(COSTS),
 )
 def test_random_knife_jobs_end_in_a_design_that_holds_or_in_a_way_out(
-    length: float, v: float, share: float, shear: float, tolerance: float, sample: float, command: Command, cost: Cost
+    length: float,
+    v: float,
+    share: float,
+    shear: float,
+    tolerance: float,
+    sample: float,
+    command: Command,
+    cost: ObjectiveName,
 ) -> None:
     zone = share * min(length, 0.4)
     cut = Cut(length, v, zone, min(shear, zone), zone - min(shear, zone), tolerance, shaped=command == "shaped")
@@ -268,10 +277,10 @@ def test_the_peak_is_softened_and_smoothed_in_turn() -> None:
 
 def test_a_motion_of_even_speed_is_found_where_it_will_do() -> None:
     even = replace(CUT, length=0.4, shaped=True)  # the cut length is the pitch
-    least: dict[Cost, float] = {"peak_acceleration": 1e-6, "peak_jerk": 1e-6, "rms_jerk": 1e-4 * LIMITS.jerk}
+    least: dict[ObjectiveName, float] = {"peak_acceleration": 1e-6, "peak_jerk": 1e-6, "rms_jerk": 1e-4 * LIMITS.jerk}
     for objective, rounding in least.items():
         solution = solve_axis(Task(KNIFE, even, LIMITS), objective, "shaped", (PAPER,))
-        assert solution.objective == pytest.approx(0.0, abs=rounding)
+        assert solution.minimised == pytest.approx(0.0, abs=rounding)
         assert float(solution.profile(0.2, 1)) == pytest.approx(1.0, abs=1e-4)
 
 
@@ -297,7 +306,7 @@ def test_the_blind_optimum_is_taken_where_its_axis_keeps_to_everything() -> None
     assert solution.axis is not None
     assert solution.axis.programmes == 0
     assert solution.status == blind.status
-    assert solution.objective == pytest.approx(blind.objective, rel=1e-12)
+    assert solution.minimised == pytest.approx(blind.minimised, rel=1e-12)
     assert solution.axis.error <= LONG.sync_tolerance
     x = np.linspace(0.0, LONG.length, 400)
     np.testing.assert_allclose(solution.profile(x), blind.profile(x), atol=1e-12)
@@ -325,4 +334,4 @@ def test_limits_of_a_shaped_command_hold_though_their_rows_come_late() -> None:
     greatest = solution.profile.extrema(1)[1].value * cut.line_speed
     # the hull of its coefficients keeps the limit, which its peak comes near to
     assert tight.speed * (1 - 5e-3) <= greatest <= tight.speed * (1 + 1e-9)
-    assert solution.objective > free.objective
+    assert solution.minimised > free.minimised

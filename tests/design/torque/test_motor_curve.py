@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from camwright.design.feasible.feasibility import is_feasible
-from camwright.design.optimise import Objective, solve
+from camwright.design.optimise import solve
 from camwright.design.returns.curve_limits import motor_limits
 from camwright.design.torque.within_curve import keeps_curve, least_load, load
 from camwright.profiles.cut import Cut
@@ -16,6 +16,7 @@ from camwright.profiles.errors import InfeasibleError, InputError
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import CrankSlider, RotaryKnife
 from camwright.profiles.motor import MotorCurve
+from camwright.profiles.objective import CommandObjective
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import slave_at_start
 from camwright.profiles.task import Task
@@ -91,7 +92,7 @@ def test_a_crank_keeps_the_curve() -> None:
 def test_a_strong_motor_changes_nothing() -> None:
     plain = solve(Task(KNIFE, CUT, LIMITS), "peak_acceleration")
     strong = solve(Task(KNIFE, CUT, replace(LIMITS, motor=MotorCurve(((0.0, 1e3), (1e4, 1e3))))), "peak_acceleration")
-    assert strong.objective == pytest.approx(plain.objective, rel=1e-9)
+    assert strong.minimised == pytest.approx(plain.minimised, rel=1e-9)
 
 
 def test_a_weak_motor_binds_and_the_suggestion_works() -> None:
@@ -111,7 +112,7 @@ SHEAR = Cut(0.9, 1.0, 0.1, 0.04, 0.06, 1e-4)
 
 
 @pytest.mark.parametrize("objective", ["rms_torque", "peak_acceleration"])
-def test_a_crank_keeps_its_motors_curve_where_no_rectangle_does(objective: Objective) -> None:
+def test_a_crank_keeps_its_motors_curve_where_no_rectangle_does(objective: CommandObjective) -> None:
     """The curve falls: much torque at low speed, little at the speed of the quick return."""
     limits = Limits(40.0, 400.0, 40000.0, motor=MotorCurve(((0.0, 30.0), (40.0, 20.0), (80.0, 7.0), (150.0, 4.0))))
     cut = replace(SHEAR, length=0.5)
@@ -122,7 +123,7 @@ def test_a_crank_keeps_its_motors_curve_where_no_rectangle_does(objective: Objec
     assert (np.abs(torque) <= limits.motor.torque(speed)).all()
     assert keeps_curve(found.profile, Task(CRANK, cut, LIMITS), limits.motor)
     without = solve(Task(CRANK, cut, replace(limits, motor=None)), objective)
-    assert found.objective >= without.objective * (1 - 1e-3)
+    assert found.minimised >= without.minimised * (1 - 1e-3)
     load = least_load(Task(CRANK, cut, limits))
     assert load is not None
     assert load.value < 1.0

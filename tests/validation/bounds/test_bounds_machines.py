@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from camwright.design.optimise import Objective, solve
+from camwright.design.optimise import solve
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
 from camwright.profiles.limits import Limits
@@ -19,9 +19,10 @@ from camwright.profiles.machines import (
     Machine,
     RotaryKnife,
 )
+from camwright.profiles.objective import COMMAND_OBJECTIVES, CommandObjective
 from camwright.profiles.returns import baseline
 from camwright.profiles.task import Task
-from camwright.validation.bounds.optimality import OBJECTIVES, lower_bound
+from camwright.validation.bounds.optimality import lower_bound
 from camwright.validation.motor import measure_motor
 
 CUT = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4, sync_ratio=1.05)
@@ -35,28 +36,28 @@ KNIFE = RotaryKnife(0.4, gear_ratio=3.0, drum_inertia=0.02)
 def test_designs_reach_the_bound_with_over_speed(machine: Machine, objective: str) -> None:
     found = solve(Task(machine, CUT, LIMITS), objective)
     bound = lower_bound(found.profile, machine, CUT, LIMITS, objective)
-    assert bound.value <= found.objective * (1 + 1e-9)
-    assert bound.value == pytest.approx(found.objective, rel=1e-3)
+    assert bound.value <= found.minimised * (1 + 1e-9)
+    assert bound.value == pytest.approx(found.minimised, rel=1e-3)
 
 
 def test_a_stroke_leaves_the_bound_below() -> None:
     narrow, limits = replace(WIDE, stroke=0.25), Limits(200 / 60, 200.0, 60_000.0)
     found = solve(Task(narrow, CUT, limits), "rms_acceleration")
     bound = lower_bound(found.profile, narrow, CUT, limits, "rms_acceleration")
-    assert 0.0 < bound.value < 0.999 * found.objective
+    assert 0.0 < bound.value < 0.999 * found.minimised
 
 
 @pytest.mark.parametrize("objective", ["peak_acceleration", "rms_acceleration", "peak_jerk"])
 @pytest.mark.parametrize("length", [3.4, 4.5, 7.0])
-def test_a_long_cut_is_as_good_as_braking_within_the_stroke_allows(objective: Objective, length: float) -> None:
+def test_a_long_cut_is_as_good_as_braking_within_the_stroke_allows(objective: CommandObjective, length: float) -> None:
     saw = LinearCarriage(1.2)
     cut, limits = Cut(length, 0.5, 0.7, 0.4, 0.2, 2e-4), Limits(100 / 60, 6.0, 200.0)
     found = solve(Task(saw, cut, limits), objective)
     bound = lower_bound(found.profile, saw, cut, limits, objective)
-    assert bound.value <= found.objective * (1 + 1e-9)
+    assert bound.value <= found.minimised * (1 + 1e-9)
     if length == 7.0:  # there is time to spare: braking is all that counts
         assert bound.method == "closed form, braking within the stroke"
-        assert bound.value == pytest.approx(found.objective, rel=2e-9 if objective != "rms_acceleration" else 0.02)
+        assert bound.value == pytest.approx(found.minimised, rel=2e-9 if objective != "rms_acceleration" else 0.02)
 
 
 @pytest.mark.parametrize(
@@ -65,14 +66,14 @@ def test_a_long_cut_is_as_good_as_braking_within_the_stroke_allows(objective: Ob
 )
 @pytest.mark.parametrize("objective", ["peak_acceleration", "rms_acceleration", "peak_jerk"])
 def test_a_wide_stroke_raises_no_bound_above_a_design(
-    stroke: float, length: float, zone: float, objective: Objective
+    stroke: float, length: float, zone: float, objective: CommandObjective
 ) -> None:
     saw, cut = LinearCarriage(stroke), Cut(length, 0.5, zone, 0.2 * zone, 0.8 * zone, 1e-3)
     limits = Limits(100.0, 1e5, 1e8)
     found = solve(Task(saw, cut, limits), objective)
     bound = lower_bound(found.profile, saw, cut, limits, objective)
-    assert bound.value <= found.objective * (1 + 1e-9)
-    assert bound.value >= 0.9 * found.objective
+    assert bound.value <= found.minimised * (1 + 1e-9)
+    assert bound.value >= 0.9 * found.minimised
 
 
 def test_no_room_to_turn_round_in_has_no_bound_below_infinity() -> None:
@@ -108,7 +109,7 @@ def test_least_torque_without_friction_reaches_the_bound(objective: str) -> None
     [CrankSlider(0.15, 0.6, 0.0, 0.5, 20.0, sync_at=1.5), replace(KNIFE, sync="horizontal", circumference=0.8)],
     ids=["crank", "horizontal"],
 )
-@pytest.mark.parametrize("objective", OBJECTIVES)
+@pytest.mark.parametrize("objective", COMMAND_OBJECTIVES)
 def test_there_is_no_bound_where_the_ratio_changes_in_sync(machine: Machine, objective: str) -> None:
     bound = lower_bound(baseline("poly_3_4_5", machine, CUT), machine, CUT, LIMITS, objective)
     assert math.isnan(bound.value)

@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 from scipy.sparse import csr_array
 
 from camwright.design.optimise import solve
-from camwright.design.returns.problem import Objective
 from camwright.profiles.closed_forms.reach import greatest_reach
 from camwright.profiles.closed_forms.softest import softest
 from camwright.profiles.cut import Cut
@@ -20,6 +19,7 @@ from camwright.profiles.errors import InputError
 from camwright.profiles.laws import law
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import RotaryKnife
+from camwright.profiles.objective import MotionObjective
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import BASELINES, baseline
 from camwright.profiles.task import Task
@@ -69,7 +69,7 @@ def keeps(profile: CamProfile, cut: Cut, limits: Limits) -> bool:
 @settings(max_examples=6)
 @given(st.floats(-0.6, 0.8), st.floats(1.05, 3.0), st.floats(1.1, 3.0), st.floats(1.2, 30.0), st.booleans())
 def test_no_motion_is_below_a_bound(
-    objective: Objective, off: float, speed: float, acceleration: float, jerk: float, reversal: bool
+    objective: MotionObjective, off: float, speed: float, acceleration: float, jerk: float, reversal: bool
 ) -> None:
     """Whatever profile a bound is taken at, it holds for the optimum and for every law that keeps the limits."""
     assume(abs(off) > 1e-6)  # nearer to the straight line even a jump of the ratio is within the tolerance of `keeps`
@@ -104,16 +104,16 @@ def test_no_motion_is_below_a_bound(
         replace(LIMITS, reversal=True),
     ],
 )
-def test_gap_of_a_design_is_small(objective: Objective, gap: float, limits: Limits) -> None:
+def test_gap_of_a_design_is_small(objective: MotionObjective, gap: float, limits: Limits) -> None:
     result = solve(Task(KNIFE, CUT, limits), objective)
     bound = lower_bound(result.profile, KNIFE, CUT, limits, objective)
     assert bound.method in (CLOSED_FORM, SOFTEST, QUINTIC, DUAL)
-    assert 0.0 <= 1 - bound.value / result.objective + 1e-9 <= gap
+    assert 0.0 <= 1 - bound.value / result.minimised + 1e-9 <= gap
 
 
 @pytest.mark.parametrize("origin", ["return", "cut"])
 @pytest.mark.parametrize("objective", ["rms_acceleration", "rms_jerk"])
-def test_bound_does_not_depend_on_the_origin(objective: Objective, origin: str) -> None:
+def test_bound_does_not_depend_on_the_origin(objective: MotionObjective, origin: str) -> None:
     limits, cut = Limits(1.8, 13.0, 1100.0), replace(CUT, origin=origin)
     result = solve(Task(KNIFE, cut, limits), objective)
     expected = lower_bound(solve(Task(KNIFE, CUT, limits), objective).profile, KNIFE, CUT, limits, objective).value
@@ -166,8 +166,8 @@ def test_gap_of_the_least_rms_jerk_in_tight_jobs(speed: float, room: float) -> N
     result = solve(Task(machine, cut, limits), "rms_jerk")
     bound = lower_bound(result.profile, machine, cut, limits, "rms_jerk")
     assert bound.method == DUAL
-    assert bound.value <= result.objective * (1 + 1e-8)
-    assert bound.value >= result.objective * (1 - 1e-2)
+    assert bound.value <= result.minimised * (1 + 1e-8)
+    assert bound.value >= result.minimised * (1 - 1e-2)
 
 
 def test_integral_of_the_least() -> None:
