@@ -138,7 +138,7 @@ def draw_crank(rng: np.random.Generator) -> tuple[Machine, Cut]:
     cut = cut_of(rng, max(1.2 * sync, machine.stroke * spread(rng, 0.8, 8.0)), sync, ratio)
     if rng.integers(2):
         return machine, cut
-    least, greatest = machine.sync_range(cut)
+    least, greatest = machine.place_range(cut)
     return replace(machine, sync_at=least + (greatest - least) * float(rng.uniform(0.1, 0.9))), cut
 
 
@@ -153,7 +153,7 @@ MACHINES: dict[str, Callable[[np.random.Generator], tuple[Machine, Cut]]] = {
 def placed(machine: Machine, cut: Cut) -> Machine:
     """Put the sync zone of a crank that leaves it open into the middle of its range."""
     if isinstance(machine, CrankSlider) and math.isnan(machine.sync_at):
-        return replace(machine, sync_at=0.5 * sum(machine.sync_range(cut)))
+        return replace(machine, sync_at=0.5 * sum(machine.place_range(cut)))
     return machine
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -11,7 +10,7 @@ import numpy as np
 from camwright.design.feasible.feasibility import is_feasible
 from camwright.design.feasible.refusal import infeasible, require_feasible
 from camwright.design.place_cost import place_for
-from camwright.design.returns.curve_limits import motor_limits, motor_speed_limits, moves_something
+from camwright.design.returns.curve_limits import motor_limits, motor_speed_limits
 from camwright.design.returns.ipopt import SolveStatus
 from camwright.design.returns.problem import ReturnProblem, return_problem
 from camwright.design.returns.solver import (
@@ -23,7 +22,7 @@ from camwright.design.returns.solver import (
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
 from camwright.profiles.limits import Limits
-from camwright.profiles.machines import CrankSlider, Machine
+from camwright.profiles.machines import Machine
 from camwright.profiles.objective import OBJECTIVES, CommandObjective, MotionObjective, ObjectiveName, of_motion
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import assemble
@@ -129,8 +128,8 @@ def solve(task: Task, objective: CommandObjective, *, suggest: bool = True) -> S
     ('optimal', 9.072, 6)
     """
     machine, cut = task.machine, task.cut
-    if isinstance(machine, CrankSlider) and math.isnan(machine.sync_at):
-        return _solve_free_crank(machine, cut, task.limits, objective, suggest)
+    if not machine.placed:
+        return _solve_free_place(machine, cut, task.limits, objective, suggest)
     machine.sync_start(cut)
     if task.limits.motor is not None:
         return _solve_for_motor(task, objective, suggest)
@@ -183,7 +182,7 @@ def _solve_for_motor(task: Task, objective: CommandObjective, suggest: bool) -> 
         ]
         found.append(solve(task.with_limits(rectangles[int(np.argmin(rough))]), objective))
     easiest = None
-    if not found or isinstance(machine, CrankSlider):  # a rectangle says little where the torque depends on the place
+    if not found or not machine.constant_inertia:  # a rectangle says little where the torque depends on the place
         easiest = least_load(task)
         starts = [solution.back for solution in found] + ([] if easiest is None else [easiest.back])
         within = solve_within_curve(task, decisive or objective, starts)
@@ -222,7 +221,7 @@ def require_moving(machine: Machine, objective: ObjectiveName) -> None:
     InputError
         A torque or energy is to be made least, and the machine has neither inertia nor mass nor friction.
     """
-    if OBJECTIVES[objective].of == "motor" and not moves_something(machine):
+    if OBJECTIVES[objective].of == "motor" and not machine.moves_something:
         raise InputError(
             f"[objective] minimise = {objective!r} needs to know what the motor moves: give the machine's inertia or mass, or minimise "
             f"rms_acceleration"
@@ -237,7 +236,7 @@ def motion_objective(machine: Machine, objective: CommandObjective) -> MotionObj
     """
     if of_motion(objective) == objective:
         return of_motion(objective)
-    if isinstance(machine, CrankSlider) or objective == "energy":
+    if not machine.constant_inertia or objective == "energy":
         return None
     if objective == "rms_torque" and not (machine.turns_back and machine.friction):
         return "rms_acceleration"
@@ -256,8 +255,8 @@ def _solve_torque(task: Task, objective: CommandObjective, valleys: int) -> Solu
     )
 
 
-def _solve_free_crank(
-    machine: CrankSlider, cut: Cut, limits: Limits, objective: CommandObjective, suggest: bool
+def _solve_free_place(
+    machine: Machine, cut: Cut, limits: Limits, objective: CommandObjective, suggest: bool
 ) -> Solution:
     """Choose the place of the sync zone first, by the objective of the motion or by the mean square of the torque."""
     placement = place_for(machine, cut, limits, objective)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
@@ -27,7 +26,7 @@ from camwright.profiles.errors import (
     Suggestion,
 )
 from camwright.profiles.limits import Limits
-from camwright.profiles.machines import CrankSlider, Machine
+from camwright.profiles.machines import Machine
 from camwright.profiles.objective import OBJECTIVES, ObjectiveName, of_command
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import assemble
@@ -86,7 +85,7 @@ def solve_axis(
     require_moving(machine, objective)
     cost = _cost(machine, objective)
     blind = None
-    if command == "in_sync" or (isinstance(machine, CrankSlider) and math.isnan(machine.sync_at)):
+    if command == "in_sync" or not machine.placed:
         blind = solve(task, of_command(cost), suggest=suggest)
     placed = machine if blind is None else blind.machine
     structure = None if blind is None or command == "shaped" else blind.back

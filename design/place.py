@@ -1,16 +1,15 @@
-"""Where on the crank the sync zone should lie: the one number that a crank leaves open."""
+"""Where the sync zone should lie: the one number that a machine such as a crank leaves open."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from camwright.profiles.cut import Cut
-from camwright.profiles.errors import InputError
-from camwright.profiles.machines import CrankSlider
+from camwright.profiles.machines import Machine
 
 PLACES = 9
 """Places looked at first, evenly over the range that leaves room for the sync zone."""
@@ -28,40 +27,34 @@ class Placement:
     Parameters
     ----------
     machine
-        The crank with its sync zone placed.
+        The machine with its sync zone placed.
     cost
         Objective there.
     valleys
         Local minima seen among the places looked at first; 1 means that all of them led to the same place.
     """
 
-    machine: CrankSlider
+    machine: Machine
     cost: float
     valleys: int
 
 
-def place_sync(machine: CrankSlider, cut: Cut, cost: Callable[[CrankSlider], float]) -> Placement | None:
-    """Choose the crank angle at mid sync zone that makes a cost least, by a scan and golden sections around its best places.
+def place_sync(machine: Machine, cut: Cut, cost: Callable[[Machine], float]) -> Placement | None:
+    """Choose the slave coordinate at mid sync zone that makes a cost least, by a scan and golden sections around its best places.
 
     Returns None if no place has a finite cost.
 
     Raises
     ------
     InputError
-        The sync zone is longer than the crank's stroke.
+        The sync zone fits nowhere.
     """
-    if cut.sync_ratio * cut.sync_zone >= machine.stroke:
-        raise InputError(
-            f"[cut] sync_zone needs {cut.sync_ratio * cut.sync_zone * 1e3:.6g} mm of carriage travel, the crank's stroke is "
-            f"{machine.stroke * 1e3:.6g} mm; shorten the sync zone below {machine.stroke / cut.sync_ratio * 1e3:.6g} mm or take a "
-            f"longer crank"
-        )
-    least, greatest = machine.sync_range(cut)
+    least, greatest = machine.place_range(cut)
     margin = MARGIN * (greatest - least)
     angles = np.linspace(least + margin, greatest - margin, PLACES)
 
     def at(angle: float) -> float:
-        return cost(replace(machine, sync_at=angle))
+        return cost(machine.placed_at(angle))
 
     costs = [at(float(angle)) for angle in angles]
     if not any(math.isfinite(value) for value in costs):
@@ -79,7 +72,7 @@ def place_sync(machine: CrankSlider, cut: Cut, cost: Callable[[CrankSlider], flo
                 at, float(angles[max(0, i - 1)]), float(angles[min(PLACES - 1, i + 1)]), (costs[i], float(angles[i]))
             ),
         )
-    return Placement(replace(machine, sync_at=best[1]), best[0], len(valleys))
+    return Placement(machine.placed_at(best[1]), best[0], len(valleys))
 
 
 def _golden(at: Callable[[float], float], low: float, high: float, best: tuple[float, float]) -> tuple[float, float]:

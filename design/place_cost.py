@@ -1,9 +1,8 @@
-"""What a place of the sync zone on a crank costs, by the objective that the whole design has."""
+"""What a place of the sync zone costs, by the objective that the whole design has."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
@@ -16,7 +15,7 @@ from camwright.design.returns.solver import grid_objective
 from camwright.design.torque.within_curve import load
 from camwright.profiles.cut import Cut
 from camwright.profiles.limits import Limits
-from camwright.profiles.machines import CrankSlider
+from camwright.profiles.machines import Machine
 from camwright.profiles.objective import CommandObjective, MotionObjective
 from camwright.profiles.returns import baseline
 from camwright.profiles.task import Task
@@ -30,7 +29,7 @@ ANGLES = 721
 
 
 def place_for(
-    machine: CrankSlider,
+    machine: Machine,
     cut: Cut,
     limits: Limits,
     objective: CommandObjective,
@@ -43,10 +42,10 @@ def place_for(
     Raises
     ------
     InputError
-        The sync zone is longer than the crank's stroke.
+        The sync zone fits nowhere.
     """
 
-    def cost(placed: CrankSlider) -> float:
+    def cost(placed: Machine) -> float:
         task = Task(placed, cut, limits)
         if not is_feasible(task):
             return MISSING * _missing(task)
@@ -61,8 +60,8 @@ def place_for(
 
     found = place_sync(machine, cut, cost)
     if found is None:
-        least, greatest = machine.sync_range(cut)
-        return Placement(replace(machine, sync_at=0.5 * (least + greatest)), math.inf, 1)
+        least, greatest = machine.place_range(cut)
+        return Placement(machine.placed_at(0.5 * (least + greatest)), math.inf, 1)
     return found
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from camwright.profiles.message import Message
+
 
 class CamwrightError(Exception):
     """Base of every error that camwright raises on purpose.
@@ -21,14 +23,19 @@ class InputError(CamwrightError):
     ----------
     faults
         One message for each fault found, in the order in which they stand in the input. A message holds the quantity, its
-        value and unit, the limit, the place, and the way out.
+        value and unit, the limit, the place, and the way out; where it is a `Message` it is kept, for the front door to word.
     """
 
     exit_code = 2
 
-    def __init__(self, *faults: str) -> None:
-        super().__init__("\n".join(faults))
-        self.faults: tuple[str, ...] = faults
+    def __init__(self, *faults: str | Message) -> None:
+        super().__init__("\n".join(map(str, faults)))
+        self.messages: tuple[str | Message, ...] = faults
+
+    @property
+    def faults(self) -> tuple[str, ...]:
+        """The messages in plain words."""
+        return tuple(map(str, self.messages))
 
 
 @dataclass(frozen=True)
@@ -66,9 +73,10 @@ class InfeasibleError(CamwrightError):
     exit_code = 3
 
     def __init__(
-        self, message: str, binding: str, excess: float | None, unit: str, suggestions: tuple[Suggestion, ...]
+        self, message: str | Message, binding: str, excess: float | None, unit: str, suggestions: tuple[Suggestion, ...]
     ) -> None:
-        super().__init__(message)
+        super().__init__(str(message))
+        self.message = message
         self.binding = binding
         self.excess = excess
         self.unit = unit

@@ -9,7 +9,7 @@ import numpy as np
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
 from camwright.profiles.laws import LAWS, law
-from camwright.profiles.machines import CrankSlider, Machine
+from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile, join
 
 BASELINES: tuple[str, ...] = ("linear_return", *(name for name in LAWS if name != "linear"))
@@ -44,11 +44,11 @@ def baseline_names(machine: Machine, cut: Cut) -> tuple[str, ...]:
     """Names of the baselines that a machine can have.
 
     Laws are defined for returns between two sync zones of the same constant ratio; where the ratio changes in the sync zone there are the
-    linear return, the quintic between the zone's ends, and for a crank the tabulated curve of S3.
+    linear return, the quintic between the zone's ends, and what the machine has of its own.
     """
     if is_straight(machine, cut):
         return BASELINES
-    return ("linear_return", "poly_3_4_5", *(["crank_tabulated"] if isinstance(machine, CrankSlider) else []))
+    return ("linear_return", "poly_3_4_5", *machine.own_baselines)
 
 
 def is_straight(machine: Machine, cut: Cut) -> bool:

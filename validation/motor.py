@@ -74,7 +74,7 @@ def measure_motor(profile: CamProfile, machine: Machine, cut: Cut) -> MotorMeasu
     pace = cut.line_speed * machine.motor_ratio
     peak_speed = pace * greatest_magnitude(profile, 1).value
     min_velocity = pace * profile.extrema(1)[0].value
-    if not (is_steady(profile, machine) and moves_something(machine)):
+    if not (is_steady(profile, machine) and machine.moves_something):
         return MotorMeasures(None, None, peak_speed, min_velocity, None, None)
     torque = motor_torque(profile, machine, cut)
     drawn, regenerated = _energies(torque, profile, machine)
@@ -86,12 +86,6 @@ def measure_motor(profile: CamProfile, machine: Machine, cut: Cut) -> MotorMeasu
         energy=drawn,
         regenerated=regenerated,
     )
-
-
-def moves_something(machine: Machine) -> bool:
-    """Whether the job gives the machine any inertia, mass or friction."""
-    anywhere = np.linspace(0.0, machine.pitch or 1.0, 9)
-    return bool(np.any(machine.inertia(anywhere) > 0.0)) or machine.friction > 0.0
 
 
 def motor_torque(profile: CamProfile, machine: Machine, cut: Cut) -> CamProfile:

@@ -10,7 +10,7 @@ import numpy as np
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
 from camwright.profiles.limits import Limits
-from camwright.profiles.machines import LinearCarriage, Machine
+from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile, Extremum, FloatArray
 from camwright.profiles.returns import slave_at_start
 from camwright.profiles.servo import Servo, spectral_radius
@@ -268,11 +268,12 @@ def _extremes(cycle: CamProfile, order: int) -> tuple[Extremum, Extremum]:
 
 def _stroke(cycle: CamProfile, machine: Machine, cut: Cut) -> list[Check]:
     """Whether a carriage stays on its guide; the rounding of a table may take it a sync tolerance beyond."""
-    if not isinstance(machine, LinearCarriage):
+    if machine.guide is None:
         return []
+    low, high = machine.guide
     x = _places(cycle, cycle.start, cycle.end)
-    inside = slave_at_start(machine, cut) - machine.home + cycle(x)
-    over = np.maximum(-inside, inside - machine.stroke)
+    inside = slave_at_start(machine, cut) - low + cycle(x)
+    over = np.maximum(-inside, inside - (high - low))
     return [
         _at_most(
             "stroke",

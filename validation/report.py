@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 from camwright.profiles.cut import Cut
 from camwright.profiles.limits import Limits
-from camwright.profiles.machines import LinearCarriage, Machine, RotaryKnife
+from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile, Extremum
 from camwright.profiles.returns import slave_zero
 from camwright.profiles.servo import Servo, spectral_radius
@@ -33,7 +33,6 @@ from camwright.validation.motor import (
     MotorMeasures,
     greatest_load,
     measure_motor,
-    moves_something,
 )
 from camwright.validation.servo.axis_motion import axis_checks, axis_peaks
 from camwright.validation.servo.lead import LengthError, length_errors
@@ -143,7 +142,7 @@ def validate(
         motion=motion,
         tool=measure_tool(profile, machine, cut, motion),
         motor=motor,
-        tangential_mismatch=machine.tangential_mismatch(cut) if isinstance(machine, RotaryKnife) else None,
+        tangential_mismatch=machine.tangential_mismatch(cut),
         servo=response,
         sweep=servo_sweep(profile, machine, cut, servo) if sweep else None,
         length_errors=length_errors(profile, machine, cut, servo) if sweep and response is not None else (),
@@ -246,20 +245,21 @@ def _motion(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits, mot
 
 
 def _stroke(profile: CamProfile, machine: Machine, cut: Cut) -> list[Check]:
-    """Whether a carriage stays on its guide."""
-    if not isinstance(machine, LinearCarriage):
+    """Whether the slave stays on its guide, if it has one."""
+    if machine.guide is None:
         return []
     start = slave_zero(profile, machine, cut)
-    middle = machine.home + 0.5 * machine.stroke
+    low, high = machine.guide
+    middle, stroke = low + 0.5 * (high - low), high - low
     least, greatest = profile.extrema(0)
     behind, ahead = middle - (start + least.value), start + greatest.value - middle
     return [
         _at_most(
             "stroke",
             max(behind, ahead),
-            0.5 * machine.stroke,
-            ALLOWANCE * machine.stroke,
-            "m",
+            0.5 * stroke,
+            ALLOWANCE * stroke,
+            machine.slave_unit,
             least.at if behind > ahead else greatest.at,
             "greatest distance of the carriage from the middle of its stroke",
         )
@@ -291,7 +291,7 @@ def _motor(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits, moto
         checks.append(
             _at_most("motor_torque", torque.value, available, ALLOWANCE * curve.points[0][1], "N m", torque.at, source)
         )
-    elif moves_something(machine):
+    elif machine.moves_something:
         checks.append(
             Check("motor_torque", False, None, curve.points[0][1], "N m", greatest_jump(profile, 1).at, source)
         )
@@ -362,7 +362,7 @@ def _minimum_lengths(response: ServoResponse | None, machine: Machine, cut: Cut,
 
     With a sync ratio ``s`` the knife moves as with a line ``s`` times as fast whose lengths are ``s`` times as long.
     """
-    if not (isinstance(machine, RotaryKnife) and machine.sync == "tangential"):
+    if not machine.published:
         return []
     s, v = cut.sync_ratio, cut.sync_ratio * cut.line_speed
     settling = response.settling if response else None

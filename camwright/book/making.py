@@ -16,7 +16,6 @@ from camwright.book.entry import Entry, Limit
 from camwright.book.plan import Book, Combination
 from camwright.house.provenance import provenance
 from camwright.profiles.errors import InfeasibleError, InputError, SolverError
-from camwright.profiles.machines import CrankSlider
 
 if TYPE_CHECKING:
     from camwright.drives.export import Exported
@@ -110,10 +109,10 @@ def _no_job(number: int, error: InputError, limit: Limit | None) -> Entry:
 
 
 def _limit(job: Job) -> Limit | None:
-    """Find how fast a cut length can be run; left out for a crank that each design places anew, which would take minutes."""
+    """Find how fast a cut length can be run; left out where each design places the sync zone anew, which would take minutes."""
     from camwright.design.feasible.extremes import fastest_line
 
-    if isinstance(job.machine, CrankSlider) and math.isnan(job.machine.sync_at):
+    if not job.machine.placed:
         return None
     return Limit(*fastest_line(job.task))
 

@@ -13,12 +13,7 @@ from rich.text import Text
 
 from camwright.cli.axis_views import axis_lengths_view, axis_views, lead_view
 from camwright.jobs.job import Job
-from camwright.profiles.machines import (
-    CrankSlider,
-    LinearCarriage,
-    Machine,
-    RotaryKnife,
-)
+from camwright.jobs.wording import machine_words
 from camwright.studies.comparison import Comparison
 from camwright.studies.cut_lengths import CutLengths
 
@@ -56,21 +51,17 @@ def _head(design: Design) -> list[str]:
     )
     ending = f"{design.job.name}: {solution.status.value}, {design.job.objective} {_number(design.objective)} {unit}"
     lines = [f"{ending} in {design.profile.pieces} pieces; {bound}"]
-    if isinstance(solution.machine, CrankSlider):
-        lines.append(f"sync zone on the crank: its middle at {math.degrees(solution.machine.sync_at):.5g}°")
+    machine = solution.machine
+    if machine.place_name:
+        place = f"{math.degrees(machine.place):.5g}°" if machine.slave_unit == "rad" else f"{_mm(machine.place)} mm"
+        lines.append(f"sync zone on the {machine.noun}: its middle at {place}")
     starts = solution.starts
     if starts is not None:
         lines.append(
             f"{starts.agreeing} of {starts.converged} starts agree, spread {starts.spread:.1e}, KKT residual "
             f"{starts.residual:.1e}; {starts.valleys} local minima over the place of the sync zone"
         )
-    mismatch = design.report.tangential_mismatch
-    if isinstance(solution.machine, RotaryKnife) and solution.machine.sync == "horizontal" and mismatch is not None:
-        lines.append(
-            f"along the material a blade in tangential sync falls short of the line speed by {100 * mismatch:.3g} % at the ends of the "
-            "sync zone"
-        )
-    return lines
+    return [*lines, *machine.remarks(design.job.cut)]
 
 
 def compare_view(comparison: Comparison) -> RenderableType:
@@ -181,23 +172,10 @@ def check_view(job: Job) -> RenderableType:
     speed = f"{_number(limits.speed * 60)} m/min" if unit == "m" else f"{_number(limits.speed * 30 / math.pi)} rpm"
     return Text(
         f"{job.name}: cut {_mm(cut.length)} mm at {_number(cut.line_speed * 60)} m/min, "
-        f"{_machine(job.machine)}, sync zone {_mm(cut.sync_zone)} mm, "
+        f"{machine_words(job.machine)}, sync zone {_mm(cut.sync_zone)} mm, "
         f"shear zone {_mm(cut.shear_zone)} mm; at most {speed}, "
         f"{_number(limits.acceleration)} {unit}/s², {_number(limits.jerk)} {unit}/s³.\nThe job file has no faults."
     )
-
-
-def _machine(machine: Machine) -> str:
-    """Say what a machine is like."""
-    if isinstance(machine, CrankSlider):
-        return f"crank {_mm(machine.crank)} mm, rod {_mm(machine.rod)} mm, offset {_mm(machine.offset)} mm"
-    if isinstance(machine, LinearCarriage):
-        return f"stroke {_mm(machine.stroke)} mm"
-    if isinstance(machine, RotaryKnife):
-        blades = "" if machine.blades == 1 else f", {machine.blades} blades"
-        sync = "" if machine.sync == "tangential" else f", {machine.sync} sync"
-        return f"circumference {_mm(machine.circumference)} mm{blades}{sync}"
-    raise TypeError(f"{type(machine).__name__} has no words")
 
 
 def files_view(files: Sequence[Path]) -> RenderableType:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-import re
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -16,8 +14,9 @@ from camwright.drives.alignment import aligned
 from camwright.drives.options import parse_units
 from camwright.house.progress import Step, ignore
 from camwright.jobs.job import Job
+from camwright.jobs.place import not_placed, place_in
 from camwright.profiles.errors import InputError
-from camwright.profiles.machines import CrankSlider, Machine
+from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.tables.cam_table import CamTable, Unit, Units
 from camwright.profiles.tables.target import Target
@@ -27,9 +26,6 @@ from camwright.profiles.tables.text import read_text
 if TYPE_CHECKING:
     from camwright.validation.rebuilt import TableJudgement
     from camwright.validation.report import ValidationReport
-
-_SYNC_AT = re.compile(r"sync_at: ([0-9.eE+-]{1,30}) rad\b")
-"""Where on the crank the sync zone lies, as the head of a table written here states it."""
 
 MEASURES: dict[str, str] = {
     "peak_speed": "peak speed",
@@ -177,18 +173,16 @@ def audit(path: Path, job: Job, target: str | None = None, units: str | None = N
 
 
 def _placed(machine: Machine, text: str, place: str) -> Machine:
-    """Give the job's machine; where the job leaves the place of a crank's sync zone free, it is that of the file."""
-    if not isinstance(machine, CrankSlider) or not math.isnan(machine.sync_at):
+    """Give the job's machine; where the job leaves the place of its sync zone free, it is that of the file."""
+    if machine.placed:
         return machine
-    found = _SYNC_AT.search(text)
-    if not found:
-        raise InputError(
-            f"{place}: does not say where on the crank its sync zone lies, and neither does the job; give [machine] sync_at"
-        )
+    found = place_in(machine, text)
+    if found is None:
+        raise not_placed(machine, place)
     try:
-        return replace(machine, sync_at=float(found[1]))
+        return machine.placed_at(float(found))
     except ValueError as error:
-        raise InputError(f"{place}: sync_at {found[1]!r} is not a number") from error
+        raise InputError(f"{place}: {machine.place_name} {found!r} is not a number") from error
 
 
 def _units(table: CamTable, asked: str | None, job: Job, place: str) -> Units:

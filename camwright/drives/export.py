@@ -13,7 +13,6 @@ from camwright.house.progress import Step, ignore
 from camwright.house.provenance import camwright_version, provenance
 from camwright.jobs.job import Job
 from camwright.profiles.errors import InputError
-from camwright.profiles.machines import CrankSlider
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import slave_at_start
 from camwright.profiles.tables.cam_table import CamTable, Units
@@ -254,8 +253,8 @@ def _facts(judgement: TableJudgement, job: Job, off: float) -> tuple[tuple[str, 
         check = found[name]
         how = "" if check.source == "exact" else f" ({check.source})"
         facts.append((f"peak {name}", f"{check.value:.6g} {unit}{power}{how}"))
-    if isinstance(job.machine, CrankSlider):
-        facts.append(("sync_at", f"{job.machine.sync_at!r} rad"))
+    if job.machine.place_name:
+        facts.append((job.machine.place_name, f"{job.machine.place!r} {job.machine.slave_unit}"))
     facts.append(("greatest error of the rebuilt position", f"{off * 1e6:.3g} um"))
     facts.append(("wraps judged", str(judgement.wraps)))
     return tuple(facts)

@@ -7,7 +7,7 @@ import math
 from camwright.house.units import quantity
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
-from camwright.profiles.machines import LinearCarriage, Machine, RotaryKnife
+from camwright.profiles.machines import Machine
 from camwright.profiles.tables.cam_table import Unit, Units
 from camwright.profiles.tables.targets import TARGETS, target_of
 
@@ -70,10 +70,8 @@ def parse_units(text: str, machine: Machine, cut: Cut, period: float | None = No
         master["cycle"] = cut.length / period
     if machine.slave_unit == "rad":
         slave = {"rad": 1.0, "deg": math.radians(1.0), "rev": 2 * math.pi}
-    elif isinstance(machine, RotaryKnife):
-        slave = {**_LENGTHS, "deg": machine.circumference / 360.0, "rev": machine.circumference}
-    elif isinstance(machine, LinearCarriage):
-        slave = {**_LENGTHS, "rev": machine.travel_per_turn, "deg": machine.travel_per_turn / 360.0}
+    elif machine.slave_turn is not None:
+        slave = {**_LENGTHS, "deg": machine.slave_turn / 360.0, "rev": machine.slave_turn}
     else:
         slave = _LENGTHS
     turned = machine.slave_unit == "rad"

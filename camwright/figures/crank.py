@@ -19,8 +19,9 @@ from camwright.figures.style import (
     shade_zones,
     title,
 )
+from camwright.jobs.wording import machine_words
 from camwright.profiles.cut import Cut
-from camwright.profiles.machines import CrankSlider
+from camwright.profiles.machines import Machine
 from camwright.profiles.returns import slave_at_start
 from camwright.studies.comparison import Comparison
 
@@ -47,19 +48,19 @@ def crank_figure(comparison: Comparison) -> Figure:
     Raises
     ------
     TypeError
-        The machine is no crank.
+        The machine's tool has no dead centres.
     """
     job = comparison.job
     machine, cut = job.machine, job.cut
-    if not isinstance(machine, CrankSlider):
-        raise TypeError(f"the crank figure is about a crank, not a {type(machine).__name__}")
+    if machine.dead_centres is None:
+        raise TypeError(f"the crank figure is about a tool that turns back, not a {type(machine).__name__}")
     shown = {row.name: row.profile for row in comparison.rows if row.name in STYLES}
     figure = Figure(figsize=(WIDTH, 7.6), layout="constrained")
     grid = figure.add_gridspec(3, 2, height_ratios=(1.15, 1.0, 1.0))
     turn, travel = figure.add_subplot(grid[0, 0]), figure.add_subplot(grid[0, 1])
     speed = figure.add_subplot(grid[1, :])
     acceleration = figure.add_subplot(grid[2, :], sharex=speed)
-    _turn(turn, machine, cut)
+    _turn(turn, machine, cut, machine.dead_centres)
     for axes in (travel, speed, acceleration):
         shade_zones(axes, cut)
         axes.set_xlim(0.0, cut.length * 1e3)
@@ -86,8 +87,7 @@ def crank_figure(comparison: Comparison) -> Figure:
     acceleration.set_xlabel("master position x (mm)")
     figure.align_ylabels([speed, acceleration])
     figure.suptitle(
-        f"{job.name}: crank {machine.crank * 1e3:g} mm, rod {machine.rod * 1e3:g} mm, offset {machine.offset * 1e3:g} mm, "
-        f"gear {machine.gear_ratio:g}",
+        f"{job.name}: {machine_words(machine, digits=6)}, gear {machine.motor_ratio:g}",
         fontsize=9.5,
     )
     handles: list[Line2D | Patch] = [
@@ -101,9 +101,9 @@ def crank_figure(comparison: Comparison) -> Figure:
     return figure
 
 
-def _turn(axes: Axes, machine: CrankSlider, cut: Cut) -> None:
+def _turn(axes: Axes, machine: Machine, cut: Cut, dead_centres: tuple[float, float]) -> None:
     """Draw the carriage over one turn of the crank from its back dead centre, with the zones on the crank and their ends."""
-    back, front = machine.dead_centres
+    back, front = dead_centres
     angle = np.linspace(back, back + 2 * np.pi, _ANGLES)
     lowest = float(machine.tool(back))
     axes.plot(np.degrees(angle), (machine.tool(angle) - lowest) * 1e3, color="black", linewidth=1.3)

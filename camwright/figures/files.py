@@ -19,7 +19,6 @@ from camwright.figures.profile import profile_figure
 from camwright.figures.servo import AXES, servo_figure
 from camwright.figures.style import RC
 from camwright.figures.tradeoff import tradeoff_figure
-from camwright.profiles.machines import CrankSlider
 from camwright.studies.comparison import Comparison
 
 if TYPE_CHECKING:
@@ -31,7 +30,7 @@ if TYPE_CHECKING:
 def design_figures(design: Design, directory: Path) -> list[Path]:
     """Write the figures of a design, each as SVG and PNG.
 
-    They are ``profile``, ``servo`` and ``comparison``; for a crank also ``crank``, for a servo-aware design ``axis``.
+    They are ``profile``, ``servo`` and ``comparison``; for a tool that turns back also ``crank``, for a servo-aware design ``axis``.
 
     Parameters
     ----------
@@ -55,7 +54,7 @@ def design_figures(design: Design, directory: Path) -> list[Path]:
         *comparison_figure(comparison, directory),
         *(
             written(lambda: crank_figure(comparison), directory, "crank")
-            if isinstance(job.machine, CrankSlider)
+            if job.machine.dead_centres is not None
             else []
         ),
         *(_axis_figures(design, directory) if design.axis is not None else []),

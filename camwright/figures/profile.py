@@ -18,7 +18,7 @@ from camwright.figures.style import (
     title,
 )
 from camwright.profiles.cut import Cut
-from camwright.profiles.machines import LinearCarriage, Machine
+from camwright.profiles.machines import Machine
 from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.returns import slave_at_start
@@ -67,8 +67,8 @@ def profile_figure(comparison: Comparison) -> Figure:
     _limits(jerk, (-limits.jerk, limits.jerk))
     for name, profile in shown.items():
         _arrows(acceleration, jerk, name, profile)
-    if isinstance(machine, LinearCarriage):
-        for end in (machine.home, machine.home + machine.stroke):
+    if machine.guide is not None:
+        for end in machine.guide:
             travel.axhline(end * 1e3, **LIMIT)
     travel.set_ylabel(_travel_label(machine))
     unit = machine.slave_unit
@@ -100,7 +100,7 @@ def _travel_label(machine: Machine) -> str:
     """Label of the first panel."""
     if machine.slave_unit == "rad":
         return "y − even turn (°)"
-    return "carriage y (mm)" if machine.turns_back else "y − x (mm)"
+    return f"{machine.noun} y (mm)" if machine.turns_back else "y − x (mm)"
 
 
 def curve(profile: CamProfile, order: int) -> tuple[FloatArray, FloatArray]:

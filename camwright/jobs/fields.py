@@ -13,12 +13,10 @@ from pydantic_core import PydanticCustomError
 
 from camwright.house.units import KINDS, quantity, shown
 from camwright.profiles.errors import InputError
+from camwright.profiles.machines import MACHINES, Machine
 
 Spread = float | tuple[float, float]
 """Range of a parameter: the share of it by which it may be off to both sides, or its two ends."""
-
-TURNING = frozenset({"crank_slider"})
-"""Kinds of machines whose slave is an angle."""
 
 
 _CURVE = '[["0 rpm", "12 N m"], ["3000 rpm", "8 N m"]]'
@@ -33,9 +31,9 @@ class Known:
     kind
         Kind of the machine; nothing if the file names none that is known.
     numbers
-        Numbers by key, in SI units.
-    sync
-        Which speed of the blade is in sync; nothing if the file says something that is not known.
+        Numbers by key, in SI units; those of the machine by `machine_key`.
+    choices
+        Words of the machine by key, those that are known.
     spreads
         Ranges of the servo's parameters, by key.
     servo_aware
@@ -44,9 +42,24 @@ class Known:
 
     kind: str | None = None
     numbers: dict[str, float] = field(default_factory=dict)
-    sync: str | None = "tangential"
+    choices: dict[str, str] = field(default_factory=dict)
     spreads: dict[str, Spread] = field(default_factory=dict)
     servo_aware: bool = False
+
+    @property
+    def machine(self) -> type[Machine] | None:
+        """The kind of the machine; nothing if it is not known."""
+        return MACHINES.get(self.kind or "")
+
+    @property
+    def turns(self) -> bool:
+        """Whether the slave is an angle."""
+        return self.machine is not None and self.machine.slave_unit == "rad"
+
+
+def machine_key(key: str) -> str:
+    """Key under which a number of the machine is kept: a machine may use any word, those of other tables too."""
+    return f"machine.{key}"
 
 
 class Table(BaseModel):
@@ -67,12 +80,15 @@ def keep(value: float, info: ValidationInfo, key: str | None = None) -> float:
 
 
 def quantity_field(
-    kind: str, *, zero: bool = False, signed: bool = False, example: str | None = None
+    kind: str, *, zero: bool = False, signed: bool = False, example: str | None = None, kept_as: str | None = None
 ) -> tuple[BeforeValidator, WithJsonSchema]:
-    """Make the parts of a field that is written as a number with a unit; arguments as `camwright.house.units.quantity`."""
+    """Make the parts of a field that is written as a number with a unit; arguments as `camwright.house.units.quantity`.
+
+    ``kept_as`` is the key under which it is kept, the field's own if not given.
+    """
 
     def read(value: object, info: ValidationInfo) -> float:
-        return keep(_read(value, kind, zero=zero, signed=signed, example=example), info)
+        return keep(_read(value, kind, zero=zero, signed=signed, example=example), info, kept_as)
 
     least = "of either sign" if signed else "zero or more" if zero else "greater than zero"
     return BeforeValidator(read), _schema(f"{KINDS[kind].name}, {least}", [example or KINDS[kind].example], signed)
@@ -90,8 +106,7 @@ def slave_field(straight: str, turning: str, example: str) -> tuple[BeforeValida
     """
 
     def read(value: object, info: ValidationInfo) -> float:
-        machine = cast(Known, info.context).kind
-        turns = machine in TURNING
+        machine, turns = cast(Known, info.context).kind, cast(Known, info.context).turns
         wanted, other = (turning, straight) if turns else (straight, turning)
         shown_example = example if turns else KINDS[straight].example
         if machine is not None and _is(value, other):
@@ -103,12 +118,13 @@ def slave_field(straight: str, turning: str, example: str) -> tuple[BeforeValida
             return _read(value, turning)  # right for a crank, and what the machine is nobody knows
         return keep(_read(value, wanted, example=shown_example), info)
 
-    words = f"{KINDS[straight].name}, of a crank {KINDS[turning].name}, greater than zero"
+    turning_nouns = " or ".join(machine.noun for machine in MACHINES.values() if machine.slave_unit == "rad")
+    words = f"{KINDS[straight].name}, of a {turning_nouns} {KINDS[turning].name}, greater than zero"
     return BeforeValidator(read), _schema(words, [KINDS[straight].example, example], signed=False)
 
 
-def zone_field(kind: str, angle_key: str, machine: str) -> tuple[BeforeValidator, WithJsonSchema]:
-    """Make the parts of a length that may be written as an angle for one kind of machine.
+def zone_field(kind: str, angle_key: str) -> tuple[BeforeValidator, WithJsonSchema]:
+    """Make the parts of a length that may be written as an angle for machines that know what length it is.
 
     The angle is kept under a key of its own and the field is nothing: what length it is the machine says.
     """
@@ -116,17 +132,26 @@ def zone_field(kind: str, angle_key: str, machine: str) -> tuple[BeforeValidator
     def read(value: object, info: ValidationInfo) -> float | None:
         if not _is(value, "angle"):
             return keep(_read(value, kind), info)
-        named = cast(Known, info.context).kind
-        if named not in (machine, None):
-            raise refusal(f'{shown(value)}: an angle, which only a {machine} knows; write e.g. "{KINDS[kind].example}"')
+        named = cast(Known, info.context).machine
+        if named is not None and not named.zone_by_angle:
+            raise refusal(
+                f'{shown(value)}: an angle, which only a {_knowing()} knows; write e.g. "{KINDS[kind].example}"'
+            )
         keep(_read(value, "angle"), info, angle_key)
         return None
 
-    words = f"{KINDS[kind].name}, of a {machine} also {KINDS['angle'].name}, greater than zero"
+    words = f"{KINDS[kind].name}, of a {_knowing()} also {KINDS['angle'].name}, greater than zero"
     return BeforeValidator(read), _schema(words, [KINDS[kind].example, "60 deg"], signed=False)
 
 
-def number_field(least: float, greatest: float, words: str, example: str, *, above: bool = False) -> BeforeValidator:
+def _knowing() -> str:
+    """Name the machines whose sync zone may be an angle."""
+    return " or ".join(kind for kind, machine in MACHINES.items() if machine.zone_by_angle)
+
+
+def number_field(
+    least: float, greatest: float, words: str, example: str, *, above: bool = False, kept_as: str | None = None
+) -> BeforeValidator:
     """Make the validator of a field that is written as a bare number in a range.
 
     Parameters
@@ -139,6 +164,8 @@ def number_field(least: float, greatest: float, words: str, example: str, *, abo
         A number to write.
     above
         Whether the least value itself is outside.
+    kept_as
+        As of `quantity_field`.
     """
 
     def read(value: object, info: ValidationInfo) -> float:
@@ -146,20 +173,20 @@ def number_field(least: float, greatest: float, words: str, example: str, *, abo
             raise refusal(f"{shown(value)}: not a number; write e.g. {info.field_name} = {example}")
         if not math.isfinite(value) or not (least < value <= greatest if above else least <= value <= greatest):
             raise refusal(f"{shown(value)}: {words}")
-        return keep(float(value), info)
+        return keep(float(value), info, kept_as)
 
     return BeforeValidator(read)
 
 
-def whole_field(least: int, greatest: int, example: int) -> BeforeValidator:
-    """Make the validator of a field that is written as a whole number in a range."""
+def whole_field(least: int, greatest: int, example: int, *, kept_as: str | None = None) -> BeforeValidator:
+    """Make the validator of a field that is written as a whole number in a range; ``kept_as`` as of `quantity_field`."""
 
     def read(value: object, info: ValidationInfo) -> int:
         if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= greatest:
             raise refusal(
                 f"{shown(value)}: not a whole number from {least} to {greatest}; write e.g. {info.field_name} = {example}"
             )
-        keep(value, info)
+        keep(value, info, kept_as)
         return value
 
     return BeforeValidator(read)

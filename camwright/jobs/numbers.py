@@ -7,27 +7,29 @@ from dataclasses import asdict
 from typing import Any
 
 from camwright.jobs.job import Job
-from camwright.profiles.machines import CrankSlider, LinearCarriage, Machine, RotaryKnife
+from camwright.profiles.machines import MACHINES, Machine
+from camwright.profiles.machines.fields import fields_of
 
 
 def machine_numbers(machine: Machine) -> dict[str, Any]:
-    """Write a machine under the keys of a job file; the place of a crank's sync zone is null while it is free."""
-    if isinstance(machine, RotaryKnife):
-        return {
-            "kind": "rotary_knife",
-            "circumference": machine.circumference,
-            "blades": machine.blades,
-            "gear_ratio": machine.gear_ratio,
-            "sync": machine.sync,
-            "inertia": machine.drum_inertia,
-            "friction": machine.drum_friction,
-        }
-    if isinstance(machine, LinearCarriage):
-        return {"kind": "linear_carriage", **asdict(machine)}
-    if isinstance(machine, CrankSlider):
-        free = math.isnan(machine.sync_at)
-        return {"kind": "crank_slider", **asdict(machine), "sync_at": None if free else machine.sync_at}
-    raise TypeError(f"{type(machine).__name__} has no table in job files")
+    """Write a machine under the keys of a job file; the place of its sync zone is null while it is free."""
+    values = {each.key: getattr(machine, each.name) for each in fields_of(type(machine))}
+    if not machine.placed:
+        values[machine.place_name] = None
+    return {"kind": machine.kind, **values}
+
+
+def stored_machine(numbers: dict[str, Any]) -> Machine:
+    """Make the machine that `machine_numbers` has written.
+
+    Raises
+    ------
+    KeyError
+        There is no such machine, or a number is missing.
+    """
+    machine = MACHINES[numbers["kind"]]
+    values = {each.name: numbers[each.key] for each in fields_of(machine)}
+    return machine(**{name: math.nan if value is None else value for name, value in values.items()})
 
 
 def job_numbers(job: Job) -> dict[str, Any]:

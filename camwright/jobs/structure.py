@@ -4,27 +4,30 @@ from __future__ import annotations
 
 import difflib
 import json
+from functools import cache
 from typing import Annotated, Any, Literal, cast
 
-from pydantic import BaseModel, Field, ValidationError
+from pydantic import BaseModel, Field, ValidationError, create_model
 from pydantic_core import ErrorDetails
 
 from camwright.house.units import shown
 from camwright.jobs.fields import (
-    TURNING,
     Known,
     Spread,
     Table,
     checked,
     curve_field,
+    machine_key,
     number_field,
     quantity_field,
     slave_field,
     whole_field,
     zone_field,
 )
-from camwright.jobs.machine_tables import TABLES, MachineTable
+from camwright.jobs.machine_tables import machine_tables, table_of
 from camwright.jobs.spread_fields import aware_only, number_spread, quantity_spread
+from camwright.profiles.machines import MACHINES, Machine
+from camwright.profiles.machines.fields import Choice, fields_of
 from camwright.profiles.objective import ObjectiveName
 
 Command = Literal["in_sync", "shaped"]
@@ -54,7 +57,7 @@ class CutTable(Table):
 
     length: Annotated[float, *quantity_field("length")]
     line_speed: Annotated[float, *quantity_field("speed")]
-    sync_zone: Annotated[float | None, *zone_field("length", "sync_angle", "rotary_knife")]
+    sync_zone: Annotated[float | None, *zone_field("length", "sync_angle")]
     shear_zone: Annotated[float, *quantity_field("length", zero=True), Field(json_schema_extra={"default": "0 mm"})] = (
         0.0
     )
@@ -160,7 +163,7 @@ class JobFile(Table):
             json_schema_extra={"minLength": 1, "maxLength": _LONGEST_NAME, "pattern": r'^[^/\\<>:"|?*\n\r]+$'},
         ),
     ]
-    machine: MachineTable
+    machine: Table
     cut: CutTable
     limits: LimitsTable
     servo: ServoTable
@@ -168,9 +171,21 @@ class JobFile(Table):
     output: OutputTable = OutputTable()
 
 
+def job_model() -> type[JobFile]:
+    """Model of a job file for the machines that there are."""
+    return _job_model(tuple(MACHINES.values()))
+
+
+@cache
+def _job_model(machines: tuple[type[Machine], ...]) -> type[JobFile]:
+    """Make the model of a job file; machines are those that `machine_tables` knows."""
+    del machines
+    return create_model("JobFile", __base__=JobFile, __doc__=JobFile.__doc__, machine=(machine_tables(), ...))
+
+
 def job_schema() -> dict[str, Any]:
     """Make the JSON Schema of a job file from the models."""
-    schema = JobFile.model_json_schema()
+    schema = job_model().model_json_schema()
     for definition in (schema, *schema["$defs"].values()):
         for entry in definition["properties"].values():
             # left out, not null: TOML knows no null
@@ -199,25 +214,35 @@ def read_structure(data: dict[str, Any]) -> tuple[JobFile | None, Known, list[st
     known = Known()
     machine = data.get("machine")
     if isinstance(machine, dict):
-        kind, sync = machine.get("kind"), machine.get("sync", known.sync)
-        known.kind = kind if isinstance(kind, str) and kind in TABLES else None
-        known.sync = sync if sync in ("tangential", "horizontal") else None
+        kind = machine.get("kind")
+        known.kind = kind if isinstance(kind, str) and kind in MACHINES else None
+        known.choices = _choices(machine, known)
     objective = data.get("objective")
     known.servo_aware = isinstance(objective, dict) and objective.get("servo_aware", False) is not False
     for name in JobFile.model_fields:
         if isinstance(data.get(name), dict):
-            _fill_in(known, data[name], _model_at([name], known))
+            _fill_in(known, name, data[name], _model_at([name], known))
     try:
-        return JobFile.model_validate(data, context=known), known, []
+        return job_model().model_validate(data, context=known), known, []
     except ValidationError as error:
         return None, known, [_fault(entry, known) for entry in error.errors(include_url=False)]
 
 
-def _fill_in(known: Known, table: dict[str, Any], model: type[BaseModel] | None) -> None:
+def _choices(table: dict[str, Any], known: Known) -> dict[str, str]:
+    """Words of a machine table that are known, those that it leaves out included."""
+    found = {}
+    for each in fields_of(known.machine) if known.machine is not None else ():
+        word = table.get(each.key, each.default)
+        if isinstance(each.about, Choice) and word in each.about.words:
+            found[each.key] = word
+    return found
+
+
+def _fill_in(known: Known, name: str, table: dict[str, Any], model: type[BaseModel] | None) -> None:
     """Keep the default numbers of what a table leaves out."""
     for key, field in model.model_fields.items() if model is not None else ():
         if key not in table and isinstance(field.default, int | float) and not isinstance(field.default, bool):
-            known.numbers[key] = field.default
+            known.numbers[machine_key(key) if name == "machine" else key] = field.default
 
 
 def _fault(error: ErrorDetails, known: Known) -> str:
@@ -230,7 +255,7 @@ def _fault(error: ErrorDetails, known: Known) -> str:
     if kind in ("union_tag_not_found", "union_tag_invalid"):
         if kind == "union_tag_not_found":
             return '[machine] kind: missing; add e.g. kind = "rotary_knife"'
-        return f"[machine] kind = {shown(value['kind'])}: not known; write {_choice(list(TABLES))}"
+        return f"[machine] kind = {shown(value['kind'])}: not known; write {_choice(list(MACHINES))}"
     table = ".".join(place)
     where = f"[{table}] {key}" if place else (f"[{key}]" if _is_table(key) else key)
     if kind == "missing":
@@ -267,7 +292,7 @@ def _model_at(place: list[str], known: Known) -> type[BaseModel] | None:
     if not place:
         return JobFile
     if place[0] == "machine":
-        return TABLES.get(known.kind or "")
+        return None if known.machine is None else table_of(known.machine)
     if place == ["servo", "tolerance"]:
         return ServoToleranceTable
     model = JobFile.model_fields[place[0]].annotation
@@ -279,5 +304,5 @@ def _example(place: list[str], key: str, known: Known) -> str:
     if not place:
         return f"add the table [{key}]" if _is_table(key) else f'add e.g. {key} = "paper-600"'
     schema = cast(type[BaseModel], _model_at(place, known)).model_json_schema()["properties"][key]
-    example = schema["examples"][-1 if place[0] == "limits" and known.kind in TURNING else 0]
+    example = schema["examples"][-1 if place[0] == "limits" and known.turns else 0]
     return f"add e.g. {key} = {json.dumps(example)}"

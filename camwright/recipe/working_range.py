@@ -8,7 +8,7 @@ from dataclasses import replace
 from camwright.jobs.job import Job
 from camwright.profiles.cut import Cut
 from camwright.profiles.limits import Limits
-from camwright.profiles.machines import LinearCarriage, Machine
+from camwright.profiles.machines import Machine
 from camwright.profiles.task import Task
 from camwright.recipe.model import Edge, WorkingRange
 
@@ -88,9 +88,9 @@ def can_rest(machine: Machine, cut: Cut, limits: Limits) -> bool:
     )
     before = stopping_distance(v * float(sync(0.0, 1)), -v * v * float(sync(0.0, 2)), limits)  # run backwards in time
     travel = float(sync(sync.end))
-    if isinstance(machine, LinearCarriage):
+    if machine.guide is not None:
         start = machine.sync_start(cut)
-        return before <= start - machine.home and after <= machine.home + machine.stroke - start - travel
+        return before <= start - machine.guide[0] and after <= machine.guide[1] - start - travel
     return limits.reversal or before + after <= machine.pitch - travel
 
 

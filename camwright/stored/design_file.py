@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import math
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,9 +15,8 @@ from camwright.house.provenance import SCHEMA_VERSION, provenance
 from camwright.jobs.job import Job, parse_job
 from camwright.jobs.numbers import job_numbers
 from camwright.profiles.errors import InputError
-from camwright.profiles.machines import (
-    CrankSlider,
-)
+from camwright.profiles.machines import MACHINES, Machine
+from camwright.profiles.machines.fields import Choice, MachineField, Whole, fields_of
 from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.servo_tolerance import ServoTolerance
@@ -114,19 +112,31 @@ def parse_design(text: str, place: str) -> StoredDesign:
 
 
 def _placed(job: Job, numbers: object, place: str) -> Job:
-    """Put a crank's sync zone where the design chose it."""
+    """Put a sync zone that the job leaves free where the design chose it."""
     machine = job.machine
-    if not isinstance(machine, CrankSlider) or not math.isnan(machine.sync_at):
+    if machine.placed:
         return job
     stored = numbers.get("machine") if isinstance(numbers, dict) else None
-    angle = stored.get("sync_at") if isinstance(stored, dict) else None
-    least, greatest = machine.sync_range(job.cut)
+    angle = stored.get(machine.place_name) if isinstance(stored, dict) else None
+    least, greatest = machine.place_range(job.cut)
     if isinstance(angle, bool) or not isinstance(angle, int | float) or not least < angle < greatest:
         raise InputError(
-            f"{place}: not a design.json: job.si.machine.sync_at, where on the crank the sync zone lies, must be a number from "
-            f"{least:.6g} to {greatest:.6g} (rad)"
+            f"{place}: not a design.json: job.si.machine.{machine.place_name}, where on the {machine.noun} the sync zone lies, must be a "
+            f"number from {least:.6g} to {greatest:.6g} ({machine.slave_unit})"
         )
-    return replace(job, machine=replace(machine, sync_at=float(angle)))
+    return replace(job, machine=machine.placed_at(float(angle)))
+
+
+def _field_schema(each: MachineField, machine: type[Machine]) -> dict[str, Any]:
+    """Make the schema of a stored number of a machine."""
+    if isinstance(each.about, Choice):
+        return {"enum": list(each.about.words)}
+    if isinstance(each.about, Whole):
+        return {"type": "integer"}
+    if each.name == machine.place_name:
+        what = f"{machine.noun} angle" if machine.slave_unit == "rad" else f"place of the {machine.noun}"
+        return {"type": "number", "description": f"{what} at mid sync zone ({machine.slave_unit}), given or chosen"}
+    return {"type": "number"}
 
 
 def design_schema() -> dict[str, Any]:
@@ -144,26 +154,8 @@ def design_schema() -> dict[str, Any]:
     pairs = {"type": "array", "items": {"type": "array", "items": number, "minItems": 2, "maxItems": 2}}
     curve = {"oneOf": [{"type": "null"}, table(points=pairs)], "description": "motor speed (rad/s) and torque (N m)"}
     machines = [
-        table(
-            kind={"const": "rotary_knife"},
-            circumference=number,
-            blades=whole,
-            gear_ratio=number,
-            sync={"enum": ["tangential", "horizontal"]},
-            inertia=number,
-            friction=number,
-        ),
-        table(kind={"const": "linear_carriage"}, stroke=number, home=number, mass=number, travel_per_turn=number),
-        table(
-            kind={"const": "crank_slider"},
-            crank=number,
-            rod=number,
-            offset=number,
-            crank_inertia=number,
-            carriage_mass=number,
-            gear_ratio=number,
-            sync_at={**number, "description": "crank angle at mid sync zone (rad), given or chosen"},
-        ),
+        table(kind={"const": kind}, **{each.key: _field_schema(each, machine) for each in fields_of(machine)})
+        for kind, machine in MACHINES.items()
     ]
     root = table(
         schema_version={"const": SCHEMA_VERSION},

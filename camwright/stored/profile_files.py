@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import math
-import re
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from camwright.house.files import read_text
 from camwright.house.provenance import provenance
 from camwright.jobs.job import Job
+from camwright.jobs.place import not_placed, place_in
 from camwright.profiles.errors import InputError
-from camwright.profiles.machines import CrankSlider, Machine
+from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.tables.cam_csv import read_cam_csv, rebuild, write_cam_csv
 from camwright.stored.design_file import MOST_BYTES, parse_design
@@ -22,10 +21,6 @@ if TYPE_CHECKING:
 
 _ROUNDING = 1e-6
 """What a table's ends may miss those of the cycle by, as a part of the cut length: tables are rounded."""
-
-
-_SYNC_AT = re.compile(r"^# sync_at: ([0-9.eE+-]{1,30}) rad$", re.MULTILINE)
-"""The comment line of a cam.csv that says where on the crank its sync zone lies."""
 
 
 def cam_text(design: Design) -> str:
@@ -41,8 +36,8 @@ def cam_text(design: Design) -> str:
     entries = {"job": design.job.name, **origin, **(libraries if isinstance(libraries, dict) else {})}
     comments = [f"{name}: {value}" for name, value in entries.items()]
     machine = design.job.machine
-    if isinstance(machine, CrankSlider):
-        comments.append(f"sync_at: {machine.sync_at!r} rad")
+    if machine.place_name:
+        comments.append(f"{machine.place_name}: {machine.place!r} {machine.slave_unit}")
     return write_cam_csv(design.profile, design.job.output.points, comments, machine.slave_unit)
 
 
@@ -54,7 +49,7 @@ def read_profile(path: Path, job: Job) -> CamProfile:
 def read_cycle(path: Path, job: Job) -> tuple[CamProfile, Machine]:
     """Read one cycle from a design.json or a table, told apart by the first character, and the machine to judge it by.
 
-    The machine is the job's; where the job leaves the place of a crank's sync zone free, it is that of the file.
+    The machine is the job's; where the job leaves the place of its sync zone free, it is that of the file.
 
     Parameters
     ----------
@@ -74,11 +69,11 @@ def read_cycle(path: Path, job: Job) -> tuple[CamProfile, Machine]:
     if text.removeprefix("\ufeff").lstrip().startswith("{"):
         stored = parse_design(text, str(path))
         profile, unit = stored.profile, stored.job.machine.slave_unit
-        place = stored.job.machine.sync_at if isinstance(stored.job.machine, CrankSlider) else math.nan
+        place = stored.job.machine.place
     else:
         rows = read_cam_csv(text, str(path))
         profile, unit = rebuild(rows.x, rows.y, rows.dy, rows.d2y), rows.slave_unit
-        place = _sync_at(text)
+        place = _stated_place(job.machine, text)
     if unit != job.machine.slave_unit:
         raise InputError(
             f"{path}: the slave is counted in {unit}, but that of the job's machine in {job.machine.slave_unit}; name the job that the "
@@ -87,11 +82,10 @@ def read_cycle(path: Path, job: Job) -> tuple[CamProfile, Machine]:
     return _one_cycle(profile, job.cut.length, str(path)), _placed(job, place, str(path))
 
 
-def _sync_at(text: str) -> float:
-    """Crank angle at mid sync zone that a cam.csv states (rad); not a number if it states none."""
-    found = _SYNC_AT.search(text)
+def _stated_place(machine: Machine, text: str) -> float:
+    """Place of the sync zone that a cam.csv states; not a number if it states none."""
     try:
-        return float(found.group(1)) if found else math.nan
+        return float(place_in(machine, text) or math.nan)
     except ValueError:
         return math.nan
 
@@ -99,13 +93,11 @@ def _sync_at(text: str) -> float:
 def _placed(job: Job, place: float, file: str) -> Machine:
     """Give the job's machine, a free sync zone placed where the file has it."""
     machine = job.machine
-    if not isinstance(machine, CrankSlider) or not math.isnan(machine.sync_at):
+    if machine.placed:
         return machine
     if math.isnan(place):
-        raise InputError(
-            f"{file}: does not say where on the crank its sync zone lies, and neither does the job; give [machine] sync_at"
-        )
-    machine = replace(machine, sync_at=place)
+        raise not_placed(machine, file)
+    machine = machine.placed_at(place)
     machine.sync_start(job.cut)
     return machine
 

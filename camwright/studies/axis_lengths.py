@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from camwright.jobs.job import Job
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import SolverError
-from camwright.profiles.machines import RotaryKnife
 from camwright.studies.axis_study import servos_of
 
 _FINE, _LENGTH_RESOLUTION, _ZONE_RESOLUTION = 8, 2e-4, 4e-3
@@ -56,7 +55,7 @@ def axis_lengths(job: Job) -> AxisLengths | None:
     from camwright.validation.bounds.zone_search import ZoneSearch
 
     machine, cut, limits = job.machine, replace(job.cut, shaped=False), job.limits
-    if not isinstance(machine, RotaryKnife) or machine.sync != "tangential" or cut.sync_ratio != 1.0:
+    if not machine.published or cut.sync_ratio != 1.0:
         return None
     servos = servos_of(job) if job.servo_aware else (job.servo,)
     pitch = machine.pitch

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from camwright.house.progress import Step, ignore
@@ -12,7 +12,7 @@ from camwright.jobs.job import Job
 from camwright.profiles.cross_cutter import QUINTIC_RATIO, quintic_return
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
-from camwright.profiles.machines import CrankSlider, Machine
+from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import (
     BASELINES,
@@ -96,9 +96,9 @@ def law_names(machine: Machine, cut: Cut) -> tuple[str, ...]:
     >>> "quintic" in law_names(job.machine, job.cut), "cycloid" in law_names(job.machine, job.cut)
     (False, True)
     """
-    if isinstance(machine, CrankSlider) and math.isnan(machine.sync_at):
-        least, greatest = machine.sync_range(cut)
-        machine = replace(machine, sync_at=0.5 * (least + greatest))  # the names are the same at every place
+    if not machine.placed:
+        least, greatest = machine.place_range(cut)
+        machine = machine.placed_at(0.5 * (least + greatest))  # the names are the same at every place
     names = baseline_names(machine, cut)
     if not is_straight(machine, cut):
         return names

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from camwright.jobs.job import Job
-from camwright.profiles.machines import RotaryKnife
 
 if TYPE_CHECKING:
     from camwright.validation.bounds.minimum_length import MinimumCutLength
@@ -70,7 +69,7 @@ def cut_lengths(job: Job) -> CutLengths | None:
     from camwright.validation.servo.response import servo_response
 
     machine, cut, limits, servo = job.machine, job.cut, job.limits, job.servo
-    if not isinstance(machine, RotaryKnife) or machine.sync != "tangential" or cut.sync_ratio != 1.0:
+    if not machine.published or cut.sync_ratio != 1.0:
         return None
     response = servo_response(baseline("linear_return", machine, cut), machine, cut, servo)
 

@@ -11,8 +11,7 @@ import numpy as np
 from camwright.house.progress import Step, ignore
 from camwright.house.provenance import provenance
 from camwright.jobs.job import Job
-from camwright.jobs.machine_checks import sync_pace
-from camwright.profiles.machines import CrankSlider, Machine
+from camwright.profiles.machines import Machine
 from camwright.profiles.objective import OBJECTIVES, MotionObjective, of_motion
 
 if TYPE_CHECKING:
@@ -127,7 +126,7 @@ def envelope_answer(job: Job, points: int, step: Step = ignore) -> EnvelopeAnswe
 
     shortest = max(SHORTEST * job.cut.length, LEAST_ZONE * job.cut.sync_zone)
     lengths = np.linspace(shortest, LONGEST * job.cut.length, points).round(6)
-    fastest = job.limits.speed / sync_pace(job.machine, job.cut)
+    fastest = job.limits.speed / job.machine.sync_pace(job.cut)
     speeds = np.linspace(fastest / points, fastest, points)
     objective = of_motion(job.objective)
     found = envelope(job.task, objective, lengths.tolist(), speeds.tolist(), step)
@@ -135,8 +134,11 @@ def envelope_answer(job: Job, points: int, step: Step = ignore) -> EnvelopeAnswe
 
 
 def _place(machine: Machine) -> dict[str, float]:
-    """Where a crank has its sync zone; nothing for other machines."""
-    return {"sync_at_deg": math.degrees(machine.sync_at)} if isinstance(machine, CrankSlider) else {}
+    """Where the machine has its sync zone, if that is a number of its own."""
+    if not machine.place_name:
+        return {}
+    unit, factor = ("deg", math.degrees(1.0)) if machine.slave_unit == "rad" else ("mm", 1e3)
+    return {f"{machine.place_name}_{unit}": machine.place * factor}
 
 
 def _per_minute(speed: float | None) -> float | None:

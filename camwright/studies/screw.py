@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -10,8 +11,7 @@ import numpy as np
 from camwright.jobs.job import Job
 from camwright.profiles.errors import InfeasibleError
 from camwright.profiles.limits import Limits
-from camwright.profiles.machines import CrankSlider, LinearCarriage
-from camwright.profiles.machines.screw_equivalent import screw_equivalent
+from camwright.profiles.machines import Machine
 from camwright.profiles.objective import of_command
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.task import Task
@@ -51,7 +51,7 @@ class ScrewCarriage:
         RMS torque of its motor over that of the crank's.
     """
 
-    machine: LinearCarriage
+    machine: Machine
     limits: Limits
     row: Measured
     crank: Measured
@@ -62,8 +62,9 @@ class ScrewCarriage:
     def sentence(self) -> str:
         """What is compared, what is equal, and the outcome."""
         own, crank = self.row.motor, self.crank.motor
+        lead = 2 * math.pi / self.machine.motor_ratio
         return (
-            f"{SCREW}: the same carriage on a screw of {self.machine.travel_per_turn * 1e3:.4g} mm lead, with the stroke, the greatest "
+            f"{SCREW}: the same carriage on a screw of {lead * 1e3:.4g} mm lead, with the stroke, the greatest "
             f"motor speed and the limits of carriage speed, acceleration and jerk that the crank's optimum reaches, screw and motor "
             f"without inertia: {self.reversals} reversals a cut and {own.rms_torque:.4g} N m RMS against none and "
             f"{crank.rms_torque:.4g} N m of the crank ({self.heating:.3g} times)"
@@ -86,26 +87,26 @@ def screw_carriage(job: Job, crank: Measured) -> ScrewCarriage | None:
     Returns
     -------
     ScrewCarriage or None
-        None where there is nothing to compare: the machine is no crank, its carriage has no mass, or a carriage on a screw cannot do
+        None where there is nothing to compare: the machine has no equal on a screw, or a carriage on a screw cannot do
         the cut within these limits.
     """
     from camwright.design.optimise import solve
 
     machine, tool = job.machine, crank.tool
-    if not isinstance(machine, CrankSlider) or machine.carriage_mass == 0.0:
-        return None
     if tool.peak_acceleration is None or tool.peak_jerk is None:
         return None
     room = 1 + _ROOM
     limits = Limits(tool.peak_speed * room, tool.peak_acceleration * room, tool.peak_jerk * room, reversal=True)
     motor_speed = crank.motor.peak_speed
-    first = screw_equivalent(machine, tool.peak_speed, motor_speed)
+    first = machine.on_screw(tool.peak_speed, motor_speed)
+    if first is None:
+        return None
     try:
         profile = solve(Task(first, job.cut, limits), of_command(job.objective)).profile
     except InfeasibleError:
         return None
     # the motion of a carriage does not depend on the lead: it is chosen last, by the speed that the carriage reaches
-    screw = screw_equivalent(machine, job.cut.line_speed * _greatest_ratio(profile), motor_speed)
+    screw = machine.on_screw(job.cut.line_speed * _greatest_ratio(profile), motor_speed) or first
     row = _measured(replace(job, machine=screw, limits=limits), profile)
     if row.motor.rms_torque is None or not crank.motor.rms_torque:
         return None

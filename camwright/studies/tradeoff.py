@@ -12,7 +12,6 @@ import numpy as np
 from camwright.house.progress import Step, ignore
 from camwright.jobs.job import Job
 from camwright.profiles.errors import SolverError
-from camwright.profiles.machines import LinearCarriage
 from camwright.profiles.objective import COMMAND_OBJECTIVES, OBJECTIVES, CommandObjective, of_command
 from camwright.profiles.returns import slave_zero
 
@@ -231,9 +230,7 @@ def _cell(value: float | None, cost: float | None) -> str:
 
 def _objectives(job: Job) -> tuple[CommandObjective, ...]:
     """Objectives that have a meaning for a job."""
-    from camwright.validation.motor import moves_something
-
-    moved = moves_something(job.machine)
+    moved = job.machine.moves_something
     return tuple(name for name in COMMAND_OBJECTIVES if moved or OBJECTIVES[name].of != "motor")
 
 
@@ -264,14 +261,14 @@ def _keeps_limits(motion: Motion, job: Job) -> bool:
 
 
 def _keeps_stroke(profile: CamProfile, job: Job) -> bool:
-    """Whether a carriage stays on its guide."""
-    machine = job.machine
-    if not isinstance(machine, LinearCarriage):
+    """Whether the slave stays on its guide, if it has one."""
+    if job.machine.guide is None:
         return True
-    start = slave_zero(profile, machine, job.cut) - machine.home
+    low, high = job.machine.guide
+    start = slave_zero(profile, job.machine, job.cut) - low
     least, greatest = profile.extrema(0)
-    rounding = _BEYOND * machine.stroke
-    return start + least.value >= -rounding and start + greatest.value <= machine.stroke + rounding
+    rounding = _BEYOND * (high - low)
+    return start + least.value >= -rounding and start + greatest.value <= high - low + rounding
 
 
 def _keeps_curve(profile: CamProfile, job: Job) -> bool:

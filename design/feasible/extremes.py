@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from camwright.design.feasible.feasibility import (
     binding_limit,
@@ -17,7 +17,7 @@ from camwright.design.feasible.feasibility import (
 from camwright.design.place import place_sync
 from camwright.profiles.cut import Cut
 from camwright.profiles.limits import Limits
-from camwright.profiles.machines import CrankSlider, Machine
+from camwright.profiles.machines import Machine
 from camwright.profiles.task import Task
 
 # Edges are found to rounding; to this share while a place on the crank is looked for.
@@ -77,28 +77,28 @@ def placed_fastest(task: Task) -> Machine:
     return _placed(task, lambda there: -slowdown(task.with_machine(there), COARSE) or math.inf)
 
 
-def _placed(task: Task, cost: Callable[[CrankSlider], float]) -> Machine:
+def _placed(task: Task, cost: Callable[[Machine], float]) -> Machine:
     """Place the sync zone of a crank that leaves it free where a cost is least, or, where nothing works, where most room is left."""
     machine = task.machine
-    if not (isinstance(machine, CrankSlider) and math.isnan(machine.sync_at)):
+    if machine.placed:
         return machine
     placement = place_sync(machine, task.cut, cost)
     return roomiest(machine, task.cut, task.limits) if placement is None else placement.machine
 
 
-def roomiest(machine: CrankSlider, cut: Cut, limits: Limits) -> CrankSlider:
-    """Place the sync zone on the crank where the limits leave most room.
+def roomiest(machine: Machine, cut: Cut, limits: Limits) -> Machine:
+    """Place the sync zone where the limits leave most room.
 
     Raises
     ------
     InputError
-        The sync zone is longer than the crank's stroke.
+        The sync zone fits nowhere.
     """
     placement = place_sync(machine, cut, lambda placed: margin(Task(placed, cut, limits)))
     if placement is not None:
         return placement.machine
-    least, greatest = machine.sync_range(cut)
-    return replace(machine, sync_at=0.5 * (least + greatest))
+    least, greatest = machine.place_range(cut)
+    return machine.placed_at(0.5 * (least + greatest))
 
 
 def max_line_speed(task: Task) -> float | None:

@@ -21,7 +21,7 @@ from camwright.profiles.closed_forms.transfer import Bounds
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
 from camwright.profiles.limits import Limits
-from camwright.profiles.machines import LinearCarriage, Machine
+from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.task import Task
 
@@ -159,7 +159,7 @@ def least_factor(works: Callable[[float], bool], tolerance: float = EDGE) -> flo
 def needed_limits(task: Task) -> dict[str, float]:
     """Least value of each limit that would do, the others as they are (over time, slave unit), infinite where none does.
 
-    For a carriage also its ``"stroke"`` (m).
+    Where a guide holds the slave in also its length, the ``"stroke"`` (slave unit).
     """
     limits = task.limits
     asked = demands(task)
@@ -173,15 +173,15 @@ def needed_limits(task: Task) -> dict[str, float]:
         return float(getattr(limits, name)) * least_factor(lambda f: f >= 1.0 and works(name, f))
 
     need = {name: alone(name) for name in LIMIT_NAMES}
-    if isinstance(task.machine, LinearCarriage):
+    if task.machine.guide is not None:
         need["stroke"] = _stroke_needed(task.machine, task.cut, limits)
     return need
 
 
-def _stroke_needed(machine: LinearCarriage, cut: Cut, limits: Limits) -> float:
-    """Least stroke with which the job works (m); infinite if none does."""
-    travel = cut.sync_ratio * cut.sync_zone
-    wide = replace(machine, stroke=max(machine.stroke, 2 * travel))
+def _stroke_needed(machine: Machine, cut: Cut, limits: Limits) -> float:
+    """Least stroke with which the job works (slave unit); infinite if none does."""
+    travel = machine.sync_profile(cut).advance
+    wide = machine.with_guide(max(stroke_of(machine), 2 * travel))
     found = math.inf
     for demand in demands(Task(wide, cut, limits)):
         problem = resolved(demand.problem)
@@ -223,8 +223,13 @@ def binding_limit(task: Task, need: dict[str, float]) -> str:
     return min(rest, key=lambda name: rest[name])
 
 
+def stroke_of(machine: Machine) -> float:
+    """Length of the guide that holds the slave in (slave unit); infinite where there is none."""
+    return math.inf if machine.guide is None else machine.guide[1] - machine.guide[0]
+
+
 def _have(machine: Machine, limits: Limits, name: str) -> float:
-    return machine.stroke if name == "stroke" and isinstance(machine, LinearCarriage) else float(getattr(limits, name))
+    return stroke_of(machine) if name == "stroke" else float(getattr(limits, name))
 
 
 def with_limit(limits: Limits, name: str, value: float) -> Limits:

@@ -14,10 +14,10 @@ from camwright.design.feasible.feasibility import (
     least_factor,
     needed_limits,
     slowdown,
+    stroke_of,
     with_limit,
 )
 from camwright.profiles.errors import InfeasibleError, Suggestion
-from camwright.profiles.machines import LinearCarriage
 from camwright.profiles.motor import MotorCurve
 from camwright.profiles.task import Task
 
@@ -122,8 +122,8 @@ def _words(task: Task, binding: str, need: dict[str, float], torque: float) -> t
         more = 100 * (torque - 1)
         return more, "%", f"[limits] motor binds, {more:.3g} % more torque is needed at the speeds of the motion"
     machine = task.machine
-    if binding == "stroke" and isinstance(machine, LinearCarriage):
-        have, needed, unit, place = machine.stroke * 1e3, need["stroke"] * 1e3, "mm", "[machine] stroke"
+    if binding == "stroke":
+        have, needed, unit, place = stroke_of(machine) * 1e3, need["stroke"] * 1e3, "mm", "[machine] stroke"
     else:
         factor, unit = _UNITS[machine.slave_unit][binding]
         have, needed, place = getattr(task.limits, binding) * factor, need[binding] * factor, f"[limits] {binding}"
@@ -153,10 +153,10 @@ def _suggestions(task: Task, need: dict[str, float], torque: float) -> Iterator[
     length = _nearest_length(at_length, task)
     if length is not None:
         yield from _written("length", length, 1e3, "mm", length > cut.length, at_length)
-    if isinstance(machine, LinearCarriage) and machine.stroke < need["stroke"] < math.inf:
+    if stroke_of(machine) < need.get("stroke", math.inf) < math.inf:
 
         def with_stroke(stroke: float) -> bool:
-            return is_feasible(task.with_machine(replace(machine, stroke=stroke)))
+            return is_feasible(task.with_machine(machine.with_guide(stroke)))
 
         yield from _written("stroke", need["stroke"], 1e3, "mm", True, with_stroke)
     for name in LIMIT_NAMES:

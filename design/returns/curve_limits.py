@@ -16,7 +16,7 @@ from camwright.profiles.limits import Limits
 from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import FloatArray
 
-# Places around a crank at which its inertia is looked at.
+# Places, around a crank or along a guide, at which the inertia is looked at.
 PLACES = 3600
 # How often the lowest speed of a rectangle is halved where the torque depends on the speed itself.
 HALVINGS = 6
@@ -27,7 +27,7 @@ def motor_limits(machine: Machine, limits: Limits) -> tuple[Limits, ...]:
     """Limits of the slave, one for each rectangle of the motor's curve that leaves any acceleration; those given if there is no curve.
 
     The force at the slave is at most ``I A + I' V² / 2 + F`` with the largest inertia ``I`` and inertia slope ``I'``: exact for constant
-    inertia, on the safe side for a crank. There the force grows with the speed even at rest, so lower speeds are looked at, too.
+    inertia, on the safe side elsewhere. There the force grows with the speed even at rest, so lower speeds are looked at, too.
     """
     if limits.motor is None:
         return (limits,)
@@ -56,11 +56,17 @@ def motor_speed_limits(machine: Machine, limits: Limits) -> Limits:
     return replace(limits, speed=min(limits.speed, limits.motor.top_speed / machine.motor_ratio), motor=None)
 
 
-def moves_something(machine: Machine) -> bool:
-    """Whether the machine says what the motor has to move."""
-    return float(np.max(machine.inertia(_around(machine)))) > 0.0 or machine.friction > 0.0
-
-
 def _around(machine: Machine) -> FloatArray:
-    """Slave coordinates at which the inertia is looked at; one will do where it does not change."""
-    return np.linspace(0.0, 2 * np.pi, PLACES + 1) if machine.slave_unit == "rad" else np.zeros(1)
+    """Slave coordinates at which the inertia is looked at; one will do where it does not change.
+
+    Raises
+    ------
+    TypeError
+        The inertia changes, and the machine has neither a pitch nor a guide that says how far.
+    """
+    if machine.constant_inertia:
+        return np.zeros(1)
+    if machine.guide is None and not machine.pitch:
+        raise TypeError(f"the inertia of a {machine.kind} changes with its place: it must say where by a guide")
+    least, greatest = machine.guide or (0.0, machine.pitch)
+    return np.linspace(least, greatest, PLACES + 1)

@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 from functools import lru_cache
 
-from camwright.profiles.machines import LinearCarriage
 from camwright.profiles.objective import MotionObjective
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.task import Task
@@ -60,9 +59,9 @@ def return_problem(task: Task, objective: MotionObjective) -> ReturnProblem:
     """Put the return of a cutting machine into numbers: the sync zone's ends give the return's boundary values."""
     machine, ends = task.machine, _ends(task.sync)
     least, greatest = -math.inf, math.inf
-    if isinstance(machine, LinearCarriage):
+    if machine.guide is not None:
         end = task.slave_at_sync_start + task.sync.advance
-        least, greatest = machine.home - end, machine.home + machine.stroke - end
+        least, greatest = machine.guide[0] - end, machine.guide[1] - end
     return ReturnProblem(
         length=task.cut.return_zone,
         height=task.height,

@@ -28,7 +28,6 @@ from camwright.design.servo_aware.rows import (
 )
 from camwright.design.servo_aware.torque import AxisTorque
 from camwright.profiles.errors import SolverError
-from camwright.profiles.machines import LinearCarriage
 from camwright.profiles.objective import OBJECTIVES, MotorObjective, ObjectiveName
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.servo import Servo
@@ -334,9 +333,9 @@ class AxisProgramme:
         task = self.problem.task
         machine, slope, jerk = task.machine, task.greatest_slope, task.greatest_jerk
         found = {1: (task.least_ratio, task.greatest_ratio), 2: (-slope, slope), 3: (-jerk, jerk)}
-        if isinstance(machine, LinearCarriage):
+        if machine.guide is not None:
             end = task.slave_at_sync_start + task.sync.advance
-            found[0] = (machine.home - end, machine.home + machine.stroke - end)
+            found[0] = (machine.guide[0] - end, machine.guide[1] - end)
         return found
 
     def _add_worst(self, profile: CamProfile, band: float, *, ratio: bool) -> bool:

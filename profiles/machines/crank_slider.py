@@ -5,20 +5,24 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
+from camwright.profiles.machines.fields import GEAR_RATIO, Quantity
+from camwright.profiles.machines.linear_carriage import LinearCarriage
 from camwright.profiles.machines.machine import Machine, SlaveUnit
+from camwright.profiles.message import Message, Value
 from camwright.profiles.polynomial.fitting import fit_profile
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 
 _SETTLED = 1e-15
 """Step of the inverse map (rad) that is rounding."""
 _MOST_STEPS = 64
-"""Steps of the inverse map: bisection alone needs no more."""
+"""Steps of the inverse map, and of the place of least speed: bisection alone needs no more."""
+_NOT_CHOSEN = "the place of the sync zone on the crank is not chosen yet; design the job first, or give {@sync_at}"
 
 
 @dataclass(frozen=True)
@@ -46,15 +50,20 @@ class CrankSlider(Machine):
         Crank angle at mid sync zone (rad); not a number while the design is free to choose it.
     """
 
+    kind: ClassVar[str] = "crank_slider"
+    noun: ClassVar[str] = "crank"
+    summary: ClassVar[str] = "A carriage driven by a crank and a rod: chasing shear."
     slave_unit: ClassVar[SlaveUnit] = "rad"
+    place_name: ClassVar[str] = "sync_at"
+    own_baselines: ClassVar[tuple[str, ...]] = ("crank_tabulated",)
 
-    crank: float
-    rod: float
-    offset: float = 0.0
-    crank_inertia: float = 0.0
-    carriage_mass: float = 0.0
-    gear_ratio: float = 1.0
-    sync_at: float = math.nan
+    crank: Annotated[float, Quantity("length", example="150 mm", shown=True)]
+    rod: Annotated[float, Quantity("length", shown=True)]
+    offset: Annotated[float, Quantity("length", signed=True, example="0 mm", shown=True)] = 0.0
+    crank_inertia: Annotated[float, Quantity("inertia", zero=True, usual="0.5 kg m^2")] = 0.0
+    carriage_mass: Annotated[float, Quantity("mass", zero=True)] = 0.0
+    gear_ratio: Annotated[float, GEAR_RATIO] = 1.0
+    sync_at: Annotated[float, Quantity("angle", signed=True)] = math.nan
 
     @property
     def pitch(self) -> float:
@@ -112,14 +121,81 @@ class CrankSlider(Machine):
     def sync_start(self, cut: Cut) -> float:
         """Crank angle at the start of the sync zone (rad)."""
         if math.isnan(self.sync_at):
-            raise InputError(
-                "the place of the sync zone on the crank is not chosen yet; design the job first, or give [machine] sync_at"
-            )
+            raise InputError(Message(_NOT_CHOSEN))
         return _sync_start(self, cut.sync_zone, cut.sync_ratio)
 
-    def sync_range(self, cut: Cut) -> tuple[float, float]:
+    def place_range(self, cut: Cut) -> tuple[float, float]:
         """Crank angles between which `sync_at` must lie for the sync zone to fit between the dead centres (rad)."""
-        return _sync_range(self, cut.sync_ratio * cut.sync_zone)
+        if cut.sync_ratio * cut.sync_zone >= self.stroke:
+            raise InputError(*self.zone_faults(cut))
+        return _place_range(self, cut.sync_ratio * cut.sync_zone)
+
+    def faults(self) -> tuple[Message, ...]:
+        """Say that the crank cannot turn all the way round."""
+        least, longest = self.crank + abs(self.offset), self.rod - abs(self.offset)
+        if self.rod > least:
+            return ()
+        values = {
+            "rod": Value(self.rod, "m"),
+            "least": Value(least, "m"),
+            "longer": Value(least, "m", toward="above"),
+            "shorter": Value(longest, "m", toward="below"),
+        }
+        text = (
+            "{@rod} = {rod}: not above {@crank} + |offset| = {least}, so the crank could not turn all the way round; lengthen the rod to "
+            "{longer} at least" + (", or shorten the crank to {shorter} at most" if longest > 0 else "")
+        )
+        return (Message(text, tuple(values.items())),)
+
+    def zone_faults(self, cut: Cut, angle: float | None = None) -> tuple[Message, ...]:
+        """Say that the sync zone does not fit between the dead centres, or not where it is placed."""
+        del angle  # that is a knife's
+        travel = cut.sync_ratio * cut.sync_zone
+        zone = ("zone", Value(cut.sync_zone, "m"))
+        if travel >= self.stroke:
+            values = {
+                "travel": Value(travel, "m"),
+                "stroke": Value(self.stroke, "m"),
+                "shorter": Value(self.stroke / cut.sync_ratio, "m", toward="below"),
+            }
+            text = (
+                "{@sync_zone} = {zone}: the carriage would travel {travel}, not below the crank's stroke of {stroke}; shorten the sync "
+                "zone to {shorter} at most, or take a longer crank"
+            )
+            return (Message(text, (zone, *values.items())),)
+        if math.isnan(self.sync_at):
+            return ()
+        least, greatest = _place_range(self, travel)
+        return () if least < self.sync_at < greatest else (_misplaced(self, cut.sync_zone, travel),)
+
+    def sync_pace(self, cut: Cut) -> float:
+        """Greatest crank speed over line speed in the sync zone (rad/m); where its place is free the least such, over its places.
+
+        The tool ratio has one maximum in the forward stroke, so it is least at one of the zone's ends; and a crank needs least speed
+        where it is the same at both.
+        """
+        if self.placed:
+            return cut.sync_ratio / min(_end_ratios(self, cut))
+        low, high = self.place_range(cut)
+        for _ in range(_MOST_STEPS):
+            middle = 0.5 * (low + high)
+            first, last = _end_ratios(self.placed_at(middle), cut)
+            if first < last:  # slower at the start: move on
+                low = middle
+            else:
+                high = middle
+        return cut.sync_ratio / min(first, last)
+
+    def on_screw(self, carriage_speed: float, motor_speed: float) -> LinearCarriage | None:
+        """Put the carriage on a screw: what S3 compares the crank with; None for a carriage of no mass.
+
+        The carriage's mass and its stroke are those of the crank's. The lead is such that the motor has its greatest speed when the
+        carriage has its own. Screw, coupling and motor add no mass, which favours the screw; a crank's inertia holds all that turns.
+        """
+        if self.carriage_mass == 0.0:
+            return None
+        lead = 2 * math.pi * carriage_speed / motor_speed
+        return LinearCarriage(stroke=self.stroke, mass=self.carriage_mass, travel_per_turn=lead)
 
     def sync_profile(self, cut: Cut) -> CamProfile:
         """Crank angle in the sync zone: ``X(alpha) = X(alpha_start) + s x`` with the sync ratio ``s``."""
@@ -148,29 +224,46 @@ def _sync_start(machine: CrankSlider, zone: float, ratio: float) -> float:
     """Crank angle at the start of the sync zone; kept, because line speed and cut length do not change it."""
     travel = ratio * zone
     if travel >= machine.stroke:
-        raise InputError(
-            f"[cut] sync_zone needs {travel * 1e3:.6g} mm of carriage travel, the crank's stroke is {machine.stroke * 1e3:.6g} mm; shorten "
-            f"the sync zone below {machine.stroke / ratio * 1e3:.6g} mm or take a longer crank"
-        )
+        raise InputError(*machine.zone_faults(Cut(2.0 * zone, 1.0, zone, 0.0, 0.0, 1e-4, sync_ratio=ratio)))
     middle = float(machine.tool(machine.sync_at))
     back, front = machine.dead_centres
     behind = middle - 0.5 * travel - float(machine.tool(back))
     ahead = float(machine.tool(front)) - middle - 0.5 * travel
     if not (back < machine.sync_at < front and behind > 0 and ahead > 0):
-        least, greatest = _sync_range(machine, travel)
-        raise InputError(
-            f"[machine] sync_at = {math.degrees(machine.sync_at):.6g} deg leaves no room for the sync zone between the dead centres; it "
-            f"must lie between {math.degrees(least):.6g} deg and {math.degrees(greatest):.6g} deg"
-        )
+        raise InputError(_misplaced(machine, zone, travel))
     return float(machine.angle_at(np.array([middle - 0.5 * travel]))[0])
 
 
-def _sync_range(machine: CrankSlider, travel: float) -> tuple[float, float]:
+def _misplaced(machine: CrankSlider, zone: float, travel: float) -> Message:
+    """Say that the sync zone leaves the forward stroke where it is placed."""
+    least, greatest = _place_range(machine, travel)
+    values = {
+        "at": Value(machine.sync_at, "rad"),
+        "zone": Value(zone, "m"),
+        "least": Value(least, "rad", toward="above"),
+        "greatest": Value(greatest, "rad", toward="below"),
+    }
+    text = (
+        "{@sync_at} = {at}: leaves no room for the sync zone of {zone} between the dead centres; place it between {least} and "
+        "{greatest}, or leave it out, and the design chooses"
+    )
+    return Message(text, tuple(values.items()))
+
+
+def _place_range(machine: CrankSlider, travel: float) -> tuple[float, float]:
     """Crank angles between which the middle of a carriage travel must lie."""
     back, front = machine.dead_centres
     ends = np.array([float(machine.tool(back)) + 0.5 * travel, float(machine.tool(front)) - 0.5 * travel])
     least, greatest = machine.angle_at(ends)
     return float(least), float(greatest)
+
+
+def _end_ratios(machine: CrankSlider, cut: Cut) -> tuple[float, float]:
+    """Tool ratio at both ends of the sync zone (m/rad)."""
+    half = 0.5 * cut.sync_ratio * cut.sync_zone
+    middle = float(machine.tool(machine.sync_at))
+    first, last = machine.tool_ratio(machine.angle_at(np.array([middle - half, middle + half])))
+    return float(first), float(last)
 
 
 @lru_cache(maxsize=256)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Any, ClassVar
+from dataclasses import dataclass, replace
+from typing import Annotated, Any, ClassVar, Self
 
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
+from camwright.profiles.machines.fields import Quantity
 from camwright.profiles.machines.machine import Machine, SlaveUnit, straight_sync
+from camwright.profiles.message import Message, Value
 from camwright.profiles.polynomial.profile import CamProfile
 
 
@@ -30,13 +32,17 @@ class LinearCarriage(Machine):
         Carriage travel per motor turn (m): lead of the screw, or circumference of the pinion over the gear ratio.
     """
 
+    kind: ClassVar[str] = "linear_carriage"
+    noun: ClassVar[str] = "carriage"
+    summary: ClassVar[str] = "A carriage on a screw or rack: flying shear, flying saw."
     slave_unit: ClassVar[SlaveUnit] = "m"
     turns_back: ClassVar[bool] = True
+    constant_inertia: ClassVar[bool] = True
 
-    stroke: float
-    home: float = 0.0
-    mass: float = 0.0
-    travel_per_turn: float = 1.0
+    stroke: Annotated[float, Quantity("length", example="800 mm", shown=True)]
+    home: Annotated[float, Quantity("length", signed=True, example="0 mm")] = 0.0
+    mass: Annotated[float, Quantity("mass", zero=True)] = 0.0
+    travel_per_turn: Annotated[float, Quantity("length", example="20 mm")] = 1.0
 
     @property
     def pitch(self) -> float:
@@ -55,11 +61,40 @@ class LinearCarriage(Machine):
         """
         travel = cut.sync_ratio * cut.sync_zone
         if travel >= self.stroke:
-            raise InputError(
-                f"[machine] stroke {self.stroke * 1e3:.6g} mm is too short for the sync zone, over which the carriage travels "
-                f"{travel * 1e3:.6g} mm; lengthen the stroke or shorten [cut] sync_zone below {self.stroke / cut.sync_ratio * 1e3:.6g} mm"
-            )
+            raise InputError(*self.zone_faults(cut))
         return self.home + 0.5 * (self.stroke - travel)
+
+    def zone_faults(self, cut: Cut, angle: float | None = None) -> tuple[Message, ...]:
+        """Say that the carriage travels further in sync than its stroke allows."""
+        del angle  # that is a knife's
+        travel = cut.sync_ratio * cut.sync_zone
+        if travel < self.stroke:
+            return ()
+        values = {
+            "stroke": Value(self.stroke, "m"),
+            "travel": Value(travel, "m"),
+            "longer": Value(travel, "m", toward="above"),
+            "shorter": Value(self.stroke / cut.sync_ratio, "m", toward="below"),
+        }
+        text = (
+            "{@stroke} = {stroke}: not above the {travel} that the carriage travels in the sync zone; lengthen it to {longer} at least, "
+            "or shorten {@sync_zone} to {shorter} at most"
+        )
+        return (Message(text, tuple(values.items())),)
+
+    @property
+    def guide(self) -> tuple[float, float]:
+        """Both ends of the stroke (m)."""
+        return self.home, self.home + self.stroke
+
+    def with_guide(self, length: float) -> Self:
+        """Make the same carriage with another stroke (m)."""
+        return replace(self, stroke=length)
+
+    @property
+    def slave_turn(self) -> float:
+        """Travel per motor turn (m)."""
+        return self.travel_per_turn
 
     def sync_profile(self, cut: Cut) -> CamProfile:
         """Slave in the sync zone: ``y = s x`` with the sync ratio ``s``."""

@@ -5,13 +5,15 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, get_args
 
 import numpy as np
 
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
+from camwright.profiles.machines.fields import GEAR_RATIO, Choice, Quantity, Whole
 from camwright.profiles.machines.machine import Machine, SlaveUnit, straight_sync
+from camwright.profiles.message import Message, Value
 from camwright.profiles.polynomial.fitting import fit_profile
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 
@@ -45,14 +47,22 @@ class RotaryKnife(Machine):
         Friction torque at the drum (N·m).
     """
 
+    kind: ClassVar[str] = "rotary_knife"
+    noun: ClassVar[str] = "knife"
+    summary: ClassVar[str] = "Blades on a drum that turns one way."
     slave_unit: ClassVar[SlaveUnit] = "m"
+    constant_inertia: ClassVar[bool] = True
+    zone_by_angle: ClassVar[bool] = True
 
-    circumference: float
-    blades: int = 1
-    gear_ratio: float = 1.0
-    sync: Sync = "tangential"
-    drum_inertia: float = 0.0
-    drum_friction: float = 0.0
+    circumference: Annotated[float, Quantity("length", example="400 mm", shown=True)]
+    blades: Annotated[int, Whole(1, 1000, 2, "blades, evenly spaced", shown=True)] = 1
+    gear_ratio: Annotated[float, GEAR_RATIO] = 1.0
+    sync: Annotated[
+        Sync,
+        Choice(get_args(Sync), "which speed of the blade is in sync: on its circle, or along the material", shown=True),
+    ] = "tangential"
+    drum_inertia: Annotated[float, Quantity("inertia", zero=True, key="inertia")] = 0.0
+    drum_friction: Annotated[float, Quantity("torque", zero=True, usual="2 N m", key="friction")] = 0.0
 
     @property
     def radius(self) -> float:
@@ -79,11 +89,7 @@ class RotaryKnife(Machine):
         if self.sync == "tangential":
             return -half
         if cut.sync_zone > self.greatest_sync_zone(cut.sync_ratio):
-            raise InputError(
-                f"[cut] sync_zone {cut.sync_zone * 1e3:.6g} mm takes the blade beyond ±{math.degrees(GREATEST_ANGLE):.0f}° from the cut "
-                f"point, where horizontal sync ends; the longest possible is "
-                f"{self.greatest_sync_zone(cut.sync_ratio) * 1e3:.6g} mm"
-            )
+            raise InputError(*self.zone_faults(cut))
         return -self.radius * math.asin(half / self.radius)
 
     def sync_profile(self, cut: Cut) -> CamProfile:
@@ -114,6 +120,60 @@ class RotaryKnife(Machine):
         """Friction at the edge (N)."""
         return self.drum_friction / self.radius
 
+    @property
+    def slave_turn(self) -> float:
+        """One turn of the drum (m)."""
+        return self.circumference
+
+    def zone_of_angle(self, angle: float, sync_ratio: float) -> float:
+        """Length of the sync zone in which the blade turns by an angle (m).
+
+        In tangential sync ``l_s = angle r / s``, in horizontal sync ``l_s = 2 r sin(angle / 2) / s``, with the sync ratio ``s``; beyond
+        the greatest angle the zone of that angle.
+        """
+        chord = angle if self.sync == "tangential" else 2 * math.sin(min(0.5 * angle, GREATEST_ANGLE))
+        return self.radius * chord / sync_ratio
+
+    def zone_faults(self, cut: Cut, angle: float | None = None) -> tuple[Message, ...]:
+        """Say that more than one blade would be in sync at a time, or in horizontal sync one too far from the cut point."""
+        travel, longest = cut.sync_ratio * cut.sync_zone, self.pitch / cut.sync_ratio
+        where, given = "{@sync_zone} = {zone}", {"zone": Value(cut.sync_zone, "m")}
+        if angle is not None:
+            where, given = where + " ({angle})", given | {"angle": Value(angle, "rad", 6)}
+        if self.sync == "horizontal":
+            bound = self.greatest_sync_zone(cut.sync_ratio)
+            if cut.sync_zone > bound if angle is None else 0.5 * angle > GREATEST_ANGLE:
+                degrees = f"{math.degrees(GREATEST_ANGLE):.0f}"
+                most = Value(bound, "m", toward="below") if angle is None else Value(2 * GREATEST_ANGLE, "rad", 6)
+                text = (
+                    f"{where}: takes the blade beyond ±{degrees}° from the cut point, where horizontal sync ends; shorten it to {{most}} "
+                    "at most"
+                )
+                return (Message(text, (*given.items(), ("most", most))),)
+            travel = 2 * self.radius * math.asin(min(1.0, 0.5 * travel / self.radius))
+            half = min(0.5 * self.pitch / self.radius, GREATEST_ANGLE)
+            longest = 2 * self.radius * math.sin(half) / cut.sync_ratio
+        if travel < self.pitch:
+            return ()
+        if self.blades == 1 and cut.sync_ratio == 1.0:
+            room = "{@circumference} = {circumference}, so the knife would turn a whole turn in sync"
+        else:
+            room = (
+                f"the {{longest}} that {{@circumference}} = {{circumference}}, blades = {self.blades} and {{@sync_ratio}} = "
+                f"{cut.sync_ratio:.6g} leave to one blade, so no return zone is left"
+            )
+        given |= {
+            "circumference": Value(self.circumference, "m"),
+            "longest": Value(longest, "m"),
+            "most": Value(longest, "m", toward="below"),
+        }
+        return (Message(f"{where}: not below {room}; shorten the sync zone to {{most}} at most", tuple(given.items())),)
+
+    @property
+    def published(self) -> bool:
+        """Whether the edge is in sync on its circle, whatever the sync ratio."""
+        return self.sync == "tangential"
+
     def tangential_mismatch(self, cut: Cut) -> float:
         """Share by which the edge's speed along the material falls short of its speed in sync at the ends of a tangential sync zone.
 
@@ -121,6 +181,15 @@ class RotaryKnife(Machine):
         of that: ``1 - cos(s l_s / 2 r)``.
         """
         return 1.0 - math.cos(min(0.5 * cut.sync_ratio * cut.sync_zone / self.radius, math.pi))
+
+    def remarks(self, cut: Cut) -> tuple[str, ...]:
+        """Say what horizontal sync saves."""
+        if self.sync == "tangential":
+            return ()
+        mismatch = 100 * self.tangential_mismatch(cut)
+        return (
+            f"along the material a blade in tangential sync falls short of the line speed by {mismatch:.3g} % at the ends of the sync zone",
+        )
 
 
 @lru_cache(maxsize=256)

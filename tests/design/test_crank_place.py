@@ -38,7 +38,7 @@ def peak(placed: CrankSlider, cut: Cut, objective: CommandObjective) -> float:
 def test_no_other_place_has_a_lower_peak_of_the_whole_cycle(objective: CommandObjective, cut: Cut) -> None:
     found = place_for(CRANK, cut, LIMITS, objective).machine
     best = peak(found, cut, objective)
-    least, greatest = CRANK.sync_range(cut)
+    least, greatest = CRANK.place_range(cut)
     for angle in np.linspace(least, greatest, 8)[1:-1]:
         there = replace(CRANK, sync_at=float(angle))
         if is_feasible(Task(there, cut, LIMITS)):

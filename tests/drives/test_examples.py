@@ -45,7 +45,7 @@ def written(name: str) -> Written:
         profile = solve(job.task, job.objective).profile
     else:
         if isinstance(job.machine, CrankSlider):
-            job = replace(job, machine=replace(job.machine, sync_at=sum(job.machine.sync_range(job.cut)) / 2))
+            job = replace(job, machine=replace(job.machine, sync_at=sum(job.machine.place_range(job.cut)) / 2))
         profile = baseline("poly_3_4_5", job.machine, job.cut)
     results, refused = export_possible(profile, job, list(TARGETS), force=True)
     return Written(job, profile, {result.target.name: result for result in results}, refused)

@@ -16,7 +16,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from camwright.jobs.job import Job, load_job, parse_job
-from camwright.jobs.machine_checks import sync_pace
 from camwright.jobs.numbers import job_numbers
 from camwright.jobs.structure import job_schema
 from camwright.profiles.errors import InputError
@@ -233,9 +232,9 @@ def test_the_crank_must_be_as_fast_as_the_sync_zone_needs_wherever_it_lies() -> 
     job = read("chasing-shear", ("offset", 'offset = "40 mm"'))
     machine = job.machine
     assert isinstance(machine, CrankSlider)
-    least, greatest = machine.sync_range(job.cut)
-    scan = [sync_pace(replace(machine, sync_at=least + (greatest - least) * i / 400), job.cut) for i in range(1, 400)]
-    best = sync_pace(machine, job.cut)
+    least, greatest = machine.place_range(job.cut)
+    scan = [replace(machine, sync_at=least + (greatest - least) * i / 400).sync_pace(job.cut) for i in range(1, 400)]
+    best = machine.sync_pace(job.cut)
     assert best <= min(scan)
     assert best == pytest.approx(min(scan), rel=2e-3)
     rpm = best * job.cut.line_speed * 30 / math.pi

@@ -27,7 +27,6 @@ from camwright.profiles.machines import (
     LinearCarriage,
     RotaryKnife,
 )
-from camwright.profiles.machines.screw_equivalent import screw_equivalent
 from camwright.profiles.objective import COMMAND_OBJECTIVES, MOTION_OBJECTIVES, CommandObjective
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.task import Task
@@ -251,7 +250,7 @@ def test_torque_on_a_screw_is_force_times_lead_over_a_turn(screw: ScrewCarriage)
 
 
 def test_lead_and_speeds() -> None:
-    screw = screw_equivalent(CrankSlider(crank=0.1, rod=0.5, carriage_mass=7.0), 0.5, 100.0)
+    screw = CrankSlider(crank=0.1, rod=0.5, carriage_mass=7.0).on_screw(0.5, 100.0)
     assert screw.motor_ratio * 0.5 == pytest.approx(100.0)
     assert (screw.mass, screw.home) == (7.0, 0.0)
     assert screw.stroke == pytest.approx(0.2)

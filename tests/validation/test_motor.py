@@ -28,7 +28,6 @@ from camwright.validation.motor import (
     greatest_load,
     measure_motor,
     motor_torque,
-    moves_something,
 )
 
 CUT = Cut(0.9, 1.2, 0.1, 0.02, 0.07, 2e-4)
@@ -166,8 +165,8 @@ def test_what_cannot_be_told_is_none() -> None:
     bare = replace(KNIFE, drum_inertia=0.0)
     found = measure_motor(baseline("cycloid", KNIFE, CUT), bare, CUT)
     assert (found.peak_torque, found.rms_torque, found.energy, found.regenerated) == (None, None, None, None)
-    assert not moves_something(bare)
-    assert moves_something(CrankSlider(0.15, 0.6, carriage_mass=1.0))  # though at a dead centre it weighs nothing
+    assert not bare.moves_something
+    assert CrankSlider(0.15, 0.6, carriage_mass=1.0).moves_something  # though at a dead centre it weighs nothing
 
 
 @pytest.mark.parametrize("machine", [KNIFE, CARRIAGE, CRANK], ids=["knife", "carriage", "crank"])

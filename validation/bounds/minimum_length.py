@@ -16,7 +16,7 @@ from camwright.profiles.closed_forms.reach import in_time, least_acceleration, s
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
 from camwright.profiles.limits import Limits
-from camwright.profiles.machines import RotaryKnife
+from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import assemble, baseline
 from camwright.profiles.servo import Servo
@@ -104,7 +104,7 @@ def cut_length_eq10(transition: float, shear_zone: float, pitch: float, line_spe
     return sync_zone + line_speed / speed * (pitch - sync_zone)
 
 
-def physical(machine: RotaryKnife, cut: Cut, limits: Limits) -> MinimumCutLength:
+def physical(machine: Machine, cut: Cut, limits: Limits) -> MinimumCutLength:
     """Shortest cut length of a perfect axis: in sync in the shear zone alone, the fastest return beside it.
 
     Seen from the material the return is a motion from rest to rest over ``y_c - x_c``, at no more than ``v_max - v``;
@@ -125,7 +125,7 @@ def physical(machine: RotaryKnife, cut: Cut, limits: Limits) -> MinimumCutLength
     return MinimumCutLength(length, cut.shear_zone, 0.0, _greatest(gain))
 
 
-def linear_return_to_tolerance(machine: RotaryKnife, cut: Cut, limits: Limits, servo: Servo) -> MinimumCutLength:
+def linear_return_to_tolerance(machine: Machine, cut: Cut, limits: Limits, servo: Servo) -> MinimumCutLength:
     """Shortest cut length with the axis within tolerance in the whole shear zone: linear return.
 
     The shortest cycle of the linear return that some sync zone has and in which the axis, at every sampling phase,
@@ -151,7 +151,7 @@ def linear_return_to_tolerance(machine: RotaryKnife, cut: Cut, limits: Limits, s
     return _minimum(_Laws(machine, cut, limits, servo, "linear_return"))
 
 
-def optimised_to_tolerance(machine: RotaryKnife, cut: Cut, limits: Limits, servo: Servo) -> MinimumCutLength:
+def optimised_to_tolerance(machine: Machine, cut: Cut, limits: Limits, servo: Servo) -> MinimumCutLength:
     """Shortest cut length with the axis within tolerance in the whole shear zone: return of least acceleration.
 
     As `linear_return_to_tolerance`, with the return of the least peak acceleration within the limits of speed and
@@ -161,7 +161,7 @@ def optimised_to_tolerance(machine: RotaryKnife, cut: Cut, limits: Limits, servo
     return _minimum(_Laws(machine, cut, limits, servo, "least_acceleration"))
 
 
-def quintic_to_tolerance(machine: RotaryKnife, cut: Cut, limits: Limits, servo: Servo) -> MinimumCutLength:
+def quintic_to_tolerance(machine: Machine, cut: Cut, limits: Limits, servo: Servo) -> MinimumCutLength:
     """Shortest cut length with the axis within tolerance in the whole shear zone: polynomial 3-4-5 within the limits.
 
     As `linear_return_to_tolerance`.
@@ -176,7 +176,7 @@ class _Laws:
     ``relief`` is the part of the transition by which it may end late.
     """
 
-    machine: RotaryKnife
+    machine: Machine
     cut: Cut
     limits: Limits
     servo: Servo
@@ -239,7 +239,7 @@ def _minimum(laws: _Laws) -> MinimumCutLength:
     return MinimumCutLength(best, zone, transition, _greatest(gain))
 
 
-def _fastest_quintic_cut(machine: RotaryKnife, line_speed: float, limits: Limits, sync_zone: float) -> float:
+def _fastest_quintic_cut(machine: Machine, line_speed: float, limits: Limits, sync_zone: float) -> float:
     """Cut length of the fastest polynomial 3-4-5 within the limits, beside a sync zone (m).
 
     Seen from the material it rises by ``y_c - x_c`` over the return of length ``R``: its peaks are 15/8 of the mean ratio, ``10/sqrt(3)``
@@ -262,7 +262,7 @@ def _fastest_quintic_cut(machine: RotaryKnife, line_speed: float, limits: Limits
 
 
 @lru_cache(maxsize=256)  # the cut length has no part in it: all cuts of a book at one line speed ask the same
-def fastest_cut(machine: RotaryKnife, line_speed: float, limits: Limits, sync_zone: float) -> float:
+def fastest_cut(machine: Machine, line_speed: float, limits: Limits, sync_zone: float) -> float:
     """Cut length of the fastest return within the limits, beside a sync zone (m)."""
     if limits.speed <= line_speed or sync_zone >= machine.pitch:  # no running ahead, or no need to
         return machine.pitch
@@ -288,7 +288,7 @@ def _greatest(gain: dict[Binding, float]) -> Binding:
     return max(gain, key=lambda name: gain[name])
 
 
-def _require_room(machine: RotaryKnife, cut: Cut) -> None:
+def _require_room(machine: Machine, cut: Cut) -> None:
     if not cut.shear_zone < machine.pitch:
         raise InputError(
             f"the shear zone of {cut.shear_zone!r} m is not shorter than the slave travel per cycle of "

@@ -21,12 +21,11 @@ from camwright.profiles.closed_forms.transfer import Bounds
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
 from camwright.profiles.limits import Limits
-from camwright.profiles.machines import LinearCarriage, Machine
+from camwright.profiles.machines import Machine
 from camwright.profiles.objective import OBJECTIVES, ObjectiveName
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.returns import is_straight
 from camwright.validation.bounds.quadratic import multipliers
-from camwright.validation.motor import moves_something
 
 INTERVALS = 140
 """Intervals of half a motion."""
@@ -94,8 +93,9 @@ def lower_bound(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits,
     ratio = float(machine.sync_profile(cut)(0.0, 1))
     height = machine.pitch - ratio * cut.length  # of the motion over the line that sync zone and return zone share
     time = length / v
-    if isinstance(machine, LinearCarriage):
-        room = 0.5 * (machine.stroke - machine.sync_profile(cut).advance)
+    if machine.guide is not None:
+        low, high = machine.guide
+        room = 0.5 * (high - low - machine.sync_profile(cut).advance)
         way = machine.sync_profile(cut).advance
         braking = Bound(_braking(ratio * v, room, way, time, limits, objective), BRAKING)
         free = _free_bound(profile, machine, cut, limits, objective, height)
@@ -189,7 +189,9 @@ def _torque_bound(profile: CamProfile, machine: Machine, cut: Cut, limits: Limit
     The mean of ``ÿ sign(ẏ)`` over a closed cycle is zero, so the mean square of the force is ``I²`` times that of the acceleration, plus
     ``F²`` times the share of the cycle in which the slave moves: at least the sync zone and the way back at the speed limit.
     """
-    if not moves_something(machine) or (objective == "peak_torque" and machine.friction > 0):
+    if not (machine.moves_something and machine.constant_inertia) or (
+        objective == "peak_torque" and machine.friction > 0
+    ):
         return Bound(math.nan, NONE)
     peak = objective == "peak_torque"
     motion = lower_bound(profile, machine, cut, limits, "peak_acceleration" if peak else "rms_acceleration")

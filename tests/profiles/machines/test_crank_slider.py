@@ -38,7 +38,7 @@ def any_crank(rng: np.random.Generator) -> tuple[CrankSlider, Cut]:
     zone = machine.stroke / ratio * float(rng.uniform(0.02, 0.8))
     origin = ("return", "cut")[int(rng.integers(2))]
     cut = Cut(zone * float(rng.uniform(1.3, 10.0)), 1.0, zone, 0.0, 0.5 * zone, 1e-4, origin, ratio)
-    least, greatest = machine.sync_range(cut)
+    least, greatest = machine.place_range(cut)
     return replace(machine, sync_at=least + (greatest - least) * float(rng.uniform(0.05, 0.95))), cut
 
 
@@ -137,7 +137,7 @@ def test_cycles_of_both_origins_are_the_same_motion() -> None:
 def test_the_designed_crank_never_turns_back_and_is_in_sync(objective: str) -> None:
     found = solve(Task(CRANK, CUT, LIMITS), objective)
     assert isinstance(found.machine, CrankSlider)
-    least, greatest = CRANK.sync_range(CUT)
+    least, greatest = CRANK.place_range(CUT)
     assert least < found.machine.sync_at < greatest
     assert found.profile.extrema(1)[0].value >= 0.0
     assert found.profile.advance == pytest.approx(2 * math.pi, rel=1e-13)
@@ -148,18 +148,20 @@ def test_the_designed_crank_never_turns_back_and_is_in_sync(objective: str) -> N
 
 
 def test_a_place_not_chosen_yet_is_refused() -> None:
-    with pytest.raises(InputError, match=r"not chosen yet; design the job first, or give \[machine\] sync_at"):
+    with pytest.raises(InputError, match=r"not chosen yet; design the job first, or give sync at"):
         CRANK.sync_start(CUT)
 
 
 def test_a_sync_zone_longer_than_the_stroke_is_refused_with_the_longest() -> None:
     crank = replace(CRANK, sync_at=1.5)
-    with pytest.raises(InputError, match=r"needs 310 mm .* stroke is 300 mm; shorten the sync zone below 300 mm"):
+    with pytest.raises(
+        InputError, match=r"sync zone = 0.31 m: .* stroke of 0.3 m; shorten the sync zone to 0.299999 m at most"
+    ):
         crank.sync_start(replace(CUT, sync_zone=0.31))
 
 
 def test_a_place_too_near_a_dead_centre_is_refused_with_the_range() -> None:
     with pytest.raises(
-        InputError, match=r"\[machine\] sync_at = 5\.72958 deg leaves no room .* between 54\.3147 deg and 136\.568 deg"
+        InputError, match=r"sync at = 0\.1 rad: leaves no room .* between 0\.94797 rad and 2\.38356 rad"
     ):
         replace(CRANK, sync_at=0.1).sync_start(CUT)

@@ -1,0 +1,78 @@
+"""`Message`: what an error says, its numbers and names apart from its words, so that who knows the user's own can put them in."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from typing import Literal
+
+Toward = Literal["nearest", "below", "above"]
+
+_PLACE = re.compile(r"\{(@?)(\w+)\}")
+
+
+@dataclass(frozen=True)
+class Value:
+    """A number in a message.
+
+    Parameters
+    ----------
+    number
+        The number (SI).
+    unit
+        Its SI unit; empty for none.
+    digits
+        Significant digits.
+    toward
+        ``"below"`` or ``"above"`` for a bound that itself does not work, so that what is printed does: six digits are kept then.
+    """
+
+    number: float
+    unit: str
+    digits: int = 10
+    toward: Toward = "nearest"
+
+    def written(self, factor: float, unit: str, decimals: int | None = None) -> str:
+        """Write it in a unit that it is a number of times of; a bound with so many decimals, if given."""
+        number, gap = self.number * factor, f" {unit}" if unit else ""
+        if self.toward == "nearest":
+            return f"{number:.{self.digits}g}{gap}"
+        up = self.toward == "above"
+        if decimals is not None:
+            aside = 0.5 * 10.0**-decimals
+            return f"{number + (aside if up else -aside):.{decimals}f}{gap}"
+        step = 10.0 ** (math.floor(math.log10(number)) - 5)
+        number = (math.floor(number / step + 1e-6) + 1 if up else math.ceil(number / step - 1e-6) - 1) * step
+        return f"{number:.{self.digits}g}{gap}"
+
+
+@dataclass(frozen=True)
+class Message:
+    """What is wrong: quantity, value, limit, way out.
+
+    Parameters
+    ----------
+    text
+        The sentence, with ``{name}`` where a value belongs and ``{@quantity}`` where a quantity is named, which a job file has a place for.
+    values
+        The values by name.
+
+    Examples
+    --------
+    >>> str(Message("{@sync_zone} = {zone}: above the stroke of {stroke}", (("zone", Value(0.5, "m")), ("stroke", Value(0.4, "m")))))
+    'sync zone = 0.5 m: above the stroke of 0.4 m'
+    """
+
+    text: str
+    values: tuple[tuple[str, Value], ...] = ()
+
+    def __str__(self) -> str:
+        """Write it in SI units, with plain names."""
+        known = dict(self.values)
+
+        def filled(found: re.Match[str]) -> str:
+            name = found[2]
+            return name.replace("_", " ") if found[1] else known[name].written(1.0, known[name].unit)
+
+        return _PLACE.sub(filled, self.text)
