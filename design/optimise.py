@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,6 +18,9 @@ from camwright.design.returns.solver import (
     smoothest,
     solve_return,
 )
+from camwright.design.servo_aware.axis_motion import AxisMotion
+from camwright.design.torque.torque_return import solve_torque
+from camwright.design.torque.within_curve import keeps_curve, least_load, solve_within_curve
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
 from camwright.profiles.limits import Limits
@@ -27,9 +29,6 @@ from camwright.profiles.objective import OBJECTIVES, CommandObjective, MotionObj
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import assemble
 from camwright.profiles.task import Task
-
-if TYPE_CHECKING:
-    from camwright.design.servo_aware.axis_motion import AxisMotion
 
 # Share of a peak that its smoothest motion may give away.
 KEPT_PEAK = 1e-6
@@ -162,8 +161,6 @@ def _solve_for_motor(task: Task, objective: CommandObjective, suggest: bool) -> 
     InfeasibleError
         The motor is too weak, as far as the programme's starts tell.
     """
-    from camwright.design.torque.within_curve import keeps_curve, least_load, solve_within_curve
-
     machine, limits = task.machine, task.limits
     curve, plain = limits.motor, motor_speed_limits(machine, limits)
     assert curve is not None  # noqa: S101 - that is what this function is for
@@ -244,7 +241,6 @@ def motion_objective(machine: Machine, objective: CommandObjective) -> MotionObj
 
 
 def _solve_torque(task: Task, objective: CommandObjective, valleys: int) -> Solution:
-    from camwright.design.torque.torque_return import solve_torque
 
     problem = return_problem(task, "peak_acceleration")
     found = solve_torque(task, problem, objective)

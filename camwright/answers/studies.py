@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from camwright.answers.axis import (
     axis_answer,
@@ -14,22 +14,19 @@ from camwright.answers.axis import (
     robust_answer,
 )
 from camwright.answers.objective import objective_answer, starts_answer
+from camwright.design.feasible.extremes import Extremes
 from camwright.jobs.job import Job
-from camwright.jobs.numbers import job_numbers
-from camwright.profiles.errors import CamwrightError, InfeasibleError
-from camwright.studies.comparison import Comparison, Measured
+from camwright.profiles.machines.machine import SlaveUnit
+from camwright.studies.axis_lengths import AxisLengths
+from camwright.studies.comparison import Comparison
 from camwright.studies.cut_lengths import CutLengths
-
-if TYPE_CHECKING:
-    from camwright.design.feasible.extremes import Extremes
-    from camwright.profiles.machines.machine import SlaveUnit
-    from camwright.studies.axis_lengths import AxisLengths
-    from camwright.studies.design import Design
-    from camwright.validation.check import Check
-    from camwright.validation.motion import Motion
-    from camwright.validation.motor import MotorMeasures
-    from camwright.validation.report import ValidationReport
-    from camwright.validation.servo.response import ServoResponse
+from camwright.studies.design import Design
+from camwright.studies.measured import Measured
+from camwright.validation.check import Check
+from camwright.validation.motion import Motion
+from camwright.validation.motor import MotorMeasures
+from camwright.validation.report import ValidationReport
+from camwright.validation.servo.response import ServoResponse
 
 
 def millimetres(length: float | None) -> float | None:
@@ -95,21 +92,6 @@ def validate_answer(job: Job, file: Path, report: ValidationReport) -> dict[str,
         "passed": report.passed,
         **lead_answer(job, report.length_errors),
     }
-
-
-def check_answer(job: Job) -> dict[str, Any]:
-    """Answer of ``camwright check``: the job in SI numbers."""
-    return {"job": job.name, "sha256": job.sha256, "si": job_numbers(job)}
-
-
-def error_answer(exit_code: int, message: str, failure: CamwrightError | None) -> dict[str, Any]:
-    """Answer of a command that failed; what is infeasible says what binds, by how much, and what would work."""
-    answer: dict[str, Any] = {"status": "error", "exit_code": exit_code, "message": message}
-    if isinstance(failure, InfeasibleError):
-        answer["status"] = "infeasible"
-        answer |= {"binding": failure.binding, "excess": {"value": failure.excess, "unit": failure.unit}}
-        answer["suggestions"] = [asdict(suggestion) for suggestion in failure.suggestions]
-    return answer
 
 
 def _profiles(comparison: Comparison) -> dict[str, Any]:

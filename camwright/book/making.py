@@ -10,17 +10,23 @@ import re
 import threading
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
+from camwright.answers.objective import objective_unit
 from camwright.book.entry import Entry, Limit
 from camwright.book.plan import Book, Combination
+from camwright.design.feasible.extremes import fastest_line
+from camwright.drives.export import Exported, export_possible, export_report
+from camwright.house.json_text import to_json
 from camwright.house.provenance import provenance
+from camwright.jobs.job import Job
 from camwright.profiles.errors import InfeasibleError, InputError, SolverError
-
-if TYPE_CHECKING:
-    from camwright.drives.export import Exported
-    from camwright.jobs.job import Job
-    from camwright.studies.design import Design
+from camwright.stored.design_file import design_text
+from camwright.studies.axis_study import axis_study, solve_job
+from camwright.studies.comparison import Comparison
+from camwright.studies.design import Design
+from camwright.studies.measured import Measured
+from camwright.validation.bounds.optimality import Bound
+from camwright.validation.report import validate
 
 _ONE_AT_A_TIME = threading.Lock()
 # the solver is not made for several threads of one process, and workers of a cluster may have them
@@ -110,8 +116,6 @@ def _no_job(number: int, error: InputError, limit: Limit | None) -> Entry:
 
 def _limit(job: Job) -> Limit | None:
     """Find how fast a cut length can be run; left out where each design places the sync zone anew, which would take minutes."""
-    from camwright.design.feasible.extremes import fastest_line
-
     if not job.machine.placed:
         return None
     return Limit(*fastest_line(job.task))
@@ -123,12 +127,6 @@ def _designed(job: Job) -> Design:
     Left out are the lower bound, the baselines, the minimum cut lengths, the ranges of the servo, where the cut falls at other line
     speeds, and the search for what would work.
     """
-    from camwright.studies.axis_study import axis_study, solve_job
-    from camwright.studies.comparison import Comparison, Measured
-    from camwright.studies.design import Design
-    from camwright.validation.bounds.optimality import Bound
-    from camwright.validation.report import validate
-
     solution = solve_job(job, suggest=False)
     placed = replace(job, machine=solution.machine)
     report = validate(
@@ -151,11 +149,6 @@ def _designed(job: Job) -> Design:
 
 def _exported(number: int, design: Design, targets: Sequence[str], limit: Limit | None) -> tuple[Entry, dict[str, str]]:
     """Write the tables of a design, read them back and judge them, and gather everything."""
-    from camwright.answers.objective import objective_unit
-    from camwright.drives.export import export_possible
-    from camwright.house.json_text import to_json
-    from camwright.stored.design_file import design_text
-
     results, refused = export_possible(design.profile, design.job, targets)
     failed = [check.name for check in design.report.checks if not check.passed]
     for result in results:
@@ -190,8 +183,6 @@ def _exported(number: int, design: Design, targets: Sequence[str], limit: Limit 
 
 def _report(design: Design, results: list[Exported], refused: dict[str, tuple[str, ...]]) -> dict[str, object]:
     """Contents of a combination's report.json: the checks of the design, then what ``camwright export`` reports."""
-    from camwright.drives.export import export_report
-
     return {
         "checks": [vars(check) for check in design.report.checks],
         "passed": design.passed,

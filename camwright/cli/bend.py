@@ -2,28 +2,38 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import Annotated, Literal
 
 import typer
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
 
+from camwright.bender.answer import BentDrawing, answer, calibration_answer
+from camwright.bender.bend_list import csv_text
+from camwright.bender.calibration import Calibration, calibrate, residuals_text
+from camwright.bender.drawing import read_drawing
+from camwright.bender.figures import draw
+from camwright.bender.job import BenderJob, load_bender
+from camwright.bender.program_file import bend_outlines
+from camwright.bender.sending import send
+from camwright.bender.sheet import write_sheet
+from camwright.cli.options import Json, Quiet
+from camwright.house.files import staged
 from camwright.house.output import Voice
+from camwright.house.progress import Step
 from camwright.profiles.errors import InputError, MissingExtraError
 
-if TYPE_CHECKING:
-    from rich.console import RenderableType
-
-    from camwright.bender.answer import BentDrawing
-    from camwright.bender.job import BenderJob
-    from camwright.house.progress import Step
-
 _MOST_FIGURES = 20
+_MOST_ROWS = 40
 
 
-def bend(
+def run(
     drawing: Annotated[Path | None, typer.Argument(metavar="[DRAWING]", help="Die lines (DXF).")] = None,
     job: Annotated[
         Path | None, typer.Option("--job", metavar="BENDER", help="Bender job (TOML); the bundled bender if left out.")
@@ -46,13 +56,11 @@ def bend(
     handshake: Annotated[
         Literal["xonxoff", "rtscts"], typer.Option("--handshake", help="How the machine holds the line up.")
     ] = "xonxoff",
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of tables.")] = False,
+    as_json: Json = False,
     no_figures: Annotated[bool, typer.Option("--no-figures", help="Write neither figures nor sheets.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", help="Print neither tables nor progress.")] = False,
+    quiet: Quiet = False,
 ) -> int:
     """Turn a drawing of die lines into proved NC programs of a rule bender."""
-    from camwright.bender.job import load_bender
-
     voice = Voice(as_json, quiet)
     bender = load_bender(job)
     if measurements is not None:
@@ -71,21 +79,12 @@ def bend(
     if port is not None and not result.passed:
         result = replace(result, notes=(*result.notes, f"nothing is sent to {port}: a check failed"))
     elif port is not None:
-        from camwright.bender.sending import send
-
         for outline in result.outlines:
             lines = outline.text.count("\n")
             with voice.progress(lines + 1) as step:
                 send(outline.text, port, handshake, baud, _counter(step, outline.program.name, lines))
 
-    def view() -> RenderableType:
-        from camwright.cli.bend_views import drawing_view
-
-        return drawing_view(result, files)
-
-    from camwright.bender.answer import answer
-
-    voice.answer(lambda: answer(result, programs, files), view)
+    voice.answer(lambda: answer(result, programs, files), lambda: _drawing_view(result, files))
     return 0 if result.passed else 1
 
 
@@ -112,12 +111,6 @@ def _bent(
     drawing: Path, bender: BenderJob, layer: str | None, place: tuple[float, float] | None, reverse: bool, step: Step
 ) -> BentDrawing:
     """Read a drawing and bend its outlines."""
-    import hashlib
-
-    from camwright.bender.answer import BentDrawing
-    from camwright.bender.drawing import read_drawing
-    from camwright.bender.program_file import bend_outlines
-
     step("reading the drawing")
     found = read_drawing(drawing, bender.gap, bender.flattening, bender.units, layer)
     outlines = [outline.reverse() if reverse else outline for outline in found.outlines]
@@ -132,9 +125,6 @@ def _write(
     result: BentDrawing, names: list[str], directory: Path, *, figures: bool, step: Step
 ) -> tuple[BentDrawing, list[Path]]:
     """Write programs, bend lists, figures and sheets, all or none; a missing library leaves figures or sheets out, noted."""
-    from camwright.bender.bend_list import csv_text
-    from camwright.house.files import staged
-
     step("writing files")
     notes: tuple[str, ...] = ()
     with staged(directory) as aside:
@@ -142,9 +132,6 @@ def _write(
             (aside / f"{name}.nc").write_bytes(outline.text.encode("ascii"))
             (aside / f"{name}-bends.csv").write_bytes(csv_text(outline, result.job).encode("ascii"))
         if figures:
-            from camwright.bender.figures import draw
-            from camwright.bender.sheet import write_sheet
-
             step("drawing figures")
             shown = names[:_MOST_FIGURES]
             missing = "no figures and no sheet"
@@ -162,9 +149,6 @@ def _write(
 
 def _calibrate(measurements: Path, bender: BenderJob, out: Path | None, voice: Voice) -> int:
     """Make a springback table from test bends."""
-    from camwright.bender.calibration import calibrate, residuals_text
-    from camwright.house.files import staged
-
     result = calibrate(measurements, bender)
     directory = Path("out") / measurements.stem if out is None else out
     with staged(directory) as aside:
@@ -172,12 +156,72 @@ def _calibrate(measurements: Path, bender: BenderJob, out: Path | None, voice: V
         (aside / f"{measurements.stem}-residuals.csv").write_text(residuals_text(result), encoding="utf-8")
     files = [directory / f"{measurements.stem}.toml", directory / f"{measurements.stem}-residuals.csv"]
 
-    def view() -> RenderableType:
-        from camwright.cli.bend_views import calibration_view
-
-        return calibration_view(result, files)
-
-    from camwright.bender.answer import calibration_answer
-
-    voice.answer(lambda: calibration_answer(result, files), view)
+    voice.answer(lambda: calibration_answer(result, files), lambda: _calibration_view(result, files))
     return 0
+
+
+def _drawing_view(result: BentDrawing, files: Sequence[Path]) -> RenderableType:
+    """Show the programs of a drawing, their checks, warnings and files."""
+    table = Table(title=f"Programs of {result.drawing.name}", title_justify="left")
+    table.add_column("program")
+    for name in (
+        "bends\n",
+        "by the paper's\narc rule",
+        "rule\nmm",
+        "deviation\nmm",
+        "closing\nmm",
+        "cycle\ns",
+        "sequential\ns",
+        "gain\n%",
+    ):
+        table.add_column(name, justify="right")
+    table.add_column("checks")
+    for outline in result.outlines[:_MOST_ROWS]:
+        proof, cycle, paper = outline.proof, outline.times.total, outline.paper_times.total
+        passed = all(check.passed for check in outline.checks)
+        table.add_row(
+            outline.program.name,
+            str(outline.plan.bends),
+            str(outline.paper_bends),
+            f"{1e3 * proof.rule_length:.3f}",
+            f"{1e3 * proof.deviation:.4f}",
+            "open" if proof.closing_error is None else f"{1e3 * proof.closing_error:.4f}",
+            f"{cycle:.2f}",
+            f"{paper:.2f}",
+            f"{100 * (1 - cycle / paper):.1f}",
+            Text("passed", "green") if passed else Text("FAILED", "bold red"),
+        )
+    more = len(result.outlines) - _MOST_ROWS
+    notes = [Text(f"{more} more programs are not shown")] if more > 0 else []
+    notes += [
+        Text(
+            f"{outline.program.name}: {check.name} {check.value:.3g} {check.unit}, allowed {check.limit:.3g}",
+            "bold red",
+        )
+        for outline in result.outlines
+        for check in outline.checks
+        if not check.passed
+    ]
+    notes += [Text(f"warning: {text}", "yellow") for text in result.warnings]
+    notes += [Text(f"wrote {file}") for file in files]
+    return Group(table, *notes)
+
+
+def _calibration_view(result: Calibration, files: Sequence[Path]) -> RenderableType:
+    """Show the test bends with their residuals, and the files."""
+    table = Table(title=f"Test bends of {result.springback.name}", title_justify="left")
+    for name in ("row", "radius\nmm", "mould angle\n°", "measured\n°", "by the table\n°", "residual\n°"):
+        table.add_column(name, justify="right")
+    for bend, residual in zip(result.bends[:_MOST_ROWS], result.residuals, strict=False):
+        table.add_row(
+            str(bend.row),
+            "corner" if bend.radius is None else f"{bend.radius:g}",
+            f"{bend.mould:.3f}",
+            f"{bend.workpiece:.3f}",
+            f"{bend.workpiece + residual:.3f}",
+            f"{residual:+.3f}",
+        )
+    more = len(result.bends) - _MOST_ROWS
+    notes = [Text(f"{more} more test bends are in the residuals' file")] if more > 0 else []
+    notes += [Text(f"warning: {text}", "yellow") for text in result.springback.warnings()]
+    return Group(table, *notes, *(Text(f"wrote {file}") for file in files))

@@ -2,21 +2,28 @@
 
 from __future__ import annotations
 
+import contextlib
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
 
+from camwright.book.cluster import cluster_crew
+from camwright.book.display import progress
+from camwright.book.plan import plan_book
+from camwright.book.run import BookAnswer, make_book
+from camwright.book.workers import default_jobs, local_crew
+from camwright.cli.options import GivenJob, Json, Quiet
+from camwright.cli.views.files import files_view
 from camwright.house.output import Voice, complain
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
-
-    from camwright.book.run import BookAnswer
+from camwright.jobs.job import load_job
 
 
-def book(
-    job: Annotated[Path, typer.Argument(metavar="JOB", help="Job file (TOML).")],
+def run(
+    job: GivenJob,
     length: Annotated[
         str, typer.Option("--length", metavar="START:STOP:STEP", help="Cut lengths, mm unless a unit is given.")
     ],
@@ -40,19 +47,10 @@ def book(
     out: Annotated[
         Path | None, typer.Option("--out", metavar="DIR", help="Output directory; out/<name>-book if left out.")
     ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of a table.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", help="Print neither table nor progress.")] = False,
+    as_json: Json = False,
+    quiet: Quiet = False,
 ) -> int:
     """Design every combination of cut lengths, line speeds and objectives, check it, write its tables, and an index."""
-    import contextlib
-
-    from camwright.book.cluster import cluster_crew
-    from camwright.book.display import progress
-    from camwright.book.plan import plan_book
-    from camwright.book.run import make_book
-    from camwright.book.workers import default_jobs, local_crew
-    from camwright.jobs.job import load_job
-
     asked = load_job(job)
     plan = plan_book(asked, length, line_speed, objective or (), targets)
     directory = Path("out") / f"{asked.name}-book" if out is None else out
@@ -70,12 +68,6 @@ def book(
 
 def _view(answer: BookAnswer) -> RenderableType:
     """Show how many combinations ended how, and where the book is."""
-    from rich.console import Group
-    from rich.table import Table
-    from rich.text import Text
-
-    from camwright.cli.views import files_view
-
     table = Table(title=f"{answer.book.name}: a book of {answer.counts.designs} designs", title_justify="left")
     for name in ("passed", "a check failed", "infeasible", "solver failed"):
         table.add_column(name, justify="right")

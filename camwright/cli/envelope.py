@@ -2,36 +2,34 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
+from rich.console import Group, RenderableType
+from rich.table import Table
 
+from camwright.cli.options import GivenJob, Json, NoFigures, Out, Quiet, output_directory, placed
+from camwright.cli.views.files import files_view
+from camwright.figures.envelope import envelope_figure
+from camwright.house.files import staged
 from camwright.house.output import Voice
+from camwright.jobs.job import load_job
+from camwright.studies.envelope import EnvelopeAnswer, envelope_answer, per_minute
 
-if TYPE_CHECKING:
-    from rich.console import RenderableType
 
-
-def envelope(
-    job: Annotated[Path, typer.Argument(metavar="JOB", help="Job file (TOML).")],
+def run(
+    job: GivenJob,
     points: Annotated[
         int, typer.Option("--points", metavar="N", min=2, max=200, help="Number of cut lengths, and of line speeds.")
     ] = 15,
-    out: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="Output directory; out/<name> if left out.")
-    ] = None,
-    no_figures: Annotated[bool, typer.Option("--no-figures", help="Write no figure.")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of a table.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", help="Print neither table nor progress.")] = False,
+    out: Out = None,
+    no_figures: NoFigures = False,
+    as_json: Json = False,
+    quiet: Quiet = False,
 ) -> int:
     """Map which cut lengths and line speeds are possible, with which return, and what binds."""
-    from camwright.house.files import staged
-    from camwright.jobs.job import load_job
-    from camwright.studies.envelope import envelope_answer
-
     asked = load_job(job)
-    directory = Path("out") / asked.name if out is None else out
+    directory = output_directory(out, asked)
     voice = Voice(as_json, quiet)
     with voice.progress(points * (points + 1)) as step:
         answer = envelope_answer(asked, points, step)
@@ -40,20 +38,24 @@ def envelope(
         for name, text in texts.items():
             (aside / name).write_bytes(text.encode())
         if not no_figures:
-            from camwright.figures.envelope import envelope_figure
-
             envelope_figure(answer, aside)
-        files = [directory / name for name in sorted(file.name for file in aside.iterdir())]
+        files = placed(aside, directory)
 
     def data() -> dict[str, Any]:
         return {**answer.to_dict(), "files": [str(file) for file in files]}
 
-    def view() -> RenderableType:
-        from rich.console import Group
-
-        from camwright.cli.views import files_view
-
-        return Group(answer.view(), files_view(files))
-
-    voice.answer(data, view)
+    voice.answer(data, lambda: Group(_view(answer), files_view(files)))
     return 0
+
+
+def _view(answer: EnvelopeAnswer) -> RenderableType:
+    """Show the highest line speed at each cut length."""
+    table = Table(title="Highest line speed (m/min)", title_justify="left")
+    for name in ("cut length\nmm", "optimised", "quintic", "linear", "binds"):
+        table.add_column(name, justify="left" if name == "binds" else "right")
+    for row in answer.envelope.rows:
+        speeds = (per_minute(speed) for speed in (row.optimised, row.quintic, row.linear))
+        table.add_row(
+            f"{row.length * 1e3:.5g}", *("–" if speed is None else f"{speed:.5g}" for speed in speeds), row.binding
+        )
+    return table

@@ -2,19 +2,36 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
 
+from camwright.cli.options import Json, Quiet
+from camwright.cli.views.files import files_view
+from camwright.house.files import staged
 from camwright.house.output import Voice
 from camwright.profiles.errors import InputError
+from camwright.profiles.trace import Trace
+from camwright.studies.identification import (
+    ORIGINS,
+    PARAMETERS,
+    identify_answer,
+    identify_file,
+    one_line,
+    range_text,
+    residual_unit,
+    rounded,
+    servo_text,
+)
+from camwright.validation.identify.identification import Identified
 
-if TYPE_CHECKING:
-    from rich.console import RenderableType
 
-
-def identify(
+def run(
     trace: Annotated[
         Path,
         typer.Argument(metavar="TRACE", help="Recorded trace: CSV with time, command and actual, each with its unit."),
@@ -31,18 +48,10 @@ def identify(
             help="Velocity feed-forward set in the drive; fitted if left out.",
         ),
     ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of a table.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", help="Print neither table nor progress.")] = False,
+    as_json: Json = False,
+    quiet: Quiet = False,
 ) -> int:
     """Find the servo's parameters from a recorded trace."""
-    from camwright.house.files import staged
-    from camwright.studies.identification import (
-        identify_answer,
-        identify_file,
-        identify_view,
-        servo_text,
-    )
-
     if out is not None and (out.is_dir() or not out.name):
         raise InputError(f"{out}: a directory; --out names the file to write, e.g. servo.toml")
     voice = Voice(as_json, quiet)
@@ -55,13 +64,21 @@ def identify(
             (aside / out.name).write_bytes(servo_text(trace, recorded, found).encode())
         files.append(out)
 
-    def view() -> RenderableType:
-        from rich.console import Group
-
-        from camwright.cli.views import files_view
-
-        shown = identify_view(trace, recorded, found)
-        return Group(shown, files_view(files)) if files else shown
-
-    voice.answer(lambda: identify_answer(trace, recorded, found, files), view)
+    voice.answer(lambda: identify_answer(trace, recorded, found, files), lambda: _view(trace, recorded, found, files))
     return 0
+
+
+def _view(path: Path, trace: Trace, found: Identified, files: Sequence[Path]) -> RenderableType:
+    """Show the servo, how well it is known, and how well it fits."""
+    scale, unit = residual_unit(trace)
+    table = Table(title=f"Servo of {one_line(path.name)}", title_justify="left")
+    for heading in ("parameter", "value", "unit", "95 % confidence"):
+        table.add_column(heading, justify="right" if heading == "value" else "left")
+    for name, (_, symbol, factor, written) in PARAMETERS.items():
+        value, bounds = getattr(found.servo, name) * factor, found.confidence.get(name)
+        spread = 0.0 if bounds is None else 0.5 * factor * (bounds[1] - bounds[0])
+        note = ORIGINS[found.feedforward_from] if bounds is None else range_text(bounds, factor, "")
+        words = name.replace("_", " ")
+        table.add_row(words if symbol == words else f"{words} {symbol}", rounded(value, spread), written, note)
+    ending = f"fit {found.fit:.6f}, residual {found.residual * scale:.3g} {unit} rms over {found.rows} rows"
+    return Group(table, Text(ending), *([files_view(files)] if files else []))

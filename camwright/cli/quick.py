@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
+from rich.console import Group, RenderableType
+from rich.table import Table
 
+from camwright.cli.options import Json, Quiet
+from camwright.cli.views.files import files_view
+from camwright.house.files import staged
 from camwright.house.output import Voice
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
+from camwright.studies.quick import QuickAnswer, quick_answer, quick_cam_text, read_cross_cut
 
 
-def quick(
+def run(
     circumference: Annotated[
         str, typer.Option("--circumference", metavar="LENGTH", help='Circumference of the knife, e.g. "400 mm".')
     ],
@@ -25,13 +28,10 @@ def quick(
     out: Annotated[
         Path | None, typer.Option("--out", metavar="DIR", help="Write cam.csv here; no file if left out.")
     ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of a table.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing.")] = False,
+    as_json: Json = False,
+    quiet: Quiet = False,
 ) -> int:
     """Make the patent's quintic cam of a rotary cross-cutter from three lengths."""
-    from camwright.house.files import staged
-    from camwright.studies.quick import quick_answer, quick_cam_text, read_cross_cut
-
     cut = read_cross_cut(circumference, sync, length)
     answer = quick_answer(cut)
     file: Path | None = None
@@ -43,12 +43,15 @@ def quick(
     def data() -> dict[str, Any]:
         return answer.to_dict() if file is None else {**answer.to_dict(), "files": [str(file)]}
 
-    def view() -> RenderableType:
-        from rich.console import Group
-
-        from camwright.cli.views import files_view
-
-        return answer.view() if file is None else Group(answer.view(), files_view([file]))
-
-    Voice(as_json, quiet).answer(data, view)
+    Voice(as_json, quiet).answer(
+        data, lambda: _view(answer) if file is None else Group(_view(answer), files_view([file]))
+    )
     return 0
+
+
+def _view(answer: QuickAnswer) -> RenderableType:
+    """Show what the cam is like."""
+    table = Table(title="Cross-cutter, quintic cam", title_justify="left", show_header=False)
+    for row in answer.rows():
+        table.add_row(*row)
+    return table

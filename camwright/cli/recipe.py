@@ -1,36 +1,34 @@
-"""The commands about recipes: ``camwright recipe | verify``."""
+"""The command ``camwright recipe``."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 import typer
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
 
+from camwright.cli.options import Json, Quiet
+from camwright.house.files import read_text
 from camwright.house.output import Voice
+from camwright.house.progress import Step
+from camwright.jobs.job import parse_job
 from camwright.profiles.errors import InputError
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
-
-    from camwright.recipe.compare import Change
-    from camwright.recipe.model import Recipe
-    from camwright.recipe.verify import Fault
-    from camwright.stored.design_file import StoredDesign
-
-_Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of tables.")]
-_Quiet = Annotated[bool, typer.Option("--quiet", help="Print neither tables nor progress.")]
+from camwright.profiles.tables.targets import TARGETS, target_of
+from camwright.recipe.build import STEPS, designed, make_recipe
+from camwright.recipe.compare import Change, compare_answer, compare_recipes, read_recipe
+from camwright.recipe.folder import require_replaceable
+from camwright.recipe.manifest import sha256
+from camwright.recipe.model import Recipe
+from camwright.recipe.write import WRITE_STEPS, is_recipe, recipe_files, require_extra, write_folder
+from camwright.stored.design_file import MOST_BYTES, StoredDesign, parse_design
 
 _LONGEST_NOTE = 2000
 
 
-def register(app: typer.Typer) -> None:
-    """Add the commands to the command line."""
-    app.command("recipe")(recipe_command)
-    app.command("verify")(verify_command)
-
-
-def recipe_command(
+def run(
     file: Annotated[
         Path | None, typer.Argument(metavar="[JOB|DESIGN]", help="A job file (TOML) or a design.json.")
     ] = None,
@@ -48,8 +46,8 @@ def recipe_command(
         tuple[Path, Path] | None,
         typer.Option("--compare", metavar="DIR1 DIR2", help="Show what changes between two recipes instead."),
     ] = None,
-    as_json: _Json = False,
-    quiet: _Quiet = False,
+    as_json: Json = False,
+    quiet: Quiet = False,
 ) -> int:
     """Make the recipe of a product: a folder with all that is needed at the machine."""
     voice = Voice(as_json, quiet)
@@ -66,17 +64,6 @@ def recipe_command(
 
 
 def _make(file: Path, targets: str, out: Path, language: Literal["en", "de", "zh"], note: str, voice: Voice) -> int:
-    from camwright.recipe.build import STEPS, make_recipe
-    from camwright.recipe.folder import require_replaceable
-    from camwright.recipe.manifest import sha256
-    from camwright.recipe.write import (
-        WRITE_STEPS,
-        is_recipe,
-        recipe_files,
-        require_extra,
-        write_folder,
-    )
-
     names = _targets(targets)
     text = _note(note)
     require_extra()
@@ -93,8 +80,6 @@ def _make(file: Path, targets: str, out: Path, language: Literal["en", "de", "zh
 
 def _targets(text: str) -> list[str]:
     """Read the names of targets."""
-    from camwright.profiles.tables.targets import TARGETS, target_of
-
     if text.strip() == "all":
         return list(TARGETS)
     names = list(dict.fromkeys(name.strip() for name in text.split(",") if name.strip()))
@@ -110,13 +95,8 @@ def _note(text: str) -> str:
     return text.encode("utf-8", "surrogateescape").decode("utf-8", "replace")
 
 
-def _design(file: Path, step: Any) -> StoredDesign:
+def _design(file: Path, step: Step) -> StoredDesign:
     """Read a design, or design a job."""
-    from camwright.house.files import read_text
-    from camwright.jobs.job import parse_job
-    from camwright.recipe.build import designed
-    from camwright.stored.design_file import MOST_BYTES, parse_design
-
     text = read_text(file, "job or design file", MOST_BYTES)
     if text.removeprefix("\ufeff").lstrip().startswith("{"):
         return parse_design(text, str(file))
@@ -126,34 +106,12 @@ def _design(file: Path, step: Any) -> StoredDesign:
 
 
 def _compare(before: Path, after: Path, voice: Voice) -> int:
-    from camwright.recipe.compare import compare_answer, compare_recipes, read_recipe
-
     changes = compare_recipes(read_recipe(before), read_recipe(after))
     voice.answer(lambda: compare_answer(before, after, changes), lambda: _compare_view(before, after, changes))
     return 0
 
 
-def verify_command(
-    directory: Annotated[Path, typer.Argument(metavar="DIR", help="A recipe folder.")],
-    as_json: _Json = False,
-    quiet: _Quiet = False,
-) -> int:
-    """Prove that a recipe folder is what was written, and that its tables are the motion that it promises."""
-    from camwright.recipe.verify import verify, verify_answer
-
-    voice = Voice(as_json, quiet)
-    with voice.progress(1) as step:
-        step("checking")
-        faults = verify(directory)
-    voice.answer(lambda: verify_answer(faults), lambda: _verify_view(directory, faults))
-    return 1 if faults else 0
-
-
 def _recipe_view(recipe: Recipe, answer: dict[str, Any], out: Path) -> RenderableType:
-    from rich.console import Group
-    from rich.table import Table
-    from rich.text import Text
-
     table = Table(title=f"{out}", title_justify="left")
     table.add_column("file")
     table.add_column("SHA-256")
@@ -165,9 +123,6 @@ def _recipe_view(recipe: Recipe, answer: dict[str, Any], out: Path) -> Renderabl
 
 
 def _compare_view(before: Path, after: Path, changes: list[Change]) -> RenderableType:
-    from rich.table import Table
-    from rich.text import Text
-
     if not changes:
         return Text(f"nothing changes from {before} to {after}")
     table = Table(title="What changes on the machine", title_justify="left")
@@ -194,17 +149,3 @@ def _short(value: Any) -> str:
     if isinstance(value, dict):
         return "\n".join(f"{path} {digest[:12]}" for path, digest in value.items()) or "not released"
     return str(value).replace("_", " ")
-
-
-def _verify_view(directory: Path, faults: list[Fault]) -> RenderableType:
-    from rich.table import Table
-    from rich.text import Text
-
-    if not faults:
-        return Text(f"{directory}: as it was written; its tables are the motion that it promises")
-    table = Table(title=Text(f"{directory}: NOT as it was written"), title_justify="left")
-    table.add_column("file")
-    table.add_column("what is wrong")
-    for fault in faults:
-        table.add_row(Text(fault.file), Text(fault.what))
-    return table

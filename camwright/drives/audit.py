@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -22,10 +22,9 @@ from camwright.profiles.tables.cam_table import CamTable, Unit, Units
 from camwright.profiles.tables.target import Target
 from camwright.profiles.tables.targets import detect, read_table, target_of
 from camwright.profiles.tables.text import read_text
-
-if TYPE_CHECKING:
-    from camwright.validation.rebuilt import TableJudgement
-    from camwright.validation.report import ValidationReport
+from camwright.studies.axis_study import solve_job
+from camwright.validation.rebuilt import TableJudgement, differences, judge_table, one_cycle, sampled_peaks
+from camwright.validation.report import ValidationReport, validate
 
 MEASURES: dict[str, str] = {
     "peak_speed": "peak speed",
@@ -136,10 +135,6 @@ def audit(path: Path, job: Job, target: str | None = None, units: str | None = N
     InputError
         The file is not read, or is no cam of this job.
     """
-    from camwright.studies.axis_study import solve_job
-    from camwright.validation.rebuilt import judge_table, one_cycle
-    from camwright.validation.report import validate
-
     step("reading")
     text = read_text(path)
     layout = detect(text, str(path)) if target is None else target_of(target)
@@ -214,8 +209,6 @@ def _units(table: CamTable, asked: str | None, job: Job, place: str) -> Units:
 
 def _sampled(cycle: CamProfile, job: Job) -> Sampled:
     """Measure the differences of a cycle at the servo's sample time."""
-    from camwright.validation.rebuilt import differences, sampled_peaks
-
     cut = job.cut
     (acceleration, _), (jerk, _) = sampled_peaks(cycle, cut, job.servo)
     x = cut.return_start + cut.return_zone * (np.arange(_RMS_PLACES) + 0.5) / _RMS_PLACES

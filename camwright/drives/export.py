@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -26,9 +26,7 @@ from camwright.profiles.tables.knots import (
 from camwright.profiles.tables.target import Header, Target
 from camwright.profiles.tables.targets import TARGETS, read_table, target_of
 from camwright.profiles.tables.text import decode
-
-if TYPE_CHECKING:
-    from camwright.validation.rebuilt import TableJudgement
+from camwright.validation.rebuilt import TableJudgement, judge_table
 
 DENSE = 1001
 """Points of a table that one might take for finer: in float32 its acceleration is worse."""
@@ -179,8 +177,6 @@ class _Judge:
         """Deviation from the profile, `position_error`, and the checks."""
         key = tuple((numbers + 0.0).tobytes() for numbers in (rebuilt.breaks, rebuilt.coefficients))  # no negative zero
         if key not in self._known:
-            from camwright.validation.rebuilt import judge_table
-
             job = self.job
             off = deviation(self.profile, rebuilt)
             judgement = judge_table(rebuilt, job.machine, job.cut, job.limits, job.servo)

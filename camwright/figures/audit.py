@@ -2,24 +2,26 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 
 from camwright.drives.audit import MEASURES, Audit
+from camwright.figures.marks import blank_figure, line_mark, patch_mark
 from camwright.figures.style import (
     LIMIT,
     LINES,
     SHEAR_COLOUR,
     SYNC_COLOUR,
-    WIDTH,
     shade_zones,
 )
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
+from camwright.validation.rebuilt import differences
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
 
 _THIS: dict[str, Any] = {**LINES["linear_return"], "linestyle": "-", "linewidth": 1.1}
 _BEST = LINES["optimised"]
@@ -48,7 +50,7 @@ def audit_figure(audit: Audit) -> Figure:
     """
     cut, limits, unit = audit.job.cut, audit.job.limits, audit.job.machine.slave_unit
     v = cut.line_speed
-    figure = Figure(figsize=(WIDTH, 6.8), layout="constrained")
+    figure = blank_figure(6.8)
     ratio, acceleration, bars = figure.subplots(3, 1, height_ratios=[1.0, 1.25, 0.9])
     acceleration.sharex(ratio)
     for axes in (ratio, acceleration):
@@ -73,11 +75,11 @@ def audit_figure(audit: Audit) -> Figure:
     )
     figure.legend(
         handles=[
-            Line2D([], [], label="running cam", **_THIS),
-            Line2D([], [], label="optimum", **_BEST),
-            Line2D([], [], label="limit of the drive", **LIMIT),
-            Patch(facecolor=SYNC_COLOUR, label="sync zone"),
-            Patch(facecolor=SHEAR_COLOUR, edgecolor="#8c8c8c", hatch="////", linewidth=0, label="shear zone"),
+            line_mark(label="running cam", **_THIS),
+            line_mark(label="optimum", **_BEST),
+            line_mark(label="limit of the drive", **LIMIT),
+            patch_mark(facecolor=SYNC_COLOUR, label="sync zone"),
+            patch_mark(facecolor=SHEAR_COLOUR, edgecolor="#8c8c8c", hatch="////", linewidth=0, label="shear zone"),
         ],
         loc="outside lower center",
         ncols=5,
@@ -93,8 +95,6 @@ def _places(profile: CamProfile) -> FloatArray:
 
 def _acceleration(audit: Audit, profile: CamProfile, x: FloatArray) -> FloatArray:
     """Acceleration over time at master positions; by differences centred there where the cam's own is unbounded."""
-    from camwright.validation.rebuilt import differences
-
     cut, servo = audit.job.cut, audit.job.servo
     if not audit.is_sampled("peak_acceleration"):
         return np.asarray(profile(x, 2) * cut.line_speed**2)

@@ -6,26 +6,27 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 
+from camwright.figures.marks import blank_figure, line_mark, patch_mark
 from camwright.figures.style import (
     LIMIT,
     LINES,
     SHEAR_COLOUR,
-    WIDTH,
     shade_shear_zone,
     title,
 )
 from camwright.profiles.polynomial.profile import FloatArray
+from camwright.studies.axis_study import RobustBand
+from camwright.studies.design import Design
 from camwright.validation.servo.response import sync_error
 from camwright.validation.servo.simulation import ServoRun
 
 if TYPE_CHECKING:
-    from camwright.studies.axis_study import RobustBand
-    from camwright.studies.design import Design
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
 
 AXES = ("linear_return", "poly_3_4_5", "optimised")
 """Profiles whose axis is drawn, where they exist."""
@@ -53,7 +54,7 @@ def axis_figure(design: Design, runs: Mapping[str, ServoRun], band: RobustBand |
     """
     job, cut = design.job, design.job.cut
     panels = 2 if band is None else 3
-    figure = Figure(figsize=(WIDTH, 1.2 + 2.4 * panels), layout="constrained")
+    figure = blank_figure(1.2 + 2.4 * panels)
     axes = figure.subplots(panels, 1, sharex=True, squeeze=False)[:, 0]
     shear = (cut.shear_zone_at, cut.shear_zone_at + cut.shear_zone)
     around = _AROUND * (cut.shear_zone or 0.2 * cut.sync_zone)
@@ -127,14 +128,14 @@ def _band(axes: Axes, band: RobustBand, tolerance: float) -> None:
 
 
 def _legend(figure: Figure, names: list[str], with_band: bool) -> None:
-    handles: list[Line2D | Patch] = [Line2D([], [], label=f"axis, {title(name)}", **LINES[name]) for name in names]
+    handles: list[Line2D | Patch] = [line_mark(label=f"axis, {title(name)}", **LINES[name]) for name in names]
     handles += [
-        Line2D([], [], label="command, optimised", **_COMMAND),
-        Line2D([], [], label="sync tolerance", **LIMIT),
-        Patch(facecolor=SHEAR_COLOUR, edgecolor="#8c8c8c", hatch="////", linewidth=0, label="shear zone"),
+        line_mark(label="command, optimised", **_COMMAND),
+        line_mark(label="sync tolerance", **LIMIT),
+        patch_mark(facecolor=SHEAR_COLOUR, edgecolor="#8c8c8c", hatch="////", linewidth=0, label="shear zone"),
     ]
     if with_band:
         handles.append(
-            Patch(facecolor="#9ecae8", edgecolor="#0072b2", hatch="....", linewidth=0.6, label="servo's ranges")
+            patch_mark(facecolor="#9ecae8", edgecolor="#0072b2", hatch="....", linewidth=0.6, label="servo's ranges")
         )
     figure.legend(handles=handles, loc="outside lower center", ncols=4)

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
-
+from camwright.figures.marks import blank_figure, line_mark, patch_mark
 from camwright.figures.style import (
     LIMIT,
     LINES,
-    WIDTH,
     title,
 )
 from camwright.studies.comparison import Comparison
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
 
 _BASELINE = "#b5b5b5"
 _UNBOUNDED_HATCH = "xxxx"
@@ -38,7 +41,7 @@ def bars_figure(comparison: Comparison) -> Figure:
         The profiles measured.
     """
     rows, limits = comparison.rows, comparison.job.limits
-    figure = Figure(figsize=(WIDTH, 1.5 + 0.24 * len(rows)), layout="constrained")
+    figure = blank_figure(1.5 + 0.24 * len(rows))
     unit = comparison.job.machine.slave_unit
     names = [row.name for row in rows]
     columns: list[tuple[str, list[float | None], float | None, str]] = [
@@ -75,20 +78,22 @@ def _handles(
 ) -> list[Patch | Line2D]:
     """Entries of the legend: what is there to be seen."""
     handles: list[Patch | Line2D] = [
-        Patch(facecolor=LINES["optimised"]["color"], label="optimised"),
-        Patch(facecolor=_BASELINE, label="baseline"),
+        patch_mark(facecolor=LINES["optimised"]["color"], label="optimised"),
+        patch_mark(facecolor=_BASELINE, label="baseline"),
     ]
     if any(_is_beyond(value, limit) for _, values, limit, _ in columns for value in values):
         handles.append(
-            Patch(facecolor=_BASELINE, edgecolor="black", hatch=_BEYOND_HATCH, linewidth=0.0, label="beyond the limit")
+            patch_mark(
+                facecolor=_BASELINE, edgecolor="black", hatch=_BEYOND_HATCH, linewidth=0.0, label="beyond the limit"
+            )
         )
     if any(value is None for _, values, _, _ in columns for value in values):
         handles.append(
-            Patch(
+            patch_mark(
                 facecolor="white", edgecolor="#777777", hatch=_UNBOUNDED_HATCH, linewidth=0.5, label="unbounded or none"
             )
         )
-    return [*handles, *([Line2D([], [], label="limit of the drive", **LIMIT)] if limits_drawn else [])]
+    return [*handles, *([line_mark(label="limit of the drive", **LIMIT)] if limits_drawn else [])]
 
 
 def _is_beyond(value: float | None, limit: float | None) -> bool:

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 
+from camwright.figures.marks import blank_figure, line_mark, patch_mark
 from camwright.figures.profile import curve
 from camwright.figures.style import (
     LINES,
     SHEAR_COLOUR,
     SYNC_COLOUR,
-    WIDTH,
     shade_zones,
     title,
 )
@@ -24,6 +20,13 @@ from camwright.profiles.cut import Cut
 from camwright.profiles.machines import Machine
 from camwright.profiles.returns import slave_at_start
 from camwright.studies.comparison import Comparison
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
 
 TABULATED = "crank_tabulated"
 
@@ -55,7 +58,7 @@ def crank_figure(comparison: Comparison) -> Figure:
     if machine.dead_centres is None:
         raise TypeError(f"the crank figure is about a tool that turns back, not a {type(machine).__name__}")
     shown = {row.name: row.profile for row in comparison.rows if row.name in STYLES}
-    figure = Figure(figsize=(WIDTH, 7.6), layout="constrained")
+    figure = blank_figure(7.6)
     grid = figure.add_gridspec(3, 2, height_ratios=(1.15, 1.0, 1.0))
     turn, travel = figure.add_subplot(grid[0, 0]), figure.add_subplot(grid[0, 1])
     speed = figure.add_subplot(grid[1, :])
@@ -90,12 +93,10 @@ def crank_figure(comparison: Comparison) -> Figure:
         f"{job.name}: {machine_words(machine, digits=6)}, gear {machine.motor_ratio:g}",
         fontsize=9.5,
     )
-    handles: list[Line2D | Patch] = [
-        Line2D([], [], label=title(name), **STYLES[name]) for name in STYLES if name in shown
-    ]
+    handles: list[Line2D | Patch] = [line_mark(label=title(name), **STYLES[name]) for name in STYLES if name in shown]
     handles += [
-        Patch(facecolor=SYNC_COLOUR, label="sync zone"),
-        Patch(facecolor=SHEAR_COLOUR, edgecolor="#8c8c8c", hatch="////", linewidth=0, label="shear zone"),
+        patch_mark(facecolor=SYNC_COLOUR, label="sync zone"),
+        patch_mark(facecolor=SHEAR_COLOUR, edgecolor="#8c8c8c", hatch="////", linewidth=0, label="shear zone"),
     ]
     figure.legend(handles=handles, loc="outside lower center", ncols=4)
     return figure

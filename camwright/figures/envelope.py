@@ -6,17 +6,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.colors import to_rgb
-from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 
+from camwright.design.feasible.envelope import Envelope
 from camwright.figures.files import written
+from camwright.figures.marks import blank_figure, patch_mark
 from camwright.figures.style import LINES, WIDTH
+from camwright.studies.envelope import EnvelopeAnswer
 
 if TYPE_CHECKING:
-    from camwright.design.feasible.envelope import Envelope
-    from camwright.studies.envelope import EnvelopeAnswer
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
 
 BINDING: dict[str, tuple[str, str]] = {
     "speed": ("#56b4e9", ""),
@@ -41,7 +41,7 @@ def envelope_figure(answer: EnvelopeAnswer, directory: Path) -> list[Path]:
 
 def draw_envelope(answer: EnvelopeAnswer) -> Figure:
     """Draw the map: coloured by the limit that binds, strong where a cut is possible; highest line speeds as lines."""
-    figure = Figure(figsize=(WIDTH, 0.72 * WIDTH), layout="constrained")
+    figure = blank_figure(0.72 * WIDTH)
     axes = figure.subplots()
     found = answer.envelope
     _cells(axes, found)
@@ -63,7 +63,7 @@ def draw_envelope(answer: EnvelopeAnswer) -> Figure:
     names = [name for name in BINDING if any(point.binding == name for point in found.points)]
     names += [name for name in BINDING if name not in names and any(row.binding == name for row in found.rows)]
     patches = [
-        Patch(
+        patch_mark(
             facecolor=BINDING[name][0],
             hatch=BINDING[name][1],
             edgecolor="#555555",
@@ -119,6 +119,8 @@ def _fill(
 
 def _mixed(colour: str, strength: float) -> tuple[float, float, float]:
     """Mix a colour with white."""
+    from matplotlib.colors import to_rgb
+
     red, green, blue = (1.0 - strength * (1.0 - part) for part in to_rgb(colour))
     return red, green, blue
 

@@ -6,10 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from matplotlib import style as matplotlib_style
-from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
-
+from camwright.drives.audit import Audit
 from camwright.figures.audit import audit_figure
 from camwright.figures.axis import AXES as SHOWN_AXES
 from camwright.figures.axis import axis_figure
@@ -19,12 +16,14 @@ from camwright.figures.profile import profile_figure
 from camwright.figures.servo import AXES, servo_figure
 from camwright.figures.style import RC
 from camwright.figures.tradeoff import tradeoff_figure
+from camwright.studies.axis_study import robust_band
 from camwright.studies.comparison import Comparison
+from camwright.studies.design import Design
+from camwright.studies.tradeoff import TradeOff
+from camwright.validation.servo.simulation import simulate
 
 if TYPE_CHECKING:
-    from camwright.drives.audit import Audit
-    from camwright.studies.design import Design
-    from camwright.studies.tradeoff import TradeOff
+    from matplotlib.figure import Figure
 
 
 def design_figures(design: Design, directory: Path) -> list[Path]:
@@ -44,8 +43,6 @@ def design_figures(design: Design, directory: Path) -> list[Path]:
     list
         The files.
     """
-    from camwright.validation.servo.simulation import simulate
-
     job, comparison = design.job, design.comparison
     runs = {name: simulate(comparison[name].profile, job.cut, job.servo) for name in AXES}
     return [
@@ -63,9 +60,6 @@ def design_figures(design: Design, directory: Path) -> list[Path]:
 
 def _axis_figures(design: Design, directory: Path) -> list[Path]:
     """Write the figure of a servo-aware design's axis."""
-    from camwright.studies.axis_study import robust_band
-    from camwright.validation.servo.simulation import simulate
-
     job, names = design.job, {row.name for row in design.comparison.rows}
     runs = {name: simulate(design.comparison[name].profile, job.cut, job.servo) for name in SHOWN_AXES if name in names}
     band = robust_band(job, design.profile)
@@ -89,6 +83,9 @@ def audit_figures(audit: Audit, directory: Path) -> list[Path]:
 
 def written(draw: Callable[[], Figure], directory: Path, name: str) -> list[Path]:
     """Draw a figure in the house's style, whatever the user's settings of matplotlib, and save it twice."""
+    from matplotlib import style as matplotlib_style
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
+
     vector, pixels = directory / f"{name}.svg", directory / f"{name}.png"
     with matplotlib_style.context(["default", RC]):
         figure = draw()

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from numpy.typing import NDArray
 
 from camwright.profiles.polynomial.profile import FloatArray
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 
 _DISTANCES = (5.0, 8.0, 11.5, 16.0, 22.0, 29.0, 38.0, 50.0, 64.0)
 """Distances of a label from its point that are tried (pt)."""
@@ -54,6 +57,8 @@ def label_points(
     size
         Font size (pt).
     """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
     figure = axes.get_figure(root=True)
     assert figure is not None  # noqa: S101 - axes belong to a figure
     FigureCanvasAgg(figure)

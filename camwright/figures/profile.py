@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
+from typing import TYPE_CHECKING
 
+import numpy as np
+
+from camwright.figures.marks import blank_figure, line_mark, patch_mark
 from camwright.figures.style import (
     LIMIT,
     LINES,
     SHEAR_COLOUR,
     SYNC_COLOUR,
-    WIDTH,
     shade_zones,
     title,
 )
@@ -24,6 +22,13 @@ from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.returns import slave_at_start
 from camwright.studies.comparison import Comparison
 from camwright.validation.motion import RATIO_JUMP, SLOPE_JUMP, slope_scale
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
 
 _POINTS = 48
 """Points drawn of a piece; the ends of pieces are drawn from both sides."""
@@ -50,7 +55,7 @@ def profile_figure(comparison: Comparison) -> Figure:
     """
     cut, limits, machine = comparison.job.cut, comparison.job.limits, comparison.job.machine
     v = cut.line_speed
-    figure = Figure(figsize=(WIDTH, 8.0), layout="constrained")
+    figure = blank_figure(8.0)
     travel, ratio, acceleration, jerk = figure.subplots(4, 1, sharex=True)
     shown = {row.name: row.profile for row in comparison.rows if row.name in LINES}
     for axes in (travel, ratio, acceleration, jerk):
@@ -164,15 +169,13 @@ def _arrow(axes: Axes, name: str, x: float, *, up: bool) -> None:
 
 
 def _legend(figure: Figure, shown: dict[str, CamProfile]) -> None:
-    handles: list[Line2D | Patch] = [
-        Line2D([], [], label=title(name), **LINES[name]) for name in LINES if name in shown
-    ]
+    handles: list[Line2D | Patch] = [line_mark(label=title(name), **LINES[name]) for name in LINES if name in shown]
     handles += [
-        Line2D([], [], label="limit of the drive", **LIMIT),
-        Patch(facecolor=SYNC_COLOUR, label="sync zone"),
-        Patch(facecolor=SHEAR_COLOUR, edgecolor="#8c8c8c", hatch="////", linewidth=0, label="shear zone"),
+        line_mark(label="limit of the drive", **LIMIT),
+        patch_mark(facecolor=SYNC_COLOUR, label="sync zone"),
+        patch_mark(facecolor=SHEAR_COLOUR, edgecolor="#8c8c8c", hatch="////", linewidth=0, label="shear zone"),
     ]
     if "linear_return" in shown:
         line = LINES["linear_return"]
-        handles.append(Line2D([], [], color=line["color"], marker="^", linestyle="-", linewidth=1.2, label="unbounded"))
+        handles.append(line_mark(color=line["color"], marker="^", linestyle="-", linewidth=1.2, label="unbounded"))
     figure.legend(handles=handles, loc="outside lower center", ncols=4)

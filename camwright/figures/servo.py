@@ -3,27 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 
+from camwright.figures.marks import blank_figure, line_mark, patch_mark
 from camwright.figures.style import (
     LIMIT,
     LINES,
     SHEAR_COLOUR,
-    WIDTH,
     shade_shear_zone,
     title,
 )
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.profiles.returns import is_straight
-from camwright.studies.comparison import Comparison, Measured
+from camwright.studies.comparison import Comparison
+from camwright.studies.measured import Measured
 from camwright.validation.servo.response import ServoResponse, sync_error
 from camwright.validation.servo.simulation import ServoRun
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
 
 AXES = ("linear_return", "optimised")
 """Profiles whose axis is drawn."""
@@ -52,7 +56,7 @@ def servo_figure(comparison: Comparison, runs: Mapping[str, ServoRun]) -> Figure
         The simulated responses, by the names in `AXES`.
     """
     job = comparison.job
-    figure = Figure(figsize=(WIDTH, 8.2), layout="constrained")
+    figure = blank_figure(8.2)
     grid = figure.add_gridspec(3, 2, height_ratios=(1.15, 1.0, 1.0))
     left = figure.add_subplot(grid[0, 0])
     right = figure.add_subplot(grid[0, 1], sharex=left, sharey=left)
@@ -167,13 +171,13 @@ def _findings(rows: list[tuple[str, ServoResponse]]) -> str:
 
 
 def _legend(figure: Figure) -> None:
-    handles: list[Line2D | Patch] = [Line2D([], [], label=f"axis, {title(name)}", **LINES[name]) for name in AXES]
+    handles: list[Line2D | Patch] = [line_mark(label=f"axis, {title(name)}", **LINES[name]) for name in AXES]
     handles += [
-        Line2D([], [], color="black", linewidth=0.9, label="ideal sync line"),
-        Line2D([], [], color="#6b6b6b", linestyle=(0, (1, 1)), linewidth=1.3, label="command"),
-        Line2D([], [], color="#444444", linestyle="none", label="crossing (latest phase)", **_CROSSING),
-        Line2D([], [], color="#444444", linestyle="none", label="settled (latest phase)", **_SETTLING),
-        Line2D([], [], label="sync tolerance", **LIMIT),
-        Patch(facecolor=SHEAR_COLOUR, edgecolor="#8c8c8c", hatch="////", linewidth=0, label="shear zone"),
+        line_mark(color="black", linewidth=0.9, label="ideal sync line"),
+        line_mark(color="#6b6b6b", linestyle=(0, (1, 1)), linewidth=1.3, label="command"),
+        line_mark(color="#444444", linestyle="none", label="crossing (latest phase)", **_CROSSING),
+        line_mark(color="#444444", linestyle="none", label="settled (latest phase)", **_SETTLING),
+        line_mark(label="sync tolerance", **LIMIT),
+        patch_mark(facecolor=SHEAR_COLOUR, edgecolor="#8c8c8c", hatch="////", linewidth=0, label="shear zone"),
     ]
     figure.legend(handles=handles, loc="outside lower center", ncols=4)

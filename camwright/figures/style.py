@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from matplotlib.axes import Axes
+from typing import TYPE_CHECKING, Any
 
 from camwright.profiles.cut import Cut
 from camwright.profiles.laws import LAWS
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 
 WIDTH = 6.7
 """Width of a figure (in): the text width of an A4 page, 170 mm."""

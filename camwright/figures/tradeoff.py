@@ -3,24 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.axis import Axis
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from camwright.figures.labels import label_points
+from camwright.figures.marks import blank_figure, line_mark
 from camwright.figures.style import (
     LINES,
     SYNC_COLOUR,
-    WIDTH,
     title,
 )
 from camwright.profiles.objective import CommandObjective
 from camwright.studies.tradeoff import Row, TradeOff, words
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
+    from matplotlib.figure import Figure
+
 
 _SAME = 2e-3
 """Share of the panel within which points count as one and share a label."""
@@ -52,7 +53,7 @@ def tradeoff_figure(result: TradeOff) -> Figure:
         The trade-off.
     """
     bounded = [row for row in result.rows if row.values["peak_acceleration"] is not None]
-    figure = Figure(figsize=(WIDTH, 7.6), layout="constrained")
+    figure = blank_figure(7.6)
     upper, lower = figure.subplots(2, 1, sharey=True)
     heating: CommandObjective = "rms_torque" if "rms_torque" in result.measures else "rms_acceleration"
     panels: list[tuple[Axes, CommandObjective]] = [(upper, heating), (lower, "peak_jerk")]
@@ -65,7 +66,7 @@ def tradeoff_figure(result: TradeOff) -> Figure:
     if unbounded:
         lower.set_xlabel(f"{lower.get_xlabel()}\nnot drawn, with an unbounded acceleration: {', '.join(unbounded)}")
     kinds = [kind for kind in _STYLES if any(_kind(row) == kind for row in bounded)]
-    figure.legend(handles=[Line2D([], [], **_marker(kind)) for kind in kinds], loc="outside lower center", ncols=3)
+    figure.legend(handles=[line_mark(**_marker(kind)) for kind in kinds], loc="outside lower center", ncols=3)
     for axes, measure in panels:
         _draw(axes, bounded, measure)
     return figure
@@ -117,6 +118,8 @@ def _scales(axes: Axes, x: Sequence[float | None], y: Sequence[float | None]) ->
 
 def _plain(axis: Axis, last: float) -> None:
     """Write the numbers of a logarithmic axis plainly, none beyond the last."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
+
     axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=40))
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}" if value <= last else ""))
     axis.set_minor_locator(NullLocator())

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
+from camwright.house.json_text import to_json
 from camwright.house.progress import Step, ignore
 
 if TYPE_CHECKING:
@@ -41,8 +42,6 @@ class Voice:
     def answer(self, data: Callable[[], dict[str, Any]], view: Callable[[], RenderableType]) -> None:
         """Print the answer in the form that was asked for."""
         if self.as_json:
-            from camwright.house.json_text import to_json
-
             _say(to_json(data()))
         elif not self.quiet:
             _say(_rendered(view()))

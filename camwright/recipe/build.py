@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -40,10 +40,8 @@ from camwright.recipe.speeds import at_speeds
 from camwright.recipe.working_range import working_range
 from camwright.stored.design_file import StoredDesign
 from camwright.studies.axis_study import solve_job, sync_error
-
-if TYPE_CHECKING:
-    from camwright.validation.check import Check
-    from camwright.validation.report import ValidationReport
+from camwright.validation.check import Check
+from camwright.validation.report import ValidationReport, validate
 
 STEPS = 4
 """Steps that `make_recipe` tells beside one for each target."""
@@ -105,8 +103,6 @@ def make_recipe(
     InputError
         An unknown target, one that cannot take the cam, or none that can.
     """
-    from camwright.validation.report import validate
-
     job, profile = design.job, design.profile
     step("checking")
     report = validate(profile, job.machine, job.cut, job.limits, job.servo, servo_aware=job.servo_aware)

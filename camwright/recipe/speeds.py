@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from camwright.jobs.job import Job
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.servo import spectral_radius
 from camwright.recipe.model import AtSpeed
-
-if TYPE_CHECKING:
-    from camwright.validation.report import ValidationReport
+from camwright.validation.motion import measure_motion
+from camwright.validation.motor import measure_motor
+from camwright.validation.report import ValidationReport
+from camwright.validation.servo.response import servo_response
 
 
 def at_speeds(profile: CamProfile, job: Job, report: ValidationReport) -> tuple[AtSpeed, ...]:
@@ -29,10 +29,6 @@ def at_speeds(profile: CamProfile, job: Job, report: ValidationReport) -> tuple[
     report
         Its validation, which has the servo's response at full line speed and where the cut falls.
     """
-    from camwright.validation.motion import measure_motion
-    from camwright.validation.motor import measure_motor
-    from camwright.validation.servo.response import servo_response
-
     machine, stable = job.machine, spectral_radius(job.servo) < 1.0
     rows = []
     errors = {error.share: error for error in report.length_errors}

@@ -27,6 +27,7 @@ from camwright.recipe.recipe_file import (
     stored_design,
 )
 from camwright.stored.design_file import MOST_BYTES, StoredDesign
+from camwright.validation.rebuilt import judge_table
 
 SAME = 1e-6
 """What a value computed anew may be off the recorded one, relative to it: another processor or another version of numpy."""
@@ -205,8 +206,6 @@ def _table_faults(table: RecipeTable, design: StoredDesign, data: dict[str, byte
 
 def _number_faults(table: RecipeTable, read: CamTable, units: Units, design: StoredDesign) -> Iterator[str]:
     """Compare the points, the errors and the checks of a table with the recorded ones."""
-    from camwright.validation.rebuilt import judge_table
-
     yield from _point_faults(table.points, read)
     job, profile = design.job, design.profile
     if read.units is not None and read.units != units:

@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+from camwright.design.feasible.extremes import extremes
+from camwright.design.feasible.feasibility import binding_limit, edge, is_feasible, needed_limits
+from camwright.design.returns.curve_limits import motor_limits
 from camwright.jobs.job import Job
 from camwright.profiles.cut import Cut
 from camwright.profiles.limits import Limits
@@ -38,8 +41,6 @@ def working_range(job: Job) -> WorkingRange:
     job
         The job, a crank's sync zone where the design chose it.
     """
-    from camwright.design.feasible.extremes import extremes
-
     far = extremes(job.task)
     return WorkingRange(
         min_length=Edge(far.min_cut_length, far.cut_length_binding),
@@ -55,13 +56,6 @@ def longest_cut(machine: Machine, cut: Cut, limits: Limits) -> Edge:
     A slave that can come to rest between two sync zones can wait there for any length. One that must not run backwards and has no
     room to stop can be slowed down by so much only.
     """
-    from camwright.design.feasible.feasibility import (
-        binding_limit,
-        edge,
-        is_feasible,
-        needed_limits,
-    )
-
     if can_rest(machine, cut, limits):
         return Edge(None, NO_END)
 
@@ -78,8 +72,6 @@ def longest_cut(machine: Machine, cut: Cut, limits: Limits) -> Edge:
 
 def can_rest(machine: Machine, cut: Cut, limits: Limits) -> bool:
     """Whether the slave can come to rest after a sync zone, and from rest into the next: enough room for both, or reversal allowed."""
-    from camwright.design.returns.curve_limits import motor_limits
-
     if limits.motor is not None:
         return any(can_rest(machine, cut, each) for each in motor_limits(machine, limits))
     sync, v = machine.sync_profile(cut), cut.line_speed

@@ -6,7 +6,7 @@ import hashlib
 import json
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from camwright.answers.axis import axis_answer, robust_answer
 from camwright.answers.objective import objective_answer, starts_answer
@@ -20,9 +20,7 @@ from camwright.profiles.machines.fields import Choice, MachineField, Whole, fiel
 from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.servo_tolerance import ServoTolerance
-
-if TYPE_CHECKING:
-    from camwright.studies.design import Design
+from camwright.studies.design import Design
 
 MOST_BYTES = 1 << 26
 """The most bytes that a design or table file may have."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from camwright.house.files import read_text
 from camwright.house.provenance import provenance
@@ -15,9 +14,7 @@ from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.tables.cam_csv import read_cam_csv, rebuild, write_cam_csv
 from camwright.stored.design_file import MOST_BYTES, parse_design
-
-if TYPE_CHECKING:
-    from camwright.studies.design import Design
+from camwright.studies.design import Design
 
 _ROUNDING = 1e-6
 """What a table's ends may miss those of the cycle by, as a part of the cut length: tables are rounded."""

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from camwright.design.servo_aware.command_basis import Command
+from camwright.design.servo_aware.programme import AxisProblem, AxisProgramme
 from camwright.jobs.job import Job
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import SolverError
 from camwright.studies.axis_study import servos_of
+from camwright.validation.bounds import minimum_length as least
+from camwright.validation.bounds.zone_search import ZoneSearch
 
 _FINE, _LENGTH_RESOLUTION, _ZONE_RESOLUTION = 8, 2e-4, 4e-3
 """How finely sync zones and cut lengths are searched; see `camwright.validation.bounds.zone_search.ZoneSearch`."""
@@ -49,11 +53,6 @@ def axis_lengths(job: Job) -> AxisLengths | None:
     InputError
         The shear zone leaves no room for a return, or the servo is unstable.
     """
-    from camwright.design.servo_aware.command_basis import Command
-    from camwright.design.servo_aware.programme import AxisProblem, AxisProgramme
-    from camwright.validation.bounds import minimum_length as least
-    from camwright.validation.bounds.zone_search import ZoneSearch
-
     machine, cut, limits = job.machine, replace(job.cut, shaped=False), job.limits
     if not machine.published or cut.sync_ratio != 1.0:
         return None

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camwright.design.optimise import Solution, solve
+from camwright.design.optimise_axis import solve_axis
 from camwright.jobs.job import Job
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.servo import Servo
-
-if TYPE_CHECKING:
-    from camwright.design.optimise import Solution
+from camwright.validation.servo.monte_carlo import shear_zone_errors
+from camwright.validation.servo.response import servo_response, shear_zone_error
+from camwright.validation.servo.simulation import simulate
 
 DRAWS = 10_000
 """Servos drawn from the ranges of a job's ``[servo.tolerance]``."""
@@ -103,11 +104,8 @@ def solve_job(job: Job, *, suggest: bool = True) -> Solution:
         The solver failed.
     """
     if job.servo_aware:
-        from camwright.design.optimise_axis import solve_axis
-
         servos, between = servos_of(job), between_of(job)
         return solve_axis(job.task, job.objective, job.command, servos, between, suggest=suggest)
-    from camwright.design.optimise import solve
 
     if job.objective == "sync_error":
         raise InputError(
@@ -118,16 +116,12 @@ def solve_job(job: Job, *, suggest: bool = True) -> Solution:
 
 def sync_error(profile: CamProfile, job: Job) -> float | None:
     """Greatest sync error of the axis in the shear zone (m) with a job's servo and at the corners of its ranges; ``None`` without bound."""
-    from camwright.validation.servo.monte_carlo import shear_zone_errors
-
     worst = float(shear_zone_errors(profile, job.machine, job.cut, servos_of(job)).max())
     return worst if math.isfinite(worst) else None
 
 
 def axis_study(job: Job, solution: Solution) -> AxisStudy | None:
     """Compare what a servo-aware design predicts with an independent simulation; ``None`` for other designs."""
-    from camwright.validation.servo.response import servo_response
-
     if solution.axis is None:
         return None
     response = servo_response(solution.profile, solution.machine, job.cut, job.servo)
@@ -137,8 +131,6 @@ def axis_study(job: Job, solution: Solution) -> AxisStudy | None:
 
 def robustness(job: Job, profile: CamProfile, solution: Solution | None = None) -> Robustness | None:
     """Draw servos from the ranges of a job and take the worst sync error; ``None`` if the job gives no ranges."""
-    from camwright.validation.servo.monte_carlo import shear_zone_errors
-
     ranges = job.servo_tolerance
     if ranges is None or not ranges.varying:
         return None
@@ -173,9 +165,6 @@ class RobustBand:
 
 def robust_band(job: Job, profile: CamProfile) -> RobustBand | None:
     """Simulate servos drawn from a job's ranges and those at the corners; ``None`` if the job gives no ranges."""
-    from camwright.validation.servo.response import shear_zone_error
-    from camwright.validation.servo.simulation import simulate
-
     ranges, cut = job.servo_tolerance, job.cut
     if ranges is None or not ranges.varying:
         return None

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
 
 from camwright.house.progress import Step, ignore
 from camwright.jobs.job import Job
@@ -21,46 +20,14 @@ from camwright.profiles.returns import (
     baseline_names,
     is_straight,
 )
-
-if TYPE_CHECKING:
-    from camwright.studies.screw import ScrewCarriage
-    from camwright.validation.motion import Motion
-    from camwright.validation.motor import MotorMeasures
-    from camwright.validation.servo.response import ServoResponse
+from camwright.studies.measured import Measured, measured
+from camwright.studies.screw import ScrewCarriage, screw_carriage
 
 QUINTIC = "quintic"
 """The return of S2; where the polynomial 3-4-5 would run backwards it decelerates, perhaps stands, and accelerates."""
 
 _LEAST_MEAN_RATIO = 1e-9
 # Below this mean ratio of the return S2's curve would stand still but for rounding.
-
-
-@dataclass(frozen=True, eq=False)
-class Measured:
-    """A profile and its measures.
-
-    Parameters
-    ----------
-    name
-        ``"optimised"`` or the name of a baseline.
-    profile
-        One cycle.
-    motion
-        Measures of the slave's motion at line speed (slave unit).
-    tool
-        Measures of the tool's motion (m): the same where the slave is counted in metres.
-    motor
-        What the motor must give.
-    response
-        What the servo makes of it.
-    """
-
-    name: str
-    profile: CamProfile
-    motion: Motion
-    tool: Motion
-    motor: MotorMeasures
-    response: ServoResponse
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,7 +120,7 @@ def compare(job: Job, optimised: CamProfile, names: Sequence[str] | None = None,
     rows = []
     for name, profile in profiles.items():
         step(f"measuring {name}")
-        rows.append(_measure(name, profile, job))
+        rows.append(measured(name, profile, job))
     rows.sort(key=lambda row: math.inf if row.motion.peak_acceleration is None else row.motion.peak_acceleration)
     return Comparison(job, tuple(rows))
 
@@ -166,17 +133,6 @@ def law_profile(name: str, machine: Machine, cut: Cut) -> CamProfile:
     return assemble(quintic_return(cut.return_zone, height).scale(slave=cut.sync_ratio), machine, cut)
 
 
-def _measure(name: str, profile: CamProfile, job: Job) -> Measured:
-    """Measure one profile."""
-    from camwright.validation.motion import measure_motion, measure_tool
-    from camwright.validation.motor import measure_motor
-    from camwright.validation.servo.response import servo_response
-
-    return Measured(
-        name,
-        profile,
-        measure_motion(profile, job.machine, job.cut),
-        measure_tool(profile, job.machine, job.cut),
-        measure_motor(profile, job.machine, job.cut),
-        servo_response(profile, job.machine, job.cut, job.servo),
-    )
+def with_screw(comparison: Comparison) -> Comparison:
+    """Add the carriage on a screw to the comparison of a crank; others stay as they are."""
+    return replace(comparison, screw=screw_carriage(comparison.job, comparison["optimised"]))

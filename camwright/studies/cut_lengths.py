@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from camwright.jobs.job import Job
-
-if TYPE_CHECKING:
-    from camwright.validation.bounds.minimum_length import MinimumCutLength
+from camwright.profiles.returns import baseline
+from camwright.validation.bounds import minimum_length as least
+from camwright.validation.bounds.minimum_length import MinimumCutLength
+from camwright.validation.servo.response import servo_response
 
 
 @dataclass(frozen=True)
@@ -64,10 +64,6 @@ def cut_lengths(job: Job) -> CutLengths | None:
     >>> round(lengths.eq9, 3), lengths.physical.length < lengths.optimised.length
     (0.209, True)
     """
-    from camwright.profiles.returns import baseline
-    from camwright.validation.bounds import minimum_length as least
-    from camwright.validation.servo.response import servo_response
-
     machine, cut, limits, servo = job.machine, job.cut, job.limits, job.servo
     if not machine.published or cut.sync_ratio != 1.0:
         return None

@@ -4,20 +4,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
+from camwright.design.optimise import Solution
 from camwright.house.progress import Step, ignore
 from camwright.jobs.job import Job
 from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.polynomial.profile import CamProfile
-from camwright.studies.comparison import Comparison, compare
+from camwright.studies.axis_study import AxisStudy, Robustness, axis_study, robustness, solve_job
+from camwright.studies.comparison import Comparison, compare, with_screw
 from camwright.studies.cut_lengths import CutLengths, cut_lengths
-
-if TYPE_CHECKING:
-    from camwright.design.optimise import Solution
-    from camwright.studies.axis_study import AxisStudy, Robustness
-    from camwright.validation.bounds.optimality import Bound
-    from camwright.validation.report import ValidationReport
+from camwright.validation.bounds.optimality import Bound, lower_bound
+from camwright.validation.report import ValidationReport
+from camwright.validation.report import validate as judge
 
 STEPS = 4
 """Steps that `optimise` tells beside the measuring of each profile."""
@@ -106,11 +104,6 @@ def optimise(job: Job, step: Step = ignore) -> Design:
     >>> result.passed, round(result.objective, 2)
     (True, 9.07)
     """
-    from camwright.studies.axis_study import axis_study, robustness, solve_job
-    from camwright.studies.screw import with_screw
-    from camwright.validation.bounds.optimality import Bound, lower_bound
-    from camwright.validation.report import validate as judge
-
     step("solving")
     solution = solve_job(job)
     placed = replace(job, machine=solution.machine)

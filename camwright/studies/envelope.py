@@ -4,20 +4,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from camwright.design.feasible.envelope import Envelope, envelope
 from camwright.house.progress import Step, ignore
 from camwright.house.provenance import provenance
 from camwright.jobs.job import Job
 from camwright.profiles.machines import Machine
 from camwright.profiles.objective import OBJECTIVES, MotionObjective, of_motion
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
-
-    from camwright.design.feasible.envelope import Envelope
 
 SHORTEST, LONGEST = 0.5, 2.0
 """Cut lengths of the map as parts of the job's; none of them is shorter than `LEAST_ZONE` of the sync zone."""
@@ -67,9 +63,9 @@ class EnvelopeAnswer:
             "max_line_speed": [
                 {
                     "length_mm": row.length * 1e3,
-                    "optimised_m_per_min": _per_minute(row.optimised),
-                    "quintic_m_per_min": _per_minute(row.quintic),
-                    "linear_m_per_min": _per_minute(row.linear),
+                    "optimised_m_per_min": per_minute(row.optimised),
+                    "quintic_m_per_min": per_minute(row.quintic),
+                    "linear_m_per_min": per_minute(row.linear),
                     "binding": row.binding,
                     **_place(row.machine),
                 }
@@ -90,20 +86,6 @@ class EnvelopeAnswer:
         ]
         return {name: "\n".join([*head, *_csv(entries)]) + "\n" for name, entries in rows.items()}
 
-    def view(self) -> RenderableType:
-        """Give the table that people read."""
-        from rich.table import Table
-
-        table = Table(title="Highest line speed (m/min)", title_justify="left")
-        for name in ("cut length\nmm", "optimised", "quintic", "linear", "binds"):
-            table.add_column(name, justify="left" if name == "binds" else "right")
-        for row in self.envelope.rows:
-            speeds = (_per_minute(speed) for speed in (row.optimised, row.quintic, row.linear))
-            table.add_row(
-                f"{row.length * 1e3:.5g}", *("–" if speed is None else f"{speed:.5g}" for speed in speeds), row.binding
-            )
-        return table
-
 
 def envelope_answer(job: Job, points: int, step: Step = ignore) -> EnvelopeAnswer:
     """Compute the map of a job: from half to twice its cut length, up to the line speed at which the sync zone alone is too fast.
@@ -122,8 +104,6 @@ def envelope_answer(job: Job, points: int, step: Step = ignore) -> EnvelopeAnswe
     InputError
         The machine cannot be in sync over the zone.
     """
-    from camwright.design.feasible.envelope import envelope
-
     shortest = max(SHORTEST * job.cut.length, LEAST_ZONE * job.cut.sync_zone)
     lengths = np.linspace(shortest, LONGEST * job.cut.length, points).round(6)
     fastest = job.limits.speed / job.machine.sync_pace(job.cut)
@@ -141,7 +121,7 @@ def _place(machine: Machine) -> dict[str, float]:
     return {f"{machine.place_name}_{unit}": machine.place * factor}
 
 
-def _per_minute(speed: float | None) -> float | None:
+def per_minute(speed: float | None) -> float | None:
     """Turn m/s into m/min."""
     return None if speed is None else speed * 60
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from camwright.house.files import read_text
 from camwright.house.provenance import camwright_version
@@ -14,12 +14,9 @@ from camwright.profiles.tables.trace_csv import read_trace_csv
 from camwright.profiles.trace import Trace
 from camwright.validation.identify.identification import Identified, identify
 
-if TYPE_CHECKING:
-    from rich.console import RenderableType
-
 _MOST_BYTES = 1 << 24
 
-_NAMES = {
+PARAMETERS = {
     "bandwidth": ("bandwidth_rad_per_s", "ω", 1.0, "rad/s"),
     "damping": ("damping", "ζ", 1.0, ""),
     "position_gain": ("position_gain_per_s", "K", 1.0, "1/s"),
@@ -29,7 +26,7 @@ _NAMES = {
 }
 """JSON key, symbol, factor and unit of each parameter, by its name in `camwright.profiles.servo.Servo`."""
 
-_ORIGINS = {
+ORIGINS = {
     "trace": "fitted to the trace",
     "assumed": "assumed: the trace allows it; if the drive is set otherwise, give --velocity-feedforward",
     "given": "given",
@@ -70,8 +67,8 @@ def identify_file(path: Path, velocity_feedforward: float | None) -> tuple[Trace
 
 def identify_answer(path: Path, trace: Trace, found: Identified, files: Sequence[Path]) -> dict[str, Any]:
     """Answer of ``camwright identify``."""
-    scale, unit = _scale(trace)
-    values = {key: getattr(found.servo, name) * factor for name, (key, _, factor, _) in _NAMES.items()}
+    scale, unit = residual_unit(trace)
+    values = {key: getattr(found.servo, name) * factor for name, (key, _, factor, _) in PARAMETERS.items()}
     return {
         "file": str(path),
         **values,
@@ -79,7 +76,8 @@ def identify_answer(path: Path, trace: Trace, found: Identified, files: Sequence
         "fit": found.fit,
         "residual_rms": {"value": found.residual * scale, "unit": unit},
         "confidence": {
-            _NAMES[name][0]: [bound * _NAMES[name][2] for bound in bounds] for name, bounds in found.confidence.items()
+            PARAMETERS[name][0]: [bound * PARAMETERS[name][2] for bound in bounds]
+            for name, bounds in found.confidence.items()
         },
         "rows": found.rows,
         "files": [str(file) for file in files],
@@ -88,49 +86,29 @@ def identify_answer(path: Path, trace: Trace, found: Identified, files: Sequence
 
 def servo_text(path: Path, trace: Trace, found: Identified) -> str:
     """Write the servo as the table of a job file, the confidence in comments."""
-    scale, unit = _scale(trace)
+    scale, unit = residual_unit(trace)
     quality = f"fit {found.fit:.6f}, residual {found.residual * scale:.3g} {unit} rms over {found.rows} rows"
     lines = [
-        f"# Identified from {_one_line(path.name)} by camwright {camwright_version()}: {quality}.",
+        f"# Identified from {one_line(path.name)} by camwright {camwright_version()}: {quality}.",
         "# Beside each value its range of 95 % confidence.",
         "[servo]",
     ]
-    for name, (_, _, factor, written) in _NAMES.items():
+    for name, (_, _, factor, written) in PARAMETERS.items():
         value, bounds = getattr(found.servo, name) * factor, found.confidence.get(name)
         spread = 0.0 if bounds is None else 0.5 * factor * (bounds[1] - bounds[0])
-        number = _rounded(value, spread)
+        number = rounded(value, spread)
         text = f'{name} = "{number} {written}"' if written else f"{name} = {number}"
-        note = _ORIGINS[found.feedforward_from] if bounds is None else _range(bounds, factor, written)
+        note = ORIGINS[found.feedforward_from] if bounds is None else range_text(bounds, factor, written)
         lines.append(f"{text:40}# {note}")
     return "\n".join(lines) + "\n"
 
 
-def identify_view(path: Path, trace: Trace, found: Identified) -> RenderableType:
-    """Show the servo, how well it is known, and how well it fits."""
-    from rich.console import Group
-    from rich.table import Table
-    from rich.text import Text
-
-    scale, unit = _scale(trace)
-    table = Table(title=f"Servo of {_one_line(path.name)}", title_justify="left")
-    for heading in ("parameter", "value", "unit", "95 % confidence"):
-        table.add_column(heading, justify="right" if heading == "value" else "left")
-    for name, (_, symbol, factor, written) in _NAMES.items():
-        value, bounds = getattr(found.servo, name) * factor, found.confidence.get(name)
-        spread = 0.0 if bounds is None else 0.5 * factor * (bounds[1] - bounds[0])
-        note = _ORIGINS[found.feedforward_from] if bounds is None else _range(bounds, factor, "")
-        words = name.replace("_", " ")
-        table.add_row(words if symbol == words else f"{words} {symbol}", _rounded(value, spread), written, note)
-    ending = f"fit {found.fit:.6f}, residual {found.residual * scale:.3g} {unit} rms over {found.rows} rows"
-    return Group(table, Text(ending))
-
-
-def _scale(trace: Trace) -> tuple[float, str]:
+def residual_unit(trace: Trace) -> tuple[float, str]:
     """Factor and unit of a residual as it is shown."""
     return (1e6, "um") if trace.unit == "m" else (1e6, "urad")
 
 
-def _rounded(value: float, spread: float) -> str:
+def rounded(value: float, spread: float) -> str:
     """Write a value to a hundredth of what it may be off, no more than 12 digits."""
     if not spread > 0.0:
         return repr(value)
@@ -138,13 +116,13 @@ def _rounded(value: float, spread: float) -> str:
     return f"{round(value, digits):.{min(digits, 12)}f}"
 
 
-def _range(bounds: tuple[float, float], factor: float, unit: str) -> str:
+def range_text(bounds: tuple[float, float], factor: float, unit: str) -> str:
     """Write a range with as many digits as tell its ends apart."""
     low, high = bounds[0] * factor, bounds[1] * factor
     spread = 0.5 * (high - low)
-    return f"{_rounded(low, spread)} to {_rounded(high, spread)}{' ' + unit if unit else ''}"
+    return f"{rounded(low, spread)} to {rounded(high, spread)}{' ' + unit if unit else ''}"
 
 
-def _one_line(name: str) -> str:
+def one_line(name: str) -> str:
     """Write a file's name so that it stays in its line."""
     return name if name.isprintable() else ascii(name)

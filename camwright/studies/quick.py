@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from camwright.house.provenance import camwright_version
 from camwright.house.units import quantity
 from camwright.profiles.cross_cutter import CrossCut
 from camwright.profiles.errors import InputError
 from camwright.profiles.tables.cam_csv import write_cam_csv
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
 
 POINTS = 361
 """Rows of cam.csv, as many as a job file has by default."""
@@ -75,15 +72,6 @@ class QuickAnswer:
             ("least ratio", f"{self.least_ratio:.6g}"),
             ("standstill", f"{self.standstill * 1e3:.6g} mm of material"),
         ]
-
-    def view(self) -> RenderableType:
-        """Give the table that people read."""
-        from rich.table import Table
-
-        table = Table(title="Cross-cutter, quintic cam", title_justify="left", show_header=False)
-        for row in self.rows():
-            table.add_row(*row)
-        return table
 
 
 def read_cross_cut(circumference: str, sync: str, length: str) -> CrossCut:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camwright.design.optimise import solve
 from camwright.jobs.job import Job
 from camwright.profiles.errors import InfeasibleError
 from camwright.profiles.limits import Limits
@@ -15,9 +15,7 @@ from camwright.profiles.machines import Machine
 from camwright.profiles.objective import of_command
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.task import Task
-
-if TYPE_CHECKING:
-    from camwright.studies.comparison import Comparison, Measured
+from camwright.studies.measured import Measured, measured
 
 SCREW = "screw_carriage"
 """Name of the carriage's profile among the measured profiles."""
@@ -90,8 +88,6 @@ def screw_carriage(job: Job, crank: Measured) -> ScrewCarriage | None:
         None where there is nothing to compare: the machine has no equal on a screw, or a carriage on a screw cannot do
         the cut within these limits.
     """
-    from camwright.design.optimise import solve
-
     machine, tool = job.machine, crank.tool
     if tool.peak_acceleration is None or tool.peak_jerk is None:
         return None
@@ -107,7 +103,7 @@ def screw_carriage(job: Job, crank: Measured) -> ScrewCarriage | None:
         return None
     # the motion of a carriage does not depend on the lead: it is chosen last, by the speed that the carriage reaches
     screw = machine.on_screw(job.cut.line_speed * _greatest_ratio(profile), motor_speed) or first
-    row = _measured(replace(job, machine=screw, limits=limits), profile)
+    row = measured(SCREW, profile, replace(job, machine=screw, limits=limits))
     if row.motor.rms_torque is None or not crank.motor.rms_torque:
         return None
     heating = row.motor.rms_torque / crank.motor.rms_torque
@@ -126,26 +122,3 @@ def _greatest_ratio(profile: CamProfile) -> float:
     """Greatest magnitude of the ratio."""
     least, greatest = profile.extrema(1)
     return max(-least.value, greatest.value)
-
-
-def _measured(job: Job, profile: CamProfile) -> Measured:
-    """Measure the carriage's cycle like the profiles of a comparison."""
-    from camwright.studies.comparison import Measured
-    from camwright.validation.motion import measure_motion
-    from camwright.validation.motor import measure_motor
-    from camwright.validation.servo.response import servo_response
-
-    motion = measure_motion(profile, job.machine, job.cut)
-    return Measured(
-        SCREW,
-        profile,
-        motion,
-        motion,
-        measure_motor(profile, job.machine, job.cut),
-        servo_response(profile, job.machine, job.cut, job.servo),
-    )
-
-
-def with_screw(comparison: Comparison) -> Comparison:
-    """Add the carriage on a screw to the comparison of a crank; others stay as they are."""
-    return replace(comparison, screw=screw_carriage(comparison.job, comparison["optimised"]))

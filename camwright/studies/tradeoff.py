@@ -3,25 +3,23 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 
+from camwright.design.optimise import solve
 from camwright.house.progress import Step, ignore
 from camwright.jobs.job import Job
 from camwright.profiles.errors import SolverError
 from camwright.profiles.objective import COMMAND_OBJECTIVES, OBJECTIVES, CommandObjective, of_command
+from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import slave_zero
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from rich.console import RenderableType
-
-    from camwright.profiles.polynomial.profile import CamProfile
-    from camwright.validation.motion import Motion
+from camwright.studies.comparison import law_names, law_profile
+from camwright.validation.motion import Motion, measure_motion
+from camwright.validation.motor import measure_motor, motor_torque
 
 Kind = Literal["objective", "baseline"]
 
@@ -115,8 +113,6 @@ class TradeOff:
 
 def step_count(job: Job) -> int:
     """Count the steps that `trade_off` tells."""
-    from camwright.studies.comparison import law_names
-
     return len(_objectives(job)) + len(law_names(job.machine, job.cut))
 
 
@@ -140,9 +136,6 @@ def trade_off(job: Job, step: Step = ignore) -> TradeOff:
     SolverError
         The solver failed on all of the objectives.
     """
-    from camwright.design.optimise import solve
-    from camwright.studies.comparison import law_names, law_profile
-
     objectives = _objectives(job)
     measures = tuple(name for order in _COLUMNS for name in objectives if OBJECTIVES[name].order == order)
     rows: list[Row] = []
@@ -197,37 +190,6 @@ def tradeoff_answer(result: TradeOff, files: Sequence[Path]) -> dict[str, Any]:
     }
 
 
-def tradeoff_view(result: TradeOff) -> RenderableType:
-    """Show all profiles, each measure with its multiple of the best."""
-    from rich.console import Group
-    from rich.table import Table
-    from rich.text import Text
-
-    table = Table(title=f"Objectives and laws, by {words(result.sorted_by)}; × the best", title_justify="left")
-    table.add_column("least …, or law")
-    for name in result.measures:
-        unit = result.unit(name).replace("^2", "²").replace("^3", "³")
-        table.add_column(f"{words(name).replace('acceleration', 'acc.')}\n{unit}", justify="right")
-    for row in result.rows:
-        title = words(row.name) if row.kind == "objective" else row.name
-        cells = [_cell(row.values[measure], result.cost(row, measure)) for measure in result.measures]
-        style = "bold" if row.kind == "objective" else ""
-        table.add_row(title + ("" if row.within_limits else " †"), *cells, style=style)
-    for failure in result.failures:
-        table.add_row(words(failure.name), "failed", *[""] * (len(result.measures) - 1), style="bold")
-    broken = any(not row.within_limits for row in result.rows)
-    notes = [Text("† breaks a limit of the job; not counted as the best")] if broken else []
-    notes += [Text(f"least {words(failure.name)}, failed: {failure.reason}") for failure in result.failures]
-    return Group(table, *notes)
-
-
-def _cell(value: float | None, cost: float | None) -> str:
-    """Write a value and its multiple of the best."""
-    if value is None:
-        return "unbounded"
-    return f"{value:.4g}" if cost is None else f"{value:.4g} ×{cost:.2f}"
-
-
 def _objectives(job: Job) -> tuple[CommandObjective, ...]:
     """Objectives that have a meaning for a job."""
     moved = job.machine.moves_something
@@ -236,9 +198,6 @@ def _objectives(job: Job) -> tuple[CommandObjective, ...]:
 
 def _row(name: str, kind: Kind, profile: CamProfile, job: Job, measures: Sequence[CommandObjective]) -> Row:
     """Measure one profile."""
-    from camwright.validation.motion import measure_motion
-    from camwright.validation.motor import measure_motor
-
     motion = measure_motion(profile, job.machine, job.cut)
     motor = measure_motor(profile, job.machine, job.cut)
     values = {measure: getattr(motor if OBJECTIVES[measure].of == "motor" else motion, measure) for measure in measures}
@@ -273,8 +232,6 @@ def _keeps_stroke(profile: CamProfile, job: Job) -> bool:
 
 def _keeps_curve(profile: CamProfile, job: Job) -> bool:
     """Whether the motor can give the torque of a steady motion at each of its speeds; judged at points along the cycle."""
-    from camwright.validation.motor import motor_torque
-
     curve, machine, cut = job.limits.motor, job.machine, job.cut
     if curve is None:
         return True

@@ -9,19 +9,18 @@ import re
 import resource
 import subprocess
 import sys
-import types
+from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-import camwright.design.optimise
-import camwright.studies.cut_lengths
-from camwright.cli.main import main
+from camwright.cli.main import COMMANDS, main
 from camwright.jobs.job import BUNDLED_JOB
 from camwright.profiles.errors import InfeasibleError, SolverError
 from camwright.profiles.returns import BASELINES
+from camwright.studies.cut_lengths import cut_lengths
 
 JOB = str(BUNDLED_JOB)
 PAPER = BUNDLED_JOB.read_text(encoding="utf-8")
@@ -139,21 +138,19 @@ def test_quiet_says_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
 
 
 @pytest.fixture
-def figures(monkeypatch: pytest.MonkeyPatch) -> types.ModuleType:
+def figures(monkeypatch: pytest.MonkeyPatch) -> None:
     """Stand in for the drawing of figures, which is slow and tested elsewhere."""
-    module = types.ModuleType("camwright.figures")
 
     def draw(_what: object, directory: Path) -> list[Path]:
         (directory / "figure.svg").write_text("<svg/>")
         return [directory / "figure.svg"]
 
-    module.design_figures = module.comparison_figure = draw  # type: ignore[attr-defined]
-    monkeypatch.setitem(sys.modules, "camwright.figures", module)
-    return module
+    monkeypatch.setattr("camwright.cli.design.design_figures", draw)
+    monkeypatch.setattr("camwright.cli.compare.comparison_figure", draw)
 
 
 def test_figures_are_written_with_the_other_files(
-    figures: types.ModuleType, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    figures: None, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["design", "--json", "--out", str(tmp_path)]) == 0
     names = ["cam.csv", "design.json", "figure.svg"]
@@ -162,20 +159,18 @@ def test_figures_are_written_with_the_other_files(
 
 
 def test_a_figure_that_fails_leaves_nothing(
-    figures: types.ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    figures: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     def fail(_what: object, _directory: Path) -> list[Path]:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(figures, "design_figures", fail)
+    monkeypatch.setattr("camwright.cli.design.design_figures", fail)
     assert main(["design", "--out", str(tmp_path / "new" / "cam")]) == 2
     assert "No space left on device" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
 
 
-def test_compare_sorts_by_peak_acceleration(
-    figures: types.ModuleType, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_compare_sorts_by_peak_acceleration(figures: None, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["compare", JOB, "--json", "--out", str(tmp_path)]) == 0
     answer = strict(capsys.readouterr().out)
     peaks = [measures["peak_acceleration_m_per_s2"] for measures in answer["profiles"].values()]
@@ -397,7 +392,7 @@ def test_a_failure_of_the_solver_has_its_exit_code(
     def fail(*_arguments: object, **_options: object) -> None:
         raise failure
 
-    monkeypatch.setattr(camwright.design.optimise, "solve", fail)
+    monkeypatch.setattr("camwright.studies.axis_study.solve", fail)
     assert main(["design", "--json", "--out", str(tmp_path / "out")]) == exit_code
     shown = capsys.readouterr().out
     assert (strict(shown)["status"] if shown else None) == status
@@ -428,6 +423,17 @@ def test_an_encoding_without_the_letters_is_no_obstacle() -> None:
     assert (run.returncode, run.stderr) == (0, "")
 
 
+@pytest.mark.parametrize("name", COMMANDS)
+def test_the_table_of_commands_says_what_each_module_does(name: str) -> None:
+    command = import_module(f"camwright.cli.{name}").run
+    assert (command.__doc__ or "").splitlines()[0] == COMMANDS[name]
+
+
+def test_a_module_of_the_command_line_is_a_command() -> None:
+    others = {"__init__", "main", "options"}
+    assert {file.stem for file in Path(import_module("camwright.cli").__path__[0]).glob("*.py")} == {*COMMANDS, *others}
+
+
 def test_help_and_check_import_nothing_heavy() -> None:
     heavy = "{'casadi', 'matplotlib', 'scipy.linalg', 'scipy.optimize', 'scipy.signal', 'scipy.interpolate'}"
     light = "{'numpy', 'pint', 'pydantic'}"
@@ -443,8 +449,7 @@ def test_progress_is_shown_on_a_terminal(monkeypatch: pytest.MonkeyPatch, capsys
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.setenv("FORCE_COLOR", "1")
     seen: list[str] = []
-    real = camwright.studies.cut_lengths.cut_lengths
-    monkeypatch.setattr(camwright.studies.cut_lengths, "cut_lengths", lambda job: (seen.append("asked"), real(job))[1])
+    monkeypatch.setattr("camwright.cli.limits.cut_lengths", lambda job: (seen.append("asked"), cut_lengths(job))[1])
     assert main(["limits", JOB, "--json"]) == 0
     shown = capsys.readouterr()
     assert strict(shown.out)

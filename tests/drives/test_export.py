@@ -9,12 +9,9 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-import typer
-from typer.testing import CliRunner
 
 from camwright import load_job
 from camwright.cli.main import main
-from camwright.cli.tables import register
 from camwright.drives.export import (
     export,
     export_answer,
@@ -30,6 +27,8 @@ from camwright.profiles.returns import baseline
 from camwright.profiles.tables.cam_table import Unit
 from camwright.profiles.tables.knots import Accuracy
 from camwright.profiles.tables.targets import TARGETS
+from camwright.stored.design_file import design_text
+from camwright.studies.design import optimise
 
 JOB = load_job()
 PROFILE = baseline("double_s", JOB.machine, JOB.cut)
@@ -124,28 +123,23 @@ def test_targets() -> None:
     }
 
 
-def test_the_commands(tmp_path: Path) -> None:
-    app = typer.Typer()
-    register(app)
-    run = CliRunner()
-    listed = run.invoke(app, ["targets", "--json"])
-    assert [entry["name"] for entry in json.loads(listed.stdout)] == list(TARGETS)
-    assert "logix" in run.invoke(app, ["targets"]).stdout
-    from camwright.stored.design_file import design_text
-    from camwright.studies.design import optimise
+def test_the_commands(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    def said(*arguments: str) -> str:
+        assert main(arguments) == 0
+        return capsys.readouterr().out
 
-    (tmp_path / "design.json").write_text(design_text(optimise(JOB)))
-    done = run.invoke(
-        app, ["export", str(tmp_path / "design.json"), "--to", "codesys,logix", "--units", "mm,deg", "--json"]
-    )
-    answer = json.loads(done.stdout)["targets"]
+    assert [entry["name"] for entry in json.loads(said("targets", "--json"))] == list(TARGETS)
+    assert "logix" in said("targets")
+    file = tmp_path / "design.json"
+    file.write_text(design_text(optimise(JOB)))
+    answer = json.loads(said("export", str(file), "--to", "codesys,logix", "--units", "mm,deg", "--json"))["targets"]
     assert answer["codesys"]["position_error_m"] <= 1e-9 * JOB.machine.pitch
     assert answer["codesys"]["knots"] <= 24
     assert answer["logix"]["acceleration_error_rel"] <= 0.01
     assert {path.name for path in (tmp_path / "tables").iterdir()} == {
         "report.json", *answer["codesys"]["files"], *answer["logix"]["files"]
     }  # fmt: skip
-    assert "Tables as the drives" in run.invoke(app, ["export", str(tmp_path / "design.json"), "--to", "br"]).stdout
+    assert "Tables as the drives" in said("export", str(file), "--to", "br")
 
 
 @pytest.fixture(scope="module")

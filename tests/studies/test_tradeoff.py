@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from camwright.cli.objectives import compare_objectives
+from camwright.cli.compare import compare_objectives
+from camwright.cli.views.tradeoff import tradeoff_view
 from camwright.design.optimise import (
     Solution,
     solve,
@@ -37,7 +38,6 @@ from camwright.studies.tradeoff import (
     TradeOff,
     trade_off,
     tradeoff_answer,
-    tradeoff_view,
 )
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -133,7 +133,7 @@ def failing(names: set[str]) -> Callable[..., Solution]:
 def test_an_objective_that_fails_is_listed_and_the_rest_goes_on(
     paper: TradeOff, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("camwright.design.optimise.solve", failing({"peak_acceleration", "rms_jerk"}))
+    monkeypatch.setattr("camwright.studies.tradeoff.solve", failing({"peak_acceleration", "rms_jerk"}))
     result = trade_off(paper.job)
     assert result.failures == (
         Failure("peak_acceleration", "no luck with peak_acceleration"),
@@ -149,7 +149,7 @@ def test_an_objective_that_fails_is_listed_and_the_rest_goes_on(
 
 
 def test_where_every_objective_fails_so_does_the_trade_off(paper: TradeOff, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("camwright.design.optimise.solve", failing(set(COMMAND_OBJECTIVES)))
+    monkeypatch.setattr("camwright.studies.tradeoff.solve", failing(set(COMMAND_OBJECTIVES)))
     with pytest.raises(SolverError, match="no objective was solved; the first, peak_acceleration: no luck"):
         trade_off(paper.job)
 
@@ -179,7 +179,7 @@ def test_the_answer_is_plain_json(paper: TradeOff) -> None:
 def test_the_command_prints_and_draws(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, paper: TradeOff
 ) -> None:
-    monkeypatch.setattr("camwright.studies.tradeoff.trade_off", lambda _job, _step: paper)
+    monkeypatch.setattr("camwright.cli.compare.trade_off", lambda _job, _step: paper)
     assert compare_objectives(paper.job, tmp_path, figures=True, voice=Voice(as_json=False, quiet=False)) == 0
     said = capsys.readouterr().out
     assert any(line.split()[1:7] == ["peak", "acceleration", "│", "9.072", "×1.00", "│"] for line in said.splitlines())

@@ -1,0 +1,81 @@
+"""The command ``camwright audit``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from camwright.cli.options import Json, NoFigures, Out, Quiet, output_directory
+from camwright.cli.views.checks import checks_view
+from camwright.cli.views.files import files_view
+from camwright.drives.audit import MEASURES, Audit, audit, audit_answer
+from camwright.figures import audit_figures
+from camwright.house.files import staged
+from camwright.house.output import Voice
+from camwright.jobs.job import load_job
+
+
+def run(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="A cam table in the layout of any target.")],
+    job: Annotated[Path, typer.Option("--job", metavar="JOB", help="Job file (TOML) that the cam is run for.")],
+    target: Annotated[
+        str | None, typer.Option("--target", metavar="NAME", help="Layout; recognised if left out.")
+    ] = None,
+    units: Annotated[
+        str | None,
+        typer.Option("--units", metavar="M,S", help="Units of master and slave, for files that state none: mm,deg."),
+    ] = None,
+    out: Out = None,
+    no_figures: NoFigures = False,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> int:
+    """Judge a cam that runs today as its drive runs it, and set it beside the optimum of the same job."""
+    asked = load_job(job)
+    voice = Voice(as_json, quiet)
+    files: list[Path] = []
+    with voice.progress(4) as step:
+        result = audit(file, asked, target, units, step)
+        if not no_figures:
+            step("writing files")
+            directory = output_directory(out, asked)
+            with staged(directory) as aside:
+                files = [directory / figure.name for figure in audit_figures(result, aside)]
+    voice.answer(lambda: audit_answer(result, file, files), lambda: _view(result, file, files))
+    return 0 if result.judgement.passed else 1
+
+
+def _view(result: Audit, file: Path, files: list[Path]) -> RenderableType:
+    """Show the cam beside the optimum of the same job, and its checks."""
+    table = Table(title=f"{file}: {result.target.title}, {result.table.points} points", title_justify="left")
+    for name in ("", "this cam", "optimum", "saving"):
+        table.add_column(name, justify="left" if not name else "right")
+    unit = result.job.machine.slave_unit
+    for (measure, title), power in zip(MEASURES.items(), ("/s", "/s²", "/s²", "/s³", "/s³"), strict=True):
+        (own, best), saving = result.pair(measure), result.saving(measure)
+        mark = " *" if result.is_sampled(measure) else ""
+        table.add_row(
+            f"{title} ({unit}{power}){mark}",
+            f"{own:.5g}",
+            f"{best:.5g}",
+            "–" if saving is None else f"{saving * 100:.1f} %",
+        )
+    reports = (result.report, result.optimum_report)
+    slips = [f"{1e6 * report.motion.sync_ratio_error:.4g}" for report in reports]
+    table.add_row("sync error of the tool's speed (1e-6)", *slips, "")
+    servos = [report.servo for report in reports]
+    for title, name in (("following error", "peak_following_error"), ("shear-zone error", "shear_zone_error")):
+        values = ["unstable" if servo is None else f"{1e3 * getattr(servo, name):.4g}" for servo in servos]
+        table.add_row(f"{title} of the servo (mm)", *values, "")
+    notes = [Text(f"Note: {note}") for note in result.notes]
+    if any(result.is_sampled(measure) for measure in MEASURES):
+        time = result.job.servo.sample_time * 1e3
+        notes.insert(
+            0, Text(f"* unbounded; by differences of the positions at the sample time of {time:g} ms, for both")
+        )
+    return Group(table, checks_view(result.judgement.checks), *notes, files_view(files))

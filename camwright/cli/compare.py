@@ -1,0 +1,95 @@
+"""The command ``camwright compare``: profiles side by side, or what every objective costs in the others."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Group
+
+from camwright.answers.studies import compare_answer
+from camwright.cli.options import GivenJob, Json, NoFigures, Out, Quiet, output_directory, placed
+from camwright.cli.views.files import files_view
+from camwright.cli.views.profiles import profiles_view
+from camwright.cli.views.tradeoff import tradeoff_view
+from camwright.figures import comparison_figure, tradeoff_figures
+from camwright.house.files import staged
+from camwright.house.output import Voice
+from camwright.jobs.job import Job, load_job
+from camwright.profiles.errors import InputError
+from camwright.studies.axis_study import solve_job
+from camwright.studies.comparison import compare, law_names, require_laws, with_screw
+from camwright.studies.tradeoff import step_count, trade_off, tradeoff_answer
+
+
+def run(
+    job: GivenJob,
+    laws: Annotated[
+        list[str] | None, typer.Option("--with", metavar="LAW", help="Compare with this law only; may be repeated.")
+    ] = None,
+    objectives: Annotated[
+        bool, typer.Option("--objectives", help="Compare what every objective costs in the others instead.")
+    ] = False,
+    out: Out = None,
+    as_json: Json = False,
+    no_figures: NoFigures = False,
+    quiet: Quiet = False,
+) -> int:
+    """Compare the optimal cam with the linear return and the standard motion laws."""
+    asked = load_job(job)
+    if objectives:
+        if laws:
+            raise InputError("--objectives compares all laws; leave out --with")
+        return compare_objectives(
+            asked, output_directory(out, asked), figures=not no_figures, voice=Voice(as_json, quiet)
+        )
+    names = tuple(dict.fromkeys(laws)) if laws else law_names(asked.machine, asked.cut)
+    require_laws(names, asked.machine, asked.cut)
+    voice = Voice(as_json, quiet)
+    files: list[Path] = []
+    with voice.progress(len(names) + 3) as step:
+        step("solving")
+        solution = solve_job(asked)
+        result = with_screw(compare(replace(asked, machine=solution.machine), solution.profile, names, step))
+        if not no_figures:
+            step("writing files")
+            directory = output_directory(out, asked)
+            with staged(directory) as aside:
+                comparison_figure(result, aside)
+                files = placed(aside, directory)
+
+    voice.answer(lambda: compare_answer(result, files), lambda: Group(profiles_view(result), files_view(files)))
+    return 0
+
+
+def compare_objectives(asked: Job, directory: Path, *, figures: bool, voice: Voice) -> int:
+    """Solve a job for every objective, print the trade-off, and draw it.
+
+    Parameters
+    ----------
+    asked
+        The job.
+    directory
+        Where the figure goes: ``tradeoff.svg`` and ``tradeoff.png``.
+    figures
+        Whether to draw it.
+    voice
+        How to answer.
+
+    Returns
+    -------
+    int
+        Exit code: 0.
+    """
+    files: list[Path] = []
+    with voice.progress(step_count(asked) + 1) as step:
+        result = trade_off(asked, step)
+        if figures:
+            step("writing files")
+            with staged(directory) as aside:
+                files = [directory / file.name for file in sorted(tradeoff_figures(result, aside))]
+
+    voice.answer(lambda: tradeoff_answer(result, files), lambda: Group(tradeoff_view(result), files_view(files)))
+    return 0

@@ -1,0 +1,124 @@
+"""The command ``camwright design``."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from camwright.answers.objective import objective_unit
+from camwright.answers.studies import design_answer
+from camwright.cli.options import JobOrPaper, Json, NoFigures, Out, Quiet, output_directory, placed
+from camwright.cli.views.checks import checks_view
+from camwright.cli.views.files import files_view
+from camwright.cli.views.lead import lead_view
+from camwright.cli.views.lengths import lengths_view
+from camwright.cli.views.numbers import millimetres, number
+from camwright.cli.views.profiles import profiles_view
+from camwright.figures import design_figures
+from camwright.house.files import staged
+from camwright.house.output import Voice
+from camwright.jobs.job import load_job
+from camwright.stored.design_file import design_text
+from camwright.stored.profile_files import cam_text
+from camwright.studies.comparison import law_names
+from camwright.studies.design import STEPS, Design, optimise
+
+
+def run(
+    job: JobOrPaper = None,
+    out: Out = None,
+    as_json: Json = False,
+    no_figures: NoFigures = False,
+    quiet: Quiet = False,
+) -> int:
+    """Design the optimal cam of a job; write the design, the cam table and the figures."""
+    asked = load_job(job)
+    directory = output_directory(out, asked)
+    voice = Voice(as_json, quiet)
+    with voice.progress(STEPS + len(law_names(asked.machine, asked.cut)) + 2) as step:
+        result = optimise(asked, step)
+        texts = {"design.json": design_text(result), "cam.csv": cam_text(result)}
+        step("writing files")
+        with staged(directory) as aside:
+            for name, text in texts.items():
+                (aside / name).write_bytes(text.encode())
+            if not no_figures:
+                design_figures(result, aside)
+            files = placed(aside, directory)
+
+    voice.answer(lambda: design_answer(result, files), lambda: _view(result, files))
+    return 0 if result.passed else 1
+
+
+def _view(design: Design, files: Sequence[Path]) -> RenderableType:
+    """Show a design: objective, comparison, checks, minimum cut lengths, files."""
+    lengths = [] if design.lengths is None else [lengths_view(design.lengths)]
+    return Group(
+        Text("\n".join(_head(design))),
+        profiles_view(design.comparison),
+        checks_view(design.report.checks),
+        *_axis(design),
+        lead_view(design.job, design.report.length_errors),
+        *lengths,
+        files_view(files),
+    )
+
+
+def _head(design: Design) -> list[str]:
+    """Say how the design ended: objective and bound, what was chosen, how well several starts agree."""
+    solution, unit = design.solution, objective_unit(design.job).replace("^2", "²").replace("^3", "³")
+    bound = (
+        "no lower bound is known"
+        if design.gap is None
+        else f"lower bound {number(design.bound.value)} {unit} ({design.bound.method}), gap {design.gap:.1e}"
+    )
+    ending = f"{design.job.name}: {solution.status.value}, {design.job.objective} {number(design.objective)} {unit}"
+    lines = [f"{ending} in {design.profile.pieces} pieces; {bound}"]
+    machine = solution.machine
+    if machine.place_name:
+        place = (
+            f"{math.degrees(machine.place):.5g}°" if machine.slave_unit == "rad" else f"{millimetres(machine.place)} mm"
+        )
+        lines.append(f"sync zone on the {machine.noun}: its middle at {place}")
+    starts = solution.starts
+    if starts is not None:
+        lines.append(
+            f"{starts.agreeing} of {starts.converged} starts agree, spread {starts.spread:.1e}, KKT residual "
+            f"{starts.residual:.1e}; {starts.valleys} local minima over the place of the sync zone"
+        )
+    return [*lines, *machine.remarks(design.job.cut)]
+
+
+def _axis(design: Design) -> list[RenderableType]:
+    """Show what a servo-aware design promises of the axis, and the sync error over the servo's ranges."""
+    lines = []
+    axis, robust = design.axis, design.robust
+    if axis is not None:
+        held = (
+            "holds the limits of speed and acceleration too"
+            if axis.axis_limits
+            else "does not hold all limits of the command"
+        )
+        lines.append(
+            f"servo-aware, command {axis.mode}: sync error of the axis {_um(axis.designed_error)} µm designed, "
+            f"{_um(axis.simulated_error)} µm simulated, over {axis.phases} sampling phases; the axis {held}"
+        )
+    if robust is not None:
+        designed = (
+            ""
+            if robust.designed_worst is None
+            else f"{_um(robust.designed_worst)} µm at the {robust.vertices} corners as designed, "
+        )
+        lines.append(
+            f"over the ranges of the servo: sync error at most {designed}{_um(robust.worst)} µm in {robust.draws} random servos"
+        )
+    return [Text("\n".join(lines))] if lines else []
+
+
+def _um(length: float) -> str:
+    """Write a length in micrometres."""
+    return f"{length * 1e6:.4g}"

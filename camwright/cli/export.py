@@ -1,0 +1,133 @@
+"""The command ``camwright export``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from camwright.cli.options import Json, Quiet
+from camwright.drives.export import Exported, export_answer, export_possible, export_report
+from camwright.drives.options import parse_targets, parse_units
+from camwright.drives.withheld import copy_aside, older_tables, remove
+from camwright.house.files import read_text, staged
+from camwright.house.json_text import to_json
+from camwright.house.output import Voice
+from camwright.house.provenance import camwright_version
+from camwright.house.units import quantity
+from camwright.profiles.errors import InputError
+from camwright.profiles.tables.knots import Accuracy
+from camwright.profiles.tables.target import Header
+from camwright.profiles.tables.targets import target_of
+from camwright.stored.design_file import MOST_BYTES, StoredDesign, parse_design
+
+
+def run(
+    design: Annotated[Path, typer.Argument(metavar="DESIGN", help="A design.json that camwright design wrote.")],
+    to: Annotated[str, typer.Option("--to", metavar="NAMES", help="Targets, separated by commas, or all.")],
+    points: Annotated[
+        int | None, typer.Option("--points", metavar="N", help="Number of points; chosen if left out.")
+    ] = None,
+    units: Annotated[
+        str | None,
+        typer.Option("--units", metavar="M,S", help="Units of master and slave, for example mm,deg; mm if left out."),
+    ] = None,
+    max_error: Annotated[str, typer.Option("--max-error", metavar="LENGTH", help="Greatest position error.")] = "1 um",
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Output directory; tables beside DESIGN.")
+    ] = None,
+    force: Annotated[
+        bool, typer.Option("--force", help="Write tables that break a limit, too; their head says so.")
+    ] = False,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> int:
+    """Write a design for drives; every file is read back and judged as the drive will run it."""
+    names = parse_targets(to)
+    accuracy = Accuracy(position=quantity(max_error, "length"))
+    stored = _design(design)
+    job = stored.job
+    wanted = None if units is None else parse_units(units, job.machine, job.cut)
+    directory = design.parent / "tables" if out is None else out
+    voice = Voice(as_json, quiet)
+    with voice.progress(len(names) + 1) as step:
+        results, refused = export_possible(
+            stored.profile, job, names, units=wanted, accuracy=accuracy, points=points, force=force, step=step
+        )
+        if refused and (to.strip() != "all" or not results):
+            raise InputError(*(f"{name}: {fault}" for name, faults in refused.items() for fault in faults))
+        step("writing files")
+        withheld = [result.target for result in results if not result.files]
+        withheld += [target_of(name) for name in refused]
+        older = older_tables(directory, withheld, Header(job.name, camwright_version()))
+        with staged(directory) as aside:
+            for result in results:
+                for name, text in result.files.items():
+                    (aside / name).write_bytes(text.encode())
+            copy_aside(directory, aside, older)
+            report = {**export_report(results, job, refused), "set_aside": older}
+            (aside / "report.json").write_bytes(to_json(report).encode())
+        remove(directory, older)
+    voice.answer(
+        lambda: {**export_answer(results), "set_aside": older},
+        lambda: _view(results, refused, older, directory),
+    )
+    return 0 if all(result.passed for result in results) else 1
+
+
+def _design(path: Path) -> StoredDesign:
+    """Read a design; of a job say how to make one."""
+    text = read_text(path, "design file", MOST_BYTES)
+    if not text.removeprefix("\ufeff").lstrip().startswith("{"):
+        raise InputError(
+            f"{path}: not a design.json; if it is a job, design it first: camwright design {path} --out DIR, then "
+            "camwright export DIR/design.json"
+        )
+    return parse_design(text, str(path))
+
+
+def _view(
+    results: list[Exported],
+    refused: dict[str, tuple[str, ...]],
+    older: dict[str, dict[str, str]],
+    directory: Path,
+) -> RenderableType:
+    """Show each table as its drive runs it, what was refused, and what was set aside."""
+    table = Table(title="Tables as the drives run them", title_justify="left")
+    for name in ("target", "points", "position\num", "ratio\n1e-6", "acceleration\n%", "judgement", "files"):
+        table.add_column(name, justify="left" if name in ("target", "judgement", "files") else "right")
+    for result in results:
+        off = result.deviation
+        failed = [check.name for check in result.judgement.checks if not check.passed]
+        table.add_row(
+            result.target.name,
+            str(result.table.points),
+            f"{result.position_error * 1e6:.3g}" + ("" if result.accurate else " *"),
+            f"{off.ratio * 1e6:.3g}",
+            "unbounded" if off.acceleration is None else f"{off.acceleration * 100:.3g}",
+            "passed" if result.passed else "failed: " + ", ".join(failed),
+            "\n".join(result.files) or "not released",
+        )
+    note = "No table was tested on a controller. Check the integrity of the data after every import."
+    notes = [Text(f"{name} cannot take this cam: {'; '.join(faults)}") for name, faults in refused.items()]
+    notes += [
+        Text(f"{name}: the new table is withheld; the older {old} is now {new}", "yellow")
+        for name, names in older.items()
+        for old, new in names.items()
+    ]
+    for result in results:
+        rough = result.dense.deviation.acceleration if result.dense else None
+        if rough is not None and rough > (result.deviation.acceleration or 0.0):
+            points = result.dense.table.points if result.dense else 0
+            notes.append(
+                Text(
+                    f"{result.target.name} rounds to float32: {points} points would be off by {rough * 100:.3g} % of the acceleration"
+                )
+            )
+    if any(not result.accurate for result in results):
+        notes.insert(0, Text("* the nearest that this target can come; the error asked for is exceeded somewhere"))
+    return Group(table, *notes, Text(f"in {directory}"), Text(note))

@@ -1,0 +1,30 @@
+"""Arguments that several commands take, and where their files go."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from camwright.jobs.job import Job
+
+JobOrPaper = Annotated[
+    Path | None, typer.Argument(metavar="[JOB]", help="Job file (TOML); the paper's job if left out.")
+]
+GivenJob = Annotated[Path, typer.Argument(metavar="JOB", help="Job file (TOML).")]
+JudgedBy = Annotated[Path, typer.Option("--job", metavar="JOB", help="Job file (TOML) to judge it by.")]
+Out = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Output directory; out/<name> if left out.")]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of tables.")]
+NoFigures = Annotated[bool, typer.Option("--no-figures", help="Write no figures.")]
+Quiet = Annotated[bool, typer.Option("--quiet", help="Print neither tables nor progress.")]
+
+
+def output_directory(out: Path | None, job: Job) -> Path:
+    """Where the files of a job go."""
+    return Path("out") / job.name if out is None else out
+
+
+def placed(aside: Path, directory: Path) -> list[Path]:
+    """Paths that the files aside will have."""
+    return [directory / name for name in sorted(file.name for file in aside.iterdir())]

@@ -1,0 +1,30 @@
+"""The lead time, and where the cut falls at other line speeds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rich.console import RenderableType
+from rich.table import Table
+
+from camwright.jobs.job import Job
+from camwright.profiles.servo import mean_lag
+from camwright.validation.servo.lead import LengthError
+
+
+def lead_view(job: Job, errors: Sequence[LengthError]) -> RenderableType:
+    """Show the lead time that makes up for the mean lag, and where the cut falls at shares of the line speed."""
+    servo = job.servo
+    table = Table(
+        title=f"Where the cut falls; mean lag {mean_lag(servo) * 1e3:.4g} ms, lead time set {servo.lead_time * 1e3:.4g} ms",
+        title_justify="left",
+    )
+    for name in ("line speed", "m/min", "fixed offset\nmm", "with that lead\nmm", "from cut to cut\nmm"):
+        table.add_column(name, justify="right")
+    for error in errors:
+        table.add_row(
+            f"{100 * error.share:g} %",
+            f"{error.line_speed * 60:.4g}",
+            *(f"{value * 1e3:z.4f}" for value in (error.offset, error.offset_with_lead, error.variation)),
+        )
+    return table

@@ -1,0 +1,47 @@
+"""Profiles side by side."""
+
+from __future__ import annotations
+
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from camwright.cli.views.numbers import millimetres, number
+from camwright.studies.comparison import Comparison
+
+
+def profiles_view(comparison: Comparison) -> RenderableType:
+    """Show profiles side by side, the least peak acceleration first."""
+    table = Table(title="Profiles, by peak acceleration", title_justify="left")
+    table.add_column("profile")
+    unit = comparison.job.machine.slave_unit
+    moved = comparison["optimised"].motor.rms_torque is not None
+    for name, shown in (
+        ("peak speed", f"{unit}/s"),
+        ("peak acc.", f"{unit}/s²"),
+        ("RMS acc.", f"{unit}/s²"),
+        ("peak jerk", f"{unit}/s³"),
+        *((("peak torque", "N m"), ("RMS torque", "N m"), ("energy", "J")) if moved else ()),
+        ("crossing", "mm"),
+        ("settling", "mm"),
+        ("following", "mm"),
+        ("shear zone", "mm"),
+    ):
+        table.add_column(f"{name}\n{shown}", justify="right")
+    for row in comparison.rows:
+        motion, motor, servo = row.motion, row.motor, row.response
+        torques = (number(value, "unbounded") for value in (motor.peak_torque, motor.rms_torque, motor.energy))
+        table.add_row(
+            row.name,
+            number(motion.peak_speed),
+            number(motion.peak_acceleration, "unbounded"),
+            number(motion.rms_acceleration, "unbounded"),
+            number(motion.peak_jerk, "unbounded"),
+            *(torques if moved else ()),
+            millimetres(servo.crossing),
+            millimetres(servo.settling),
+            millimetres(servo.peak_following_error),
+            millimetres(servo.shear_zone_error),
+            style="bold" if row.name == "optimised" else "",
+        )
+    return table if comparison.screw is None else Group(table, Text(comparison.screw.sentence))

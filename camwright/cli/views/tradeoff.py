@@ -1,0 +1,36 @@
+"""The trade-off of all objectives and laws."""
+
+from __future__ import annotations
+
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from camwright.studies.tradeoff import TradeOff, words
+
+
+def tradeoff_view(result: TradeOff) -> RenderableType:
+    """Show all profiles, each measure with its multiple of the best."""
+    table = Table(title=f"Objectives and laws, by {words(result.sorted_by)}; × the best", title_justify="left")
+    table.add_column("least …, or law")
+    for name in result.measures:
+        unit = result.unit(name).replace("^2", "²").replace("^3", "³")
+        table.add_column(f"{words(name).replace('acceleration', 'acc.')}\n{unit}", justify="right")
+    for row in result.rows:
+        title = words(row.name) if row.kind == "objective" else row.name
+        cells = [_cell(row.values[measure], result.cost(row, measure)) for measure in result.measures]
+        style = "bold" if row.kind == "objective" else ""
+        table.add_row(title + ("" if row.within_limits else " †"), *cells, style=style)
+    for failure in result.failures:
+        table.add_row(words(failure.name), "failed", *[""] * (len(result.measures) - 1), style="bold")
+    broken = any(not row.within_limits for row in result.rows)
+    notes = [Text("† breaks a limit of the job; not counted as the best")] if broken else []
+    notes += [Text(f"least {words(failure.name)}, failed: {failure.reason}") for failure in result.failures]
+    return Group(table, *notes)
+
+
+def _cell(value: float | None, cost: float | None) -> str:
+    """Write a value and its multiple of the best."""
+    if value is None:
+        return "unbounded"
+    return f"{value:.4g}" if cost is None else f"{value:.4g} ×{cost:.2f}"

@@ -1,0 +1,62 @@
+"""`Measured`: one profile of a job and what its machine, motor and servo make of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from camwright.jobs.job import Job
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.validation.motion import Motion, measure_motion, measure_tool
+from camwright.validation.motor import MotorMeasures, measure_motor
+from camwright.validation.servo.response import ServoResponse, servo_response
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """A profile and its measures.
+
+    Parameters
+    ----------
+    name
+        ``"optimised"`` or the name of a baseline.
+    profile
+        One cycle.
+    motion
+        Measures of the slave's motion at line speed (slave unit).
+    tool
+        Measures of the tool's motion (m): the same where the slave is counted in metres.
+    motor
+        What the motor must give.
+    response
+        What the servo makes of it.
+    """
+
+    name: str
+    profile: CamProfile
+    motion: Motion
+    tool: Motion
+    motor: MotorMeasures
+    response: ServoResponse
+
+
+def measured(name: str, profile: CamProfile, job: Job) -> Measured:
+    """Measure one cycle of a job's machine.
+
+    Parameters
+    ----------
+    name
+        What it is called among the measured profiles.
+    profile
+        The cycle.
+    job
+        Its job, the place of the sync zone chosen.
+    """
+    motion = measure_motion(profile, job.machine, job.cut)
+    return Measured(
+        name,
+        profile,
+        motion,
+        measure_tool(profile, job.machine, job.cut, motion),
+        measure_motor(profile, job.machine, job.cut),
+        servo_response(profile, job.machine, job.cut, job.servo),
+    )
