@@ -26,7 +26,7 @@ def inline(monkeypatch: pytest.MonkeyPatch) -> list[int]:
         asked.append(jobs)
         return inline_crew()
 
-    monkeypatch.setattr(workers, "local_crew", crew)
+    monkeypatch.setattr("camwright.cli.book.local_crew", crew)
     return asked
 
 

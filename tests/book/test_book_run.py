@@ -278,12 +278,10 @@ def test_a_disk_that_is_full_keeps_what_is_done(done: Path, tmp_path: Path, monk
 
 
 def test_a_solver_that_fails_is_listed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    import camwright.design.optimise
-
     def solve(*given: object, **named: object) -> None:
         raise SolverError("the solver ended without an answer")
 
-    monkeypatch.setattr(camwright.design.optimise, "solve", solve)
+    monkeypatch.setattr("camwright.studies.axis_study.solve", solve)
     book = plan_book(load_job(JOB), "600", "60:80:20", [])
     answer = make_book(book, tmp_path / "book", inline_crew())
     assert (answer.counts.failed, answer.exit_code) == (2, 4)

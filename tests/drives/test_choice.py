@@ -8,7 +8,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from knives import KNIVES, UNITS, chosen, knife
 
-import camwright.validation.rebuilt
 from camwright import load_job
 from camwright.drives.export import export
 from camwright.profiles.cut import Cut
@@ -30,6 +29,7 @@ from camwright.profiles.tables.placing import (
     zone_ends,
 )
 from camwright.profiles.tables.targets import TARGETS
+from camwright.validation.rebuilt import judge_table
 
 FINE = Accuracy(1e-9, 1e-6, 1e-4)
 """More than most targets reach: the nearest is chosen then."""
@@ -104,13 +104,13 @@ def test_even_points_are_those_of_linspace(pieces: list[tuple[float, int]], star
 
 
 def test_the_same_motion_is_judged_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    judge, calls = camwright.validation.rebuilt.judge_table, []
+    judge, calls = judge_table, []
 
     def counted(rebuilt: CamProfile, *rest: object) -> object:
         calls.append((rebuilt.breaks.tobytes(), rebuilt.coefficients.tobytes()))
         return judge(rebuilt, *rest)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(camwright.validation.rebuilt, "judge_table", counted)
+    monkeypatch.setattr("camwright.drives.export.judge_table", counted)
     job = load_job()
     results = export(
         baseline("double_s", job.machine, job.cut), job, ["codesys", "twincat", "pacdrive", "csv", "logix"]

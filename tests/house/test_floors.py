@@ -75,3 +75,52 @@ def test_reading_a_profile_loads_nothing_heavy() -> None:
     code = "import sys, camwright.profiles.returns, camwright.profiles.servo; print(*{name.partition('.')[0] for name in sys.modules})"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
     assert not set(run.stdout.split()) & {"casadi", "matplotlib", "pint", "pydantic", "rich", "scipy", "typer"}
+
+
+def modules() -> dict[str, ast.Module]:
+    """Every module of the four packages, by its path below the root."""
+    files = [
+        file for folder in ("camwright", "profiles", "design", "validation") for file in (ROOT / folder).rglob("*.py")
+    ]
+    linked = {ROOT / "camwright" / floor for floor in ("profiles", "design", "validation")}
+    return {
+        file.relative_to(ROOT).as_posix(): ast.parse(file.read_text(encoding="utf-8"))
+        for file in files
+        if linked.isdisjoint(file.parents)
+    }
+
+
+def waits(node: ast.AST) -> bool:
+    """Whether a statement imports a module of the house."""
+    if isinstance(node, ast.Import):
+        return any(alias.name.partition(".")[0] == "camwright" for alias in node.names)
+    if isinstance(node, ast.ImportFrom):
+        return node.level > 0 or (node.module or "").partition(".")[0] == "camwright"
+    called = node.func if isinstance(node, ast.Call) else None
+    return (called.attr if isinstance(called, ast.Attribute) else getattr(called, "id", "")) in (
+        "import_module",
+        "__import__",
+    )
+
+
+def test_own_modules_are_imported_at_the_top() -> None:
+    """The table of commands and the table of public names are the only places where an import waits."""
+    waiting = {
+        f"{path}: {function.name}"
+        for path, tree in modules().items()
+        for function in ast.walk(tree)
+        if isinstance(function, ast.FunctionDef | ast.AsyncFunctionDef)
+        if any(waits(node) for node in ast.walk(function))
+    }
+    assert waiting == {"camwright/cli/main.py: _command", "camwright/__init__.py: __getattr__"}
+
+
+def test_own_modules_are_imported_for_good() -> None:
+    """An import for type checkers only would hide a circle or a heavy module that the run meets elsewhere."""
+    hidden = [
+        path
+        for path, tree in modules().items()
+        for node in tree.body
+        if isinstance(node, ast.If) and any(waits(inner) for inner in ast.walk(node))
+    ]
+    assert hidden == ["camwright/__init__.py"]
