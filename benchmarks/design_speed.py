@@ -188,7 +188,7 @@ def drawn(rng: np.random.Generator, wanted: MotionObjective) -> tuple[Job, Scale
         if known is not None:
             return job, scaled, known[0].objective
         own = solve(task, wanted)
-        bound = lower_bound(own.profile, machine, cut, limits, wanted)
+        bound = lower_bound(own.profile, Task(machine, cut, limits), wanted)
         if bound.method != QUINTIC and bound.value > own.minimised * (1 - CONFIRMED):
             return job, scaled, normalised(own.minimised, job, scale) ** 2
 

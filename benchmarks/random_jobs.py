@@ -130,7 +130,7 @@ def measure(number: int, job: Job) -> dict[str, object]:
             row["status"] = type(error).__name__
             return row
     elapsed = process_time() - start
-    bound = lower_bound(result.profile, machine, cut, limits, objective)
+    bound = lower_bound(result.profile, Task(machine, cut, limits), objective)
     line = all(abs(e.value - 1) <= 1e-12 for e in result.profile.extrema(1))
     return row | {
         "status": result.status.value,

@@ -39,9 +39,13 @@ from camwright.profiles.motor import MotorCurve
 from camwright.profiles.objective import COMMAND_OBJECTIVES, MOTION_OBJECTIVES, CommandObjective
 from camwright.profiles.returns import baseline
 from camwright.profiles.servo import Servo
+from camwright.profiles.task import Task
 from camwright.validation.motion import measure_motion
 from camwright.validation.motor import measure_motor
 from camwright.validation.report import validate
+
+FREE = Limits(math.inf, math.inf, math.inf)
+"""Nothing here asks for limits."""
 
 RESULTS = Path(__file__).parent / "results"
 
@@ -162,7 +166,7 @@ def random_job(rng: np.random.Generator, kind: str) -> RandomJob:
     machine, cut = MACHINES[kind](rng)
     there = placed(machine, cut)
     profile = baseline("poly_3_4_5", there, cut)
-    quintic, motor = measure_motion(profile, there, cut), measure_motor(profile, there, cut)
+    quintic, motor = measure_motion(profile, Task(there, cut, FREE)), measure_motor(profile, Task(there, cut, FREE))
     acceleration, jerk = quintic.peak_acceleration or 1.0, quintic.peak_jerk or 1.0
     if rng.integers(3) == 0:
         speed, bend, rise = rng.uniform(0.9, 1.1), rng.uniform(0.6, 1.1), rng.uniform(0.4, 1.2)
@@ -212,7 +216,7 @@ def apply(job: RandomJob, suggestion: Suggestion) -> RandomJob:
 def judge(job: RandomJob) -> tuple[str, str]:
     """Design a job and validate it; how it ended, and what failed with its numbers."""
     solution = solve(job.task, job.objective)
-    report = validate(solution.profile, solution.machine, job.cut, job.limits, servo_for(job.cut), sweep=False)
+    report = validate(solution.profile, job.task.with_machine(solution.machine), servo_for(job.cut), sweep=False)
     failed = [check for check in report.checks if not check.passed]
     numbers = "; ".join(f"{check.name} {check.value!r} limit {check.limit!r} at {check.at!r}" for check in failed)
     return ("check failed" if failed else PASSED), numbers
@@ -222,7 +226,7 @@ def quintic_passes(job: RandomJob) -> bool:
     """Tell whether the quintic return passes every check of a job, a crank's sync zone in the middle of its range if it is free."""
     machine, cut, limits = placed(job.machine, job.cut), job.cut, job.limits
     profile = baseline("poly_3_4_5", machine, cut)
-    report = validate(profile, machine, cut, limits, servo_for(cut), sweep=False)
+    report = validate(profile, Task(machine, cut, limits), servo_for(cut), sweep=False)
     return report.passed
 
 

@@ -86,7 +86,7 @@ def measure(
     axis = solution.axis
     if axis is None:
         raise TypeError("a servo-aware design says nothing of its axis")
-    simulated = servo_response(solution.profile, MACHINE, placed, SERVO).shear_zone_error
+    simulated = servo_response(solution.profile, Task(MACHINE, placed, LIMITS), SERVO).shear_zone_error
     plain = of_command(objective)
     before, after = shortest(1 if robust else RUNS, lambda: solve(Task(MACHINE, cut, LIMITS), plain), aware)
     row: dict[str, object] = {
@@ -130,8 +130,8 @@ def main() -> int:
     if last is None:
         return 1
     cut, drawn = replace(SHORT, shaped=True), RANGES.draw(SERVO, DRAWS, seed=1)
-    worst = float(shear_zone_errors(last.profile, MACHINE, cut, drawn).max())
-    (seconds,) = shortest(2, lambda: shear_zone_errors(last.profile, MACHINE, cut, drawn))
+    worst = float(shear_zone_errors(last.profile, Task(MACHINE, cut, LIMITS), drawn).max())
+    (seconds,) = shortest(2, lambda: shear_zone_errors(last.profile, Task(MACHINE, cut, LIMITS), drawn))
     print(
         f"monte_carlo: {DRAWS} simulations in {seconds:.2f} s of {MOST_SECONDS:g} s promised, worst {worst * 1e3:.5f} mm"
     )

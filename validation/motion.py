@@ -15,7 +15,7 @@ from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
 from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile, Extremum, FloatArray
-from camwright.profiles.returns import is_straight, slave_zero
+from camwright.profiles.task import Task
 from camwright.validation.composed import compose
 
 RATIO_JUMP = 1e-9
@@ -126,51 +126,54 @@ def is_smooth(profile: CamProfile) -> bool:
     return greatest_jump(profile, 2).value <= SLOPE_JUMP * slope_scale(profile)
 
 
-def tool_profile(profile: CamProfile, machine: Machine, cut: Cut) -> CamProfile:
+def tool_profile(profile: CamProfile, task: Task) -> CamProfile:
     """Tool over the master (m): the profile itself where the slave is counted in m, else the carriage ``X(y)`` from zero.
 
     The carriage's ratio ``X'(y) y'`` is made polynomials (`camwright.validation.composed.compose`, to 1e-13) and integrated.
     """
-    if machine.slave_unit == "m":
+    if task.machine.slave_unit == "m":
         return profile
-    start = slave_zero(profile, machine, cut)
-    return compose(lambda y, ratio, _: np.asarray(machine.tool_ratio(start + y) * ratio), profile).integral()
+    start = task.slave_zero(profile)
+    return compose(lambda y, ratio, _: np.asarray(task.machine.tool_ratio(start + y) * ratio), profile).integral()
 
 
 @lru_cache(maxsize=8)  # a measure of the motion, and a check
-def sync_ratio_error(profile: CamProfile, machine: Machine, cut: Cut) -> Extremum:
+def sync_ratio_error(profile: CamProfile, task: Task) -> Extremum:
     """Greatest ``|tool speed / (s × line speed) - 1|`` inside the sync zone, and where it is reached.
 
     The ends of the zone count with their one-sided values inside the zone. Exact where the slave's ratio is constant in sync, else to
     1e-13 (`camwright.validation.composed.compose`).
     """
+    cut = task.cut
     edge = _EDGE * cut.length
     worst = Extremum(0.0, cut.sync_parts[0][0])
     for start, end in cut.sync_parts:
         part = profile.restrict(start + edge, min(end, profile.end) - edge)
-        for found in _tool_in_sync(part, profile, machine, cut).extrema(0):
+        for found in _tool_in_sync(part, profile, task).extrema(0):
             error = abs(found.value / cut.sync_ratio - 1.0)
             if error > worst.value:
                 worst = Extremum(error, found.at)
     return worst
 
 
-def _tool_in_sync(part: CamProfile, profile: CamProfile, machine: Machine, cut: Cut) -> CamProfile:
+def _tool_in_sync(part: CamProfile, profile: CamProfile, task: Task) -> CamProfile:
     """Ratio of the tool over the master in a part of the sync zone."""
-    if is_straight(machine, cut):  # so the tool's ratio to the slave is constant too: what the sync zone says
-        per_slave = cut.sync_ratio / float(machine.sync_profile(cut)(0.0, 1))
+    if task.straight:  # so the tool's ratio to the slave is constant too: what the sync zone says
+        per_slave = task.cut.sync_ratio / float(task.sync(0.0, 1))
         return part.derivative().scale(slave=per_slave)
-    start = slave_zero(profile, machine, cut)
-    if part.end > 0.5 * cut.length:  # the next pitch is the next blade, and the formulas speak of the blade that cuts
-        start -= machine.pitch
+    start = task.slave_zero(profile)
+    if (
+        part.end > 0.5 * task.cut.length
+    ):  # the next pitch is the next blade, and the formulas speak of the blade that cuts
+        start -= task.machine.pitch
 
     def ratio(y: FloatArray, slope: FloatArray, _: FloatArray) -> FloatArray:
-        return np.asarray(machine.tool_ratio(start + y) * slope)
+        return np.asarray(task.machine.tool_ratio(start + y) * slope)
 
     return compose(ratio, part)
 
 
-def measure_motion(profile: CamProfile, machine: Machine, cut: Cut) -> Motion:
+def measure_motion(profile: CamProfile, task: Task) -> Motion:
     """Measure the slave at the line speed of the cut, by roots of its polynomials and exact integration.
 
     Over time ``velocity = v y'``, ``acceleration = v² y''``, ``jerk = v³ y'''``.
@@ -179,37 +182,35 @@ def measure_motion(profile: CamProfile, machine: Machine, cut: Cut) -> Motion:
     ----------
     profile
         One cycle over the master period ``[0, x_c]`` (slave unit).
-    machine
-        The machine, its sync zone placed.
-    cut
-        The cut it is judged for.
+    task
+        The machine, its sync zone placed, and the cut it is judged for.
 
     Raises
     ------
     InputError
         The profile does not run over ``[0, x_c]``, or the machine's sync zone is not placed.
     """
-    require_period(profile, cut)
-    steady = is_steady(profile, machine)
-    return _measure(profile, cut, steady, steady and is_smooth(profile), sync_ratio_error(profile, machine, cut).value)
+    require_period(profile, task.cut)
+    steady = is_steady(profile, task.machine)
+    return _measure(profile, task.cut, steady, steady and is_smooth(profile), sync_ratio_error(profile, task).value)
 
 
-def measure_tool(profile: CamProfile, machine: Machine, cut: Cut, slave: Motion | None = None) -> Motion:
+def measure_tool(profile: CamProfile, task: Task, slave: Motion | None = None) -> Motion:
     """Measure the tool (m) like `measure_motion` the slave; where the slave is counted in m both are the same.
 
     Parameters
     ----------
-    profile, machine, cut
+    profile, task
         As in `measure_motion`.
     slave
         Measures of the slave, if they are known already.
     """
     if slave is None:
-        slave = measure_motion(profile, machine, cut)
-    if machine.slave_unit == "m":
+        slave = measure_motion(profile, task)
+    if task.machine.slave_unit == "m":
         return slave
     steady, smooth = slave.peak_acceleration is not None, slave.peak_jerk is not None
-    return _measure(tool_profile(profile, machine, cut), cut, steady, smooth, slave.sync_ratio_error)
+    return _measure(tool_profile(profile, task), task.cut, steady, smooth, slave.sync_ratio_error)
 
 
 def _measure(profile: CamProfile, cut: Cut, steady: bool, smooth: bool, in_sync: float) -> Motion:

@@ -7,11 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from camwright.profiles.cut import Cut
 from camwright.profiles.machines import Machine
 from camwright.profiles.motor import MotorCurve
 from camwright.profiles.polynomial.profile import CamProfile, Extremum, FloatArray, steps
-from camwright.profiles.returns import slave_zero
+from camwright.profiles.task import Task
 from camwright.validation.composed import compose
 from camwright.validation.motion import greatest_magnitude, is_steady, require_period
 
@@ -49,7 +48,7 @@ class MotorMeasures:
     regenerated: float | None
 
 
-def measure_motor(profile: CamProfile, machine: Machine, cut: Cut) -> MotorMeasures:
+def measure_motor(profile: CamProfile, task: Task) -> MotorMeasures:
     """Measure what a profile asks of the motor, at the line speed of the cut.
 
     The torque is ``(I(y) ÿ + I'(y) ẏ² / 2 + F sign(ẏ)) / ratio`` with the machine's inertia ``I``, friction ``F`` and motor ratio; friction
@@ -60,23 +59,22 @@ def measure_motor(profile: CamProfile, machine: Machine, cut: Cut) -> MotorMeasu
     ----------
     profile
         One cycle over the master period ``[0, x_c]`` (slave unit).
-    machine
-        The machine, its sync zone placed.
-    cut
-        The cut it is judged for.
+    task
+        The machine, its sync zone placed, and the cut it is judged for.
 
     Raises
     ------
     InputError
         The profile does not run over ``[0, x_c]``, or the machine's sync zone is not placed.
     """
-    require_period(profile, cut)
-    pace = cut.line_speed * machine.motor_ratio
+    machine = task.machine
+    require_period(profile, task.cut)
+    pace = task.cut.line_speed * machine.motor_ratio
     peak_speed = pace * greatest_magnitude(profile, 1).value
     min_velocity = pace * profile.extrema(1)[0].value
     if not (is_steady(profile, machine) and machine.moves_something):
         return MotorMeasures(None, None, peak_speed, min_velocity, None, None)
-    torque = motor_torque(profile, machine, cut)
+    torque = motor_torque(profile, task)
     drawn, regenerated = _energies(torque, profile, machine)
     return MotorMeasures(
         peak_torque=greatest_magnitude(torque, 0).value,
@@ -88,7 +86,7 @@ def measure_motor(profile: CamProfile, machine: Machine, cut: Cut) -> MotorMeasu
     )
 
 
-def motor_torque(profile: CamProfile, machine: Machine, cut: Cut) -> CamProfile:
+def motor_torque(profile: CamProfile, task: Task) -> CamProfile:
     """Torque at the motor over the master (N·m), as polynomials; at a jump both one-sided values belong to it.
 
     Parameters
@@ -96,8 +94,9 @@ def motor_torque(profile: CamProfile, machine: Machine, cut: Cut) -> CamProfile:
     profile
         One cycle with a bounded acceleration; its position may begin anywhere.
     """
-    start = slave_zero(profile, machine, cut)
-    v, ratio = cut.line_speed, machine.motor_ratio
+    machine = task.machine
+    start = task.slave_zero(profile)
+    v, ratio = task.cut.line_speed, machine.motor_ratio
 
     def inertial(y: FloatArray, slope: FloatArray, bend: FloatArray) -> FloatArray:
         place = start + y
@@ -109,7 +108,7 @@ def motor_torque(profile: CamProfile, machine: Machine, cut: Cut) -> CamProfile:
     return torque.plus(steps(torque.breaks, machine.friction / ratio * direction))
 
 
-def greatest_load(profile: CamProfile, machine: Machine, cut: Cut, curve: MotorCurve) -> tuple[Extremum, float]:
+def greatest_load(profile: CamProfile, task: Task, curve: MotorCurve) -> tuple[Extremum, float]:
     """Torque where it exceeds what the motor gives at its speed by most, or comes nearest to it, and what the motor gives there.
 
     Between the curve's points, and where neither torque nor velocity changes its sign, torque less available torque is a polynomial: its
@@ -120,8 +119,8 @@ def greatest_load(profile: CamProfile, machine: Machine, cut: Cut, curve: MotorC
     (torque, available)
         Magnitude of the torque (N·m) and its master position (m); torque available there (N·m).
     """
-    torque = motor_torque(profile, machine, cut)
-    pace = cut.line_speed * machine.motor_ratio
+    torque = motor_torque(profile, task)
+    pace = task.cut.line_speed * task.machine.motor_ratio
     velocity = profile.derivative().scale(slave=pace)
     places = [torque.roots(), velocity.roots()]
     places += [velocity.shift(slave=-way * speed).roots() for speed, _ in curve.points[1:] for way in (1, -1)]

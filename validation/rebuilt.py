@@ -9,11 +9,9 @@ import numpy as np
 
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
-from camwright.profiles.limits import Limits
-from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile, Extremum, FloatArray
-from camwright.profiles.returns import slave_at_start
 from camwright.profiles.servo import Servo, spectral_radius
+from camwright.profiles.task import Task
 from camwright.validation.check import Check
 from camwright.validation.motion import (
     RATIO_JUMP,
@@ -85,9 +83,7 @@ def one_cycle(rebuilt: CamProfile, cut: Cut) -> CamProfile:
 
 def judge_table(
     rebuilt: CamProfile,
-    machine: Machine,
-    cut: Cut,
-    limits: Limits,
+    task: Task,
     servo: Servo,
     wraps: int = LEAST_WRAPS,
 ) -> TableJudgement:
@@ -104,7 +100,7 @@ def judge_table(
     rebuilt
         One cycle as the drive interpolates it, in SI units (slave unit). At the start of the master's period the slave
         is at zero.
-    machine, cut, limits, servo
+    task, servo
         What it is judged by.
     wraps
         Number of cycles to run, at least `LEAST_WRAPS`.
@@ -116,14 +112,14 @@ def judge_table(
     """
     if wraps < LEAST_WRAPS:
         raise InputError(f"a table is run over at least {LEAST_WRAPS} wraps; got {wraps}")
-    cycle = one_cycle(rebuilt, cut)
+    cycle = one_cycle(rebuilt, task.cut)
     run = rebuilt.shift(-rebuilt.start).repeat(wraps)
     checks = (
-        *_closing(rebuilt, machine, cut, wraps),
-        *_sync(run, machine, cut, wraps),
-        *_limits(cycle, run, machine, cut, limits, servo),
-        *_stroke(cycle, machine, cut),
-        _shear_zone(cycle, machine, cut, servo),
+        *_closing(rebuilt, task, wraps),
+        *_sync(run, task, wraps),
+        *_limits(cycle, run, task, servo),
+        *_stroke(cycle, task),
+        _shear_zone(cycle, task, servo),
     )
     return TableJudgement(checks, cycle, wraps)
 
@@ -132,11 +128,12 @@ def _at_most(name: str, value: float, limit: float, unit: str, at: float | None,
     return Check(name, value <= limit, value, limit, unit, at, source)
 
 
-def _closing(rebuilt: CamProfile, machine: Machine, cut: Cut, wraps: int) -> list[Check]:
+def _closing(rebuilt: CamProfile, task: Task, wraps: int) -> list[Check]:
     """Give what period and advance are off, added up over the wraps, and steps at the joins."""
+    machine, cut = task.machine, task.cut
     step = greatest_jump(rebuilt, 0)
     over = f"over {wraps} wraps, in the target's number format"
-    zone = machine.sync_start(cut) + machine.sync_profile(cut)(np.linspace(0.0, cut.sync_zone, 33))
+    zone = task.slave_at_sync_start + task.sync(np.linspace(0.0, cut.sync_zone, 33))
     lever = float(np.abs(machine.tool_ratio(zone)).max())
     return [
         _at_most(
@@ -166,15 +163,16 @@ def _closing(rebuilt: CamProfile, machine: Machine, cut: Cut, wraps: int) -> lis
     ]
 
 
-def _sync(run: CamProfile, machine: Machine, cut: Cut, wraps: int) -> list[Check]:
+def _sync(run: CamProfile, task: Task, wraps: int) -> list[Check]:
     """Tool against material in the sync zones of all wraps: position, and speed.
 
     Where the slave is off by ``e`` from its coordinate ``c`` in sync, the tool is off by ``X(c + e) - X(c)``.
     """
+    machine, cut = task.machine, task.cut
     if cut.shaped:  # not the command but the axis is in sync, and judged beside this
         return []
-    sync = machine.sync_profile(cut)
-    began = machine.sync_start(cut) - slave_at_start(machine, cut)  # of the zone, from the start of the cycle
+    sync = task.sync
+    began = task.slave_at_sync_start - task.slave_at_start  # of the zone, from the start of the cycle
     zone = cut.return_start + cut.return_zone
     edge = _EDGE * cut.length
     points, middles, homes = [], [], []
@@ -193,7 +191,7 @@ def _sync(run: CamProfile, machine: Machine, cut: Cut, wraps: int) -> list[Check
         x = np.concatenate(parts)
         cycle, origin, turns = np.repeat(np.array(homes).T, [len(part) for part in parts], axis=1)
         along = sync(np.clip(x - origin, sync.start, sync.end))
-        meant = machine.sync_start(cut) + along
+        meant = task.slave_at_sync_start + along
         return x, cycle, meant, meant + run(x) - (began + along + turns)
 
     def greatest(size: FloatArray, x: FloatArray, cycle: FloatArray) -> tuple[float, float | None]:
@@ -227,13 +225,12 @@ def _places(run: CamProfile, start: float, end: float) -> FloatArray:
     return np.unique(np.concatenate([(breaks[:-1, None] + np.diff(breaks)[:, None] * _NODES).ravel(), [end]]))
 
 
-def _limits(
-    cycle: CamProfile, run: CamProfile, machine: Machine, cut: Cut, limits: Limits, servo: Servo
-) -> list[Check]:
+def _limits(cycle: CamProfile, run: CamProfile, task: Task, servo: Servo) -> list[Check]:
     """Speed, acceleration and reversal of the cycle; differences over all wraps."""
-    v = cut.line_speed
+    machine, limits = task.machine, task.limits
+    v = task.cut.line_speed
     speed, least = _extremes(cycle, 1)
-    sampled = sampled_peaks(run, cut, servo)
+    sampled = sampled_peaks(run, task.cut, servo)
     scale, unit = ratio_scale(cycle, machine), machine.slave_unit
     if greatest_jump(run, 1).value <= RATIO_JUMP * scale:
         found, _ = _extremes(cycle, 2)
@@ -244,7 +241,7 @@ def _limits(
         how = "differences at the servo's sample time"
     jerk, jerk_at = sampled[1]
     allowed = 1.0 + ALLOWANCE
-    backward = limits.speed if limits.reversal or machine.turns_back else ALLOWANCE * v * scale
+    backward = limits.speed if task.reverses else ALLOWANCE * v * scale
     return [
         _at_most("speed", v * speed.value, allowed * limits.speed, f"{unit}/s", speed.at, "exact"),
         _at_most("acceleration", acceleration, allowed * limits.acceleration, f"{unit}/s^2", at, how),
@@ -266,19 +263,19 @@ def _extremes(cycle: CamProfile, order: int) -> tuple[Extremum, Extremum]:
     )
 
 
-def _stroke(cycle: CamProfile, machine: Machine, cut: Cut) -> list[Check]:
+def _stroke(cycle: CamProfile, task: Task) -> list[Check]:
     """Whether a carriage stays on its guide; the rounding of a table may take it a sync tolerance beyond."""
-    if machine.guide is None:
+    if task.machine.guide is None:
         return []
-    low, high = machine.guide
+    low, high = task.machine.guide
     x = _places(cycle, cycle.start, cycle.end)
-    inside = slave_at_start(machine, cut) - low + cycle(x)
+    inside = task.slave_at_start - low + cycle(x)
     over = np.maximum(-inside, inside - (high - low))
     return [
         _at_most(
             "stroke",
             float(over.max()),
-            cut.sync_tolerance,
+            task.cut.sync_tolerance,
             "m",
             float(x[over.argmax()]),
             "how far the carriage goes beyond its stroke, negative inside",
@@ -286,11 +283,12 @@ def _stroke(cycle: CamProfile, machine: Machine, cut: Cut) -> list[Check]:
     ]
 
 
-def _shear_zone(cycle: CamProfile, machine: Machine, cut: Cut, servo: Servo) -> Check:
+def _shear_zone(cycle: CamProfile, task: Task, servo: Servo) -> Check:
     """Tool of the real axis against material in the shear zone; no value if the servo is unstable."""
+    cut = task.cut
     worst = None
     if spectral_radius(servo) < 1.0:
-        worst = peak_shear_zone_error(simulate(cycle, cut, servo), cycle, machine, cut)
+        worst = peak_shear_zone_error(simulate(cycle, cut, servo), cycle, task)
     return Check(
         "shear_zone_error",
         worst is not None and worst <= cut.sync_tolerance,

@@ -8,11 +8,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from camwright.profiles.cut import Cut
-from camwright.profiles.limits import Limits
 from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile, Extremum
-from camwright.profiles.returns import slave_zero
 from camwright.profiles.servo import Servo, spectral_radius
+from camwright.profiles.task import Task
 from camwright.validation.bounds.minimum_length import cut_length_eq10, physical, required_sync_zone
 from camwright.validation.check import Check
 from camwright.validation.motion import (
@@ -89,9 +88,7 @@ class ValidationReport:
 
 def validate(
     profile: CamProfile,
-    machine: Machine,
-    cut: Cut,
-    limits: Limits,
+    task: Task,
     servo: Servo,
     *,
     sweep: bool = True,
@@ -103,12 +100,8 @@ def validate(
     ----------
     profile
         One cycle over the master period ``[0, x_c]`` (slave unit).
-    machine
-        The machine, its sync zone placed.
-    cut
-        The cut it is judged for.
-    limits
-        Limits of the slave.
+    task
+        The machine, its sync zone placed, the cut that it is judged for, and the limits of the slave.
     servo
         The servo.
     sweep
@@ -124,28 +117,28 @@ def validate(
         The profile does not run over ``[0, x_c]``, the machine cannot be in sync over the zone, or the servo's memory is too long to
         simulate.
     """
-    motion, motor = measure_motion(profile, machine, cut), measure_motor(profile, machine, cut)
+    motion, motor = measure_motion(profile, task), measure_motor(profile, task)
     radius = spectral_radius(servo)
-    response = servo_response(profile, machine, cut, servo) if radius < 1.0 else None
+    response = servo_response(profile, task, servo) if radius < 1.0 else None
     checks = (
-        *_closure(profile, machine),
-        *_motion(profile, machine, cut, limits, motion),
-        *_stroke(profile, machine, cut),
-        *_motor(profile, machine, cut, limits, motor),
+        *_closure(profile, task.machine),
+        *_motion(profile, task, motion),
+        *_stroke(profile, task),
+        *_motor(profile, task, motor),
         Check("servo_stability", radius < 1.0, radius, 1.0, "1", None, "largest closed-loop pole in the z-plane (S1)"),
-        *_servo(response, cut, transition=not servo_aware),
-        *(_axis(profile, machine, cut, limits, servo) if servo_aware and response is not None else ()),
-        *(_minimum_lengths(response, machine, cut, limits) if not servo_aware else ()),
+        *_servo(response, task.cut, transition=not servo_aware),
+        *(_axis(profile, task, servo) if servo_aware and response is not None else ()),
+        *(_minimum_lengths(response, task) if not servo_aware else ()),
     )
     return ValidationReport(
         checks=checks,
         motion=motion,
-        tool=measure_tool(profile, machine, cut, motion),
+        tool=measure_tool(profile, task, motion),
         motor=motor,
-        tangential_mismatch=machine.tangential_mismatch(cut),
+        tangential_mismatch=task.machine.tangential_mismatch(task.cut),
         servo=response,
-        sweep=servo_sweep(profile, machine, cut, servo) if sweep else None,
-        length_errors=length_errors(profile, machine, cut, servo) if sweep and response is not None else (),
+        sweep=servo_sweep(profile, task, servo) if sweep else None,
+        length_errors=length_errors(profile, task, servo) if sweep and response is not None else (),
     )
 
 
@@ -198,13 +191,14 @@ def _closure(profile: CamProfile, machine: Machine) -> list[Check]:
     ]
 
 
-def _motion(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits, motion: Motion) -> list[Check]:
+def _motion(profile: CamProfile, task: Task, motion: Motion) -> list[Check]:
     """Sync zone, speed, acceleration, jerk and reversal, exact."""
+    machine, cut, limits = task.machine, task.cut, task.limits
     v, unit = cut.line_speed, machine.slave_unit
-    in_sync = sync_ratio_error(profile, machine, cut)
+    in_sync = sync_ratio_error(profile, task)
     least = profile.extrema(1)[0]
     backward = max(0.0, -v * least.value)
-    reverses = limits.reversal or machine.turns_back
+    reverses = task.reverses
 
     def bounded(name: str, value: float | None, limit: float, per: str, order: int, unbounded: Extremum) -> Check:
         source = f"peak of the {name}, exact, at every master position"
@@ -244,11 +238,12 @@ def _motion(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits, mot
     ]
 
 
-def _stroke(profile: CamProfile, machine: Machine, cut: Cut) -> list[Check]:
+def _stroke(profile: CamProfile, task: Task) -> list[Check]:
     """Whether the slave stays on its guide, if it has one."""
+    machine = task.machine
     if machine.guide is None:
         return []
-    start = slave_zero(profile, machine, cut)
+    start = task.slave_zero(profile)
     low, high = machine.guide
     middle, stroke = low + 0.5 * (high - low), high - low
     least, greatest = profile.extrema(0)
@@ -266,9 +261,9 @@ def _stroke(profile: CamProfile, machine: Machine, cut: Cut) -> list[Check]:
     ]
 
 
-def _motor(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits, motor: MotorMeasures) -> list[Check]:
+def _motor(profile: CamProfile, task: Task, motor: MotorMeasures) -> list[Check]:
     """Whether the motor can do it, where its torque-speed curve is given; its torque where the job says what it moves."""
-    curve = limits.motor
+    curve = task.limits.motor
     if curve is None:
         return []
     top, source = (
@@ -287,11 +282,11 @@ def _motor(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits, moto
         )
     ]
     if motor.peak_torque is not None:
-        torque, available = greatest_load(profile, machine, cut, curve)
+        torque, available = greatest_load(profile, task, curve)
         checks.append(
             _at_most("motor_torque", torque.value, available, ALLOWANCE * curve.points[0][1], "N m", torque.at, source)
         )
-    elif machine.moves_something:
+    elif task.machine.moves_something:
         checks.append(
             Check("motor_torque", False, None, curve.points[0][1], "N m", greatest_jump(profile, 1).at, source)
         )
@@ -351,23 +346,30 @@ def _servo(response: ServoResponse | None, cut: Cut, *, transition: bool) -> lis
     ]
 
 
-def _axis(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits, servo: Servo) -> list[Check]:
+def _axis(profile: CamProfile, task: Task, servo: Servo) -> list[Check]:
     """Check the limits on the axis itself."""
-    least = -limits.speed if machine.turns_back else limits.least_velocity
-    return axis_checks(axis_peaks(profile, cut, servo), limits.speed, limits.acceleration, least, machine.slave_unit)
+    limits = task.limits
+    return axis_checks(
+        axis_peaks(profile, task.cut, servo),
+        limits.speed,
+        limits.acceleration,
+        task.least_velocity,
+        task.machine.slave_unit,
+    )
 
 
-def _minimum_lengths(response: ServoResponse | None, machine: Machine, cut: Cut, limits: Limits) -> list[Check]:
+def _minimum_lengths(response: ServoResponse | None, task: Task) -> list[Check]:
     """Minimum cut lengths of S1, which are those of a rotary knife in tangential sync.
 
     With a sync ratio ``s`` the knife moves as with a line ``s`` times as fast whose lengths are ``s`` times as long.
     """
-    if not machine.published:
+    cut = task.cut
+    if not task.machine.published:
         return []
     s, v = cut.sync_ratio, cut.sync_ratio * cut.line_speed
     settling = response.settling if response else None
     shortest = (
-        cut_length_eq10(s * settling, s * cut.shear_zone, machine.pitch, v, limits.speed) / s
+        cut_length_eq10(s * settling, s * cut.shear_zone, task.machine.pitch, v, task.limits.speed) / s
         if settling is not None
         else None
     )
@@ -391,7 +393,7 @@ def _minimum_lengths(response: ServoResponse | None, machine: Machine, cut: Cut,
         ),
         _at_most(
             "physical_cut_length",
-            physical(machine, as_one, limits).length / s,
+            physical(task.with_cut(as_one)).length / s,
             cut.length,
             ALLOWANCE * cut.length,
             "m",

@@ -145,12 +145,12 @@ def audit(path: Path, job: Job, target: str | None = None, units: str | None = N
     rebuilt, notes = aligned(rebuilt.shift(-rebuilt.start), placed)
     cycle = one_cycle(rebuilt, job.cut)
     step("judging")
-    judgement = judge_table(rebuilt, placed.machine, job.cut, job.limits, job.servo)
-    report = validate(cycle, placed.machine, job.cut, job.limits, job.servo)
+    judgement = judge_table(rebuilt, job.task.with_machine(placed.machine), job.servo)
+    report = validate(cycle, job.task.with_machine(placed.machine), job.servo)
     step("solving")
     solution = solve_job(job)
     best = replace(job, machine=solution.machine)
-    best_report = validate(solution.profile, best.machine, job.cut, job.limits, job.servo)
+    best_report = validate(solution.profile, job.task.with_machine(best.machine), job.servo)
     return Audit(
         layout,
         table,

@@ -179,7 +179,7 @@ class _Judge:
         if key not in self._known:
             job = self.job
             off = deviation(self.profile, rebuilt)
-            judgement = judge_table(rebuilt, job.machine, job.cut, job.limits, job.servo)
+            judgement = judge_table(rebuilt, job.task, job.servo)
             self._known[key] = off, position_error(self.profile, rebuilt, off, job), judgement
         return self._known[key]
 

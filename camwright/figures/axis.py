@@ -86,9 +86,7 @@ def _errors_of(design: Design, name: str, run: ServoRun, first: float, last: flo
     """Master from the start of the sync zone and sync error (m), for every phase."""
     job = design.job
     start = job.cut.return_start + job.cut.return_zone
-    master, error, _ = sync_error(
-        run, design.comparison[name].profile, job.machine, job.cut, start + first, start + last
-    )
+    master, error, _ = sync_error(run, design.comparison[name].profile, job.task, start + first, start + last)
     return master - start, error
 
 

@@ -144,7 +144,7 @@ def _errors(axes: Axes, row: Measured, comparison: Comparison, run: ServoRun) ->
     """Draw the sync error of every phase, crossing and settling marked on the line of the axis."""
     job = comparison.job
     start = job.cut.return_start + job.cut.return_zone
-    master, error, _ = sync_error(run, row.profile, job.machine, job.cut, start, start + job.cut.sync_zone)
+    master, error, _ = sync_error(run, row.profile, job.task, start, start + job.cut.sync_zone)
     for phase in range(run.phases):
         axes.plot(_stride(master[phase] - start) * 1e3, _stride(error[phase]) * 1e3, **_phase(row.name, phase))
     colour = LINES[row.name]["color"]

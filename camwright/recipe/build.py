@@ -105,7 +105,7 @@ def make_recipe(
     """
     job, profile = design.job, design.profile
     step("checking")
-    report = validate(profile, job.machine, job.cut, job.limits, job.servo, servo_aware=job.servo_aware)
+    report = validate(profile, job.task, job.servo, servo_aware=job.servo_aware)
     step("simulating lower speeds")
     speeds = at_speeds(profile, job, report)
     step("finding the working range")

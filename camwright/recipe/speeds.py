@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from camwright.jobs.job import Job
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.servo import spectral_radius
@@ -29,18 +27,18 @@ def at_speeds(profile: CamProfile, job: Job, report: ValidationReport) -> tuple[
     report
         Its validation, which has the servo's response at full line speed and where the cut falls.
     """
-    machine, stable = job.machine, spectral_radius(job.servo) < 1.0
+    stable = spectral_radius(job.servo) < 1.0
     rows = []
     errors = {error.share: error for error in report.length_errors}
     for share in SHARES:
-        cut = replace(job.cut, line_speed=share * job.cut.line_speed)
-        motion, motor = measure_motion(profile, machine, cut), measure_motor(profile, machine, cut)
-        response = report.servo if cut == job.cut or not stable else servo_response(profile, machine, cut, job.servo)
+        task = job.task.at_speed(share * job.cut.line_speed)
+        motion, motor = measure_motion(profile, task), measure_motor(profile, task)
+        response = report.servo if task == job.task or not stable else servo_response(profile, task, job.servo)
         error = errors.get(share)
         rows.append(
             AtSpeed(
                 share=share,
-                line_speed=cut.line_speed,
+                line_speed=task.cut.line_speed,
                 speed=motion.peak_speed,
                 acceleration=motion.peak_acceleration,
                 jerk=motion.peak_jerk,

@@ -217,7 +217,7 @@ def _number_faults(table: RecipeTable, read: CamTable, units: Units, design: Sto
     yield from _differs("position error (m)", position_error(profile, rebuilt, off, job), table.position_error, scale)
     yield from _differs("ratio error", off.ratio, table.ratio_error, float(np.abs(profile(profile.breaks, 1)).max()))
     yield from _differs("acceleration error", off.acceleration, table.acceleration_error, 1.0)
-    judgement = judge_table(rebuilt, job.machine, job.cut, job.limits, job.servo, table.wraps)
+    judgement = judge_table(rebuilt, job.task, job.servo, table.wraps)
     again = {check.name: check for check in judgement.checks}
     recorded = {check.name: check for check in table.checks}
     if again.keys() != recorded.keys():

@@ -36,6 +36,6 @@ def validate(profile: CamProfile | str | Path, job: Job) -> ValidationReport:
     0.0
     """
     if isinstance(profile, CamProfile):
-        return judge(profile, job.machine, job.cut, job.limits, job.servo, servo_aware=job.servo_aware)
+        return judge(profile, job.task, job.servo, servo_aware=job.servo_aware)
     cycle, machine = read_cycle(Path(profile), job)
-    return judge(cycle, machine, job.cut, job.limits, job.servo, servo_aware=job.servo_aware)
+    return judge(cycle, job.task.with_machine(machine), job.servo, servo_aware=job.servo_aware)

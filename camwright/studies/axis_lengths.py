@@ -72,15 +72,15 @@ def axis_lengths(job: Job) -> AxisLengths | None:
         def lower(sync_zone: float) -> float:
             if command == "shaped":  # a mean speed beyond the limit is all that forbids it
                 return max(shear, pitch * cut.line_speed / limits.speed) * (1 + _LENGTH_RESOLUTION)
-            return least.fastest_cut(machine, cut.line_speed, limits, sync_zone)
+            return least.fastest_cut(pitch, cut.line_speed, limits, sync_zone)
 
         return ZoneSearch(cut, pitch, lower, holds, _FINE, _LENGTH_RESOLUTION, _ZONE_RESOLUTION)
 
     best, zone = search("in_sync", axis_limits=False).find()
     found = zone < pitch
     return AxisLengths(
-        linear_return=least.linear_return_to_tolerance(machine, cut, limits, job.servo).length,
-        poly_3_4_5=least.quintic_to_tolerance(machine, cut, limits, job.servo).length,
+        linear_return=least.linear_return_to_tolerance(job.task.with_cut(cut), job.servo).length,
+        poly_3_4_5=least.quintic_to_tolerance(job.task.with_cut(cut), job.servo).length,
         in_sync=best if found else None,
         shaped=search("shaped", axis_limits=False).shorter(shear, pitch),
         in_sync_axis_limits=search("in_sync", axis_limits=True).shorter(zone, pitch) if found else None,

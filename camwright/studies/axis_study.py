@@ -116,7 +116,7 @@ def solve_job(job: Job, *, suggest: bool = True) -> Solution:
 
 def sync_error(profile: CamProfile, job: Job) -> float | None:
     """Greatest sync error of the axis in the shear zone (m) with a job's servo and at the corners of its ranges; ``None`` without bound."""
-    worst = float(shear_zone_errors(profile, job.machine, job.cut, servos_of(job)).max())
+    worst = float(shear_zone_errors(profile, job.task, servos_of(job)).max())
     return worst if math.isfinite(worst) else None
 
 
@@ -124,7 +124,7 @@ def axis_study(job: Job, solution: Solution) -> AxisStudy | None:
     """Compare what a servo-aware design predicts with an independent simulation; ``None`` for other designs."""
     if solution.axis is None:
         return None
-    response = servo_response(solution.profile, solution.machine, job.cut, job.servo)
+    response = servo_response(solution.profile, job.task.with_machine(solution.machine), job.servo)
     axis = solution.axis
     return AxisStudy(job.command, axis.errors[0], response.shear_zone_error, response.phases, axis.axis_limits)
 
@@ -135,7 +135,7 @@ def robustness(job: Job, profile: CamProfile, solution: Solution | None = None) 
     if ranges is None or not ranges.varying:
         return None
     drawn = ranges.draw(job.servo, DRAWS, SEED)
-    worst = float(shear_zone_errors(profile, job.machine, job.cut, drawn).max())
+    worst = float(shear_zone_errors(profile, job.task, drawn).max())
     designed = solution.axis.error if solution is not None and solution.axis is not None else None
     return Robustness(len(ranges.vertices(job.servo)), designed, worst, DRAWS)
 
@@ -173,7 +173,7 @@ def robust_band(job: Job, profile: CamProfile) -> RobustBand | None:
     low, high = np.full(_BAND_POINTS, np.inf), np.full(_BAND_POINTS, -np.inf)
 
     def errors(servo: Servo) -> FloatArray:
-        place, error, _ = shear_zone_error(simulate(profile, cut, servo), profile, job.machine, cut)
+        place, error, _ = shear_zone_error(simulate(profile, cut, servo), profile, job.task.with_cut(cut))
         return np.array([np.interp(master, x - start, y) for x, y in zip(place, error, strict=True)])
 
     for servo in (*ranges.vertices(job.servo), *ranges.draw(job.servo, _BAND_DRAWS, SEED)):

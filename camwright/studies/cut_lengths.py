@@ -64,15 +64,15 @@ def cut_lengths(job: Job) -> CutLengths | None:
     >>> round(lengths.eq9, 3), lengths.physical.length < lengths.optimised.length
     (0.209, True)
     """
-    machine, cut, limits, servo = job.machine, job.cut, job.limits, job.servo
+    machine, cut, task, servo = job.machine, job.cut, job.task, job.servo
     if not machine.published or cut.sync_ratio != 1.0:
         return None
-    response = servo_response(baseline("linear_return", machine, cut), machine, cut, servo)
+    response = servo_response(baseline("linear_return", machine, cut), task, servo)
 
     def eq10(transition: float | None, shear_zone: float) -> float | None:
         if transition is None:
             return None
-        return least.cut_length_eq10(transition, shear_zone, machine.pitch, cut.line_speed, limits.speed)
+        return least.cut_length_eq10(transition, shear_zone, machine.pitch, cut.line_speed, task.limits.speed)
 
     return CutLengths(
         crossing=response.crossing,
@@ -80,7 +80,7 @@ def cut_lengths(job: Job) -> CutLengths | None:
         eq9=eq10(response.crossing, 0.0),
         eq10=eq10(response.crossing, cut.shear_zone),
         eq10_settling=eq10(response.settling, cut.shear_zone),
-        physical=least.physical(machine, cut, limits),
-        linear_return=least.linear_return_to_tolerance(machine, cut, limits, servo),
-        optimised=least.optimised_to_tolerance(machine, cut, limits, servo),
+        physical=least.physical(task),
+        linear_return=least.linear_return_to_tolerance(task, servo),
+        optimised=least.optimised_to_tolerance(task, servo),
     )

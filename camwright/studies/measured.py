@@ -51,12 +51,12 @@ def measured(name: str, profile: CamProfile, job: Job) -> Measured:
     job
         Its job, the place of the sync zone chosen.
     """
-    motion = measure_motion(profile, job.machine, job.cut)
+    motion = measure_motion(profile, job.task)
     return Measured(
         name,
         profile,
         motion,
-        measure_tool(profile, job.machine, job.cut, motion),
-        measure_motor(profile, job.machine, job.cut),
-        servo_response(profile, job.machine, job.cut, job.servo),
+        measure_tool(profile, job.task, motion),
+        measure_motor(profile, job.task),
+        servo_response(profile, job.task, job.servo),
     )

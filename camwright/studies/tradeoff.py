@@ -198,8 +198,8 @@ def _objectives(job: Job) -> tuple[CommandObjective, ...]:
 
 def _row(name: str, kind: Kind, profile: CamProfile, job: Job, measures: Sequence[CommandObjective]) -> Row:
     """Measure one profile."""
-    motion = measure_motion(profile, job.machine, job.cut)
-    motor = measure_motor(profile, job.machine, job.cut)
+    motion = measure_motion(profile, job.task)
+    motor = measure_motor(profile, job.task)
     values = {measure: getattr(motor if OBJECTIVES[measure].of == "motor" else motion, measure) for measure in measures}
     able = _keeps_limits(motion, job) and _keeps_stroke(profile, job) and _keeps_curve(profile, job)
     return Row(name, kind, profile, values, able)
@@ -232,12 +232,12 @@ def _keeps_stroke(profile: CamProfile, job: Job) -> bool:
 
 def _keeps_curve(profile: CamProfile, job: Job) -> bool:
     """Whether the motor can give the torque of a steady motion at each of its speeds; judged at points along the cycle."""
-    curve, machine, cut = job.limits.motor, job.machine, job.cut
+    curve = job.limits.motor
     if curve is None:
         return True
-    torque = motor_torque(profile, machine, cut)
+    torque = motor_torque(profile, job.task)
     x = np.linspace(profile.start, profile.end, _POINTS)
-    available = curve.torque(cut.line_speed * machine.motor_ratio * profile(x, 1))
+    available = curve.torque(job.cut.line_speed * job.machine.motor_ratio * profile(x, 1))
     return bool(np.all(np.abs(torque(x)) <= available * (1 + _BEYOND)))
 
 

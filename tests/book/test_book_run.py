@@ -73,7 +73,7 @@ def test_the_index_says_what_designs_made_one_by_one_say(done: Path) -> None:
             assert not row["folder"]
             continue
         solution = solve(own.task.with_cut(cut), own.objective)
-        report = validate(solution.profile, own.machine, cut, own.limits, own.servo)
+        report = validate(solution.profile, own.task.with_cut(cut), own.servo)
         (table,) = export(solution.profile, own, ["csv"])
         assert (row["status"] == "passed") == (report.passed and table.passed)
         failed = [check.name for check in report.checks if not check.passed]

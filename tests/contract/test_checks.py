@@ -101,10 +101,10 @@ def test_the_axis_may_exceed_its_limits_by_a_thousandth(share: float) -> None:
 def test_below_a_billionth_of_the_greatest_ratio_the_slave_stands() -> None:
     """A third of the cycle is slow; there friction asks for its torque, unless the slave stands."""
     machine = RotaryKnife(0.4, drum_friction=6.0)
-    torque = measure_motor(slow_for_a_third(0.5), machine, JOB.cut).rms_torque
+    torque = measure_motor(slow_for_a_third(0.5), JOB.task.with_machine(machine)).rms_torque
     assert torque is not None
     for slow, moving in ((1.1e-9, 1.0), (0.9e-9, 2 / 3)):
-        found = measure_motor(slow_for_a_third(slow), machine, JOB.cut).rms_torque
+        found = measure_motor(slow_for_a_third(slow), JOB.task.with_machine(machine)).rms_torque
         assert found == pytest.approx(torque * math.sqrt(moving), rel=1e-6)
 
 

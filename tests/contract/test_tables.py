@@ -23,18 +23,18 @@ PEAK = (80 / 60) ** 2 * 0.2 / 0.4**2 * 10 / 3**0.5
 @pytest.mark.parametrize("name", ["speed", "acceleration", "jerk"])
 def test_a_table_may_exceed_a_limit_by_one_per_cent(name: str, share: float) -> None:
     wide = Limits(1e3, 1e4, 1e7)
-    judged = judge_table(CYCLE, JOB.machine, JOB.cut, wide, JOB.servo)
+    judged = judge_table(CYCLE, JOB.task.with_limits(wide), JOB.servo)
     found = {check.name: check.value for check in judged.checks}[name]
     assert found is not None
     if name == "acceleration":
         assert found == pytest.approx(PEAK, rel=1e-9)
     limits = {"speed": 1e3, "acceleration": 1e4, "jerk": 1e7} | {name: found / (1 + share * 0.01)}
-    judged = judge_table(CYCLE, JOB.machine, JOB.cut, Limits(**limits), JOB.servo)
+    judged = judge_table(CYCLE, JOB.task.with_limits(Limits(**limits)), JOB.servo)
     assert {check.name for check in judged.checks if not check.passed} == (set() if share < 1 else {name})
 
 
 def test_three_wraps_are_run() -> None:
-    assert judge_table(CYCLE, JOB.machine, JOB.cut, JOB.limits, JOB.servo).wraps == 3
+    assert judge_table(CYCLE, JOB.task, JOB.servo).wraps == 3
     (written,) = export(CYCLE, JOB, ["csv"])
     assert written.judgement.wraps == 3
 

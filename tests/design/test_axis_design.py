@@ -40,7 +40,7 @@ def peak_acceleration(solution: Solution, cut: Cut) -> float:
 def test_a_micrometre_at_600_mm_and_what_it_costs(command: Command, dearer: float) -> None:
     cut = replace(CUT, shaped=command == "shaped")
     solution = solve_axis(Task(KNIFE, cut, LIMITS), "sync_error", command, (PAPER,))
-    assert servo_response(solution.profile, KNIFE, cut, PAPER).shear_zone_error <= 1e-6
+    assert servo_response(solution.profile, Task(KNIFE, cut, LIMITS), PAPER).shear_zone_error <= 1e-6
     blind = solve(Task(KNIFE, CUT, LIMITS), "peak_acceleration")
     # a command that need not be in sync all over its sync zone is even softer than the servo-blind one: asked for is 1.05
     assert peak_acceleration(solution, cut) <= dearer * peak_acceleration(blind, CUT)
@@ -58,7 +58,7 @@ def test_the_worst_corner_of_the_servos_ranges(length: float, worst: float) -> N
     solution, cut = robust(length)
     assert solution.axis is not None
     assert solution.axis.error <= worst
-    corners = shear_zone_errors(solution.profile, KNIFE, cut, (PAPER, *RANGES.vertices(PAPER)))
+    corners = shear_zone_errors(solution.profile, Task(KNIFE, cut, LIMITS), (PAPER, *RANGES.vertices(PAPER)))
     assert np.array(solution.axis.errors) == pytest.approx(corners, abs=1e-9)
 
 
@@ -66,7 +66,7 @@ def test_the_worst_corner_of_the_servos_ranges(length: float, worst: float) -> N
 def test_servos_drawn_from_the_ranges_are_hardly_worse_than_its_corners(length: float) -> None:
     solution, cut = robust(length)
     assert solution.axis is not None
-    drawn = shear_zone_errors(solution.profile, KNIFE, cut, RANGES.draw(PAPER, 3000, 20160))
+    drawn = shear_zone_errors(solution.profile, Task(KNIFE, cut, LIMITS), RANGES.draw(PAPER, 3000, 20160))
     assert drawn.max() <= 1.1 * solution.axis.error
 
 
@@ -74,9 +74,9 @@ def test_a_nominal_design_is_far_worse_at_the_corners_than_a_robust_one() -> Non
     solution, cut = robust(0.213)
     nominal = solve_axis(Task(KNIFE, cut, LIMITS), "sync_error", "shaped", (PAPER,))
     corners = RANGES.vertices(PAPER)
-    assert shear_zone_errors(nominal.profile, KNIFE, cut, (PAPER,)).max() < 2e-6
-    worst = shear_zone_errors(nominal.profile, KNIFE, cut, corners).max()
-    assert worst > 2 * shear_zone_errors(solution.profile, KNIFE, cut, corners).max()
+    assert shear_zone_errors(nominal.profile, Task(KNIFE, cut, LIMITS), (PAPER,)).max() < 2e-6
+    worst = shear_zone_errors(nominal.profile, Task(KNIFE, cut, LIMITS), corners).max()
+    assert worst > 2 * shear_zone_errors(solution.profile, Task(KNIFE, cut, LIMITS), corners).max()
 
 
 @pytest.mark.parametrize("command", ["in_sync", "shaped"])
@@ -122,7 +122,10 @@ def test_a_tolerance_that_no_command_keeps_is_refused_with_ways_out_that_work(na
             cut, length=values["length"], line_speed=values["line_speed"], sync_tolerance=values["sync_tolerance"]
         )
         found = solve_axis(Task(KNIFE, changed, LIMITS), "peak_acceleration", command, (PAPER,))
-        assert servo_response(found.profile, KNIFE, changed, PAPER).shear_zone_error <= changed.sync_tolerance
+        assert (
+            servo_response(found.profile, Task(KNIFE, changed, LIMITS), PAPER).shear_zone_error
+            <= changed.sync_tolerance
+        )
     wider = next(each for each in error.suggestions if each.change == "sync_tolerance")
     assert cut.sync_tolerance * 1e3 + error.excess == pytest.approx(wider.value, rel=5e-3)
     least = replace(cut, sync_tolerance=0.98 * (cut.sync_tolerance + error.excess * 1e-3))
@@ -135,7 +138,7 @@ def test_the_sync_error_alone_is_made_least_whatever_the_tolerance() -> None:
     solution = solve_axis(Task(KNIFE, cut, LIMITS), "sync_error", command, (PAPER,))
     # the limits leave one motion between the sync zones, that of the servo-blind design
     assert solution.minimised == pytest.approx(
-        servo_response(solution.profile, KNIFE, cut, PAPER).shear_zone_error, abs=1e-9
+        servo_response(solution.profile, Task(KNIFE, cut, LIMITS), PAPER).shear_zone_error, abs=1e-9
     )
     assert peak_acceleration(solution, cut) == pytest.approx(LIMITS.acceleration, rel=1e-6)
     assert solution.axis is not None
@@ -176,7 +179,7 @@ def test_a_motors_curve_is_kept() -> None:
     torque = peak_acceleration(free, cut) * 0.05 / knife.radius / 5.0
     curve = MotorCurve(((0.0, 0.8 * torque), (300.0, 0.8 * torque)))
     held = solve_axis(Task(knife, cut, replace(LIMITS, motor=curve)), "peak_jerk", "shaped", (PAPER,))
-    load, available = greatest_load(held.profile, knife, cut, curve)
+    load, available = greatest_load(held.profile, Task(knife, cut, LIMITS), curve)
     assert abs(load.value) <= available * (1 + 1e-9)
     assert held.minimised >= free.minimised * (1 - 1e-6)
 
@@ -188,7 +191,10 @@ def test_a_crank_that_is_free_is_placed_as_for_the_servo_blind_design() -> None:
     stiff = Servo(600.0, 0.8, 150.0, 0.001, 1.0)
     solution = solve_axis(Task(crank, cut, limits), "peak_acceleration", "shaped", (stiff,))
     assert solution.machine == solve(Task(crank, cut, limits), "peak_acceleration").machine
-    assert servo_response(solution.profile, solution.machine, cut, stiff).shear_zone_error <= cut.sync_tolerance
+    assert (
+        servo_response(solution.profile, Task(solution.machine, cut, LIMITS), stiff).shear_zone_error
+        <= cut.sync_tolerance
+    )
 
 
 def test_an_unstable_servo_is_refused() -> None:

@@ -27,7 +27,7 @@ LIMITS = Limits(60.0, 2000.0, 400000.0)
 
 def peak(placed: CrankSlider, cut: Cut, objective: CommandObjective) -> float:
     """Peak of the whole cycle that is optimal at a place."""
-    motion = measure_motion(solve(Task(placed, cut, LIMITS), objective).profile, placed, cut)
+    motion = measure_motion(solve(Task(placed, cut, LIMITS), objective).profile, Task(placed, cut, LIMITS))
     value = motion.peak_acceleration if objective == "peak_acceleration" else motion.peak_jerk
     assert value is not None
     return value

@@ -79,7 +79,10 @@ def test_a_shaped_cut_of_that_length_is_designed_and_a_shorter_one_refused(limit
         cut = replace(job.cut, length=length, sync_zone=0.04, shear_zone_at=0.0, shaped=True)
         if holds:
             solution = solve_axis(job.task.with_cut(cut), "peak_acceleration", "shaped", (job.servo,))
-            assert servo_response(solution.profile, job.machine, cut, job.servo).shear_zone_error <= cut.sync_tolerance
+            assert (
+                servo_response(solution.profile, job.task.with_cut(cut), job.servo).shear_zone_error
+                <= cut.sync_tolerance
+            )
         else:
             with pytest.raises(InfeasibleError):
                 solve_axis(job.task.with_cut(cut), "peak_acceleration", "shaped", (job.servo,), suggest=False)

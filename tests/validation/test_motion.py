@@ -10,9 +10,11 @@ import pytest
 
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
+from camwright.profiles.limits import Limits
 from camwright.profiles.machines import CrankSlider, LinearCarriage, RotaryKnife
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import BASELINES, baseline, slave_at_start
+from camwright.profiles.task import Task
 from camwright.validation.motion import (
     Motion,
     greatest_jump,
@@ -24,6 +26,9 @@ from camwright.validation.motion import (
     slope_scale,
     sync_ratio_error,
 )
+
+FREE = Limits(math.inf, math.inf, math.inf)
+"""Nothing here asks for limits."""
 
 KNIFE = RotaryKnife(0.4)
 CUT = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4)
@@ -49,13 +54,13 @@ RMS_ACCELERATION = {
 
 @pytest.mark.parametrize("name", [name for name in PEAK_ACCELERATION if name not in ("cubic", "parabolic")])
 def test_peak_acceleration_is_the_law_s(name: str) -> None:
-    motion = measure_motion(baseline(name, KNIFE, CUT), KNIFE, CUT)
+    motion = measure_motion(baseline(name, KNIFE, CUT), Task(KNIFE, CUT, FREE))
     assert motion.peak_acceleration == pytest.approx(PEAK_ACCELERATION[name] * abs(D) / T**2, rel=1e-10)
 
 
 @pytest.mark.parametrize("name", ["cubic", "parabolic"])
 def test_a_jump_of_the_ratio_slope_leaves_acceleration_bounded_and_jerk_not(name: str) -> None:
-    motion = measure_motion(baseline(name, KNIFE, CUT), KNIFE, CUT)
+    motion = measure_motion(baseline(name, KNIFE, CUT), Task(KNIFE, CUT, FREE))
     assert motion.peak_acceleration == pytest.approx(PEAK_ACCELERATION[name] * abs(D) / T**2, rel=1e-12)
     assert (motion.peak_jerk, motion.rms_jerk) == (None, None)
 
@@ -64,12 +69,12 @@ def test_a_jump_of_the_ratio_slope_leaves_acceleration_bounded_and_jerk_not(name
 @pytest.mark.parametrize("origin", ["return", "cut"])
 def test_rms_acceleration_is_the_law_s_over_the_return_zone(name: str, origin: str) -> None:
     cut = replace(CUT, origin=origin)
-    motion = measure_motion(baseline(name, KNIFE, cut), KNIFE, cut)
+    motion = measure_motion(baseline(name, KNIFE, cut), Task(KNIFE, cut, FREE))
     assert motion.rms_acceleration == pytest.approx(RMS_ACCELERATION[name] * abs(D) / T**2, rel=1e-9)
 
 
 def test_jerk_of_the_quintic() -> None:
-    motion = measure_motion(baseline("poly_3_4_5", KNIFE, CUT), KNIFE, CUT)
+    motion = measure_motion(baseline("poly_3_4_5", KNIFE, CUT), Task(KNIFE, CUT, FREE))
     assert motion.peak_jerk == pytest.approx(60 * abs(D) / T**3, rel=1e-12)
     assert motion.rms_jerk == pytest.approx(math.sqrt(720) * abs(D) / T**3, rel=1e-12)
     assert motion.min_speed == pytest.approx(CUT.line_speed + 15 / 8 * D / T, rel=1e-12)
@@ -79,7 +84,7 @@ def test_jerk_of_the_quintic() -> None:
 @pytest.mark.parametrize("origin", ["return", "cut"])
 def test_linear_return_has_no_bounded_acceleration(origin: str) -> None:
     cut = replace(CUT, origin=origin)
-    motion = measure_motion(baseline("linear_return", KNIFE, cut), KNIFE, cut)
+    motion = measure_motion(baseline("linear_return", KNIFE, cut), Task(KNIFE, cut, FREE))
     assert motion == Motion(
         pytest.approx(80 / 60), pytest.approx(40 / 60), None, None, None, None, pytest.approx(0.0, abs=1e-15)
     )
@@ -91,7 +96,7 @@ def test_linear_return_has_no_bounded_acceleration(origin: str) -> None:
 def test_every_baseline_is_in_sync_and_no_grid_point_exceeds_its_peaks(name: str, origin: str, length: float) -> None:
     cut = replace(CUT, length=length, sync_zone=0.1301, shear_zone_at=0.09, origin=origin)
     profile = baseline(name, KNIFE, cut)
-    motion = measure_motion(profile, KNIFE, cut)
+    motion = measure_motion(profile, Task(KNIFE, cut, FREE))
     assert motion.sync_ratio_error <= 1e-12
     x = np.linspace(0.0, profile.end, 2001)
     velocity = cut.line_speed * profile(x, 1)
@@ -109,7 +114,7 @@ def test_sync_ratio_error_sees_both_halves_of_a_split_sync_zone() -> None:
     for piece, at in ((0, 0.0), (profile.pieces - 1, 0.5)):
         coefficients = profile.coefficients.copy()
         coefficients[piece, 2] += 0.5e-3 / 0.1  # ratio off by 1e-3 at the end of a piece of 0.1 m
-        found = sync_ratio_error(CamProfile(profile.breaks.copy(), coefficients), KNIFE, cut)
+        found = sync_ratio_error(CamProfile(profile.breaks.copy(), coefficients), Task(KNIFE, cut, FREE))
         assert found.value == pytest.approx(1e-3, rel=1e-9)
         assert found.at == pytest.approx(at + 0.1, abs=1e-9)
 
@@ -118,7 +123,7 @@ def test_sync_ratio_error_ignores_a_break_that_rounding_has_moved_into_the_zone(
     profile = baseline("linear_return", KNIFE, CUT)
     breaks = profile.breaks.copy()
     breaks[1] = np.nextafter(breaks[1], 1.0)
-    assert sync_ratio_error(CamProfile(breaks, profile.coefficients.copy()), KNIFE, CUT).value <= 1e-12
+    assert sync_ratio_error(CamProfile(breaks, profile.coefficients.copy()), Task(KNIFE, CUT, FREE)).value <= 1e-12
 
 
 def test_jumps_and_scale_of_a_parabolic_return() -> None:
@@ -153,7 +158,7 @@ def test_a_position_jump_makes_the_acceleration_unbounded() -> None:
     profile = baseline("poly_3_4_5", KNIFE, CUT)
     coefficients = profile.coefficients.copy()
     coefficients[0, 0] -= 1e-9
-    motion = measure_motion(CamProfile(profile.breaks.copy(), coefficients), KNIFE, CUT)
+    motion = measure_motion(CamProfile(profile.breaks.copy(), coefficients), Task(KNIFE, CUT, FREE))
     assert motion.peak_acceleration is None
     assert motion.peak_jerk is None
 
@@ -161,9 +166,9 @@ def test_a_position_jump_makes_the_acceleration_unbounded() -> None:
 def test_a_profile_of_another_cut_is_refused_with_both_lengths() -> None:
     profile = baseline("poly_3_4_5", KNIFE, CUT)
     with pytest.raises(InputError, match=r"from 0\.0 m to 0\.6 m, but one cycle of this cut runs from 0 m .* 0\.61 m"):
-        measure_motion(profile, KNIFE, replace(CUT, length=0.61))
+        measure_motion(profile, Task(KNIFE, replace(CUT, length=0.61), FREE))
     with pytest.raises(InputError, match=r"from 0\.1 m to 0\.7 m"):
-        measure_motion(profile.shift(0.1), KNIFE, CUT)
+        measure_motion(profile.shift(0.1), Task(KNIFE, CUT, FREE))
 
 
 CRANK = CrankSlider(0.15, 0.6, 0.02, sync_at=1.5)
@@ -173,7 +178,7 @@ CRANK = CrankSlider(0.15, 0.6, 0.02, sync_at=1.5)
 def test_the_carriage_of_a_crank_against_differences(origin: str) -> None:
     cut = replace(CUT, length=0.9, sync_zone=0.1, origin=origin)
     cycle = baseline("poly_3_4_5", CRANK, cut)
-    tool, slave = measure_tool(cycle, CRANK, cut), measure_motion(cycle, CRANK, cut)
+    tool, slave = measure_tool(cycle, Task(CRANK, cut, FREE)), measure_motion(cycle, Task(CRANK, cut, FREE))
     h = 1e-5
     x = np.linspace(2 * h, cut.length - 2 * h, 20_001)
     start = slave_at_start(CRANK, cut)
@@ -196,12 +201,12 @@ def test_the_carriage_of_a_crank_against_differences(origin: str) -> None:
 
 def test_a_slave_in_metres_is_its_own_tool() -> None:
     cycle = baseline("cycloid", KNIFE, CUT)
-    assert measure_tool(cycle, KNIFE, CUT) == measure_motion(cycle, KNIFE, CUT)
+    assert measure_tool(cycle, Task(KNIFE, CUT, FREE)) == measure_motion(cycle, Task(KNIFE, CUT, FREE))
 
 
 def test_sync_ratio_is_judged_against_what_is_asked() -> None:
     carriage = LinearCarriage(0.6)
     fast = replace(CUT, sync_ratio=1.05)
-    assert measure_motion(baseline("cycloid", carriage, fast), carriage, fast).sync_ratio_error <= 1e-12
-    found = measure_motion(baseline("cycloid", carriage, CUT), carriage, fast)
+    assert measure_motion(baseline("cycloid", carriage, fast), Task(carriage, fast, FREE)).sync_ratio_error <= 1e-12
+    found = measure_motion(baseline("cycloid", carriage, CUT), Task(carriage, fast, FREE))
     assert found.sync_ratio_error == pytest.approx(1 - 1 / 1.05, rel=1e-9)

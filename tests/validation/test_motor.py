@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 from camwright.profiles.cut import Cut
+from camwright.profiles.limits import Limits
 from camwright.profiles.machines import (
     CrankSlider,
     LinearCarriage,
@@ -22,6 +23,7 @@ from camwright.profiles.machines import (
 from camwright.profiles.motor import MotorCurve
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import baseline, slave_at_start
+from camwright.profiles.task import Task
 from camwright.validation.motion import measure_motion
 from camwright.validation.motor import (
     MotorMeasures,
@@ -29,6 +31,9 @@ from camwright.validation.motor import (
     measure_motor,
     motor_torque,
 )
+
+FREE = Limits(math.inf, math.inf, math.inf)
+"""Nothing here asks for limits."""
 
 CUT = Cut(0.9, 1.2, 0.1, 0.02, 0.07, 2e-4)
 KNIFE = RotaryKnife(0.4, blades=1, gear_ratio=5.0, drum_inertia=0.02)
@@ -60,7 +65,7 @@ def by_quadrature(profile: CamProfile, machine: Machine, cut: Cut) -> tuple[floa
 @pytest.mark.parametrize("machine", [KNIFE, CARRIAGE, CRANK], ids=["knife", "carriage", "crank"])
 def test_measures_against_quadrature(machine: Machine) -> None:
     profile = baseline("poly_3_4_5", machine, CUT)
-    found = measure_motor(profile, machine, CUT)
+    found = measure_motor(profile, Task(machine, CUT, FREE))
     peak, rms, drawn, regenerated = by_quadrature(profile, machine, CUT)
     assert found.peak_torque == pytest.approx(peak, rel=1e-5)  # the grid misses the peak by a little
     assert found.peak_torque >= peak * (1 - 1e-12)
@@ -72,15 +77,15 @@ def test_measures_against_quadrature(machine: Machine) -> None:
 @pytest.mark.parametrize("machine", [KNIFE, CARRIAGE, CRANK], ids=["knife", "carriage", "crank"])
 def test_measures_do_not_depend_on_the_origin(machine: Machine) -> None:
     other = replace(CUT, origin="cut")
-    here = measure_motor(baseline("poly_3_4_5", machine, CUT), machine, CUT)
-    there = measure_motor(baseline("poly_3_4_5", machine, other), machine, other)
+    here = measure_motor(baseline("poly_3_4_5", machine, CUT), Task(machine, CUT, FREE))
+    there = measure_motor(baseline("poly_3_4_5", machine, other), Task(machine, other, FREE))
     for name in ("peak_torque", "rms_torque", "peak_speed", "min_velocity", "energy", "regenerated"):
         assert getattr(there, name) == pytest.approx(getattr(here, name), rel=1e-9)
 
 
 def test_constant_inertia_is_the_motion_s_own_measure() -> None:
-    motion = measure_motion(baseline("poly_3_4_5", KNIFE, CUT), KNIFE, CUT)
-    found = measure_motor(baseline("poly_3_4_5", KNIFE, CUT), KNIFE, CUT)
+    motion = measure_motion(baseline("poly_3_4_5", KNIFE, CUT), Task(KNIFE, CUT, FREE))
+    found = measure_motor(baseline("poly_3_4_5", KNIFE, CUT), Task(KNIFE, CUT, FREE))
     per_force = KNIFE.inertia(0.0) / KNIFE.motor_ratio
     assert found.peak_torque == pytest.approx(per_force * motion.peak_acceleration, rel=1e-12)
     share = math.sqrt(CUT.return_zone / CUT.length)
@@ -95,7 +100,7 @@ def test_a_sprung_profile_in_closed_form() -> None:
     half = 0.5 * CUT.length
     k = reach / (half / 2) ** 2
     swing = CamProfile.from_arrays([0.0, half, 2 * half], [[0.0, k * half, -k], [0.0, -k * half, k]])
-    found = measure_motor(swing, CARRIAGE, CUT)
+    found = measure_motor(swing, Task(CARRIAGE, CUT, FREE))
     force = 2 * k * v**2 * m
     energy = 2 * 0.5 * m * (k * half * v) ** 2  # up to full speed twice in a cycle
     assert found.peak_torque == pytest.approx(force * 0.04 / (2 * math.pi), rel=1e-12)
@@ -106,7 +111,7 @@ def test_a_sprung_profile_in_closed_form() -> None:
 
 @pytest.mark.parametrize("machine", [KNIFE, CRANK], ids=["knife", "crank"])
 def test_without_friction_a_cycle_takes_no_net_energy(machine: Machine) -> None:
-    found = measure_motor(baseline("poly_3_4_5", machine, CUT), machine, CUT)
+    found = measure_motor(baseline("poly_3_4_5", machine, CUT), Task(machine, CUT, FREE))
     assert found.energy == pytest.approx(found.regenerated, rel=1e-10)
 
 
@@ -116,7 +121,7 @@ def test_net_energy_is_the_friction_s_work(length: float, friction: float) -> No
     knife = replace(KNIFE, drum_friction=friction)
     cut = replace(CUT, length=length)
     profile = baseline("cycloid", knife, cut)  # a long cut makes it run backwards
-    found = measure_motor(profile, knife, cut)
+    found = measure_motor(profile, Task(knife, cut, FREE))
     turned = (
         quad(lambda x: abs(float(profile(x, 1))), 0.0, length, limit=400, points=profile.breaks[1:-1])[0] / knife.radius
     )
@@ -129,7 +134,7 @@ def test_crank_s_kinetic_energy_is_the_torque_s_work(radius: float, rod: float, 
     crank = CrankSlider(radius, radius * (rod + abs(offset)), radius * offset, 0.2, 10.0, 3.0, at)
     cut = replace(CUT, sync_zone=0.2 * radius, length=6 * radius)
     profile = baseline("poly_3_4_5", crank, cut)
-    torque = motor_torque(profile, crank, cut)
+    torque = motor_torque(profile, Task(crank, cut, FREE))
     start = slave_at_start(crank, cut)
 
     def kinetic(x: float) -> float:
@@ -149,7 +154,7 @@ def test_friction_asks_for_nothing_at_standstill() -> None:
     waiting = CamProfile.from_arrays(
         [0.0, x, 2 * x, 3 * x], [[0.0, 0.0, 0.0], [0.0, 0.0, 0.2 / x**2], [0.2, 0.4 / x, -0.2 / x**2]]
     )
-    found = measure_motor(waiting, knife, CUT)
+    found = measure_motor(waiting, Task(knife, CUT, FREE))
     assert found.peak_torque == pytest.approx(3.0 / 5, rel=1e-12)
     assert found.rms_torque == pytest.approx(3.0 / 5 * math.sqrt(2 / 3), rel=1e-12)
     assert found.energy == pytest.approx(3.0 * 0.4 / knife.radius, rel=1e-12)
@@ -159,11 +164,11 @@ def test_friction_asks_for_nothing_at_standstill() -> None:
 def test_what_cannot_be_told_is_none() -> None:
     profile = baseline("linear_return", KNIFE, CUT)
     speed = pytest.approx(CUT.line_speed / KNIFE.radius * 5)
-    assert measure_motor(profile, KNIFE, CUT) == MotorMeasures(
+    assert measure_motor(profile, Task(KNIFE, CUT, FREE)) == MotorMeasures(
         None, None, speed, pytest.approx(0.375 * speed.expected), None, None
     )
     bare = replace(KNIFE, drum_inertia=0.0)
-    found = measure_motor(baseline("cycloid", KNIFE, CUT), bare, CUT)
+    found = measure_motor(baseline("cycloid", KNIFE, CUT), Task(bare, CUT, FREE))
     assert (found.peak_torque, found.rms_torque, found.energy, found.regenerated) == (None, None, None, None)
     assert not bare.moves_something
     assert CrankSlider(0.15, 0.6, carriage_mass=1.0).moves_something  # though at a dead centre it weighs nothing
@@ -173,12 +178,12 @@ def test_what_cannot_be_told_is_none() -> None:
 @pytest.mark.parametrize("top", [0.8, 1.0, 1.3])
 def test_greatest_load_against_a_grid(machine: Machine, top: float) -> None:
     profile = baseline("poly_3_4_5", machine, CUT)
-    found = measure_motor(profile, machine, CUT)
+    found = measure_motor(profile, Task(machine, CUT, FREE))
     t, w = found.peak_torque, found.peak_speed
     curve = MotorCurve(((0.0, 1.1 * t), (0.4 * w, t), (top * w, 0.3 * t)))
-    load, available = greatest_load(profile, machine, CUT, curve)
+    load, available = greatest_load(profile, Task(machine, CUT, FREE), curve)
     x = np.union1d(profile.breaks, np.linspace(0.0, CUT.length, 40_001))
-    torque = np.abs(motor_torque(profile, machine, CUT)(x))
+    torque = np.abs(motor_torque(profile, Task(machine, CUT, FREE))(x))
     over = torque - curve.torque(CUT.line_speed * machine.motor_ratio * profile(x, 1))
     assert load.value - available == pytest.approx(over.max(), abs=2e-4 * t)
     assert load.value - available >= over.max() - 1e-9 * t

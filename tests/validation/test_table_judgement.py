@@ -11,6 +11,7 @@ from camwright.profiles.limits import Limits
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import baseline
 from camwright.profiles.servo import Servo
+from camwright.profiles.task import Task
 from camwright.validation.rebuilt import ALLOWANCE, TableJudgement, judge_table
 
 LIMITS = Limits(200 / 60, 30.0, 3000.0)
@@ -19,7 +20,7 @@ SMOOTH = baseline("poly_3_4_5", KNIFE, cut())
 
 
 def judged(profile: CamProfile, limits: Limits = LIMITS, origin: str = "return", wraps: int = 3) -> TableJudgement:
-    return judge_table(profile, KNIFE, cut(origin=origin), limits, SERVO, wraps)
+    return judge_table(profile, Task(KNIFE, cut(origin=origin), limits), SERVO, wraps)
 
 
 def failed(judgement: TableJudgement) -> set[str]:
@@ -69,7 +70,7 @@ def test_limits_have_their_allowance() -> None:
 def test_the_jerk_is_the_mean_over_a_sample_time_at_the_worst_phase() -> None:
     # third differences average the jerk over three samples with the quadratic B-spline: below the true peak, near to it
     true = (80 / 60) ** 3 * float(np.abs(SMOOTH(np.linspace(0, 0.6, 9001), 3)).max())
-    fine = judge_table(SMOOTH, KNIFE, cut(), LIMITS, Servo(120.0, 0.7, 35.0, 0.0005, 1.0))
+    fine = judge_table(SMOOTH, Task(KNIFE, cut(), LIMITS), Servo(120.0, 0.7, 35.0, 0.0005, 1.0))
     assert true * 0.97 < value(fine, "jerk") < true * (1 + 1e-4)
     assert value(judged(SMOOTH), "jerk") < value(fine, "jerk")
 
@@ -84,15 +85,15 @@ def test_a_jump_of_the_ratio_is_an_acceleration_over_a_sample_time() -> None:
 def test_reversal_is_found() -> None:
     long = cut(1.4)
     profile = baseline("poly_3_4_5", KNIFE, long)
-    judgement = judge_table(profile, KNIFE, long, LIMITS, SERVO)
+    judgement = judge_table(profile, Task(KNIFE, long, LIMITS), SERVO)
     assert "reversal" in failed(judgement)
-    allowed = judge_table(profile, KNIFE, long, Limits(10.0, 30.0, 3000.0, reversal=True), SERVO)
+    allowed = judge_table(profile, Task(KNIFE, long, Limits(10.0, 30.0, 3000.0, reversal=True)), SERVO)
     assert value(allowed, "reversal") > 0.1
     assert "reversal" not in failed(allowed)
 
 
 def test_an_unstable_servo_and_a_broken_join_fail() -> None:
-    judgement = judge_table(SMOOTH, KNIFE, cut(), LIMITS, Servo(80.0, 0.7, 200.0, 0.008, 1.0))
+    judgement = judge_table(SMOOTH, Task(KNIFE, cut(), LIMITS), Servo(80.0, 0.7, 200.0, 0.008, 1.0))
     assert failed(judgement) == {"shear_zone_error"}
     assert [check.value for check in judgement.checks if check.name == "shear_zone_error"] == [None]
     table = SMOOTH.coefficients.copy()

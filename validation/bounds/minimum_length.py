@@ -16,10 +16,10 @@ from camwright.profiles.closed_forms.reach import in_time, least_acceleration, s
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
 from camwright.profiles.limits import Limits
-from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import assemble, baseline
 from camwright.profiles.servo import Servo
+from camwright.profiles.task import Task
 from camwright.validation.bounds.zone_search import ZoneSearch
 from camwright.validation.servo.response import servo_response, sync_error
 from camwright.validation.servo.simulation import simulate
@@ -104,7 +104,7 @@ def cut_length_eq10(transition: float, shear_zone: float, pitch: float, line_spe
     return sync_zone + line_speed / speed * (pitch - sync_zone)
 
 
-def physical(machine: Machine, cut: Cut, limits: Limits) -> MinimumCutLength:
+def physical(task: Task) -> MinimumCutLength:
     """Shortest cut length of a perfect axis: in sync in the shear zone alone, the fastest return beside it.
 
     Seen from the material the return is a motion from rest to rest over ``y_c - x_c``, at no more than ``v_max - v``;
@@ -116,16 +116,17 @@ def physical(machine: Machine, cut: Cut, limits: Limits) -> MinimumCutLength:
     InputError
         The shear zone is not shorter than the pitch.
     """
-    _require_room(machine, cut)
-    length = fastest_cut(machine, cut.line_speed, limits, cut.shear_zone)
+    cut = task.cut
+    _require_room(task)
+    length = fastest_cut(task.machine.pitch, cut.line_speed, task.limits, cut.shear_zone)
     gain = {
-        name: length - fastest_cut(machine, cut.line_speed, eased, cut.shear_zone)
-        for name, eased in _eased(limits).items()
+        name: length - fastest_cut(task.machine.pitch, cut.line_speed, eased, cut.shear_zone)
+        for name, eased in _eased(task.limits).items()
     }
     return MinimumCutLength(length, cut.shear_zone, 0.0, _greatest(gain))
 
 
-def linear_return_to_tolerance(machine: Machine, cut: Cut, limits: Limits, servo: Servo) -> MinimumCutLength:
+def linear_return_to_tolerance(task: Task, servo: Servo) -> MinimumCutLength:
     """Shortest cut length with the axis within tolerance in the whole shear zone: linear return.
 
     The shortest cycle of the linear return that some sync zone has and in which the axis, at every sampling phase,
@@ -139,7 +140,7 @@ def linear_return_to_tolerance(machine: Machine, cut: Cut, limits: Limits, servo
 
     Parameters
     ----------
-    machine, cut, limits, servo
+    task, servo
         Pitch; line speed, shear zone and sync tolerance; speed limit; servo. The cut's own lengths are not used.
 
     Raises
@@ -148,25 +149,25 @@ def linear_return_to_tolerance(machine: Machine, cut: Cut, limits: Limits, servo
         The shear zone is not shorter than the pitch, or the servo cannot be simulated
         (`camwright.validation.servo.simulation.simulate`).
     """
-    return _minimum(_Laws(machine, cut, limits, servo, "linear_return"))
+    return _minimum(_Laws(task, servo, "linear_return"))
 
 
-def optimised_to_tolerance(machine: Machine, cut: Cut, limits: Limits, servo: Servo) -> MinimumCutLength:
+def optimised_to_tolerance(task: Task, servo: Servo) -> MinimumCutLength:
     """Shortest cut length with the axis within tolerance in the whole shear zone: return of least acceleration.
 
     As `linear_return_to_tolerance`, with the return of the least peak acceleration within the limits of speed and
     jerk (`camwright.profiles.closed_forms.reach.least_acceleration`), from the shortest that the limits allow at all
     (`camwright.profiles.closed_forms.reach.shortest_return_length`) to ever gentler ones.
     """
-    return _minimum(_Laws(machine, cut, limits, servo, "least_acceleration"))
+    return _minimum(_Laws(task, servo, "least_acceleration"))
 
 
-def quintic_to_tolerance(machine: Machine, cut: Cut, limits: Limits, servo: Servo) -> MinimumCutLength:
+def quintic_to_tolerance(task: Task, servo: Servo) -> MinimumCutLength:
     """Shortest cut length with the axis within tolerance in the whole shear zone: polynomial 3-4-5 within the limits.
 
     As `linear_return_to_tolerance`.
     """
-    return _minimum(_Laws(machine, cut, limits, servo, "poly_3_4_5"))
+    return _minimum(_Laws(task, servo, "poly_3_4_5"))
 
 
 @dataclass(frozen=True)
@@ -176,59 +177,61 @@ class _Laws:
     ``relief`` is the part of the transition by which it may end late.
     """
 
-    machine: Machine
-    cut: Cut
-    limits: Limits
+    task: Task
     servo: Servo
     law: Law
     relief: float = 0.0
 
     def search(self, zone_resolution: float) -> ZoneSearch:
         """Search for the minimum cut length."""
-        pitch = self.machine.pitch
-        return ZoneSearch(self.cut, pitch, self.lower, self.holds, _FINE, _LENGTH_RESOLUTION, zone_resolution)
+        task = self.task
+        return ZoneSearch(
+            task.cut, task.machine.pitch, self.lower, self.holds, _FINE, _LENGTH_RESOLUTION, zone_resolution
+        )
 
     def lower(self, sync_zone: float) -> float:
         """Cut length of the shortest return beside a sync zone (m)."""
+        pitch, line_speed, limits = self.task.machine.pitch, self.task.cut.line_speed, self.task.limits
         if self.law == "linear_return":
-            return cut_length_eq10(sync_zone, 0.0, self.machine.pitch, self.cut.line_speed, self.limits.speed)
+            return cut_length_eq10(sync_zone, 0.0, pitch, line_speed, limits.speed)
         if self.law == "poly_3_4_5":
-            return _fastest_quintic_cut(self.machine, self.cut.line_speed, self.limits, sync_zone)
-        return fastest_cut(self.machine, self.cut.line_speed, self.limits, sync_zone)
+            return _fastest_quintic_cut(pitch, line_speed, limits, sync_zone)
+        return fastest_cut(pitch, line_speed, limits, sync_zone)
 
     def cycle(self, shape: Cut) -> CamProfile:
         """Cycle with the return of this search."""
+        machine = self.task.machine
         if self.law != "least_acceleration":
-            return baseline(self.law, self.machine, shape)
-        speed, acceleration, jerk = _over_master(self.limits, shape.line_speed)
-        rise, length = self.machine.pitch - shape.length, shape.return_zone
+            return baseline(self.law, machine, shape)
+        speed, acceleration, jerk = _over_master(self.task.limits, shape.line_speed)
+        rise, length = machine.pitch - shape.length, shape.return_zone
         # rounding may ask for a little more than the limit at the shortest return
         least = min(acceleration, least_acceleration(rise, length, speed - 1, jerk))
         motion = in_time(rise, length, speed - 1, least, jerk).profile()
-        return assemble(motion.over(0.0, length).add_line(1.0), self.machine, shape)
+        return assemble(motion.over(0.0, length).add_line(1.0), machine, shape)
 
     def holds(self, shape: Cut) -> bool:
         """Whether the axis is within tolerance in the whole shear zone at every phase."""
         profile = self.cycle(shape)
         run = simulate(profile, shape, self.servo)
         start = shape.shear_start + self.relief * shape.shear_zone_at
-        error = sync_error(run, profile, self.machine, shape, start, shape.length)[1]
-        return float(abs(error).max()) <= self.cut.sync_tolerance
+        error = sync_error(run, profile, self.task.with_cut(shape), start, shape.length)[1]
+        return float(abs(error).max()) <= self.task.cut.sync_tolerance
 
 
 def _minimum(laws: _Laws) -> MinimumCutLength:
     """Search the whole room, then once more about the answer with each quantity eased, to see what binds."""
-    machine, cut = laws.machine, laws.cut
-    _require_room(machine, cut)
-    if laws.limits.speed <= cut.line_speed:  # the knife cannot run ahead of the material
-        return MinimumCutLength(machine.pitch, machine.pitch, 0.0, "speed")
+    task, cut, pitch = laws.task, laws.task.cut, laws.task.machine.pitch
+    _require_room(task)
+    if task.limits.speed <= cut.line_speed:  # the knife cannot run ahead of the material
+        return MinimumCutLength(pitch, pitch, 0.0, "speed")
     search = laws.search(_ZONE_RESOLUTION)
     best, zone = search.find()
-    if zone == machine.pitch:
+    if zone == pitch:
         return MinimumCutLength(best, zone, 0.0, "settling")
     shape = search.shape(best, zone)
-    settling = servo_response(laws.cycle(shape), machine, shape, laws.servo).settling
-    eased = {name: replace(laws, limits=limits) for name, limits in _eased(laws.limits).items()}
+    settling = servo_response(laws.cycle(shape), task.with_cut(shape), laws.servo).settling
+    eased = {name: replace(laws, task=task.with_limits(limits)) for name, limits in _eased(task.limits).items()}
     eased["settling"] = replace(laws, relief=_RELAXATION)
     gain: dict[Binding, float] = {}
     for name, other in eased.items():
@@ -239,19 +242,19 @@ def _minimum(laws: _Laws) -> MinimumCutLength:
     return MinimumCutLength(best, zone, transition, _greatest(gain))
 
 
-def _fastest_quintic_cut(machine: Machine, line_speed: float, limits: Limits, sync_zone: float) -> float:
+def _fastest_quintic_cut(pitch: float, line_speed: float, limits: Limits, sync_zone: float) -> float:
     """Cut length of the fastest polynomial 3-4-5 within the limits, beside a sync zone (m).
 
     Seen from the material it rises by ``y_c - x_c`` over the return of length ``R``: its peaks are 15/8 of the mean ratio, ``10/sqrt(3)``
     and 60 of the rise over ``R²`` and ``R³``. The rise falls and the powers grow with ``R``, so one bisection finds where all limits hold.
     """
-    if limits.speed <= line_speed or sync_zone >= machine.pitch:
-        return machine.pitch
+    if limits.speed <= line_speed or sync_zone >= pitch:
+        return pitch
     speed, acceleration, jerk = _over_master(limits, line_speed)
-    low, high = 0.0, machine.pitch - sync_zone
-    while high - low > _LENGTH_RESOLUTION * machine.pitch:
+    low, high = 0.0, pitch - sync_zone
+    while high - low > _LENGTH_RESOLUTION * pitch:
         length = 0.5 * (low + high)
-        rise = machine.pitch - sync_zone - length
+        rise = pitch - sync_zone - length
         shares = (
             15 / 8 * rise / length / (speed - 1),
             10 / 3**0.5 * rise / length**2 / acceleration,
@@ -262,11 +265,11 @@ def _fastest_quintic_cut(machine: Machine, line_speed: float, limits: Limits, sy
 
 
 @lru_cache(maxsize=256)  # the cut length has no part in it: all cuts of a book at one line speed ask the same
-def fastest_cut(machine: Machine, line_speed: float, limits: Limits, sync_zone: float) -> float:
-    """Cut length of the fastest return within the limits, beside a sync zone (m)."""
-    if limits.speed <= line_speed or sync_zone >= machine.pitch:  # no running ahead, or no need to
-        return machine.pitch
-    return sync_zone + shortest_return_length(machine.pitch - sync_zone, *_over_master(limits, line_speed))
+def fastest_cut(pitch: float, line_speed: float, limits: Limits, sync_zone: float) -> float:
+    """Cut length of the fastest return within the limits, beside a sync zone, of a knife with a pitch (m)."""
+    if limits.speed <= line_speed or sync_zone >= pitch:  # no running ahead, or no need to
+        return pitch
+    return sync_zone + shortest_return_length(pitch - sync_zone, *_over_master(limits, line_speed))
 
 
 def _over_master(limits: Limits, line_speed: float) -> tuple[float, float, float]:
@@ -288,9 +291,9 @@ def _greatest(gain: dict[Binding, float]) -> Binding:
     return max(gain, key=lambda name: gain[name])
 
 
-def _require_room(machine: Machine, cut: Cut) -> None:
-    if not cut.shear_zone < machine.pitch:
+def _require_room(task: Task) -> None:
+    if not task.cut.shear_zone < task.machine.pitch:
         raise InputError(
-            f"the shear zone of {cut.shear_zone!r} m is not shorter than the slave travel per cycle of "
-            f"{machine.pitch!r} m, so there is no room for a return; shorten the shear zone"
+            f"the shear zone of {task.cut.shear_zone!r} m is not shorter than the slave travel per cycle of "
+            f"{task.machine.pitch!r} m, so there is no room for a return; shorten the shear zone"
         )

@@ -18,13 +18,11 @@ from camwright.profiles.closed_forms.overshoot import shortest_stop
 from camwright.profiles.closed_forms.reach import least_acceleration, least_jerk
 from camwright.profiles.closed_forms.softest import softest
 from camwright.profiles.closed_forms.transfer import Bounds
-from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
 from camwright.profiles.limits import Limits
-from camwright.profiles.machines import Machine
 from camwright.profiles.objective import OBJECTIVES, ObjectiveName
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
-from camwright.profiles.returns import is_straight
+from camwright.profiles.task import Task
 from camwright.validation.bounds.quadratic import multipliers
 
 INTERVALS = 140
@@ -61,7 +59,7 @@ class _Return:
     jerk: float
 
 
-def lower_bound(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits, objective: ObjectiveName) -> Bound:
+def lower_bound(profile: CamProfile, task: Task, objective: ObjectiveName) -> Bound:
     """Lower bound of what any return of this job can reach.
 
     Bounds are known where the slave's ratio is constant in sync: then the return is a straight line plus a motion from rest to rest. Of the
@@ -71,7 +69,7 @@ def lower_bound(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits,
     ----------
     profile
         One cycle over ``[0, x_c]``. Where the bound is the dual's, its grid holds this profile's breaks; that makes it the sharper.
-    machine, cut, limits
+    task
         The job.
     objective
         ``"peak_acceleration"``, ``"rms_acceleration"``, ``"peak_jerk"`` or ``"rms_jerk"``; root mean squares over the return zone. Or
@@ -83,24 +81,25 @@ def lower_bound(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits,
     InputError
         The objective is not one of these.
     """
+    machine, cut = task.machine, task.cut
     if objective not in OBJECTIVES:
         raise InputError(f"there is no objective {objective!r}; the objectives are {', '.join(OBJECTIVES)}")
-    if not is_straight(machine, cut) or objective in ("energy", "sync_error"):
+    if not task.straight or objective in ("energy", "sync_error"):
         return Bound(math.nan, NONE)
     if objective in ("rms_torque", "peak_torque"):
-        return _torque_bound(profile, machine, cut, limits, objective)
+        return _torque_bound(profile, task, objective)
     length, v = cut.return_zone, cut.line_speed
-    ratio = float(machine.sync_profile(cut)(0.0, 1))
+    ratio = float(task.sync(0.0, 1))
     height = machine.pitch - ratio * cut.length  # of the motion over the line that sync zone and return zone share
     time = length / v
     if machine.guide is not None:
         low, high = machine.guide
-        room = 0.5 * (high - low - machine.sync_profile(cut).advance)
-        way = machine.sync_profile(cut).advance
-        braking = Bound(_braking(ratio * v, room, way, time, limits, objective), BRAKING)
-        free = _free_bound(profile, machine, cut, limits, objective, height)
+        room = 0.5 * (high - low - task.sync.advance)
+        way = task.sync.advance
+        braking = Bound(_braking(ratio * v, room, way, time, task.limits, objective), BRAKING)
+        free = _free_bound(profile, task, objective, height)
         return braking if braking.value > free.value else free
-    return _free_bound(profile, machine, cut, limits, objective, height)
+    return _free_bound(profile, task, objective, height)
 
 
 def _braking(velocity: float, room: float, way: float, time: float, limits: Limits, objective: ObjectiveName) -> float:
@@ -149,17 +148,15 @@ def _softest_turns(velocity: float, room: float, way: float, time: float) -> flo
     return float((2 * turn + 12 * (way + 2 * d) ** 2 / rest**3).min()) * (1 - ROUNDING)
 
 
-def _free_bound(
-    profile: CamProfile, machine: Machine, cut: Cut, limits: Limits, objective: ObjectiveName, height: float
-) -> Bound:
+def _free_bound(profile: CamProfile, task: Task, objective: ObjectiveName, height: float) -> Bound:
     """Bound without the stroke, of a motion over the line that covers a height."""
+    cut, limits = task.cut, task.limits
     length, v = cut.return_zone, cut.line_speed
-    ratio = float(machine.sync_profile(cut)(0.0, 1))
+    ratio = float(task.sync(0.0, 1))
     time = length / v
     if abs(height) <= 1e-13 * length:
         return Bound(0.0, CLOSED_FORM)
-    least = -limits.speed if machine.turns_back else limits.least_velocity
-    up, down = limits.speed - ratio * v, ratio * v - least
+    up, down = limits.speed - ratio * v, ratio * v - task.least_velocity
     speed = up if height > 0 else down
     if objective == "peak_acceleration":
         return Bound(least_acceleration(abs(height), time, speed, limits.jerk), CLOSED_FORM)
@@ -183,23 +180,24 @@ def _free_bound(
     return Bound(math.sqrt(max(0.0, _dual_bound(scaled, job))) * unit, DUAL)
 
 
-def _torque_bound(profile: CamProfile, machine: Machine, cut: Cut, limits: Limits, objective: ObjectiveName) -> Bound:
+def _torque_bound(profile: CamProfile, task: Task, objective: ObjectiveName) -> Bound:
     """Bound of a torque at the motor where the inertia ``I`` is constant, as it is where the slave's ratio in sync is.
 
     The mean of ``ÿ sign(ẏ)`` over a closed cycle is zero, so the mean square of the force is ``I²`` times that of the acceleration, plus
     ``F²`` times the share of the cycle in which the slave moves: at least the sync zone and the way back at the speed limit.
     """
+    machine, cut = task.machine, task.cut
     if not (machine.moves_something and machine.constant_inertia) or (
         objective == "peak_torque" and machine.friction > 0
     ):
         return Bound(math.nan, NONE)
     peak = objective == "peak_torque"
-    motion = lower_bound(profile, machine, cut, limits, "peak_acceleration" if peak else "rms_acceleration")
+    motion = lower_bound(profile, task, "peak_acceleration" if peak else "rms_acceleration")
     inertial = float(machine.inertia(0.0)) * motion.value / machine.motor_ratio
     if peak:
         return Bound(inertial, motion.method)
-    way = abs(machine.pitch - machine.sync_profile(cut).advance)
-    moving = min(1.0, (cut.sync_zone + cut.line_speed * way / limits.speed) / cut.length)
+    way = abs(task.height)
+    moving = min(1.0, (cut.sync_zone + cut.line_speed * way / task.limits.speed) / cut.length)
     friction = machine.friction / machine.motor_ratio
     return Bound(
         math.hypot(inertial * math.sqrt(cut.return_zone / cut.length), friction * math.sqrt(moving)), motion.method

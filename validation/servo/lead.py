@@ -6,10 +6,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from camwright.profiles.cut import Cut
-from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.servo import Servo, mean_lag
+from camwright.profiles.task import Task
 from camwright.validation.motion import require_period
 from camwright.validation.servo.response import shear_zone_error
 from camwright.validation.servo.side_by_side import sampled_plants, shear_zone_run
@@ -45,14 +44,14 @@ class LengthError:
     offset_with_lead: float
 
 
-def length_errors(profile: CamProfile, machine: Machine, cut: Cut, servo: Servo) -> tuple[LengthError, ...]:
+def length_errors(profile: CamProfile, task: Task, servo: Servo) -> tuple[LengthError, ...]:
     """Predict where the cut falls when the line runs slower: the same cam over the master, slower in time.
 
     Parameters
     ----------
     profile
         One cycle over the master period ``[0, x_c]``.
-    machine, cut
+    task
         As in `camwright.validation.servo.response.servo_response`.
     servo
         The servo, its dead time and lead included.
@@ -67,14 +66,15 @@ def length_errors(profile: CamProfile, machine: Machine, cut: Cut, servo: Servo)
     InputError
         The profile does not run over ``[0, x_c]``, or the servo is unstable or its memory too long to simulate.
     """
+    cut = task.cut
     require_period(profile, cut)
     servos = (servo, replace(servo, lead_time=mean_lag(servo)))
     plants, past = sampled_plants(servos), memory(servo.loop)
     found = []
     for share in SHARES:
-        slower = replace(cut, line_speed=share * cut.line_speed)
-        run = shear_zone_run(profile, slower, servos, plants, past)
-        master, error, slope = shear_zone_error(run, profile, machine, slower)
+        slower = task.at_speed(share * cut.line_speed)
+        run = shear_zone_run(profile, slower.cut, servos, plants, past)
+        master, error, slope = shear_zone_error(run, profile, slower)
         # mean of the cubics between the points, 0 wide where a row is filled up
         step = np.diff(master, axis=1)
         area = 0.5 * step * (error[:, :-1] + error[:, 1:]) + step**2 / 12 * (slope[:, :-1] - slope[:, 1:])
@@ -82,5 +82,5 @@ def length_errors(profile: CamProfile, machine: Machine, cut: Cut, servo: Servo)
         mean = area.sum(axis=1) / width if cut.shear_zone > 0 else error[:, 0]
         late = -mean.reshape(len(servos), PHASES)
         offset, with_lead = late.mean(axis=1).tolist()
-        found.append(LengthError(share, slower.line_speed, offset, float(np.ptp(late[0])), with_lead))
+        found.append(LengthError(share, slower.cut.line_speed, offset, float(np.ptp(late[0])), with_lead))
     return tuple(found)

@@ -7,10 +7,9 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from camwright.profiles.cut import Cut
-from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.servo import Servo
+from camwright.profiles.task import Task
 from camwright.validation.motion import require_period
 from camwright.validation.servo.lifting import SUBSTEPS
 from camwright.validation.servo.response import shear_zone_error
@@ -21,7 +20,7 @@ _VALUES = 2**17
 """Command values that are held at a time."""
 
 
-def shear_zone_errors(profile: CamProfile, machine: Machine, cut: Cut, servos: Sequence[Servo]) -> FloatArray:
+def shear_zone_errors(profile: CamProfile, task: Task, servos: Sequence[Servo]) -> FloatArray:
     """Greatest sync error in the shear zone of every servo, over all sampling phases.
 
     The figure of `camwright.validation.servo.response.ServoResponse.shear_zone_error`, of many servos: nothing but the servo's memory
@@ -32,7 +31,7 @@ def shear_zone_errors(profile: CamProfile, machine: Machine, cut: Cut, servos: S
     ----------
     profile
         One cycle over the master period ``[0, x_c]``.
-    machine, cut
+    task
         As in `camwright.validation.servo.response.servo_response`.
     servos
         The servos, e.g. of `camwright.profiles.servo_tolerance.ServoTolerance.draw`.
@@ -47,7 +46,7 @@ def shear_zone_errors(profile: CamProfile, machine: Machine, cut: Cut, servos: S
     InputError
         The profile does not run over ``[0, x_c]``, or the memory of a servo is too long to simulate.
     """
-    require_period(profile, cut)
+    require_period(profile, task.cut)
     found = np.full(len(servos), np.inf)
     if not len(servos):
         return found
@@ -56,8 +55,8 @@ def shear_zone_errors(profile: CamProfile, machine: Machine, cut: Cut, servos: S
     past = np.array([memory_at(radius) if radius < 1.0 else 0 for radius in radii.tolist()])
     for group in _groups(past):
         chosen = [servos[i] for i in group.tolist()]
-        run = shear_zone_run(profile, cut, chosen, plants[:, group], int(past[group[0]]))
-        error = shear_zone_error(run, profile, machine, cut)[1]
+        run = shear_zone_run(profile, task.cut, chosen, plants[:, group], int(past[group[0]]))
+        error = shear_zone_error(run, profile, task)[1]
         found[group] = np.abs(error).reshape(len(group), -1).max(axis=1)
     return found
 

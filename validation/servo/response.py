@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from camwright.profiles.cut import Cut
 from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
-from camwright.profiles.returns import slave_zero
 from camwright.profiles.servo import Servo
+from camwright.profiles.task import Task
 from camwright.validation.servo.simulation import (
     AxisRun,
     ServoRun,
@@ -70,19 +70,15 @@ class ServoResponse:
     phases: int
 
 
-def servo_response(
-    profile: CamProfile, machine: Machine, cut: Cut, servo: Servo, tolerance: float | None = None
-) -> ServoResponse:
+def servo_response(profile: CamProfile, task: Task, servo: Servo, tolerance: float | None = None) -> ServoResponse:
     """Simulate the servo on a profile and measure its response.
 
     Parameters
     ----------
     profile
         One cycle over the master period ``[0, x_c]``.
-    machine
-        The machine; it says what the ideal sync line is.
-    cut
-        Cut length, line speed and zones.
+    task
+        The machine, which says what the ideal sync line is, and the cut.
     servo
         The servo.
     tolerance
@@ -93,15 +89,14 @@ def servo_response(
     InputError
         As `camwright.validation.servo.simulation.simulate`.
     """
-    return measure_response(simulate(profile, cut, servo), profile, machine, cut, tolerance)
+    return measure_response(simulate(profile, task.cut, servo), profile, task, tolerance)
 
 
-def measure_response(
-    run: ServoRun, profile: CamProfile, machine: Machine, cut: Cut, tolerance: float | None = None
-) -> ServoResponse:
+def measure_response(run: ServoRun, profile: CamProfile, task: Task, tolerance: float | None = None) -> ServoResponse:
     """Measure a simulated response; arguments as in `servo_response`."""
+    cut = task.cut
     start = cut.return_start + cut.return_zone  # counted on like AxisRun.master
-    part = _in_sync(run, profile, machine, cut, start, start + cut.sync_zone)
+    part = _in_sync(run, profile, task, start, start + cut.sync_zone)
     distance, error = part.master - start, part.error()
     crossing, overshoot = _crossing(distance, error, part.slope, ON_THE_LINE * cut.length)
     settling = _settling(distance, error, part.slope, cut.sync_tolerance if tolerance is None else tolerance)
@@ -109,14 +104,14 @@ def measure_response(
         crossing=crossing,
         settling=settling,
         overshoot=overshoot,
-        peak_following_error=_peak_following_error(run, profile, machine, cut),
-        shear_zone_error=peak_shear_zone_error(run, profile, machine, cut),
+        peak_following_error=_peak_following_error(run, profile, task),
+        shear_zone_error=peak_shear_zone_error(run, profile, task),
         phases=run.phases,
     )
 
 
 def sync_error(
-    run: AxisRun, profile: CamProfile, machine: Machine, cut: Cut, start: float, end: float
+    run: AxisRun, profile: CamProfile, task: Task, start: float, end: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Tool minus ideal sync line in a part of the sync zone, for every sampling phase.
 
@@ -134,7 +129,7 @@ def sync_error(
     (master, error, slope)
         Master position (m), error (m) and its derivative over the master; shapes ``(phases, n)``.
     """
-    part = _in_sync(run, profile, machine, cut, start, end)
+    part = _in_sync(run, profile, task, start, end)
     return part.master, part.error(), part.slope()
 
 
@@ -172,29 +167,28 @@ class _InSync:
         return np.asarray(moves - self.machine.tool_ratio(self.ideal[at]) * self.sync(self.along[at], 1))
 
 
-def _in_sync(run: AxisRun, profile: CamProfile, machine: Machine, cut: Cut, start: float, end: float) -> _InSync:
+def _in_sync(run: AxisRun, profile: CamProfile, task: Task, start: float, end: float) -> _InSync:
     """Put the axis beside the ideal sync line; arguments as in `sync_error`."""
+    cut = task.cut
     zone = cut.return_start + cut.return_zone
-    sync = machine.sync_profile(cut)
+    sync = task.sync
     master, axis, ratio = run.window(start, end)
     along = np.minimum(np.maximum(master - zone, sync.start), sync.end)
     travel = sync(along)
-    met = machine.pitch if cut.shaped else float(profile(profile.end))
+    met = task.machine.pitch if cut.shaped else float(profile(profile.end))
     line = travel + (met - float(sync(min(max(cut.length - zone, sync.start), sync.end))))
-    ideal = machine.sync_start(cut) + travel
-    return _InSync(machine, sync, master, along, ideal, ideal + (axis - line), ratio)
+    ideal = task.slave_at_sync_start + travel
+    return _InSync(task.machine, sync, master, along, ideal, ideal + (axis - line), ratio)
 
 
-def shear_zone_error(
-    run: AxisRun, profile: CamProfile, machine: Machine, cut: Cut
-) -> tuple[FloatArray, FloatArray, FloatArray]:
+def shear_zone_error(run: AxisRun, profile: CamProfile, task: Task) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Sync error in the shear zone; as `sync_error`."""
-    return sync_error(run, profile, machine, cut, *_shear_zone(cut))
+    return sync_error(run, profile, task, *_shear_zone(task.cut))
 
 
-def peak_shear_zone_error(run: AxisRun, profile: CamProfile, machine: Machine, cut: Cut) -> float:
+def peak_shear_zone_error(run: AxisRun, profile: CamProfile, task: Task) -> float:
     """Greatest magnitude of the sync error in the shear zone, at every sampling phase (m); arguments as in `sync_error`."""
-    return float(np.abs(_in_sync(run, profile, machine, cut, *_shear_zone(cut)).error()).max())
+    return float(np.abs(_in_sync(run, profile, task, *_shear_zone(task.cut)).error()).max())
 
 
 def _shear_zone(cut: Cut) -> tuple[float, float]:
@@ -204,16 +198,17 @@ def _shear_zone(cut: Cut) -> tuple[float, float]:
     return start, min(start + cut.shear_zone, zone + cut.sync_zone)
 
 
-def _peak_following_error(run: ServoRun, profile: CamProfile, machine: Machine, cut: Cut) -> float:
+def _peak_following_error(run: ServoRun, profile: CamProfile, task: Task) -> float:
     """Greatest magnitude of command minus axis; for a slave in rad at the tool (m).
 
     The tool of a slave that is off by ``e`` is off by at most the greatest lever times ``e``, so it is computed only where that may be
     the greatest.
     """
+    machine = task.machine
     off = np.abs(run.command - run.axis)
     if machine.slave_unit == "m":
         return float(off.max())
-    start = slave_zero(profile, machine, cut)
+    start = task.slave_zero(profile)
 
     def at_tool(at: _Index) -> FloatArray:
         return np.asarray(np.abs(machine.tool(start + run.command[at]) - machine.tool(start + run.axis[at])))

@@ -5,10 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from itertools import product
 
-from camwright.profiles.cut import Cut
-from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.servo import PAPER_RANGES, Servo, spectral_radius
+from camwright.profiles.task import Task
 from camwright.validation.servo.response import ServoResponse, servo_response
 
 
@@ -66,19 +65,19 @@ def sweep_servos(servo: Servo) -> tuple[Servo, ...]:
     return tuple(replace(servo, **dict(zip(names, point, strict=True))) for point in points)
 
 
-def servo_sweep(profile: CamProfile, machine: Machine, cut: Cut, servo: Servo) -> Sweep:
+def servo_sweep(profile: CamProfile, task: Task, servo: Servo) -> Sweep:
     """Simulate the profile on every servo of the published ranges.
 
     Parameters
     ----------
-    profile, machine, cut
+    profile, task
         As in `camwright.validation.servo.response.servo_response`.
     servo
         Gives what no range is published for.
     """
     return Sweep(
         tuple(
-            SweepCase(each, servo_response(profile, machine, cut, each) if spectral_radius(each) < 1.0 else None)
+            SweepCase(each, servo_response(profile, task, each) if spectral_radius(each) < 1.0 else None)
             for each in sweep_servos(servo)
         )
     )

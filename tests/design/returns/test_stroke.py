@@ -133,6 +133,6 @@ def test_a_way_back_without_a_forward_part_is_no_way_to_a_lower_peak() -> None:
     cut = Cut(0.704980846682741, 1.1821578129602466, 0.01793840619453351, 0.0035876812389, 0.01435072495563, 1e-3)
     limits = Limits(1.5628178544773472, 65.94676435257745, 1340.5896721788567)
     found = solve(Task(saw, cut, limits), "peak_jerk")
-    bound = lower_bound(found.profile, saw, cut, limits, "peak_jerk")
+    bound = lower_bound(found.profile, Task(saw, cut, limits), "peak_jerk")
     assert found.status.name == "OPTIMAL"
     assert bound.value <= found.minimised <= 1.01 * bound.value

@@ -67,7 +67,7 @@ def test_errors_in_the_shear_zone_are_those_of_the_simulation(name: str, command
         placed = replace(cut, origin=origin)
         own = profile if origin == "return" else from_mid_sync(profile, machine, cut)
         run = simulate(own, placed, servo)
-        simulated = np.abs(shear_zone_error(run, own, machine, placed)[1]).max()
+        simulated = np.abs(shear_zone_error(run, own, Task(machine, placed, FREE))[1]).max()
         # a spline bent at random: the simulation's cubics between its points add to what is in common
         assert found == pytest.approx(simulated, abs=2e-7 if origin == "cut" else 2e-8)
     assert len(places) == len(times) == len(errors)
@@ -152,6 +152,6 @@ def test_a_shear_zone_between_two_steps_of_the_grid_is_seen_at_its_ends() -> Non
     assert len(errors) >= 32
     assert np.unique(places).size <= 3
     shaped = replace(cut, shaped=True)
-    simulated = shear_zone_error(simulate(profile, shaped, PAPER), profile, machine, shaped)[1]
+    simulated = shear_zone_error(simulate(profile, shaped, PAPER), profile, Task(machine, shaped, FREE))[1]
     assert np.abs(errors).max() == pytest.approx(np.abs(simulated).max(), abs=2e-8)
     assert np.all((times >= 0) & (times < PAPER.sample_time))

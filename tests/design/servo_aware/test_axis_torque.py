@@ -38,7 +38,7 @@ COSTS: tuple[MotorObjective, ...] = ("rms_torque", "peak_torque", "energy")
 
 
 def at_the_motor(machine: Machine, cut: Cut, profile: CamProfile, cost: MotorObjective) -> float:
-    return float(getattr(measure_motor(profile, machine, cut), cost))
+    return float(getattr(measure_motor(profile, Task(machine, cut, LIMITS)), cost))
 
 
 @pytest.mark.parametrize("command", ["in_sync", "shaped"])
@@ -86,7 +86,7 @@ def test_a_shaped_design_needs_less_than_designs_for_the_motion(cost: MotorObjec
     for other in others:
         values = np.stack([other.profile(x, order) for order in range(3)])
         assert mixed(1e-3, values) >= here * (1 - (1e-5 if cost != "peak_torque" else 5e-3))
-    report = validate(found.profile, CRANK, cut, LIMITS, STIFF, sweep=False, servo_aware=True)
+    report = validate(found.profile, Task(CRANK, cut, LIMITS), STIFF, sweep=False, servo_aware=True)
     assert [check.name for check in report.checks if not check.passed] == []
 
 

@@ -197,10 +197,10 @@ def test_every_machine_keeps_limits_closure_and_tolerance(
     assert axis is not None
     assert profile.advance == pytest.approx(machine.pitch, abs=1e-12)
     assert keeps_limits(profile, limits, cut.line_speed, back=machine.turns_back)
-    simulated = servo_response(profile, machine, cut, servo).shear_zone_error
+    simulated = servo_response(profile, Task(machine, cut, LIMITS), servo).shear_zone_error
     assert axis.errors[0] == pytest.approx(simulated, abs=1e-9)
     assert simulated <= cut.sync_tolerance
-    report = validate(profile, machine, cut, limits, servo, sweep=False, servo_aware=True)
+    report = validate(profile, Task(machine, cut, limits), servo, sweep=False, servo_aware=True)
     failed = {check.name for check in report.checks if not check.passed}
     assert failed <= (set() if axis.axis_limits else {"axis_speed", "axis_acceleration", "axis_reversal"})
 
@@ -211,7 +211,7 @@ def test_with_dead_time_and_lead_the_prediction_is_the_simulation(command: Comma
     cut = replace(CUT, shaped=command == "shaped")
     solution = solve_axis(Task(KNIFE, cut, LIMITS), "sync_error", command, (servo,))
     assert solution.axis is not None
-    simulated = servo_response(solution.profile, KNIFE, cut, servo).shear_zone_error
+    simulated = servo_response(solution.profile, Task(KNIFE, cut, LIMITS), servo).shear_zone_error
     assert solution.axis.error == pytest.approx(simulated, abs=1e-9)
     if command == "shaped":  # makes up for what no command in sync can
         assert simulated < 1e-6
@@ -248,11 +248,11 @@ def test_random_knife_jobs_end_in_a_design_that_holds_or_in_a_way_out(
     axis = solution.axis
     assert axis is not None
     assert keeps_limits(solution.profile, LIMITS, v, back=False)
-    simulated = servo_response(solution.profile, KNIFE, cut, servo).shear_zone_error
+    simulated = servo_response(solution.profile, Task(KNIFE, cut, LIMITS), servo).shear_zone_error
     assert axis.errors[0] == pytest.approx(simulated, abs=1e-9)
     if cost != "sync_error":
         assert simulated <= tolerance
-    report = validate(solution.profile, KNIFE, cut, LIMITS, servo, sweep=False, servo_aware=True)
+    report = validate(solution.profile, Task(KNIFE, cut, LIMITS), servo, sweep=False, servo_aware=True)
     names = {check.name for check in report.checks if not check.passed}
     allowed = {"shear_zone_error"} if cost == "sync_error" else set()
     assert names <= (allowed if axis.axis_limits else allowed | {"axis_speed", "axis_acceleration", "axis_reversal"})

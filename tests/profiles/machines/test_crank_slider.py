@@ -111,7 +111,7 @@ def test_carriage_moves_with_the_material_on_200_random_cranks() -> None:
         angle = start + sync(x)
         assert np.abs(crank.tool(angle) - crank.tool(start) - cut.sync_ratio * x).max() <= 1e-12 * crank.stroke
         assert np.abs(crank.tool_ratio(angle) * sync(x, 1) / cut.sync_ratio - 1).max() <= 1e-9
-        assert sync_ratio_error(cycle, crank, cut).value <= 1e-9
+        assert sync_ratio_error(cycle, Task(crank, cut, LIMITS)).value <= 1e-9
         # the middle of the zone is where it was asked for
         middle = crank.tool(start) + 0.5 * cut.sync_ratio * cut.sync_zone
         assert crank.tool(crank.sync_at) == pytest.approx(middle, abs=1e-12)
@@ -120,8 +120,8 @@ def test_carriage_moves_with_the_material_on_200_random_cranks() -> None:
 def test_a_sync_zone_at_the_wrong_place_is_found_out() -> None:
     crank = replace(CRANK, sync_at=1.4)
     cycle = baseline("poly_3_4_5", crank, CUT)
-    assert sync_ratio_error(cycle, crank, CUT).value <= 1e-12
-    assert sync_ratio_error(cycle, replace(crank, sync_at=1.5), CUT).value > 1e-3
+    assert sync_ratio_error(cycle, Task(crank, CUT, LIMITS)).value <= 1e-12
+    assert sync_ratio_error(cycle, Task(replace(crank, sync_at=1.5), CUT, LIMITS)).value > 1e-3
 
 
 def test_cycles_of_both_origins_are_the_same_motion() -> None:
@@ -141,10 +141,10 @@ def test_the_designed_crank_never_turns_back_and_is_in_sync(objective: str) -> N
     assert least < found.machine.sync_at < greatest
     assert found.profile.extrema(1)[0].value >= 0.0
     assert found.profile.advance == pytest.approx(2 * math.pi, rel=1e-13)
-    assert sync_ratio_error(found.profile, found.machine, CUT).value <= 1e-9
+    assert sync_ratio_error(found.profile, Task(found.machine, CUT, LIMITS)).value <= 1e-9
     if objective == "rms_torque":  # at least 15 % below the table of S3 made from a quintic return
-        table = measure_motor(baseline("crank_tabulated", found.machine, CUT), found.machine, CUT)
-        assert measure_motor(found.profile, found.machine, CUT).rms_torque <= 0.85 * table.rms_torque
+        table = measure_motor(baseline("crank_tabulated", found.machine, CUT), Task(found.machine, CUT, LIMITS))
+        assert measure_motor(found.profile, Task(found.machine, CUT, LIMITS)).rms_torque <= 0.85 * table.rms_torque
 
 
 def test_a_place_not_chosen_yet_is_refused() -> None:

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
+from camwright.profiles.limits import Limits
 from camwright.profiles.machines import (
     CrankSlider,
     LinearCarriage,
@@ -19,7 +20,11 @@ from camwright.profiles.machines import (
     RotaryKnife,
 )
 from camwright.profiles.returns import baseline, slave_at_start
+from camwright.profiles.task import Task
 from camwright.validation.motion import sync_ratio_error
+
+FREE = Limits(math.inf, math.inf, math.inf)
+"""Nothing here asks for limits."""
 
 CUT = Cut(0.9, 1.0, 0.1, 0.02, 0.07, 2e-4)
 MACHINES = (
@@ -36,7 +41,7 @@ def test_the_tool_moves_with_the_material_in_every_cycle(machine: Machine, ratio
     for origin in ("return", "cut"):
         cut = replace(CUT, sync_ratio=ratio, origin=origin)
         cycle = baseline("poly_3_4_5", machine, cut)
-        assert sync_ratio_error(cycle, machine, cut).value <= 1e-9
+        assert sync_ratio_error(cycle, Task(machine, cut, FREE)).value <= 1e-9
         # by hand: the tool's travel over both ends of the zone; the next pitch is the next blade
         start, end = cut.sync_parts[-1]
         y = slave_at_start(machine, cut) - machine.pitch + cycle(np.linspace(start, end, 51))
@@ -75,7 +80,7 @@ def test_horizontal_sync_is_exact(circumference: float, share: float, ratio: flo
     angle = (knife.sync_start(cut) + sync(np.linspace(0.0, zone, 201))) / knife.radius
     # the blade's horizontal speed over the line's
     assert np.abs(np.cos(angle) * sync(np.linspace(0.0, zone, 201), 1) / ratio - 1).max() <= 1e-9
-    assert sync_ratio_error(baseline("poly_3_4_5", knife, cut), knife, cut).value <= 1e-9
+    assert sync_ratio_error(baseline("poly_3_4_5", knife, cut), Task(knife, cut, FREE)).value <= 1e-9
     assert angle[-1] == pytest.approx(-angle[0], abs=1e-13)
     assert sync.advance == pytest.approx(2 * knife.radius * math.asin(ratio * zone / 2 / knife.radius), rel=1e-13)
 
@@ -88,7 +93,7 @@ def test_tangential_mismatch_is_what_horizontal_sync_makes_good() -> None:
     horizontal = replace(knife, sync="horizontal")
     tangential = baseline("poly_3_4_5", knife, cut)
     # judged as a horizontal knife, the tangential cycle is off by the mismatch at the ends of the zone
-    assert sync_ratio_error(tangential, horizontal, cut).value == pytest.approx(
+    assert sync_ratio_error(tangential, Task(horizontal, cut, FREE)).value == pytest.approx(
         knife.tangential_mismatch(cut), rel=1e-9
     )
 

@@ -35,7 +35,7 @@ KNIFE = RotaryKnife(0.4, gear_ratio=3.0, drum_inertia=0.02)
 @pytest.mark.parametrize("objective", ["peak_acceleration", "rms_acceleration", "peak_jerk", "rms_jerk"])
 def test_designs_reach_the_bound_with_over_speed(machine: Machine, objective: str) -> None:
     found = solve(Task(machine, CUT, LIMITS), objective)
-    bound = lower_bound(found.profile, machine, CUT, LIMITS, objective)
+    bound = lower_bound(found.profile, Task(machine, CUT, LIMITS), objective)
     assert bound.value <= found.minimised * (1 + 1e-9)
     assert bound.value == pytest.approx(found.minimised, rel=1e-3)
 
@@ -43,7 +43,7 @@ def test_designs_reach_the_bound_with_over_speed(machine: Machine, objective: st
 def test_a_stroke_leaves_the_bound_below() -> None:
     narrow, limits = replace(WIDE, stroke=0.25), Limits(200 / 60, 200.0, 60_000.0)
     found = solve(Task(narrow, CUT, limits), "rms_acceleration")
-    bound = lower_bound(found.profile, narrow, CUT, limits, "rms_acceleration")
+    bound = lower_bound(found.profile, Task(narrow, CUT, limits), "rms_acceleration")
     assert 0.0 < bound.value < 0.999 * found.minimised
 
 
@@ -53,7 +53,7 @@ def test_a_long_cut_is_as_good_as_braking_within_the_stroke_allows(objective: Co
     saw = LinearCarriage(1.2)
     cut, limits = Cut(length, 0.5, 0.7, 0.4, 0.2, 2e-4), Limits(100 / 60, 6.0, 200.0)
     found = solve(Task(saw, cut, limits), objective)
-    bound = lower_bound(found.profile, saw, cut, limits, objective)
+    bound = lower_bound(found.profile, Task(saw, cut, limits), objective)
     assert bound.value <= found.minimised * (1 + 1e-9)
     if length == 7.0:  # there is time to spare: braking is all that counts
         assert bound.method == "closed form, braking within the stroke"
@@ -71,7 +71,7 @@ def test_a_wide_stroke_raises_no_bound_above_a_design(
     saw, cut = LinearCarriage(stroke), Cut(length, 0.5, zone, 0.2 * zone, 0.8 * zone, 1e-3)
     limits = Limits(100.0, 1e5, 1e8)
     found = solve(Task(saw, cut, limits), objective)
-    bound = lower_bound(found.profile, saw, cut, limits, objective)
+    bound = lower_bound(found.profile, Task(saw, cut, limits), objective)
     assert bound.value <= found.minimised * (1 + 1e-9)
     assert bound.value >= 0.9 * found.minimised
 
@@ -80,7 +80,9 @@ def test_no_room_to_turn_round_in_has_no_bound_below_infinity() -> None:
     # such a job has no design; a cycle of a longer stroke may still be held against it
     saw, cut, limits = LinearCarriage(1.2), Cut(3.0, 0.5, 0.7, 0.4, 0.2, 2e-4), Limits(100 / 60, 6.0, 200.0)
     found = solve(Task(saw, cut, limits), "peak_acceleration")
-    assert lower_bound(found.profile, replace(saw, stroke=0.7), cut, limits, "peak_acceleration").value == math.inf
+    assert (
+        lower_bound(found.profile, Task(replace(saw, stroke=0.7), cut, limits), "peak_acceleration").value == math.inf
+    )
 
 
 @settings(deadline=None, max_examples=8)
@@ -91,17 +93,17 @@ def test_no_baseline_has_less_torque_than_the_bound(friction: float, length: flo
     open_limits = Limits(100.0, 1e5, 1e8, reversal=True)
     for name in ("poly_3_4_5", "cycloid", "double_s"):
         cycle = baseline(name, machine, cut)
-        motor = measure_motor(cycle, machine, cut)
-        assert motor.rms_torque >= lower_bound(cycle, machine, cut, open_limits, "rms_torque").value * (1 - 1e-9)
-        peak = lower_bound(cycle, machine, cut, open_limits, "peak_torque")
+        motor = measure_motor(cycle, Task(machine, cut, LIMITS))
+        assert motor.rms_torque >= lower_bound(cycle, Task(machine, cut, open_limits), "rms_torque").value * (1 - 1e-9)
+        peak = lower_bound(cycle, Task(machine, cut, open_limits), "peak_torque")
         assert peak.method == "none" if machine.friction else motor.peak_torque >= peak.value * (1 - 1e-9)
 
 
 @pytest.mark.parametrize("objective", ["rms_torque", "peak_torque"])
 def test_least_torque_without_friction_reaches_the_bound(objective: str) -> None:
     found = solve(Task(KNIFE, CUT, LIMITS), objective)
-    value = getattr(measure_motor(found.profile, KNIFE, CUT), objective)
-    assert lower_bound(found.profile, KNIFE, CUT, LIMITS, objective).value == pytest.approx(value, rel=1e-3)
+    value = getattr(measure_motor(found.profile, Task(KNIFE, CUT, LIMITS)), objective)
+    assert lower_bound(found.profile, Task(KNIFE, CUT, LIMITS), objective).value == pytest.approx(value, rel=1e-3)
 
 
 @pytest.mark.parametrize(
@@ -111,14 +113,14 @@ def test_least_torque_without_friction_reaches_the_bound(objective: str) -> None
 )
 @pytest.mark.parametrize("objective", COMMAND_OBJECTIVES)
 def test_there_is_no_bound_where_the_ratio_changes_in_sync(machine: Machine, objective: str) -> None:
-    bound = lower_bound(baseline("poly_3_4_5", machine, CUT), machine, CUT, LIMITS, objective)
+    bound = lower_bound(baseline("poly_3_4_5", machine, CUT), Task(machine, CUT, LIMITS), objective)
     assert math.isnan(bound.value)
     assert bound.method == "none"
 
 
 def test_energy_and_weightless_machines_have_no_bound_and_unknown_objectives_are_refused() -> None:
     cycle = baseline("poly_3_4_5", KNIFE, CUT)
-    assert lower_bound(cycle, KNIFE, CUT, LIMITS, "energy").method == "none"
-    assert lower_bound(cycle, replace(KNIFE, drum_inertia=0.0), CUT, LIMITS, "rms_torque").method == "none"
+    assert lower_bound(cycle, Task(KNIFE, CUT, LIMITS), "energy").method == "none"
+    assert lower_bound(cycle, Task(replace(KNIFE, drum_inertia=0.0), CUT, LIMITS), "rms_torque").method == "none"
     with pytest.raises(InputError, match=r"no objective 'haste'; the objectives are peak_acceleration, "):
-        lower_bound(cycle, KNIFE, CUT, LIMITS, "haste")
+        lower_bound(cycle, Task(KNIFE, CUT, LIMITS), "haste")

@@ -22,6 +22,7 @@ from camwright.profiles.machines import RotaryKnife
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import assemble, baseline
 from camwright.profiles.servo import Servo
+from camwright.profiles.task import Task
 from camwright.validation.bounds.minimum_length import (
     cut_length_eq9,
     cut_length_eq10,
@@ -31,6 +32,9 @@ from camwright.validation.bounds.minimum_length import (
     required_sync_zone,
 )
 from camwright.validation.servo.response import servo_response
+
+FREE = Limits(math.inf, math.inf, math.inf)
+"""Nothing here asks for limits."""
 
 KNIFE = RotaryKnife(0.4)
 CUT = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4)
@@ -64,7 +68,7 @@ def test_required_sync_zone_is_eq5_without_a_shear_zone_and_eq6_with_one() -> No
 
 
 def test_physical_bound_of_the_reference_case() -> None:
-    found = physical(KNIFE, CUT, QUICK)
+    found = physical(Task(KNIFE, CUT, QUICK))
     assert found.length == pytest.approx(0.204, abs=0.5e-3)
     assert (found.sync_zone, found.transition, found.binding) == (0.04, 0.0, "speed")
 
@@ -74,7 +78,7 @@ def test_physical_bound_of_the_reference_case() -> None:
 def test_physical_bound_solves_its_equation(shear: float, v: float, acceleration: float, jerk: float) -> None:
     cut = replace(CUT, shear_zone=shear, line_speed=v)
     limits = Limits(200 / 60, acceleration, jerk)
-    length = physical(KNIFE, cut, limits).length
+    length = physical(Task(KNIFE, cut, limits)).length
     assert shear < length < KNIFE.pitch
     time = shortest_time(KNIFE.pitch - length, limits.speed - v, acceleration, jerk)
     assert length == pytest.approx(shear + v * time, rel=1e-9)
@@ -82,7 +86,7 @@ def test_physical_bound_solves_its_equation(shear: float, v: float, acceleration
 
 def test_physical_bound_without_limits_of_acceleration_and_jerk_is_eq10_of_a_perfect_servo() -> None:
     free = Limits(200 / 60, 1e7, 1e14)
-    assert physical(KNIFE, CUT, free).length == pytest.approx(
+    assert physical(Task(KNIFE, CUT, free)).length == pytest.approx(
         cut_length_eq10(0.0, 0.04, 0.4, 80 / 60, 200 / 60), rel=1e-4
     )
 
@@ -96,7 +100,7 @@ def test_physical_bound_without_limits_of_acceleration_and_jerk_is_eq10_of_a_per
     ],
 )
 def test_physical_bound_names_what_binds(limits: Limits, binding: str) -> None:
-    assert physical(KNIFE, CUT, limits).binding == binding
+    assert physical(Task(KNIFE, CUT, limits)).binding == binding
 
 
 def test_bang_bang_bound_in_closed_form() -> None:
@@ -104,11 +108,11 @@ def test_bang_bang_bound_in_closed_form() -> None:
     a, v, shear, pitch = 25.0, CUT.line_speed, CUT.shear_zone, KNIFE.pitch
     c = 2 * v / math.sqrt(a)
     root = (-c + math.sqrt(c * c + 4 * (pitch - shear))) / 2  # sqrt(y_c - x_c)
-    assert physical(KNIFE, CUT, Limits(100.0, a, 1e12)).length == pytest.approx(pitch - root**2, rel=1e-4)
+    assert physical(Task(KNIFE, CUT, Limits(100.0, a, 1e12))).length == pytest.approx(pitch - root**2, rel=1e-4)
 
 
 def test_linear_return_of_the_reference_case() -> None:
-    found = linear_return_to_tolerance(KNIFE, CUT, QUICK, PAPER)
+    found = linear_return_to_tolerance(Task(KNIFE, CUT, QUICK), PAPER)
     assert found.length == pytest.approx(0.2995, abs=2e-4)
     assert found.length == pytest.approx(cut_length_eq10(found.transition, 0.04, 0.4, 80 / 60, 200 / 60), abs=5e-6)
     assert found.binding == "settling"
@@ -117,7 +121,7 @@ def test_linear_return_of_the_reference_case() -> None:
 @pytest.mark.parametrize(("tolerance", "length"), [(0.25e-3, 0.2745), (0.5e-3, 0.2632)])
 def test_linear_return_at_other_tolerances(tolerance: float, length: float) -> None:
     cut = replace(CUT, sync_tolerance=tolerance)
-    found = linear_return_to_tolerance(KNIFE, cut, QUICK, PAPER)
+    found = linear_return_to_tolerance(Task(KNIFE, cut, QUICK), PAPER)
     assert found.length == pytest.approx(length, abs=2e-4)
     assert works("linear", found.length, found.sync_zone, cut, QUICK)
 
@@ -148,7 +152,7 @@ def cycle(name: str, shape: Cut, limits: Limits) -> CamProfile:
 
 def works(name: str, length: float, sync_zone: float, cut: Cut, limits: Limits) -> bool:
     shape = replace(cut, length=length, sync_zone=sync_zone, shear_zone_at=sync_zone - cut.shear_zone)
-    settling = servo_response(cycle(name, shape, limits), KNIFE, shape, PAPER).settling
+    settling = servo_response(cycle(name, shape, limits), Task(KNIFE, shape, FREE), PAPER).settling
     return settling is not None and required_sync_zone(settling, cut.shear_zone) <= sync_zone + 1e-9
 
 
@@ -158,7 +162,7 @@ def works(name: str, length: float, sync_zone: float, cut: Cut, limits: Limits) 
 def test_the_minimum_works_and_nothing_near_it_is_shorter(name: str, tolerance: float, limits: Limits) -> None:
     cut = replace(CUT, sync_tolerance=tolerance)
     search = linear_return_to_tolerance if name == "linear" else optimised_to_tolerance
-    found = search(KNIFE, cut, limits, PAPER)
+    found = search(Task(KNIFE, cut, limits), PAPER)
     assert found.length >= lower(name, found.sync_zone, limits) * (1 - 1e-12)
     # a nanometre longer: at the shortest return the limits leave the closed form no room for rounding
     assert works(name, found.length + 1e-9, found.sync_zone, cut, limits)
@@ -172,7 +176,7 @@ def test_the_minimum_works_and_nothing_near_it_is_shorter(name: str, tolerance: 
 @pytest.mark.parametrize(("name", "limits"), [("linear", QUICK), ("optimised", QUICK), ("optimised", GENTLE)])
 def test_no_cut_length_on_a_coarse_grid_is_shorter(name: str, limits: Limits) -> None:
     search = linear_return_to_tolerance if name == "linear" else optimised_to_tolerance
-    least = search(KNIFE, CUT, limits, PAPER).length
+    least = search(Task(KNIFE, CUT, limits), PAPER).length
     tried = 0
     for i in range(1, 48):
         sync_zone = 0.04 + 0.36 * i / 48
@@ -186,7 +190,7 @@ def test_no_cut_length_on_a_coarse_grid_is_shorter(name: str, limits: Limits) ->
 
 def test_least_acceleration_beats_the_shortest_return() -> None:
     # 331.9 mm is the least that the shortest return within these limits reaches, whatever its sync zone
-    found = optimised_to_tolerance(KNIFE, CUT, GENTLE, PAPER)
+    found = optimised_to_tolerance(Task(KNIFE, CUT, GENTLE), PAPER)
     assert found.length == pytest.approx(0.3169, abs=2e-4)
     assert found.length > lower("optimised", found.sync_zone, GENTLE) + 5e-3
 
@@ -194,28 +198,28 @@ def test_least_acceleration_beats_the_shortest_return() -> None:
 def test_a_servo_that_needs_no_time_to_settle_cuts_at_the_physical_bound() -> None:
     # within a tolerance beyond every error, the smallest sync zone tried is the best
     cut = replace(CUT, sync_tolerance=1.0)
-    found = optimised_to_tolerance(KNIFE, cut, QUICK, PAPER)
+    found = optimised_to_tolerance(Task(KNIFE, cut, QUICK), PAPER)
     assert found.transition == 0.0
-    assert found.length == pytest.approx(physical(KNIFE, cut, QUICK).length, abs=2e-5)
+    assert found.length == pytest.approx(physical(Task(KNIFE, cut, QUICK)).length, abs=2e-5)
     assert found.binding == "speed"
 
 
 def test_a_servo_that_never_settles_cuts_the_pitch() -> None:
     lagging = replace(PAPER, velocity_feedforward=0.0)
-    found = optimised_to_tolerance(KNIFE, CUT, QUICK, lagging)
+    found = optimised_to_tolerance(Task(KNIFE, CUT, QUICK), lagging)
     assert (found.length, found.sync_zone, found.transition, found.binding) == (0.4, 0.4, 0.0, "settling")
 
 
 def test_the_better_servo_cuts_shorter() -> None:
     stiff = Servo(1500.0, 0.8, 400.0, 0.0002, 1.0)
-    found = optimised_to_tolerance(KNIFE, CUT, QUICK, stiff)
-    assert found.length < optimised_to_tolerance(KNIFE, CUT, QUICK, PAPER).length
-    assert found.length == pytest.approx(physical(KNIFE, CUT, QUICK).length, rel=0.1)
+    found = optimised_to_tolerance(Task(KNIFE, CUT, QUICK), stiff)
+    assert found.length < optimised_to_tolerance(Task(KNIFE, CUT, QUICK), PAPER).length
+    assert found.length == pytest.approx(physical(Task(KNIFE, CUT, QUICK)).length, rel=0.1)
 
 
 def test_a_knife_that_cannot_run_ahead_cuts_its_own_pitch() -> None:
     tight = replace(QUICK, speed=CUT.line_speed)
-    for found in (physical(KNIFE, CUT, tight), optimised_to_tolerance(KNIFE, CUT, tight, PAPER)):
+    for found in (physical(Task(KNIFE, CUT, tight)), optimised_to_tolerance(Task(KNIFE, CUT, tight), PAPER)):
         assert (found.length, found.binding) == (0.4, "speed")
 
 
@@ -223,6 +227,6 @@ def test_a_shear_zone_as_long_as_the_pitch_is_refused() -> None:
     with pytest.raises(
         InputError, match=r"shear zone of 0\.4 m is not shorter than the slave travel per cycle of 0\.4 m"
     ):
-        physical(KNIFE, replace(CUT, shear_zone=0.4), QUICK)
+        physical(Task(KNIFE, replace(CUT, shear_zone=0.4), QUICK))
     with pytest.raises(InputError, match="no room for a return"):
-        linear_return_to_tolerance(KNIFE, replace(CUT, shear_zone=0.5), QUICK, PAPER)
+        linear_return_to_tolerance(Task(KNIFE, replace(CUT, shear_zone=0.5), QUICK), PAPER)

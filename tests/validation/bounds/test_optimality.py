@@ -86,7 +86,7 @@ def test_no_motion_is_below_a_bound(
     except InputError:
         return
     motions = [profile for name in BASELINES if keeps(profile := baseline(name, KNIFE, cut), cut, limits)]
-    bounds = [lower_bound(profile, KNIFE, cut, limits, objective).value for profile in [optimum, *motions[:2]]]
+    bounds = [lower_bound(profile, Task(KNIFE, cut, limits), objective).value for profile in [optimum, *motions[:2]]]
     for profile in [optimum, *motions]:
         assert max(bounds) <= measured(profile, cut, objective) * (1 + 1e-8)
 
@@ -106,7 +106,7 @@ def test_no_motion_is_below_a_bound(
 )
 def test_gap_of_a_design_is_small(objective: MotionObjective, gap: float, limits: Limits) -> None:
     result = solve(Task(KNIFE, CUT, limits), objective)
-    bound = lower_bound(result.profile, KNIFE, CUT, limits, objective)
+    bound = lower_bound(result.profile, Task(KNIFE, CUT, limits), objective)
     assert bound.method in (CLOSED_FORM, SOFTEST, QUINTIC, DUAL)
     assert 0.0 <= 1 - bound.value / result.minimised + 1e-9 <= gap
 
@@ -116,19 +116,21 @@ def test_gap_of_a_design_is_small(objective: MotionObjective, gap: float, limits
 def test_bound_does_not_depend_on_the_origin(objective: MotionObjective, origin: str) -> None:
     limits, cut = Limits(1.8, 13.0, 1100.0), replace(CUT, origin=origin)
     result = solve(Task(KNIFE, cut, limits), objective)
-    expected = lower_bound(solve(Task(KNIFE, CUT, limits), objective).profile, KNIFE, CUT, limits, objective).value
-    assert lower_bound(result.profile, KNIFE, cut, limits, objective).value == pytest.approx(expected, rel=1e-6)
+    expected = lower_bound(
+        solve(Task(KNIFE, CUT, limits), objective).profile, Task(KNIFE, CUT, limits), objective
+    ).value
+    assert lower_bound(result.profile, Task(KNIFE, cut, limits), objective).value == pytest.approx(expected, rel=1e-6)
 
 
 def test_closed_forms_are_taken_where_they_hold() -> None:
     profile = baseline("poly_3_4_5", KNIFE, CUT)
     free = Limits(1e3, 1e6, 1e9)
     time, distance = 0.3, 0.2
-    quintic = lower_bound(profile, KNIFE, CUT, replace(free, reversal=True), "rms_jerk")
+    quintic = lower_bound(profile, Task(KNIFE, CUT, replace(free, reversal=True)), "rms_jerk")
     assert (quintic.value, quintic.method) == (pytest.approx(math.sqrt(720) * distance / time**3, rel=1e-12), QUINTIC)
-    jerk = lower_bound(profile, KNIFE, CUT, replace(free, reversal=True), "peak_jerk")
+    jerk = lower_bound(profile, Task(KNIFE, CUT, replace(free, reversal=True)), "peak_jerk")
     assert (jerk.value, jerk.method) == (pytest.approx(32 * distance / time**3, rel=1e-12), CLOSED_FORM)
-    acceleration = lower_bound(profile, KNIFE, CUT, LIMITS, "peak_acceleration")
+    acceleration = lower_bound(profile, Task(KNIFE, CUT, LIMITS), "peak_acceleration")
     a = acceleration.value
     assert a * time**2 / 4 - a**2 * time / (2 * LIMITS.jerk) == pytest.approx(distance, rel=1e-12)
 
@@ -136,7 +138,7 @@ def test_closed_forms_are_taken_where_they_hold() -> None:
 @pytest.mark.parametrize("objective", ["peak_acceleration", "rms_acceleration", "peak_jerk", "rms_jerk"])
 def test_straight_line_has_the_bound_zero(objective: str) -> None:
     cut = replace(CUT, length=0.4)
-    assert lower_bound(baseline("poly_3_4_5", KNIFE, cut), KNIFE, cut, LIMITS, objective).value == 0.0
+    assert lower_bound(baseline("poly_3_4_5", KNIFE, cut), Task(KNIFE, cut, LIMITS), objective).value == 0.0
 
 
 # -- the dual road by itself, where the answer is known -------------------------------------------------------------------
@@ -164,7 +166,7 @@ def test_gap_of_the_least_rms_jerk_in_tight_jobs(speed: float, room: float) -> N
     limits = Limits(1 + speed * 0.2, 20 * share * 0.2, 400 * share * 0.2)
     machine, cut = RotaryKnife(1.7), Cut(1.5, 1.0, 0.5, 0.0, 0.0, 1e-4)
     result = solve(Task(machine, cut, limits), "rms_jerk")
-    bound = lower_bound(result.profile, machine, cut, limits, "rms_jerk")
+    bound = lower_bound(result.profile, Task(machine, cut, limits), "rms_jerk")
     assert bound.method == DUAL
     assert bound.value <= result.minimised * (1 + 1e-8)
     assert bound.value >= result.minimised * (1 - 1e-2)
@@ -237,4 +239,4 @@ def test_softest_motion_is_proved_by_duality(speed: float, acceleration: float, 
 
 def test_unknown_objective_is_refused() -> None:
     with pytest.raises(InputError, match=r"there is no objective 'peak_snap'; .*peak_acceleration, rms_acceleration"):
-        lower_bound(baseline("poly_3_4_5", KNIFE, CUT), KNIFE, CUT, LIMITS, "peak_snap")
+        lower_bound(baseline("poly_3_4_5", KNIFE, CUT), Task(KNIFE, CUT, LIMITS), "peak_snap")

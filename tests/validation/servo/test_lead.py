@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -9,13 +10,18 @@ import pytest
 
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
+from camwright.profiles.limits import Limits
 from camwright.profiles.machines import CrankSlider, RotaryKnife
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import baseline
 from camwright.profiles.servo import Servo, mean_lag
+from camwright.profiles.task import Task
 from camwright.validation.servo.lead import SHARES, length_errors
 from camwright.validation.servo.response import sync_error
 from camwright.validation.servo.simulation import simulate
+
+FREE = Limits(math.inf, math.inf, math.inf)
+"""Nothing here asks for limits."""
 
 KNIFE = RotaryKnife(0.4)
 CUT = Cut(0.6, 50 / 60, 0.2, 0.04, 0.16, 1e-4)
@@ -29,13 +35,13 @@ def line() -> CamProfile:
 
 
 def test_the_shares_are_those_of_the_answer() -> None:
-    found = length_errors(line(), KNIFE, SAME_SPEED, PAPER)
+    found = length_errors(line(), Task(KNIFE, SAME_SPEED, FREE), PAPER)
     assert tuple(error.share for error in found) == SHARES == (0.1, 0.25, 0.5, 1.0)
     assert [error.line_speed for error in found] == pytest.approx([share * 50 / 60 for share in SHARES])
 
 
 def test_ten_milliseconds_at_fifty_metres_a_minute_are_eight_millimetres() -> None:
-    found = length_errors(line(), KNIFE, SAME_SPEED, replace(PAPER, dead_time=0.010))
+    found = length_errors(line(), Task(KNIFE, SAME_SPEED, FREE), replace(PAPER, dead_time=0.010))
     assert found[-1].offset == pytest.approx(8.333e-3, abs=1e-6)
 
 
@@ -46,7 +52,7 @@ def test_at_constant_speed_the_offset_is_the_lag_times_the_speed(
 ) -> None:
     servo = Servo(120.0, 0.7, 35.0, 0.004, feedforward, dead_time, lead_time)
     lag = dead_time - lead_time + (1 - feedforward) / 35.0
-    for error in length_errors(line(), KNIFE, SAME_SPEED, servo):
+    for error in length_errors(line(), Task(KNIFE, SAME_SPEED, FREE), servo):
         assert error.offset == pytest.approx(error.line_speed * lag, abs=1e-12)
         assert error.variation == pytest.approx(0.0, abs=1e-12)
         assert error.offset_with_lead == pytest.approx(0.0, abs=1e-12)
@@ -64,11 +70,11 @@ def test_offset_and_variation_are_those_of_the_whole_simulation(law: str) -> Non
     cut = replace(CUT, line_speed=80 / 60, shear_zone_at=0.08)
     servo = Servo(120.0, 0.7, 35.0, 0.004, 1.0, 0.0037)
     profile = baseline(law, KNIFE, cut)
-    for error in length_errors(profile, KNIFE, cut, servo):
+    for error in length_errors(profile, Task(KNIFE, cut, FREE), servo):
         slower = replace(cut, line_speed=error.share * cut.line_speed)
         for lead, offset in ((0.0, error.offset), (mean_lag(servo), error.offset_with_lead)):
             run = simulate(profile, slower, replace(servo, lead_time=lead))
-            x, off, _ = sync_error(run, profile, KNIFE, slower, 0.4 + 0.08, 0.4 + 0.12)
+            x, off, _ = sync_error(run, profile, Task(KNIFE, slower, FREE), 0.4 + 0.08, 0.4 + 0.12)
             late = [-float(np.trapezoid(e, at)) / 0.04 for at, e in zip(x, off, strict=True)]
             assert offset == pytest.approx(np.mean(late), abs=3e-7)  # the trapezes' error
             if lead == 0.0:
@@ -80,9 +86,9 @@ def test_a_shear_zone_of_no_length_is_judged_at_its_point() -> None:
     cut = replace(CUT, shear_zone=0.0, shear_zone_at=0.2)
     profile = baseline("poly_3_4_5", KNIFE, cut)
     servo = replace(PAPER, dead_time=0.005)
-    error = length_errors(profile, KNIFE, cut, servo)[-1]
+    error = length_errors(profile, Task(KNIFE, cut, FREE), servo)[-1]
     run = simulate(profile, cut, servo)
-    late = -sync_error(run, profile, KNIFE, cut, cut.length, cut.length)[1][:, 0]
+    late = -sync_error(run, profile, Task(KNIFE, cut, FREE), cut.length, cut.length)[1][:, 0]
     assert error.offset == pytest.approx(late.mean(), abs=1e-12)
     assert error.variation == pytest.approx(np.ptp(late), abs=1e-12)
 
@@ -92,7 +98,9 @@ def test_the_offset_of_a_crank_is_that_of_its_carriage() -> None:
     cut = replace(CUT, length=1.8, sync_zone=0.1, shear_zone=0.02, shear_zone_at=0.08)
     profile = baseline("poly_3_4_5", crank, cut)
     fast = Servo(2000.0, 0.8, 300.0, 2e-4, 1.0)
-    late, prompt = (length_errors(profile, crank, cut, replace(fast, dead_time=time)) for time in (0.002, 0.0))
+    late, prompt = (
+        length_errors(profile, Task(crank, cut, FREE), replace(fast, dead_time=time)) for time in (0.002, 0.0)
+    )
     # the carriage is where it was 2 ms ago: in sync then as now, but for the servo's own error
     for with_dead_time, without in zip(late, prompt, strict=True):
         assert with_dead_time.offset - without.offset == pytest.approx(0.002 * with_dead_time.line_speed, rel=1e-3)
@@ -101,9 +109,9 @@ def test_the_offset_of_a_crank_is_that_of_its_carriage() -> None:
 
 def test_an_unstable_servo_is_refused() -> None:
     with pytest.raises(InputError, match="the servo is unstable"):
-        length_errors(line(), KNIFE, SAME_SPEED, replace(PAPER, position_gain=200.0))
+        length_errors(line(), Task(KNIFE, SAME_SPEED, FREE), replace(PAPER, position_gain=200.0))
 
 
 def test_a_profile_of_another_cut_is_refused() -> None:
     with pytest.raises(InputError, match="but one cycle of this cut runs"):
-        length_errors(line(), KNIFE, CUT, PAPER)
+        length_errors(line(), Task(KNIFE, CUT, FREE), PAPER)

@@ -10,6 +10,7 @@ import pytest
 
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
+from camwright.profiles.limits import Limits
 from camwright.profiles.machines import (
     CrankSlider,
     LinearCarriage,
@@ -19,9 +20,13 @@ from camwright.profiles.machines import (
 from camwright.profiles.returns import baseline
 from camwright.profiles.servo import PAPER_RANGES, Servo
 from camwright.profiles.servo_tolerance import ServoTolerance
+from camwright.profiles.task import Task
 from camwright.validation.servo import monte_carlo
 from camwright.validation.servo.monte_carlo import shear_zone_errors
 from camwright.validation.servo.response import servo_response
+
+FREE = Limits(math.inf, math.inf, math.inf)
+"""Nothing here asks for limits."""
 
 KNIFE = RotaryKnife(0.4)
 CUT = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4)
@@ -46,8 +51,8 @@ def test_errors_are_those_of_each_servo_by_itself(machine: Machine, cut: Cut, la
     profile = baseline(law, machine, cut)
     servo = replace(PAPER, velocity_feedforward=0.9, lead_time=0.003)
     drawn = RANGES.draw(servo, 20, 4)
-    found = shear_zone_errors(profile, machine, cut, drawn)
-    alone = [servo_response(profile, machine, cut, each).shear_zone_error for each in drawn]
+    found = shear_zone_errors(profile, Task(machine, cut, FREE), drawn)
+    alone = [servo_response(profile, Task(machine, cut, FREE), each).shear_zone_error for each in drawn]
     assert found.shape == (20,)
     assert np.abs(found - alone).max() <= 1e-9
     assert found.max() > 1e-6
@@ -57,42 +62,46 @@ def test_servos_of_all_the_published_ranges_go_together() -> None:
     ranges = ServoTolerance(**PAPER_RANGES, dead_time=(0.0, 0.02))
     drawn = ranges.draw(PAPER, 30, 11)
     profile = baseline("poly_3_4_5", KNIFE, CUT)
-    alone = [servo_response(profile, KNIFE, CUT, each).shear_zone_error for each in drawn]
-    assert np.abs(shear_zone_errors(profile, KNIFE, CUT, drawn) - alone).max() <= 1e-9
+    alone = [servo_response(profile, Task(KNIFE, CUT, FREE), each).shear_zone_error for each in drawn]
+    assert np.abs(shear_zone_errors(profile, Task(KNIFE, CUT, FREE), drawn) - alone).max() <= 1e-9
 
 
 def test_one_grid_for_all_is_as_good_as_one_for_each() -> None:
     profile = baseline("poly_3_4_5", KNIFE, CUT)
     same = replace(RANGES, sample_time=(0.004, 0.004), dead_time=(0.001, 0.001)).draw(PAPER, 10, 2)
-    together = shear_zone_errors(profile, KNIFE, CUT, same)
-    among = shear_zone_errors(profile, KNIFE, CUT, [*same, replace(PAPER, sample_time=0.0037)])
+    together = shear_zone_errors(profile, Task(KNIFE, CUT, FREE), same)
+    among = shear_zone_errors(profile, Task(KNIFE, CUT, FREE), [*same, replace(PAPER, sample_time=0.0037)])
     assert np.abs(together - among[:-1]).max() <= 1e-13
 
 
 def test_how_they_are_grouped_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     profile = baseline("cycloid", KNIFE, CUT)
     drawn = RANGES.draw(PAPER, 12, 3)
-    whole = shear_zone_errors(profile, KNIFE, CUT, drawn)
+    whole = shear_zone_errors(profile, Task(KNIFE, CUT, FREE), drawn)
     monkeypatch.setattr(monte_carlo, "_VALUES", 1)
-    assert np.abs(shear_zone_errors(profile, KNIFE, CUT, drawn) - whole).max() <= 1e-13
+    assert np.abs(shear_zone_errors(profile, Task(KNIFE, CUT, FREE), drawn) - whole).max() <= 1e-13
 
 
 def test_a_servo_that_is_unstable_is_infinitely_far_off() -> None:
     profile = baseline("cycloid", KNIFE, CUT)
-    found = shear_zone_errors(profile, KNIFE, CUT, [PAPER, replace(PAPER, position_gain=300.0), PAPER])
+    found = shear_zone_errors(profile, Task(KNIFE, CUT, FREE), [PAPER, replace(PAPER, position_gain=300.0), PAPER])
     assert math.isinf(found[1])
-    assert found[0] == found[2] == pytest.approx(servo_response(profile, KNIFE, CUT, PAPER).shear_zone_error, abs=1e-12)
+    assert (
+        found[0]
+        == found[2]
+        == pytest.approx(servo_response(profile, Task(KNIFE, CUT, FREE), PAPER).shear_zone_error, abs=1e-12)
+    )
 
 
 def test_no_servos_have_no_errors() -> None:
-    assert shear_zone_errors(baseline("cycloid", KNIFE, CUT), KNIFE, CUT, []).shape == (0,)
+    assert shear_zone_errors(baseline("cycloid", KNIFE, CUT), Task(KNIFE, CUT, FREE), []).shape == (0,)
 
 
 def test_a_servo_that_hardly_forgets_is_refused() -> None:
     with pytest.raises(InputError, match=r"takes \d+ samples: .* the limit is 131072"):
-        shear_zone_errors(baseline("cycloid", KNIFE, CUT), KNIFE, CUT, [replace(PAPER, position_gain=0.01)])
+        shear_zone_errors(baseline("cycloid", KNIFE, CUT), Task(KNIFE, CUT, FREE), [replace(PAPER, position_gain=0.01)])
 
 
 def test_a_profile_of_another_cut_is_refused() -> None:
     with pytest.raises(InputError, match="but one cycle of this cut runs"):
-        shear_zone_errors(baseline("cycloid", KNIFE, CUT), KNIFE, replace(CUT, length=0.5), [PAPER])
+        shear_zone_errors(baseline("cycloid", KNIFE, CUT), Task(KNIFE, replace(CUT, length=0.5), FREE), [PAPER])
