@@ -6,6 +6,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
+from camwright.house.units import KINDS
+from camwright.profiles.machines import MACHINES
+from camwright.profiles.machines.fields import Choice, MachineField, Quantity, fields_of
 from camwright.recipe.catalogue import Catalogue
 from camwright.recipe.model import Recipe
 from camwright.recipe.quantities import with_unit
@@ -29,26 +32,6 @@ class Fact:
     value: Any
     unit: str = "1"
 
-
-MACHINE = {
-    "circumference": "m",
-    "blades": "1",
-    "gear_ratio": "1",
-    "sync": "word",
-    "inertia": "kg m^2",
-    "friction": "N m",
-    "stroke": "m",
-    "home": "m",
-    "mass": "kg",
-    "travel_per_turn": "m",
-    "crank": "m",
-    "rod": "m",
-    "offset": "m",
-    "crank_inertia": "kg m^2",
-    "carriage_mass": "kg",
-    "sync_at": "rad",
-}
-"""Units of the machine's parameters, of all kinds."""
 
 PRODUCT = {
     "length": "m",
@@ -75,8 +58,17 @@ SERVO = {
 
 def machine_facts(recipe: Recipe) -> list[Fact]:
     """List the machine's parameters."""
-    machine = recipe.job.si["machine"]
-    return [Fact("kind", machine["kind"], "word"), *_listed(machine, MACHINE)]
+    values = recipe.job.si["machine"]
+    units = {each.key: _unit(each) for each in fields_of(MACHINES[values["kind"]])}
+    order = dict.fromkeys(each.key for machine in MACHINES.values() for each in fields_of(machine))
+    return [Fact("kind", values["kind"], "word"), *_listed(values, {key: units[key] for key in order if key in units})]
+
+
+def _unit(each: MachineField) -> str:
+    """Name the unit of a machine's number, as of `Fact`."""
+    if isinstance(each.about, Quantity):
+        return KINDS[each.about.kind].unit
+    return "word" if isinstance(each.about, Choice) else "1"
 
 
 def product_facts(recipe: Recipe) -> list[Fact]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from camwright.jobs.numbers import stored_machine
 from camwright.recipe.blocks import Block, fixed_text, text_block
 from camwright.recipe.catalogue import Catalogue
 from camwright.recipe.model import AtSpeed, Recipe, RecipeTable
@@ -18,8 +19,8 @@ _FINEST = 0.001
 
 def before(recipe: Recipe, words: Catalogue) -> list[Block]:
     """List what to see with one's own eyes before the drive is enabled."""
-    machine, cut = recipe.job.si["machine"], recipe.job.si["cut"]
-    kind, full = machine["kind"], _at_full_speed(recipe)
+    machine, cut = stored_machine(recipe.job.si["machine"]), recipe.job.si["cut"]
+    full = _at_full_speed(recipe)
     speed, unit = shown(cut["line_speed"], "m/s"), recipe.slave_unit
     values = {
         "origin": words.named("word", cut["origin"]),
@@ -31,18 +32,16 @@ def before(recipe: Recipe, words: Catalogue) -> list[Block]:
         "speed": shown(full.motor_speed, "rad/s", 4),
         "error": fixed_text(full.following_error, words),
     }
-    if kind == "rotary_knife":
-        values["turn"] = shown(machine["circumference"], "m")
-    elif kind == "linear_carriage":
-        values["turn"] = shown(machine["travel_per_turn"], "m")
-        values["home"] = shown(machine["home"], "m")
-        values["end"] = shown(machine["home"] + machine["stroke"], "m")
+    if machine.slave_turn is not None:
+        values["turn"] = shown(machine.slave_turn, unit)
+    if machine.guide is not None:
+        values["home"], values["end"] = (shown(end, unit) for end in machine.guide)
     keys = (
         "guards",
         "master",
-        f"direction.{kind}",
-        f"scale.{kind}",
-        f"zero.{kind}",
+        f"direction.{machine.kind}",
+        f"scale.{machine.kind}",
+        f"zero.{machine.kind}",
         "motor",
         "following",
         "lead",

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from camwright.profiles.machines import MACHINES
+
 ROOT = Path(__file__).resolve().parents[2]
 
 
@@ -68,6 +70,41 @@ def test_only_design_knows_casadi(folder: str) -> None:
 @pytest.mark.parametrize("folder", ["profiles", "design", "validation"])
 def test_only_the_front_door_shows_things(folder: str) -> None:
     assert not imported(folder) & {"matplotlib", "rich", "typer", "pint", "pydantic"}
+
+
+def _modules_that_must_not_know_machines() -> list[Path]:
+    """Give all modules of the four packages but the machines themselves."""
+    found = []
+    for folder in ("camwright", "profiles", "design", "validation"):
+        for file in (ROOT / folder).rglob("*.py"):
+            inside = file.relative_to(ROOT).parts
+            if inside[:2] != ("profiles", "machines") and "machines" not in inside[:-1]:
+                found.append(file)
+    assert len(found) > 200
+    return found
+
+
+def _names(node: ast.AST) -> set[str]:
+    """Names that an expression is made of, attributes included."""
+    found = {each.id for each in ast.walk(node) if isinstance(each, ast.Name)}
+    return found | {each.attr for each in ast.walk(node) if isinstance(each, ast.Attribute)}
+
+
+def test_nobody_asks_what_kind_a_machine_is() -> None:
+    """A machine is written once: no isinstance of one, no import of one, no comparison with the name of one outside its own room."""
+    concrete = {machine.__name__ for machine in MACHINES.values()}
+    faults = []
+    for file in _modules_that_must_not_know_machines():
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+            place = f"{file.relative_to(ROOT)}:{getattr(node, 'lineno', 0)}"
+            if isinstance(node, ast.Call) and _names(node.func) & {"isinstance", "issubclass"}:
+                faults += [place] if _names(node.args[1]) & {"Machine", *concrete} else []
+            elif isinstance(node, ast.ImportFrom):
+                faults += [place] if {alias.name for alias in node.names} & concrete else []
+            elif isinstance(node, ast.Compare):
+                words = {each.value for each in ast.walk(node) if isinstance(each, ast.Constant)}
+                faults += [place] if words & set(MACHINES) else []
+    assert faults == []
 
 
 def test_reading_a_profile_loads_nothing_heavy() -> None:

@@ -10,10 +10,12 @@ import pytest
 
 from camwright import load_job
 from camwright.jobs.numbers import job_numbers
+from camwright.profiles.machines import MACHINES
+from camwright.profiles.machines.fields import fields_of
 from camwright.profiles.tables.targets import TARGETS
 from camwright.recipe.build import MadeRecipe
 from camwright.recipe.catalogue import LANGUAGES, catalogue
-from camwright.recipe.facts import MACHINE, PRODUCT, SERVO
+from camwright.recipe.facts import PRODUCT, SERVO
 from camwright.recipe.fonts import has_glyph
 from camwright.recipe.model import Language
 from camwright.recipe.sheet import sheet
@@ -68,18 +70,24 @@ def test_every_key_is_used_and_every_used_key_exists() -> None:
     code = "\n".join(file.read_text(encoding="utf-8") for file in sorted((ROOT / "camwright/recipe").glob("*.py")))
     literal = set(re.findall(r'words\(\s*"([\w.]+)"', code))
     assert literal <= set(catalogue("en").messages)
+    machine_keys = {each.key for machine in MACHINES.values() for each in fields_of(machine)}
     groups = ("column", "word", "binding", "before", "check", "record")  # put together from a group and a name
     for key in catalogue("en").messages:
-        assert key.partition(".")[0] in groups or f'"{key}"' in code, key
+        assert key.partition(".")[0] in groups or key in machine_keys or f'"{key}"' in code, key
+
+
+@pytest.mark.parametrize("kind", MACHINES)
+def test_every_machine_is_named_and_has_its_instructions(kind: str) -> None:
+    keys = {each.key for each in fields_of(MACHINES[kind])}
+    words = {f"before.{what}.{kind}" for what in ("direction", "scale", "zero")} | {f"word.{kind}"}
+    assert keys | words <= set(catalogue("en").messages)
 
 
 @pytest.mark.parametrize("name", ["paper-600", "flying-saw", "chasing-shear", "thick-product", "cross-cutter"])
 def test_every_number_of_a_job_has_a_name(name: str) -> None:
     numbers = job_numbers(load_job(ROOT / "examples" / f"{name}.toml"))
-    assert set(numbers["machine"]) - {"kind"} <= set(MACHINE)
     assert set(numbers["cut"]) <= set(PRODUCT)
     assert set(numbers["servo"]) <= set(SERVO)
-    assert numbers["machine"]["kind"] in ("rotary_knife", "linear_carriage", "crank_slider")
     for key in (*numbers["machine"], *numbers["cut"], *numbers["servo"]):
         assert key in catalogue("en").messages, key
 
