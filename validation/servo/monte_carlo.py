@@ -20,7 +20,7 @@ _VALUES = 2**17
 """Command values that are held at a time."""
 
 
-def shear_zone_errors(profile: CamProfile, task: Task, servos: Sequence[Servo]) -> FloatArray:
+def shear_zone_errors(profile: CamProfile, task: Task, servos: Sequence[Servo], phases: int = PHASES) -> FloatArray:
     """Greatest sync error in the shear zone of every servo, over all sampling phases.
 
     The figure of `camwright.validation.servo.response.ServoResponse.shear_zone_error`, of many servos: nothing but the servo's memory
@@ -35,6 +35,8 @@ def shear_zone_errors(profile: CamProfile, task: Task, servos: Sequence[Servo]) 
         As in `camwright.validation.servo.response.servo_response`.
     servos
         The servos, e.g. of `camwright.profiles.servo_tolerance.ServoTolerance.draw`.
+    phases
+        Sampling phases, a multiple of 16 to compare with the response of one servo.
 
     Returns
     -------
@@ -53,19 +55,30 @@ def shear_zone_errors(profile: CamProfile, task: Task, servos: Sequence[Servo]) 
     plants = sampled_plants(servos)
     radii = np.abs(np.linalg.eigvals(closed_loops(plants[SUBSTEPS], servos))).max(axis=1)
     past = np.array([memory_at(radius) if radius < 1.0 else 0 for radius in radii.tolist()])
-    for group in _groups(past):
+    travel = task.cut.line_speed * np.array([servo.sample_time for servo in servos])
+    within = np.ceil(task.cut.shear_zone / travel).astype(np.intp)
+    for group in _groups(past, within, phases):
         chosen = [servos[i] for i in group.tolist()]
-        run = shear_zone_run(profile, task.cut, chosen, plants[:, group], int(past[group[0]]))
+        run = shear_zone_run(profile, task.cut, chosen, plants[:, group], int(past[group].max()), phases)
         error = shear_zone_error(run, profile, task)[1]
         found[group] = np.abs(error).reshape(len(group), -1).max(axis=1)
     return found
 
 
-def _groups(past: NDArray[np.intp]) -> Iterator[NDArray[np.intp]]:
-    """Divide the stable servos into groups that fit, the longest memories first; gives their places."""
-    order = np.argsort(-past, kind="stable")
+def _groups(past: NDArray[np.intp], within: NDArray[np.intp], phases: int) -> Iterator[NDArray[np.intp]]:
+    """Divide the stable servos into groups that fit, those with the most samples first; gives their places.
+
+    Parameters
+    ----------
+    past, within
+        Samples that each servo remembers, 0 for one that is unstable, and samples in the shear zone.
+    phases
+        Sampling phases.
+    """
+    order = np.lexsort((-past, -within))
     order = order[past[order] > 0]
+    longest = int(past.max())
     while len(order):
-        size = max(1, _VALUES // (PHASES * int(past[order[0]])))
+        size = max(1, _VALUES // (phases * (longest + int(within[order[0]]))))
         yield order[:size]
         order = order[size:]

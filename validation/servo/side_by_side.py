@@ -21,12 +21,14 @@ from camwright.validation.servo.simulation import (
 )
 
 
-def shear_zone_run(profile: CamProfile, cut: Cut, servos: Sequence[Servo], plants: FloatArray, past: int) -> AxisRun:
-    """Simulate several servos about the shear zone, ``PHASES`` rows a servo.
+def shear_zone_run(
+    profile: CamProfile, cut: Cut, servos: Sequence[Servo], plants: FloatArray, past: int, phases: int = PHASES
+) -> AxisRun:
+    """Simulate several servos about the shear zone, ``phases`` rows a servo.
 
     Nothing else of the cycle is simulated but what the servos remember.
 
-    As in `camwright.validation.servo.simulation.simulate` phase ``j`` samples ``(j / PHASES - 1 + k) dT`` after the start of the
+    As in `camwright.validation.servo.simulation.simulate` phase ``j`` samples ``(j / phases - 1 + k) dT`` after the start of the
     return zone. The first
     sample here is the last that no phase has after the start of the shear zone.
 
@@ -40,6 +42,8 @@ def shear_zone_run(profile: CamProfile, cut: Cut, servos: Sequence[Servo], plant
         Their `sampled_plants`.
     past
         Samples that are remembered, by the servo that remembers most.
+    phases
+        Sampling phases.
 
     Raises
     ------
@@ -47,16 +51,16 @@ def shear_zone_run(profile: CamProfile, cut: Cut, servos: Sequence[Servo], plant
         They remember too many samples.
     """
     many = len(servos)
-    step = cut.line_speed * np.array([servo.sample_time for servo in servos]) / PHASES  # from phase to phase
+    step = cut.line_speed * np.array([servo.sample_time for servo in servos]) / phases  # from phase to phase
     shift = np.fmod(cut.line_speed * np.array([servo.delay for servo in servos]), cut.length)
-    most = math.ceil(cut.shear_zone / (PHASES * float(step.min()))) + 3
+    most = math.ceil(cut.shear_zone / (phases * float(step.min()))) + 3
     require_samples(cut, servos[0], past, most)
-    first = np.floor((cut.return_zone + cut.shear_zone_at) / (PHASES * step)) * PHASES - PHASES
-    index = first[:, None] + np.arange(-past * PHASES, most * PHASES)
+    first = np.floor((cut.return_zone + cut.shear_zone_at) / (phases * step)) * phases - phases
+    index = first[:, None] + np.arange(-past * phases, most * phases)
     grid = cut.return_start + index * step[:, None]
     alike = step.min() == step.max() and shift.min() == shift.max()  # one grid for all
     seen = (grid - shift[:, None])[: 1 if alike else many]
-    command = deviation(profile, seen).reshape(-1, past + most, PHASES)
+    command = deviation(profile, seen).reshape(-1, past + most, phases)
 
     gain = np.array([servo.position_gain for servo in servos])[:, None, None]
     lead = np.array([servo.velocity_feedforward / servo.sample_time for servo in servos])[:, None, None]
@@ -65,7 +69,7 @@ def shear_zone_run(profile: CamProfile, cut: Cut, servos: Sequence[Servo], plant
     history = (gain + lead) * response
     history[:, :, :-1] -= lead * response[:, :, 1:]
     state = history @ command[:, :past]
-    within = np.empty((many, 4, most, PHASES))  # state and input of the closed loop at the samples
+    within = np.empty((many, 4, most, phases))  # state and input of the closed loop at the samples
     for k in range(most):
         now, before = command[:, past + k, None], command[:, past + k - 1, None]
         drive = (gain + lead) * now - lead * before
@@ -74,14 +78,14 @@ def shear_zone_run(profile: CamProfile, cut: Cut, servos: Sequence[Servo], plant
 
     between = plants[:SUBSTEPS, :, 1:3].transpose(1, 2, 0, 3).reshape(many, -1, 4)  # velocity and position
     between[:, :, 2:3] -= gain * between[:, :, 3:]  # the reference is u = f - K p
-    points = (between @ within.reshape(many, 4, -1)).reshape(many, 2, SUBSTEPS, most, PHASES)
-    points = points.transpose(1, 0, 4, 3, 2).reshape(2, many * PHASES, -1)
-    starts = grid[:, past * PHASES : (past + 1) * PHASES].reshape(-1, 1)
-    master = starts + np.repeat(step * (PHASES / SUBSTEPS), PHASES)[:, None] * np.arange(most * SUBSTEPS)
+    points = (between @ within.reshape(many, 4, -1)).reshape(many, 2, SUBSTEPS, most, phases)
+    points = points.transpose(1, 0, 4, 3, 2).reshape(2, many * phases, -1)
+    starts = grid[:, past * phases : (past + 1) * phases].reshape(-1, 1)
+    master = starts + np.repeat(step * (phases / SUBSTEPS), phases)[:, None] * np.arange(most * SUBSTEPS)
     slope = mean_ratio(profile)
     late = np.array([steady_following_error(slope * cut.line_speed, servo) for servo in servos])
     axis = points[1] + (float(profile.coefficients[0, 0]) + slope * (master - profile.start))
-    axis -= np.repeat(late, PHASES)[:, None]
+    axis -= np.repeat(late, phases)[:, None]
     return AxisRun(master, axis, points[0] / cut.line_speed + slope)
 
 
