@@ -11,7 +11,7 @@ import pytest
 from camwright import Design, load_job, optimise
 from camwright.design.place import place_sync
 from camwright.profiles.cut import Cut
-from camwright.profiles.machines import CrankSlider
+from camwright.profiles.machines import CrankSlider, Machine
 
 
 @pytest.fixture(scope="module")
@@ -23,7 +23,7 @@ def test_the_objective_is_the_optimum_to_a_millionth(design: Design) -> None:
     # from rest to rest over h in T, jerk J, the acceleration a trapezoid: h = A (T/2 - A/J) T/2
     height, time, jerk = 0.2, 0.4 / (80 / 60), 3000.0
     optimum = jerk / 2 * (time / 2 - math.sqrt(time**2 / 4 - 8 * height / (time * jerk)))
-    assert design.solution.objective == pytest.approx(optimum, rel=1e-6)
+    assert design.objective == pytest.approx(optimum, rel=1e-6)
     assert design.bound.value <= optimum * (1 + 1e-12)
     assert design.gap >= -1e-9
 
@@ -52,19 +52,21 @@ def test_sync_travel_and_joins(design: Design) -> None:
 def test_the_sync_zone_is_looked_for_at_nine_places_and_found_to_two_thousandths() -> None:
     """A cost with a narrow valley between the first and the second of nine places, which fewer places do not lead to."""
     machine, cut = CrankSlider(0.15, 0.6), Cut(0.9, 0.5, 0.1, 0.04, 0.0, 1e-4)
-    least, greatest = machine.sync_range(cut)
+    least, greatest = machine.place_range(cut)
     margin = 0.02 * (greatest - least)
     places = np.linspace(least + margin, greatest - margin, 9)
     asked: list[float] = []
     valley = places[1]
 
-    def cost(placed: CrankSlider) -> float:
+    def cost(placed: Machine) -> float:
+        assert isinstance(placed, CrankSlider)
         asked.append(placed.sync_at)
         off = abs(placed.sync_at - valley)
         return off if off < 0.4 * (places[1] - places[0]) else 10.0 - 0.1 * abs(placed.sync_at - places[5])
 
     found = place_sync(machine, cut, cost)
     assert found is not None
+    assert isinstance(found.machine, CrankSlider)
     assert asked[:9] == pytest.approx(list(places), abs=1e-12)
     assert abs(found.machine.sync_at - valley) <= 2e-3
 
