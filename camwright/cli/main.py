@@ -16,6 +16,10 @@ from camwright.house.provenance import camwright_version
 from camwright.profiles.errors import CamwrightError
 
 COMMANDS = {
+    "new": "Start a job: a commented file with every key, your numbers in it, an example's where you give none.",
+    "examples": "List the example jobs, or write one as a file.",
+    "keys": "List the keys of a job file: what each takes, its default, what it means and what uses it.",
+    "schema": "Print the JSON Schema of job files, of design.json or of recipe.json, for editors and other programs.",
     "design": "Design the optimal cam of a job; write the design, the cam table and the figures.",
     "compare": "Compare the optimal cam with the linear return and the standard motion laws.",
     "limits": "Say how fast and how short the machine of a job can cut, and which limit binds.",

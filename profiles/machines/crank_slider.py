@@ -57,13 +57,35 @@ class CrankSlider(Machine):
     place_name: ClassVar[str] = "sync_at"
     own_baselines: ClassVar[tuple[str, ...]] = ("crank_tabulated",)
 
-    crank: Annotated[float, Quantity("length", example="150 mm", shown=True)]
-    rod: Annotated[float, Quantity("length", shown=True)]
-    offset: Annotated[float, Quantity("length", signed=True, example="0 mm", shown=True)] = 0.0
-    crank_inertia: Annotated[float, Quantity("inertia", zero=True, usual="0.5 kg m^2")] = 0.0
-    carriage_mass: Annotated[float, Quantity("mass", zero=True)] = 0.0
+    crank: Annotated[float, Quantity("length", example="150 mm", shown=True, description="crank radius")]
+    rod: Annotated[float, Quantity("length", shown=True, description="rod length")]
+    offset: Annotated[
+        float,
+        Quantity(
+            "length",
+            signed=True,
+            example="0 mm",
+            shown=True,
+            description="distance of the crank's centre from the carriage's line",
+        ),
+    ] = 0.0
+    crank_inertia: Annotated[
+        float,
+        Quantity(
+            "inertia",
+            zero=True,
+            usual="0.5 kg m^2",
+            description="inertia of crank, rod's rotating share, gear and motor, at the crank",
+        ),
+    ] = 0.0
+    carriage_mass: Annotated[
+        float, Quantity("mass", zero=True, description="mass of the carriage with the rod's other share")
+    ] = 0.0
     gear_ratio: Annotated[float, GEAR_RATIO] = 1.0
-    sync_at: Annotated[float, Quantity("angle", signed=True)] = math.nan
+    sync_at: Annotated[
+        float,
+        Quantity("angle", signed=True, description="crank angle at mid sync zone; the design's to choose if left out"),
+    ] = math.nan
 
     @property
     def pitch(self) -> float:

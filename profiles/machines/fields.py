@@ -44,6 +44,8 @@ class Quantity(About):
         What to write; empty for the usual example of the kind.
     usual
         What to add where the machine gives the motor nothing to do; empty for the example.
+    description
+        What it is.
     """
 
     kind: str
@@ -51,6 +53,7 @@ class Quantity(About):
     signed: bool = False
     example: str = ""
     usual: str = ""
+    description: str = ""
 
 
 @dataclass(frozen=True)

@@ -39,10 +39,18 @@ class LinearCarriage(Machine):
     turns_back: ClassVar[bool] = True
     constant_inertia: ClassVar[bool] = True
 
-    stroke: Annotated[float, Quantity("length", example="800 mm", shown=True)]
-    home: Annotated[float, Quantity("length", signed=True, example="0 mm")] = 0.0
-    mass: Annotated[float, Quantity("mass", zero=True)] = 0.0
-    travel_per_turn: Annotated[float, Quantity("length", example="20 mm")] = 1.0
+    stroke: Annotated[
+        float, Quantity("length", example="800 mm", shown=True, description="length of the guide that may be used")
+    ]
+    home: Annotated[
+        float, Quantity("length", signed=True, example="0 mm", description="place of the home end of the stroke")
+    ] = 0.0
+    mass: Annotated[
+        float, Quantity("mass", zero=True, description="moved mass, with what motor and transmission add")
+    ] = 0.0
+    travel_per_turn: Annotated[
+        float, Quantity("length", example="20 mm", description="carriage travel per motor turn")
+    ] = 1.0
 
     @property
     def pitch(self) -> float:

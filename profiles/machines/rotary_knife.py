@@ -54,15 +54,22 @@ class RotaryKnife(Machine):
     constant_inertia: ClassVar[bool] = True
     zone_by_angle: ClassVar[bool] = True
 
-    circumference: Annotated[float, Quantity("length", example="400 mm", shown=True)]
+    circumference: Annotated[
+        float, Quantity("length", example="400 mm", shown=True, description="circumference of the blade circle")
+    ]
     blades: Annotated[int, Whole(1, 1000, 2, "blades, evenly spaced", shown=True)] = 1
     gear_ratio: Annotated[float, GEAR_RATIO] = 1.0
     sync: Annotated[
         Sync,
         Choice(get_args(Sync), "which speed of the blade is in sync: on its circle, or along the material", shown=True),
     ] = "tangential"
-    drum_inertia: Annotated[float, Quantity("inertia", zero=True, key="inertia")] = 0.0
-    drum_friction: Annotated[float, Quantity("torque", zero=True, usual="2 N m", key="friction")] = 0.0
+    drum_inertia: Annotated[
+        float, Quantity("inertia", zero=True, key="inertia", description="inertia of drum, gear and motor, at the drum")
+    ] = 0.0
+    drum_friction: Annotated[
+        float,
+        Quantity("torque", zero=True, usual="2 N m", key="friction", description="friction torque at the drum"),
+    ] = 0.0
 
     @property
     def radius(self) -> float:

@@ -16,13 +16,13 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-LINKED = ("design", "profiles", "validation")
+LINKED = ("design", "examples", "profiles", "validation")
 NOT_COPIED = shutil.ignore_patterns(".venv", ".git", "out", "dist", ".*_cache", ".hypothesis", "__pycache__")
 WITHOUT_INDEX = ("--no-deps", "--no-index", "--no-build-isolation", "--disable-pip-version-check", "--quiet")
 
 
 def copied(target: Path, links: bool) -> Path:
-    """Copy the checkout, with its three links or with what a checkout without links has: text files that name the folder."""
+    """Copy the checkout, with its four links or with what a checkout without links has: text files that name the folder."""
     shutil.copytree(ROOT, target, ignore=NOT_COPIED, symlinks=True)
     for name in LINKED:
         link = target / "camwright" / name

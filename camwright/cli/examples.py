@@ -1,0 +1,52 @@
+"""The command ``camwright examples``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import RenderableType
+from rich.table import Table
+
+from camwright.cli.options import Json, Quiet
+from camwright.cli.views.files import files_view
+from camwright.house.files import staged
+from camwright.house.output import Voice
+from camwright.jobs.examples import Example, example, examples
+from camwright.profiles.errors import InputError
+
+
+def run(
+    name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="Write this example.")] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Where to write it; here if left out.")
+    ] = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> int:
+    """List the example jobs, or write one as a file."""
+    voice = Voice(as_json, quiet)
+    if name is None:
+        found = examples()
+        listed = [{"name": each.name, "machine": each.machine, "about": each.about} for each in found.values()]
+        voice.answer(lambda: {"examples": listed}, lambda: _view(list(found.values())))
+        return 0
+    one, directory = example(name), Path() if out is None else out
+    file = directory / one.path.name
+    if file.exists() or file.is_symlink():
+        raise InputError(f"{file}: there already; name another directory with --out")
+    with staged(directory) as aside:
+        (aside / file.name).write_bytes(one.path.read_bytes())
+    voice.answer(lambda: {"files": [str(file)]}, lambda: files_view([file]))
+    return 0
+
+
+def _view(found: list[Example]) -> RenderableType:
+    """Show the examples."""
+    table = Table(title="Example jobs: camwright examples NAME writes one here", title_justify="left", show_lines=True)
+    for column in ("name", "machine", "about"):
+        table.add_column(column, overflow="fold")
+    for each in found:
+        table.add_row(each.name, each.machine, each.about)
+    return table
