@@ -28,8 +28,9 @@ from camwright.profiles.machines import RotaryKnife
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import baseline
 from camwright.profiles.servo import Servo, sample_plant
+from camwright.validation.servo.axis_run import ServoRun
 from camwright.validation.servo.lifting import SUBSTEPS, lift
-from camwright.validation.servo.simulation import ServoRun, memory, simulate
+from camwright.validation.servo.simulation import memory, simulate, whole_cycle
 from camwright.validation.servo.sweep import sweep_servos
 
 AGREEMENT = 1e-14
@@ -133,6 +134,7 @@ def times(profile: CamProfile, servo: Servo) -> tuple[float, float, float]:
         for _ in range(RUNS):
             memory.cache_clear()
             lift.cache_clear()
+            whole_cycle.cache_clear()
             start = process_time()
             simulate(profile, CUT, servo)
             first = min(first, process_time() - start)

@@ -19,8 +19,9 @@ from camwright.validation.motion import (
     position_scale,
     ratio_scale,
 )
+from camwright.validation.servo.periodic import deviation
 from camwright.validation.servo.response import peak_shear_zone_error
-from camwright.validation.servo.simulation import deviation, simulate
+from camwright.validation.servo.simulation import simulate
 
 LEAST_WRAPS = 3
 

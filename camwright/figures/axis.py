@@ -18,8 +18,8 @@ from camwright.figures.style import (
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.studies.axis_study import RobustBand
 from camwright.studies.design import Design
+from camwright.validation.servo.axis_run import ServoRun
 from camwright.validation.servo.response import sync_error
-from camwright.validation.servo.simulation import ServoRun
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

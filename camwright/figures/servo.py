@@ -19,8 +19,8 @@ from camwright.profiles.polynomial.profile import FloatArray
 from camwright.profiles.returns import is_straight
 from camwright.studies.comparison import Comparison
 from camwright.studies.measured import Measured
+from camwright.validation.servo.axis_run import ServoRun
 from camwright.validation.servo.response import ServoResponse, sync_error
-from camwright.validation.servo.simulation import ServoRun
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -10,7 +10,8 @@ import numpy as np
 from camwright.profiles.bender.motion import Moves
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import FloatArray
-from camwright.profiles.servo import Servo, closed_loop, spectral_radius
+from camwright.profiles.servo import Servo, spectral_radius
+from camwright.validation.servo.lifting import BLOCK, follow, lift_side_by_side, loops_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,17 +53,13 @@ def arrivals(moves: Moves, servo: Servo, window: float) -> Arrivals:
     radius = spectral_radius(servo)
     if radius >= 1:
         raise InputError(f"the servo is unstable: largest pole {radius:.4f} in the z-plane, must be below 1")
-    a, b = closed_loop(servo)
     goal = moves.distance
     decay = math.log(1e-3 * window / max(window, float(goal.max(initial=0.0)))) / math.log(radius)
     samples = math.ceil(float(moves.time.max(initial=0.0)) / servo.sample_time + decay) + 2
-    state, before = np.zeros((len(goal), 3)), np.zeros(len(goal))
-    last, beyond = np.zeros(len(goal)), np.zeros(len(goal))
-    for k in range(samples):
-        away = np.abs(goal - state[:, 2]) > window
-        beyond = np.maximum(beyond, state[:, 2] - goal)
-        last[away] = (k + 1) * servo.sample_time
-        command = moves.position(np.full((len(goal), 1), k * servo.sample_time))[:, 0]
-        state = state @ a.T + command[:, None] * b[:, 0] + before[:, None] * b[:, 1]
-        before = command
-    return Arrivals(np.maximum(last - moves.time, 0.0), beyond)
+    times = servo.sample_time * np.arange(-1.0, samples)  # one sample at rest is all that is remembered
+    command = moves.position(np.broadcast_to(times, (len(goal), len(times)))).T[None]
+    lifted = lift_side_by_side(loops_of((servo,), parts=1), 1, (0,), BLOCK)
+    axis = follow(lifted, command, np.zeros((1, len(goal))), 0.0, 1.0)[0]
+    off = axis - goal[:, None]
+    last = ((np.abs(off) > window) * np.arange(1, samples + 1)).max(axis=1) * servo.sample_time
+    return Arrivals(np.maximum(last - moves.time, 0.0), np.maximum(off.max(axis=1), 0.0))

@@ -2,24 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from camwright.profiles.cut import Cut
 from camwright.profiles.polynomial.profile import CamProfile
-from camwright.profiles.servo import Servo, sample_plant
+from camwright.profiles.servo import Servo
 from camwright.validation.check import Check
 from camwright.validation.motion import require_period
-from camwright.validation.servo.lifting import SUBSTEPS
-from camwright.validation.servo.simulation import (
-    PHASES,
-    deviation,
-    mean_ratio,
-    memory,
-    require_samples,
-)
+from camwright.validation.servo.lifting import lift
+from camwright.validation.servo.simulation import memory, simulate_part
 
 ALLOWANCE = 1e-3
 """What the axis may exceed a limit by, relative to the limit: it is looked at on points, not everywhere."""
@@ -48,7 +41,7 @@ class AxisPeaks:
 
 
 def axis_peaks(profile: CamProfile, cut: Cut, servo: Servo) -> AxisPeaks:
-    """Simulate the servo sample by sample, all phases side by side, and take the extremes of the axis' motion.
+    """Simulate the servo at all phases and take the extremes of the axis' motion.
 
     Parameters
     ----------
@@ -63,30 +56,11 @@ def axis_peaks(profile: CamProfile, cut: Cut, servo: Servo) -> AxisPeaks:
         The profile does not run over ``[0, x_c]``, the servo is unstable, or its memory too long to simulate.
     """
     require_period(profile, cut)
-    past = memory(servo.loop)
-    samples = math.ceil(cut.period / servo.sample_time) + 1
-    require_samples(cut, servo, past, samples)
-    step = servo.sample_time * cut.line_speed / PHASES
-    grid = cut.return_start - cut.line_speed * servo.delay + step * np.arange(-(past + 1.0) * PHASES, samples * PHASES)
-    command = deviation(profile, grid).reshape(-1, PHASES)
-    drive = servo.position_gain * command[1:] + servo.velocity_feedforward / servo.sample_time * np.diff(
-        command, axis=0
-    )
-    plant = sample_plant(servo, servo.sample_time)
-    parts = [sample_plant(servo, servo.sample_time * k / SUBSTEPS) for k in range(SUBSTEPS)]
-    between = np.array([part.transition[:2] for part in parts])  # rows of acceleration and velocity
-    pushed = np.array([part.input[:2] for part in parts])
-    state = np.zeros((3, PHASES))
-    velocity, acceleration = [], []
-    for k, input_ in enumerate(drive):
-        reference = input_ - servo.position_gain * state[2]
-        if k >= past:
-            points = between @ state + pushed[:, :, None] * reference
-            acceleration.append(points[:, 0])
-            velocity.append(points[:, 1])
-        state = plant.transition @ state + plant.input[:, None] * reference
-    speeds = np.array(velocity) + mean_ratio(profile) * cut.line_speed
-    return AxisPeaks(float(speeds.max()), float(speeds.min()), float(np.abs(np.array(acceleration)).max()))
+    lifted = lift(servo.loop, memory(servo.loop), (2, 1))
+    cycle = (cut.return_start, cut.return_start + cut.length)
+    slope, ratio = simulate_part(profile, cut, (servo,), lifted, cycle)[1]
+    v = cut.line_speed
+    return AxisPeaks(v * float(ratio.max()), v * float(ratio.min()), v**2 * float(np.abs(slope).max()))
 
 
 def axis_checks(peaks: AxisPeaks, speed: float, acceleration: float, least_velocity: float, unit: str) -> list[Check]:

@@ -10,9 +10,9 @@ from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.servo import Servo, mean_lag
 from camwright.profiles.task import Task
 from camwright.validation.motion import require_period
+from camwright.validation.servo.lifting import lift_side_by_side, loops_of
 from camwright.validation.servo.response import shear_zone_error
-from camwright.validation.servo.side_by_side import sampled_plants, shear_zone_run
-from camwright.validation.servo.simulation import PHASES, memory
+from camwright.validation.servo.simulation import PHASES, memory, shear_zone_run
 
 SHARES = (0.1, 0.25, 0.5, 1.0)
 """Shares of the line speed at which the cut is looked at."""
@@ -69,11 +69,11 @@ def length_errors(profile: CamProfile, task: Task, servo: Servo) -> tuple[Length
     cut = task.cut
     require_period(profile, cut)
     servos = (servo, replace(servo, lead_time=mean_lag(servo)))
-    plants, past = sampled_plants(servos), memory(servo.loop)
+    lifted = lift_side_by_side(loops_of(servos), memory(servo.loop), (1, 0))
     found = []
     for share in SHARES:
         slower = task.at_speed(share * cut.line_speed)
-        run = shear_zone_run(profile, slower.cut, servos, plants, past)
+        run = shear_zone_run(profile, slower.cut, servos, lifted)
         master, error, slope = shear_zone_error(run, profile, slower)
         # mean of the cubics between the points, 0 wide where a row is filled up
         step = np.diff(master, axis=1)

@@ -1,11 +1,13 @@
-"""The servo's closed loop over many samples at once, as matrices from the command to the axis."""
+"""The servo's closed loop over many samples at once, as matrices from the command to the axis; many servos side by side."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.profiles.servo import Servo, sample_plant
@@ -13,136 +15,216 @@ from camwright.profiles.servo import Servo, sample_plant
 SUBSTEPS = 8
 """Points of the axis per sample, the sampling instant included."""
 
-_BLOCK = 16
-"""Samples that one step of the block recursion advances; a power of two."""
+BLOCK = 16
+"""Samples that one step of the recursion advances where a servo is lifted once for many runs; a power of two."""
+
+
+@dataclass(frozen=True, eq=False)
+class Loops:
+    """Sampled servos side by side. Their dead time and lead time are the command's affair.
+
+    Parameters
+    ----------
+    held
+        Plants on ``(z, u)`` over no time to a whole sample, in equal parts: shape ``(servos, parts + 1, 4, 4)``, with the state ``z`` of
+        `camwright.profiles.servo.SampledPlant` and the velocity reference ``u`` that is held.
+    gain, lead
+        Position gain, and velocity feed-forward over sample time (1/s), shape ``(servos,)``.
+    sample_time
+        Shape ``(servos,)`` (s).
+    """
+
+    held: FloatArray
+    gain: FloatArray
+    lead: FloatArray
+    sample_time: FloatArray
+
+    def closed(self) -> FloatArray:
+        """Close the loops over a sample: ``A`` of `camwright.profiles.servo.closed_loop`, shape ``(servos, 3, 3)``."""
+        loops = self.held[:, -1, :3, :3].copy()
+        loops[:, :, 2] -= self.held[:, -1, :3, 3] * self.gain[:, None]
+        return loops
+
+    def take(self, rows: NDArray[np.intp]) -> Loops:
+        """Pick servos by their number."""
+        return Loops(self.held[rows], self.gain[rows], self.lead[rows], self.sample_time[rows])
+
+
+def loops_of(servos: Sequence[Servo], parts: int = SUBSTEPS) -> Loops:
+    """Sample servos, each over equal parts of its own sample time."""
+    held = np.zeros((len(servos), parts + 1, 4, 4))
+    held[:, 0] = np.eye(4)
+    held[:, 1, 3, 3] = 1.0
+    for servo, matrix in zip(servos, held[:, 1], strict=True):
+        plant = sample_plant(servo, servo.sample_time / parts)
+        matrix[:3, :3], matrix[:3, 3] = plant.transition, plant.input
+    known = 1
+    while known < parts:  # twice as many in each round
+        more = min(known, parts - known)
+        held[:, known + 1 : known + more + 1] = held[:, known, None] @ held[:, 1 : more + 1]
+        known += more
+    gain, lead, sample_time = np.array(
+        [(servo.position_gain, servo.velocity_feedforward / servo.sample_time, servo.sample_time) for servo in servos]
+    ).T
+    return Loops(held, gain, lead, sample_time)
 
 
 @dataclass(frozen=True, eq=False)
 class Lifted:
-    """The closed loop over its memory and over a block of samples; a property of the servo alone.
+    """Closed loops over their memory and over a block of samples; a property of the servos alone.
 
-    With the command ``c``, the state ``z`` of `camwright.profiles.servo.SampledPlant` and the closed loop's input ``f`` (m/s), all
-    as rows::
+    With the command ``c``, the state ``z`` and the closed loop's input ``f`` (m/s), all as rows, of each servo::
 
-        z[0]                = c[-past:0] @ history
-        velocity, position  = (f[0:size], z[0]) @ points    at the points of the block
-        z[size]             = (f[0:size], z[0]) @ end
+        z[0]        = c[-past:0] @ history'
+        quantities  = (f[0:size], z[0]) @ points    at the points of the block
+        z[size]     = (f[0:size], z[0]) @ end
 
-    with ``history`` ``(past, 3)``, ``points`` ``(2, size + 3, size SUBSTEPS)``, ``end`` ``(size + 3, 3)``; ``size`` is `_BLOCK`.
+    Parameters
+    ----------
+    loops
+        The servos.
+    orders
+        The quantities: derivatives of the axis over time, 0 the position, 1 the velocity, 2 the acceleration.
+    history
+        Shape ``(servos, 3, past)``.
+    points
+        Shape ``(orders, servos, size + 3, size parts)``.
+    end
+        Shape ``(servos, size + 3, 3)``.
     """
 
+    loops: Loops
+    orders: tuple[int, ...]
     history: FloatArray
     points: FloatArray
     end: FloatArray
 
+    @property
+    def size(self) -> int:
+        """Samples of a block."""
+        return int(self.end.shape[1]) - 3
+
+    @property
+    def parts(self) -> int:
+        """Points per sample."""
+        return int(self.points.shape[-1]) // self.size
+
 
 @lru_cache(maxsize=32)
-def lift(servo: Servo, past: int) -> Lifted:
-    """Lift a servo: ``z[j] = A^j z[0] + sum_i A^(j-1-i) b f[i]``, and between the samples the plant alone.
+def lift(servo: Servo, past: int, orders: tuple[int, ...]) -> Lifted:
+    """Lift one servo, to be run on many profiles: `lift_side_by_side` in blocks of `BLOCK` samples."""
+    return lift_side_by_side(loops_of((servo,)), past, orders, BLOCK)
+
+
+def lift_side_by_side(loops: Loops, past: int, orders: tuple[int, ...], size: int = 1) -> Lifted:
+    """Lift servos: ``z[j] = A^j z[0] + sum_i A^(j-1-i) b f[i]``, and between the samples the plant alone.
 
     Parameters
     ----------
-    servo
-        The servo; dead time and lead do not matter.
+    loops
+        The servos.
     past
-        Samples that it remembers.
+        Samples that they remember, at least one.
+    orders
+        Derivatives of the axis that are asked for.
+    size
+        Samples that one step advances: many where the matrices serve for many runs, one where they serve once.
     """
-    gain, lead = servo.position_gain, servo.velocity_feedforward / servo.sample_time
-    plant = sample_plant(servo, servo.sample_time)
-    start = np.eye(3, 4)
-    start[:, 3] = plant.input
-    loop = plant.transition.copy()
-    loop[:, 2] -= gain * plant.input
-    powers, ahead = _doubled(start, loop, 4 * (_BLOCK + 1))  # of (I, b)
-    response = _doubled(powers[:, 3::4], ahead, past)[0]
-    powers = powers.reshape(3, -1, 4)
-    earliest_first = response[:, past - 1 :: -1]
+    many = len(loops.gain)
+    gain, lead = loops.gain[:, None, None], loops.lead[:, None, None]
+    start = np.empty((many, 3, 4))
+    start[:, :, :3], start[:, :, 3] = np.eye(3), loops.held[:, -1, :3, 3]
+    powers, ahead = _doubled(start, loops.closed(), 4 * (size + 1))  # of (I, b)
+    response = _doubled(powers[:, :, 3::4], ahead, max(past, size))[0]
+    powers = powers.reshape(many, 3, -1, 4)
+    earliest_first = response[:, :, past - 1 :: -1]
     history = (gain + lead) * earliest_first
-    history[:, :-1] -= lead * earliest_first[:, 1:]
+    history[:, :, :-1] -= lead * earliest_first[:, :, 1:]
 
-    # between the samples the reference u = f - K p is held: rows that make velocity and position of (z, f)
-    part = sample_plant(servo, servo.sample_time / SUBSTEPS)
-    held = np.eye(4)
-    held[:3, :3], held[:3, 3] = part.transition, part.input
-    rows = _doubled(np.eye(4), held, 4 * SUBSTEPS)[0].reshape(4, SUBSTEPS, 4)[1:3]
-    rows[:, :, 2] -= gain * rows[:, :, 3]
+    # between the samples the reference u = f - K p is held: rows that make the quantities of (z, f)
+    rows = loops.held[:, :-1, [2 - order for order in orders]].transpose(2, 0, 1, 3)
+    rows[..., 2] -= gain[:, :, 0] * rows[..., 3]
 
-    end = np.empty((_BLOCK + 3, 3))
-    end[:_BLOCK] = response[:, _BLOCK - 1 :: -1].T
-    end[_BLOCK:] = powers[:, _BLOCK, :3].T
-    return Lifted(history.T.copy(), _points(rows, powers[:, :_BLOCK, :3], response[:, : _BLOCK - 1]), end)
+    end = np.empty((many, size + 3, 3))
+    end[:, :size] = response[:, :, size - 1 :: -1].transpose(0, 2, 1)
+    end[:, size:] = powers[:, :, size, :3].transpose(0, 2, 1)
+    points = _points(rows, powers[:, :, :size, :3], response[:, :, : size - 1], size)
+    return Lifted(loops, orders, history, points, end)
 
 
 def _doubled(start: FloatArray, transition: FloatArray, count: int) -> tuple[FloatArray, FloatArray]:
-    """Columns times powers of a matrix, side by side: ``S, T S, T² S …``, in rounds that double their number.
+    """Columns times powers of matrices, side by side: ``S, T S, T² S …``, in rounds that double their number.
 
     Parameters
     ----------
     start
-        Columns ``S``: one power's, or several powers' already.
+        Columns ``S``: one power's, or several powers' already; shape ``(servos, 3, columns)``.
     transition
-        Matrix ``T`` that takes these columns to the next.
+        Matrices ``T`` that take these columns to the next.
     count
         How many columns are wanted at least.
 
     Returns
     -------
     (found, transition)
-        The columns, and the matrix that takes all of them to the next.
+        The columns, and the matrices that take all of them to the next.
     """
-    while start.shape[1] < count:
-        start = np.concatenate([start, transition @ start], axis=1)
+    while start.shape[2] < count:
+        start = np.concatenate([start, transition @ start], axis=2)
         transition = transition @ transition
     return start, transition
 
 
-def _points(rows: FloatArray, powers: FloatArray, response: FloatArray) -> FloatArray:
+def _points(rows: FloatArray, powers: FloatArray, response: FloatArray, size: int) -> FloatArray:
     """Matrices from the inputs of a block and its first state to quantities at its points.
 
     Parameters
     ----------
     rows
-        The quantities at the points after a sample, from ``(z, f)``; shape ``(quantities, SUBSTEPS, 4)``.
+        The quantities at the points after a sample, from ``(z, f)``; shape ``(quantities, servos, parts, 4)``.
     powers
-        ``A^j``, shape ``(3, size, 3)``.
+        ``A^j``, shape ``(servos, 3, size, 3)``.
     response
-        ``A^j b``, shape ``(3, size - 1)``.
+        ``A^j b``, shape ``(servos, 3, size - 1)``.
 
     Returns
     -------
     ndarray
-        Shape ``(quantities, size + 3, size SUBSTEPS)``.
+        Shape ``(quantities, servos, size + 3, size parts)``.
     """
-    kinds, size = len(rows), _BLOCK * SUBSTEPS
+    kinds, many, parts, _ = rows.shape
+    width = size * parts
     # what one input does: itself at once, then through the states; the next input does the same a sample later
-    pulse = np.zeros((kinds, 2 * size - SUBSTEPS))
-    pulse[:, size - SUBSTEPS : size] = rows[:, :, 3]
-    pulse[:, size:] = (response.T @ rows[:, :, :3].transpose(0, 2, 1)).reshape(kinds, -1)
-    row, item = pulse.strides
-    found = np.empty((kinds, _BLOCK + 3, size))
-    found[:, :_BLOCK] = np.ndarray(
-        (kinds, _BLOCK, size), buffer=pulse, offset=(size - SUBSTEPS) * item, strides=(row, -SUBSTEPS * item, item)
+    pulse = np.zeros((kinds, many, 2 * width - parts))
+    pulse[..., width - parts : width] = rows[..., 3]
+    pulse[..., width:] = (response.transpose(0, 2, 1) @ rows[..., :3].transpose(0, 1, 3, 2)).reshape(kinds, many, -1)
+    kind, servo, item = pulse.strides
+    found = np.empty((kinds, many, size + 3, width))
+    found[:, :, :size] = np.ndarray(
+        (kinds, many, size, width),
+        buffer=pulse,
+        offset=(width - parts) * item,
+        strides=(kind, servo, -parts * item, item),
     )
-    after = rows[:, :, :3].reshape(-1, 3) @ powers.reshape(3, -1)  # of each power a column
-    found[:, _BLOCK:] = after.reshape(kinds, SUBSTEPS, _BLOCK, 3).transpose(0, 3, 2, 1).reshape(kinds, 3, size)
+    after = rows[..., :3] @ powers.reshape(many, 3, -1)  # of each power a column
+    found[:, :, size:] = after.reshape(kinds, many, parts, size, 3).transpose(0, 1, 4, 3, 2).reshape(kinds, many, 3, -1)
     return found
 
 
-def follow(
-    lifted: Lifted, servo: Servo, command: FloatArray, line: FloatArray, slope: float, line_speed: float
-) -> tuple[FloatArray, FloatArray]:
-    """Axis and its ratio after the memory, from rest before it, about a straight line.
+def follow(lifted: Lifted, command: FloatArray, line: FloatArray, slope: float, line_speed: float) -> FloatArray:
+    """Axes after the memory, from rest before it, about a straight line.
 
-    All blocks and phases take one matrix product together; only the first states of the blocks depend on each other.
+    Every block and phase is a matrix product of its own; only the first states of the blocks depend on each other.
 
     Parameters
     ----------
-    lifted, servo
-        The servo.
+    lifted
+        The servos.
     command
-        The command at the samples ``c[k]`` (m), without the line, memory first, shape ``(samples, phases)``.
+        The command at the samples ``c[k]`` (m), without the line, memory first: shape ``(servos, samples, phases)``, or
+        ``(1, samples, phases)`` for all alike.
     line
-        Where the axis is without command: its position at the first sample after the memory (m), shape ``(phases,)``.
+        Where the axis is without command: its position at the first sample after the memory (m), shape ``(servos, phases)``.
     slope
         Ratio at which it moves on from there.
     line_speed
@@ -150,33 +232,42 @@ def follow(
 
     Returns
     -------
-    (ratio, axis)
-        At the samples after the memory and between them (1, m), shape ``(phases, SUBSTEPS (samples - past))``.
+    ndarray
+        The derivatives over the master of the lifted orders, at the samples after the memory and between them: shape
+        ``(orders, servos phases, parts (samples - past))``.
     """
-    past = len(lifted.history)
-    phases, wanted = command.shape[1], len(command) - past
-    blocks, size = -(-wanted // _BLOCK), _BLOCK * SUBSTEPS
-    lead = servo.velocity_feedforward / servo.sample_time
-    drive = np.zeros((blocks * _BLOCK, phases))  # f[k] = K c[k] + alpha (c[k] - c[k-1]) / dT
-    np.multiply(command[past:], servo.position_gain + lead, out=drive[:wanted])
-    drive[:wanted] -= lead * command[past - 1 : -1]
-    known = np.empty((blocks, phases, _BLOCK + 5))  # inputs, first state, the line there, one
-    known[:, :, :_BLOCK] = drive.reshape(blocks, _BLOCK, phases).transpose(0, 2, 1)
-    states = known[:, :, _BLOCK : _BLOCK + 3]
-    states[0] = command[:past].T @ lifted.history
+    loops, size, width = lifted.loops, lifted.size, lifted.points.shape[-1]
+    many, past, phases = len(loops.gain), lifted.history.shape[2], command.shape[2]
+    wanted = command.shape[1] - past
+    blocks = -(-wanted // size)
+    gain, lead = loops.gain[:, None, None], loops.lead[:, None, None]
+    drive = np.zeros((many, blocks * size, phases))  # f[k] = K c[k] + alpha (c[k] - c[k-1]) / dT
+    np.multiply(command[:, past:], gain + lead, out=drive[:, :wanted])
+    drive[:, :wanted] -= lead * command[:, past - 1 : -1]
+    # inputs, first state, the line there, one: in memory as they are multiplied, servo by servo or block by block
+    known = np.empty((blocks, many, phases, size + 5) if size > 1 else (many, phases, blocks, size + 5))
+    if size == 1:
+        known = known.transpose(2, 0, 1, 3)
+    known[..., :size] = drive.reshape(many, blocks, size, phases).transpose(1, 0, 3, 2)
+    inputs, states = known[..., : size + 3], known[..., size : size + 3]
+    states[0] = (lifted.history @ command[:, :past]).transpose(0, 2, 1)
     for block in range(1, blocks):
-        states[block] = known[block - 1, :, : _BLOCK + 3] @ lifted.end
-    step = slope * line_speed * servo.sample_time / SUBSTEPS
-    known[:, :, -2] = line + np.arange(blocks)[:, None] * (size * step)
-    known[:, :, -1] = 1.0
-    points = np.empty((2, _BLOCK + 5, size))
-    np.divide(lifted.points[0], line_speed, out=points[0, :-2])
-    points[1, :-2] = lifted.points[1]
-    points[0, -2], points[0, -1] = 0.0, slope
-    points[1, -2], points[1, -1] = 1.0, np.arange(size) * step
-    found = np.empty((2, phases, blocks, size))
-    np.matmul(
-        known, points[:, None], out=found.transpose(0, 2, 1, 3)
-    )  # block by block: too small for threads to take part
-    ratio, axis = found.reshape(2, phases, -1)[:, :, : wanted * SUBSTEPS]
-    return ratio, axis
+        np.matmul(inputs[block - 1], lifted.end, out=states[block])
+    rise = (slope * line_speed / lifted.parts * loops.sample_time)[:, None]  # of the line from point to point
+    known[..., -2] = line + np.arange(blocks)[:, None, None] * (width * rise)
+    known[..., -1] = 1.0
+
+    points = np.empty((len(lifted.orders), many, size + 5, width))
+    for order, matrix, found in zip(lifted.orders, lifted.points, points, strict=True):
+        np.divide(matrix, line_speed**order, out=found[:, :-2])
+        found[:, -2] = 1.0 if order == 0 else 0.0
+        found[:, -1] = np.arange(width) * rise if order == 0 else slope if order == 1 else 0.0
+    if size == 1:
+        return np.asarray(known.transpose(1, 2, 0, 3).reshape(many, -1, size + 5) @ points).reshape(
+            len(points), many * phases, -1
+        )
+    made = np.empty((len(points), many, phases, blocks, width))
+    np.matmul(  # block by block: too small for threads to take part
+        known, points[:, None], out=made.transpose(0, 3, 1, 2, 4)
+    )
+    return made.reshape(len(points), many * phases, -1)[:, :, : wanted * lifted.parts]

@@ -11,10 +11,9 @@ from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
 from camwright.validation.motion import require_period
-from camwright.validation.servo.lifting import SUBSTEPS
+from camwright.validation.servo.lifting import lift_side_by_side, loops_of
 from camwright.validation.servo.response import shear_zone_error
-from camwright.validation.servo.side_by_side import closed_loops, sampled_plants, shear_zone_run
-from camwright.validation.servo.simulation import PHASES, memory_at
+from camwright.validation.servo.simulation import PHASES, memory_at, shear_zone_run
 
 _VALUES = 2**17
 """Command values that are held at a time."""
@@ -52,14 +51,14 @@ def shear_zone_errors(profile: CamProfile, task: Task, servos: Sequence[Servo], 
     found = np.full(len(servos), np.inf)
     if not len(servos):
         return found
-    plants = sampled_plants(servos)
-    radii = np.abs(np.linalg.eigvals(closed_loops(plants[SUBSTEPS], servos))).max(axis=1)
+    loops = loops_of(servos)
+    radii = np.abs(np.linalg.eigvals(loops.closed())).max(axis=1)
     past = np.array([memory_at(radius) if radius < 1.0 else 0 for radius in radii.tolist()])
     travel = task.cut.line_speed * np.array([servo.sample_time for servo in servos])
     within = np.ceil(task.cut.shear_zone / travel).astype(np.intp)
     for group in _groups(past, within, phases):
-        chosen = [servos[i] for i in group.tolist()]
-        run = shear_zone_run(profile, task.cut, chosen, plants[:, group], int(past[group].max()), phases)
+        lifted = lift_side_by_side(loops.take(group), int(past[group].max()), (1, 0))
+        run = shear_zone_run(profile, task.cut, [servos[i] for i in group.tolist()], lifted, phases)
         error = shear_zone_error(run, profile, task)[1]
         found[group] = np.abs(error).reshape(len(group), -1).max(axis=1)
     return found

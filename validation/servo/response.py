@@ -15,12 +15,8 @@ from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
-from camwright.validation.servo.simulation import (
-    AxisRun,
-    ServoRun,
-    hermite,
-    simulate,
-)
+from camwright.validation.servo.axis_run import AxisRun, ServoRun, hermite
+from camwright.validation.servo.simulation import simulate
 
 ON_THE_LINE = 1e-9
 """Part of the cut length within which the axis counts as lying on the ideal sync line; well above rounding, well
@@ -122,7 +118,7 @@ def sync_error(
     Parameters
     ----------
     start, end
-        The part (m), counted like `camwright.validation.servo.simulation.AxisRun.master`.
+        The part (m), counted like `camwright.validation.servo.axis_run.AxisRun.master`.
 
     Returns
     -------

@@ -4,6 +4,12 @@ The servo samples on its own clock, so where its samples fall in a cycle (the sa
 cycle, or stays where the start of the machine happened to put it. Every phase is therefore simulated: `PHASES`
 clocks, shifted against each other by equal parts of the sample time, each followed continuously through as many
 earlier cycles as its memory reaches back.
+
+The command is split into its mean straight line, which the servo follows with the constant error of
+`steady_following_error`, and what is periodic in the cut length. Only the latter is simulated, so the accuracy does not
+depend on how far the slave has run. Exact at the sampling instants and between them: no step size but the servo's own.
+The loop sees the command of the time ``t - delay`` (`camwright.profiles.servo.Servo.delay`): of the master position that
+lies ``v delay`` behind.
 """
 
 from __future__ import annotations
@@ -12,7 +18,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TypeVar
 
 import numpy as np
 
@@ -21,10 +26,9 @@ from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.servo import Servo, spectral_radius
 from camwright.validation.motion import require_period
-from camwright.validation.servo.lifting import SUBSTEPS, follow, lift
-
-Number = TypeVar("Number", float, FloatArray)
-"""Floats and arrays, taken alike."""
+from camwright.validation.servo.axis_run import AxisRun, ServoRun
+from camwright.validation.servo.lifting import SUBSTEPS, Lifted, follow, lift
+from camwright.validation.servo.periodic import deviation
 
 PHASES = 16
 """Sampling phases simulated: shifts of the servo's clock by a 16th of the sample time. A multiple of `SUBSTEPS`, so that all
@@ -42,96 +46,6 @@ _MOST_VALUES = 2**17
 
 _MOST_SAMPLES = 2**17
 """Most samples of one phase, memory and cycle together; more would need gigabytes."""
-
-
-@dataclass(frozen=True, eq=False)
-class AxisRun:
-    """Axis of one or more servos in a part of the cycle, at one sampling phase a row.
-
-    All arrays have the shape ``(phases, points)``; the points of a row are equally spaced along the line.
-
-    Parameters
-    ----------
-    master
-        Master position (m), counted on from the start of the return zone: the sync zone ends one cut length later.
-    axis
-        Slave position (m).
-    axis_ratio
-        Slave velocity divided by the line speed.
-    """
-
-    master: FloatArray
-    axis: FloatArray
-    axis_ratio: FloatArray
-
-    @property
-    def phases(self) -> int:
-        """Number of sampling phases."""
-        return len(self.master)
-
-    def window(self, start: float, end: float) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Master position, axis and axis ratio between two master positions, the two ends included, for every phase.
-
-        Rows are filled up by repeating the ends, so that all phases have the same number of points. The ends are
-        interpolated by the cubic through position and ratio of the neighbouring points, which has no sample between
-        them.
-
-        Parameters
-        ----------
-        start, end
-            Part of the cycle (m), counted like `master`, ``start <= end``.
-
-        Returns
-        -------
-        (master, axis, axis_ratio)
-            Shapes ``(phases, n)``.
-        """
-        step = self.master[:, 1:2] - self.master[:, :1]
-        most = self.master.shape[1] - 1
-        first = np.floor((start - self.master[:, 0]) / step[:, 0]).astype(int)
-        last = np.ceil((end - self.master[:, 0]) / step[:, 0]).astype(int)
-        left, right = max(int(first.min()), 0), min(int(last.max()), most)
-        x, y, k = (values[:, left : right + 1].copy() for values in (self.master, self.axis, self.axis_ratio))
-        # the phases begin and end within a few columns of each other
-        head, tail = slice(int(first.max()) - left + 2), slice(max(int(last.min()) - left - 1, 0), None)
-        first, last = np.clip([first, np.maximum(last - 1, first)], 0, most - 1)
-        edges = ((start, first, head, x[:, head] <= start), (end, last, tail, x[:, tail] >= end))
-        rows = np.arange(self.phases)
-        for bound, point, columns, beyond in edges:
-            value, ratio = hermite(
-                (bound - self.master[rows, point]) / step[:, 0],
-                step[:, 0],
-                (self.axis[rows, point], self.axis[rows, point + 1]),
-                (self.axis_ratio[rows, point], self.axis_ratio[rows, point + 1]),
-            )
-            np.copyto(x[:, columns], bound, where=beyond)
-            np.copyto(y[:, columns], value[:, None], where=beyond)
-            np.copyto(k[:, columns], ratio[:, None], where=beyond)
-        return x, y, k
-
-
-@dataclass(frozen=True, eq=False)
-class ServoRun(AxisRun):
-    """Periodic response of one servo: a cycle at each sampling phase.
-
-    Each phase begins up to one sample before the return zone and ends beyond the sync zone.
-
-    Parameters
-    ----------
-    command
-        Commanded slave position (m), continuous in time, shape ``(phases, points)``.
-    """
-
-    command: FloatArray
-
-
-def hermite(part: Number, step: Number, value: Sequence[Number], slope: Sequence[Number]) -> tuple[Number, Number]:
-    """Value and slope of the cubic through two points with slopes, at a part ``0 … 1`` of the step between."""
-    rise = value[1] - value[0]
-    square = 3 * rise - step * (2 * slope[0] + slope[1])
-    cube = step * (slope[0] + slope[1]) - 2 * rise
-    at = value[0] + part * (step * slope[0] + part * (square + part * cube))
-    return at, (step * slope[0] + part * (2 * square + part * 3 * cube)) / step
 
 
 @lru_cache(maxsize=32)
@@ -175,19 +89,83 @@ def require_samples(cut: Cut, servo: Servo, past: int, samples: int) -> None:
         )
 
 
-def simulate(profile: CamProfile, cut: Cut, servo: Servo) -> ServoRun:
-    """Periodic response of the servo to a profile repeated for ever.
+@dataclass(frozen=True, eq=False)
+class _Clocks:
+    """The samples of servos about a part of the cycle, at every phase.
 
-    The command is split into its mean straight line, which the servo follows with the constant error of
-    `steady_following_error`, and what is periodic in the cut length. Only the latter is simulated, so the accuracy does not
-    depend on how far the slave has run. Exact at the sampling instants and between them: no step size but the servo's
-    own. The loop sees the command of the time ``t - delay`` (`camwright.profiles.servo.Servo.delay`): of the master position that
-    lies ``v delay`` behind.
+    Phase ``j`` samples ``(j / phases - 1 + k) dT`` after the start of the return zone. The first sample here is the last that no phase has
+    after the start of the part; the last has the end of the part between itself and its next.
+
+    Parameters
+    ----------
+    origin
+        Start of the return zone (m).
+    step
+        From phase to phase (m), shape ``(servos,)``.
+    first
+        Number of the grid's first point after the memory, counted from the origin, shape ``(servos,)``.
+    past, samples, phases
+        Samples remembered and samples of the part, at each phase; how many phases.
+    """
+
+    origin: float
+    step: FloatArray
+    first: FloatArray
+    past: int
+    samples: int
+    phases: int
+
+    def grid(self, more: int = 0) -> FloatArray:
+        """Lay out the samples of all phases (m), memory first, ascending: shape ``(servos, (past + samples + more) phases)``."""
+        before, after = self.past * self.phases, (self.samples + more) * self.phases
+        found = np.empty((len(self.first), before + after))
+        for row, first in zip(found, self.first.tolist(), strict=True):
+            row[:] = np.arange(first - before, first + after)
+        found *= self.step[:, None]
+        found += self.origin
+        return found
+
+    def by_phase(self, values: FloatArray) -> FloatArray:
+        """Spread the grid after the memory, a sample more, to ``(phases, points)``; phases overlap, so nothing is copied."""
+        item = values.itemsize
+        strides = (item, self.phases // SUBSTEPS * item)
+        spread: FloatArray = np.ndarray(
+            (self.phases, self.samples * SUBSTEPS), np.float64, buffer=values, strides=strides
+        )
+        spread.setflags(write=False)
+        return spread
+
+
+def _clocks(cut: Cut, servos: Sequence[Servo], lifted: Lifted, part: tuple[float, float], phases: int) -> _Clocks:
+    """Lay the samples of servos about a part of the cycle; refuse more than fit."""
+    sample = cut.line_speed * lifted.loops.sample_time
+    first = np.floor((part[0] - cut.return_start) / sample) - 1.0
+    samples = int(np.ceil((part[1] - cut.return_start) / sample - first).max()) + 1
+    past = lifted.history.shape[2]
+    require_samples(cut, servos[0], past, samples)
+    return _Clocks(cut.return_start, sample / phases, first * phases, past, samples, phases)
+
+
+@lru_cache(maxsize=8)  # many profiles are simulated with one cut and servo
+def whole_cycle(cut: Cut, servo: Servo) -> tuple[Lifted, _Clocks, FloatArray]:
+    """Lift a servo, and lay its samples over the whole cycle, a sample more at the end; fewer phases where there are too many samples."""
+    past, phases = memory(servo.loop), PHASES
+    while phases > SUBSTEPS and phases * (past + math.ceil(cut.period / servo.sample_time)) > _MOST_VALUES:
+        phases //= 2
+    lifted = lift(servo.loop, past, (1, 0))
+    clocks = _clocks(cut, (servo,), lifted, (cut.return_start, cut.return_start + cut.length), phases)
+    grid = clocks.grid(more=1)
+    grid.setflags(write=False)
+    return lifted, clocks, grid
+
+
+def simulate(profile: CamProfile, cut: Cut, servo: Servo) -> ServoRun:
+    """Periodic response of one servo to a profile repeated for ever: a whole cycle, and its command.
 
     Parameters
     ----------
     profile
-        One cycle over the master period ``[0, x_c]``, slave in m.
+        One cycle over the master period ``[0, x_c]`` (slave unit).
     cut
         Cut length, line speed and zones.
     servo
@@ -200,96 +178,103 @@ def simulate(profile: CamProfile, cut: Cut, servo: Servo) -> ServoRun:
         samples.
     """
     require_period(profile, cut)
-    loop = servo.loop
-    past = memory(loop)
-    samples = math.ceil(cut.period / servo.sample_time) + 2
-    require_samples(cut, servo, past, samples)
-    phases = PHASES
-    while phases > SUBSTEPS and phases * (past + samples) > _MOST_VALUES:
-        phases //= 2
-
-    # one grid for all: phase j samples at (j / phases - 1 + k) dT from the start of the return zone, k = 0, 1, …
-    sample = servo.sample_time * cut.line_speed
-    master = np.arange(-(past + 1) * phases, samples * phases, dtype=np.float64)
-    master *= sample / phases
-    master += cut.return_start
-    start, slope = float(profile.coefficients[0, 0]), mean_ratio(profile)
-    periodic = deviation(profile, master)
-    shift = math.fmod(cut.line_speed * servo.delay, cut.length)  # the deviation is periodic
-    seen = deviation(profile, master - shift) if shift else periodic
-
-    def by_phase(values: FloatArray) -> FloatArray:
-        """Spread the common grid to ``(phases, points)``; phases overlap, so nothing is copied."""
-        item = values.itemsize
-        strides = (item, phases // SUBSTEPS * item)
-        spread: FloatArray = np.ndarray((phases, samples * SUBSTEPS), np.float64, buffer=values, strides=strides)
-        spread.setflags(write=False)
-        return spread
-
-    master, periodic = master[past * phases :], periodic[past * phases :]
-    line = start + slope * (master - profile.start)
-    ratio, axis = follow(
-        lift(loop, past),
-        loop,
-        seen[: (past + samples) * phases].reshape(-1, phases),
-        line[:phases] - steady_following_error(slope * cut.line_speed, servo),
-        slope,
-        cut.line_speed,
-    )
-    return ServoRun(master=by_phase(master), axis=axis, axis_ratio=ratio, command=by_phase(line + periodic))
+    lifted, clocks, grid = whole_cycle(cut, servo)
+    periodic = deviation(profile, grid)
+    shift = _shift(cut, servo)
+    seen = deviation(profile, grid - shift) if shift else periodic
+    after = clocks.past * clocks.phases
+    starts = grid[:, after : after + clocks.phases]
+    ratio, axis = _axes(profile, cut, (servo,), lifted, starts, seen[:, : -clocks.phases])
+    master, periodic = grid[0, after:], periodic[0, after:]
+    zero, slope = _mean_line(profile)
+    command = slope * master
+    command += zero
+    command += periodic
+    return ServoRun(clocks.by_phase(master), axis, ratio, clocks.by_phase(command))
 
 
-def deviation(profile: CamProfile, master: FloatArray) -> FloatArray:
-    """Repeated profile minus the straight line through its start, which is periodic in the cut length.
-
-    As the master only rises, the points of a piece follow one another: the breaks are looked up among the points, not
-    the points among the breaks, and every coefficient is repeated for the points of its piece.
+def simulate_part(
+    profile: CamProfile,
+    cut: Cut,
+    servos: Sequence[Servo],
+    lifted: Lifted,
+    part: tuple[float, float],
+    phases: int = PHASES,
+) -> tuple[FloatArray, FloatArray]:
+    """Simulate servos side by side about a part of the cycle: nothing else but what they remember.
 
     Parameters
     ----------
-    master
-        Master positions (m), any number of cycles, ascending along the last axis; shape ``(points,)`` or ``(rows, points)``.
+    profile, cut
+        As in `simulate`; the profile runs over the period.
+    servos
+        Stable servos.
+    lifted
+        The same, lifted, with the memory of the one that remembers most.
+    part
+        Master positions (m), counted on from the start of the return zone like those of a run.
+    phases
+        Sampling phases.
+
+    Returns
+    -------
+    (master, found)
+        Master positions, shape ``(servos phases, points)``, and there the derivatives of the axes over the master of the lifted orders,
+        shape ``(orders, servos phases, points)``.
+
+    Raises
+    ------
+    InputError
+        They remember too many samples.
     """
-    table = _straightened(profile)
-    rows = master.reshape(-1, master.shape[-1])
-    least, greatest = (rows[0, 0], rows[0, -1]) if len(rows) == 1 else (rows[:, 0].min(), rows[:, -1].max())
-    first, last = (math.floor((float(x) - profile.start) / profile.length) for x in (least, greatest))
-    table = np.tile(table, last + 1 - first)
-    table[-1] += np.repeat(np.arange(first, last + 1) * profile.length, profile.pieces)
-    bounds = np.zeros((len(rows), table.shape[1] + 1), dtype=np.intp)
-    for row, bound in zip(rows, bounds, strict=True):
-        bound[1:-1] = row.searchsorted(table[-1, 1:])
-    bounds[:, -1] = rows.shape[1]
-    counts = (bounds[:, 1:] - bounds[:, :-1]).ravel()
-    if len(rows) > 1:
-        table = np.tile(table, len(rows))
-    local = master.ravel() - table[-1].repeat(counts)
-    found: FloatArray = table[-2].repeat(counts)
-    for coefficient in table[-3::-1]:  # Horner, one coefficient spread at a time: less memory is faster
-        found *= local
-        found += coefficient.repeat(counts)
-    return found.reshape(master.shape)
+    clocks = _clocks(cut, servos, lifted, part, phases)
+    grid = clocks.grid()
+    shift = np.array([_shift(cut, servo) for servo in servos])
+    alike = clocks.step.min() == clocks.step.max() and shift.min() == shift.max()  # one grid for all
+    seen = deviation(profile, (grid - shift[:, None])[: 1 if alike else len(servos)])
+    starts = grid[:, clocks.past * phases : (clocks.past + 1) * phases]
+    found = _axes(profile, cut, servos, lifted, starts, seen)
+    spacing = np.repeat(clocks.step * (phases / SUBSTEPS), phases)[:, None]
+    return starts.reshape(-1, 1) + spacing * np.arange(clocks.samples * SUBSTEPS), found
+
+
+def shear_zone_run(
+    profile: CamProfile, cut: Cut, servos: Sequence[Servo], lifted: Lifted, phases: int = PHASES
+) -> AxisRun:
+    """Simulate servos about the shear zone, ``phases`` rows a servo; arguments as in `simulate_part`, lifted for the orders ``(1, 0)``."""
+    start = cut.return_start + cut.return_zone + cut.shear_zone_at
+    master, (ratio, axis) = simulate_part(profile, cut, servos, lifted, (start, start + cut.shear_zone), phases)
+    return AxisRun(master, axis, ratio)
+
+
+def _axes(
+    profile: CamProfile, cut: Cut, servos: Sequence[Servo], lifted: Lifted, starts: FloatArray, seen: FloatArray
+) -> FloatArray:
+    """Run loops on what they see of the command, about the mean straight line, which they follow late.
+
+    Gives what `camwright.validation.servo.lifting.follow` gives.
+
+    Parameters
+    ----------
+    starts
+        Master positions of the first sample after the memory, shape ``(servos, phases)``.
+    seen
+        Command less the line, memory first, shape ``(servos or 1, samples phases)``.
+    """
+    zero, slope = _mean_line(profile)
+    behind = np.array([[zero - steady_following_error(slope * cut.line_speed, servo)] for servo in servos])
+    return follow(lifted, seen.reshape(len(seen), -1, starts.shape[1]), slope * starts + behind, slope, cut.line_speed)
+
+
+def _shift(cut: Cut, servo: Servo) -> float:
+    """How far behind on the master the command lies that the loop sees (m); what is periodic may be taken a cycle on."""
+    return math.fmod(cut.line_speed * servo.delay, cut.length)
 
 
 @lru_cache(maxsize=8)
-def _straightened(profile: CamProfile) -> FloatArray:
-    """Coefficients of the profile minus the straight line, ascending powers, and last the start of each piece; a row each."""
-    ratio = mean_ratio(profile)
-    table = np.zeros((max(profile.degree, 1) + 2, profile.pieces))
-    table[: profile.degree + 1] = profile.coefficients.T
-    table[0] -= profile.coefficients[0, 0] + ratio * (profile.breaks[:-1] - profile.start)
-    table[1] -= ratio
-    table[-1] = profile.breaks[:-1]
-    return table
-
-
-@lru_cache(maxsize=8)
-def mean_ratio(profile: CamProfile) -> float:
-    """Slave advance over the master's: slope of the straight line that a repeated profile follows."""
-    width, end = float(profile.breaks[-1] - profile.breaks[-2]), 0.0
-    for coefficient in reversed(profile.coefficients[-1].tolist()):
-        end = end * width + coefficient
-    return (end - float(profile.coefficients[0, 0])) / profile.length
+def _mean_line(profile: CamProfile) -> tuple[float, float]:
+    """Position at master zero and ratio of the straight line through the start of the profile."""
+    return float(profile.coefficients[0, 0]) - profile.mean_ratio * profile.start, profile.mean_ratio
 
 
 def steady_following_error(speed: float, servo: Servo) -> float:

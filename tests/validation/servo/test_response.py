@@ -17,8 +17,9 @@ from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import baseline, slave_at_start
 from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
+from camwright.validation.servo.axis_run import ServoRun
 from camwright.validation.servo.response import measure_response, servo_response, sync_error
-from camwright.validation.servo.simulation import ServoRun, simulate
+from camwright.validation.servo.simulation import simulate
 from camwright.validation.servo.sweep import servo_sweep, sweep_servos
 
 FREE = Limits(math.inf, math.inf, math.inf)

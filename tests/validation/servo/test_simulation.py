@@ -24,12 +24,13 @@ from camwright.profiles.servo import (
     mean_lag,
     sample_plant,
 )
-from camwright.validation.servo.lifting import SUBSTEPS, lift
+from camwright.validation.servo.axis_run import hermite
+from camwright.validation.servo.lifting import BLOCK, SUBSTEPS, lift, lift_side_by_side, loops_of
 from camwright.validation.servo.simulation import (
     PHASES,
-    hermite,
     memory,
     simulate,
+    simulate_part,
     steady_following_error,
 )
 from camwright.validation.servo.sweep import sweep_servos
@@ -321,3 +322,37 @@ def test_long_cycles_take_fewer_phases_and_stay_right() -> None:
 def test_a_profile_of_another_cut_is_refused() -> None:
     with pytest.raises(InputError, match=r"0\.6 m, but one cycle of this cut runs from 0 m to the cut length 0\.5 m"):
         simulate(baseline("linear_return", KNIFE, CUT), replace(CUT, length=0.5), PAPER)
+
+
+@pytest.mark.parametrize("size", [1, 2, BLOCK])
+def test_servos_side_by_side_are_each_by_itself_in_any_part_and_block(size: int) -> None:
+    profile = baseline("cycloid", KNIFE, CUT)
+    servos = [PAPER, replace(PAPER, sample_time=0.0031, dead_time=0.002), replace(PAPER, velocity_feedforward=0.4)]
+    past = max(memory(servo.loop) for servo in servos)
+    lifted = lift_side_by_side(loops_of(servos), past, (2, 0, 1), size)
+    part = (0.07, 0.31)
+    master, found = simulate_part(profile, CUT, servos, lifted, part)
+    assert found.shape == (3, len(servos) * PHASES, master.shape[1])
+    assert (master[:, 0] <= part[0]).all()
+    assert (master[:, -1] >= part[1]).all()
+    for n, servo in enumerate(servos):
+        run = simulate(profile, CUT, servo)
+        for row in range(n * PHASES, (n + 1) * PHASES):
+            inside = (master[row] >= part[0]) & (master[row] <= part[1])
+            phase = row - n * PHASES
+            at = np.searchsorted(run.master[phase], master[row, inside] - 1e-9)
+            assert np.abs(run.master[phase, at] - master[row, inside]).max() <= 1e-12
+            assert np.abs(run.axis[phase, at] - found[1, row, inside]).max() <= ROUNDING
+            assert np.abs(run.axis_ratio[phase, at] - found[2, row, inside]).max() <= 1e-11
+        # the acceleration is the derivative of the velocity, whose second derivative within a sample is bounded
+        steps = master[n * PHASES, 1] - master[n * PHASES, 0]
+        ratio, slope = found[2, n * PHASES], found[0, n * PHASES]
+        within = np.arange(len(ratio) - 1) % SUBSTEPS < SUBSTEPS - 1
+        rise = (np.diff(ratio) / steps)[within]
+        assert np.abs(rise - 0.5 * (slope[1:] + slope[:-1])[within]).max() <= 2e-3 * np.abs(slope).max()
+
+
+def test_parts_of_a_sample_that_are_no_power_of_two() -> None:
+    three, six = loops_of([PAPER], 3), loops_of([PAPER], 6)
+    assert np.allclose(three.held, six.held[:, ::2], rtol=1e-13, atol=1e-15)
+    assert np.allclose(three.closed(), closed_loop(PAPER)[0], rtol=1e-13, atol=1e-15)

@@ -1,0 +1,104 @@
+"""`AxisRun`: the axis of one or more servos in a part of the cycle, at every sampling phase."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+
+from camwright.profiles.polynomial.profile import FloatArray
+
+Number = TypeVar("Number", float, FloatArray)
+"""Floats and arrays, taken alike."""
+
+
+@dataclass(frozen=True, eq=False)
+class AxisRun:
+    """Axis of one or more servos in a part of the cycle, at one sampling phase a row.
+
+    All arrays have the shape ``(phases, points)``; the points of a row are equally spaced along the line.
+
+    Parameters
+    ----------
+    master
+        Master position (m), counted on from the start of the return zone: the sync zone ends one cut length later.
+    axis
+        Slave position (m).
+    axis_ratio
+        Slave velocity divided by the line speed.
+    """
+
+    master: FloatArray
+    axis: FloatArray
+    axis_ratio: FloatArray
+
+    @property
+    def phases(self) -> int:
+        """Number of sampling phases."""
+        return len(self.master)
+
+    def window(self, start: float, end: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Master position, axis and axis ratio between two master positions, the two ends included, for every phase.
+
+        Rows are filled up by repeating the ends, so that all phases have the same number of points. The ends are
+        interpolated by the cubic through position and ratio of the neighbouring points, which has no sample between
+        them.
+
+        Parameters
+        ----------
+        start, end
+            Part of the cycle (m), counted like `master`, ``start <= end``.
+
+        Returns
+        -------
+        (master, axis, axis_ratio)
+            Shapes ``(phases, n)``.
+        """
+        step = self.master[:, 1:2] - self.master[:, :1]
+        most = self.master.shape[1] - 1
+        first = np.floor((start - self.master[:, 0]) / step[:, 0]).astype(int)
+        last = np.ceil((end - self.master[:, 0]) / step[:, 0]).astype(int)
+        left, right = max(int(first.min()), 0), min(int(last.max()), most)
+        x, y, k = (values[:, left : right + 1].copy() for values in (self.master, self.axis, self.axis_ratio))
+        # the phases begin and end within a few columns of each other
+        head, tail = slice(int(first.max()) - left + 2), slice(max(int(last.min()) - left - 1, 0), None)
+        first, last = np.clip([first, np.maximum(last - 1, first)], 0, most - 1)
+        edges = ((start, first, head, x[:, head] <= start), (end, last, tail, x[:, tail] >= end))
+        rows = np.arange(self.phases)
+        for bound, point, columns, beyond in edges:
+            value, ratio = hermite(
+                (bound - self.master[rows, point]) / step[:, 0],
+                step[:, 0],
+                (self.axis[rows, point], self.axis[rows, point + 1]),
+                (self.axis_ratio[rows, point], self.axis_ratio[rows, point + 1]),
+            )
+            np.copyto(x[:, columns], bound, where=beyond)
+            np.copyto(y[:, columns], value[:, None], where=beyond)
+            np.copyto(k[:, columns], ratio[:, None], where=beyond)
+        return x, y, k
+
+
+@dataclass(frozen=True, eq=False)
+class ServoRun(AxisRun):
+    """Periodic response of one servo: a cycle at each sampling phase.
+
+    Each phase begins up to one sample before the return zone and ends beyond the sync zone.
+
+    Parameters
+    ----------
+    command
+        Commanded slave position (m), continuous in time, shape ``(phases, points)``.
+    """
+
+    command: FloatArray
+
+
+def hermite(part: Number, step: Number, value: Sequence[Number], slope: Sequence[Number]) -> tuple[Number, Number]:
+    """Value and slope of the cubic through two points with slopes, at a part ``0 … 1`` of the step between."""
+    rise = value[1] - value[0]
+    square = 3 * rise - step * (2 * slope[0] + slope[1])
+    cube = step * (slope[0] + slope[1]) - 2 * rise
+    at = value[0] + part * (step * slope[0] + part * (square + part * cube))
+    return at, (step * slope[0] + part * (2 * square + part * 3 * cube)) / step
