@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -75,33 +76,11 @@ def read_drawing(
     if layer is not None and layer.casefold() not in layers:
         known = ", ".join(sorted(entry.dxf.name for entry in layers.values()))
         raise InputError(f"{path}: there is no layer {layer!r}; the layers are {known}")
-    pieces: list[Piece] = []
-    faults: list[str] = []
     ignored: Counter[str] = Counter()
-    try:
-        require_bounded(document, _MOST_UNFOLDED, _DEEPEST)
-        for entity, own in walk(document.modelspace()):
-            if layer is not None and own.casefold() != layer.casefold():
-                continue
-            entry = layers.get(own.casefold())
-            if entry is not None and (entry.is_frozen() or entry.is_off()):
-                ignored[f"entity on layer {own} (off or frozen)"] += 1
-                continue
-            try:
-                piece = piece_of(entity, flattening / unit)
-            except InputError as error:
-                faults += [f"{path}: {fault}" for fault in error.faults]
-                if len(faults) >= _MOST_FAULTS:
-                    break
-                continue
-            if piece is None:
-                ignored[f"{entity.dxftype()} (no line work)"] += 1
-            else:
-                pieces.append(piece)
-    except InputError as error:
-        faults += [f"{path}: {fault}" for fault in error.faults]
+    shown = _shown(document, layers, layer, ignored)
+    pieces, faults = _pieces(document, shown, flattening / unit, ignored)
     if faults:
-        raise InputError(*faults[:_MOST_FAULTS])
+        raise InputError(*(f"{path}: {fault}" for fault in faults[:_MOST_FAULTS]))
     warnings = tuple(f"{path.name}: left out {count} × {what}" for what, count in sorted(ignored.items()))
     if not pieces:
         where = f" on layer {layer}" if layer else ""
@@ -116,6 +95,43 @@ def read_drawing(
         name = f"{path.name}: {piece.name}"
         outlines.append(Outline(unit * piece.points, piece.bulges, name, unit * piece.flattening))
     return Drawing(tuple(outlines), warnings)
+
+
+def _shown(document: Any, layers: dict[str, Any], layer: str | None, ignored: Counter[str]) -> Iterator[Any]:
+    """Give the entities that a reader of the drawing sees, of one layer only if it is named; those on layers that are off are counted."""
+    for entity, own in walk(document.modelspace()):
+        if layer is not None and own.casefold() != layer.casefold():
+            continue
+        entry = layers.get(own.casefold())
+        if entry is not None and (entry.is_frozen() or entry.is_off()):
+            ignored[f"entity on layer {own} (off or frozen)"] += 1
+        else:
+            yield entity
+
+
+def _pieces(
+    document: Any, shown: Iterator[Any], flattening: float, ignored: Counter[str]
+) -> tuple[list[Piece], list[str]]:
+    """Turn entities into pieces, as far as they can be; what is no line work is counted, what cannot be bent is a fault."""
+    pieces: list[Piece] = []
+    faults: list[str] = []
+    try:
+        require_bounded(document, _MOST_UNFOLDED, _DEEPEST)
+        for entity in shown:
+            try:
+                piece = piece_of(entity, flattening)
+            except InputError as error:
+                faults += error.faults
+                if len(faults) >= _MOST_FAULTS:
+                    break
+                continue
+            if piece is None:
+                ignored[f"{entity.dxftype()} (no line work)"] += 1
+            else:
+                pieces.append(piece)
+    except InputError as error:
+        faults += error.faults
+    return pieces, faults
 
 
 def _open(path: Path) -> Any:
@@ -149,48 +165,60 @@ def join(pieces: list[Piece], gap: float) -> list[Piece]:
     Paths begin with the first piece of the drawing that is not used yet, and run in its direction; at each end the
     nearest free end is taken. The end of a joined piece is moved onto the one before it.
     """
-    # a cell of twice the gap: all ends within the gap lie in the cell or its neighbours
-    size = 2 * gap
-    ends: dict[tuple[int, int], list[tuple[int, int]]] = {}
-    for i, piece in enumerate(pieces):
-        if not piece.closed:
-            for end in (0, -1):
-                ends.setdefault(_cell(piece.points[end], size), []).append((i, end))
-    used = [False] * len(pieces)
-
-    def following(place: np.ndarray[Any, Any]) -> tuple[int, int] | None:
-        x, y = _cell(place, size)
-        best, nearest = None, gap
-        for i, j in _AROUND:
-            for candidate, end in ends.get((x + i, y + j), ()):
-                away = math.dist(pieces[candidate].points[end], place)
-                if not used[candidate] and (away < nearest or (away == nearest and best is None)):
-                    best, nearest = (candidate, end), away
-        return best
-
+    free = _FreeEnds(pieces, gap)
     found = []
     for i, piece in enumerate(pieces):
-        if used[i]:
+        if not free.take(i):
             continue
-        used[i] = True
         if piece.closed:
             found.append(piece)
             continue
         chain, names = [piece], [piece.name]
         for backwards in (False, True):
             while math.dist(chain[0].points[0], chain[-1].points[-1]) > gap:
-                step = following(chain[0].points[0] if backwards else chain[-1].points[-1])
+                step = free.nearest(chain[0].points[0] if backwards else chain[-1].points[-1])
                 if step is None:
                     break
-                used[step[0]] = True
-                other = pieces[step[0]]
+                other, end = step
                 names.append(other.name)
                 if backwards:
-                    chain.insert(0, other if step[1] == -1 else other.reverse())
+                    chain.insert(0, other if end == -1 else other.reverse())
                 else:
-                    chain.append(other if step[1] == 0 else other.reverse())
+                    chain.append(other if end == 0 else other.reverse())
         found.append(_chained(chain, names, gap))
     return found
+
+
+class _FreeEnds:
+    """Ends of open pieces that are not joined yet, in cells of twice the gap: all within the gap lie in a cell or its neighbours."""
+
+    def __init__(self, pieces: list[Piece], gap: float) -> None:
+        self._pieces, self._gap = pieces, gap
+        self._used = [False] * len(pieces)
+        self._ends: dict[tuple[int, int], list[tuple[int, int]]] = {}
+        for i, piece in enumerate(pieces):
+            if not piece.closed:
+                for end in (0, -1):
+                    self._ends.setdefault(_cell(piece.points[end], 2 * gap), []).append((i, end))
+
+    def take(self, i: int) -> bool:
+        """Take a piece; whether it was free."""
+        free, self._used[i] = not self._used[i], True
+        return free
+
+    def nearest(self, place: np.ndarray[Any, Any]) -> tuple[Piece, int] | None:
+        """Take the piece whose free end is nearest to a place, within the gap: the piece and which end, or ``None``."""
+        x, y = _cell(place, 2 * self._gap)
+        best, nearest = None, self._gap
+        for i, j in _AROUND:
+            for candidate, end in self._ends.get((x + i, y + j), ()):
+                away = math.dist(self._pieces[candidate].points[end], place)
+                if not self._used[candidate] and (away < nearest or (away == nearest and best is None)):
+                    best, nearest = (candidate, end), away
+        if best is None:
+            return None
+        self.take(best[0])
+        return self._pieces[best[0]], best[1]
 
 
 def _chained(chain: list[Piece], names: list[str], gap: float) -> Piece:

@@ -111,34 +111,45 @@ def _solve_scaled(problem: ScaledProblem) -> tuple[CamProfile, SolveStatus, int]
     and where the solver ends with something worse, at the edge of what double precision resolves. Its corners make a grid on which
     there is a motion, however little room there is.
     """
-    if problem.objective == "rms_jerk":
-        free = _quintic(problem)
-        if excess(free, problem) <= ALLOWED_EXCESS:
-            return free, SolveStatus.OPTIMAL, 0
-        if problem.confined:
-            profile, status, used = _solve_scaled(_unconfined(problem))
-            if excess(profile, problem) <= ALLOWED_EXCESS:
-                return profile, status, used
+    free = _unlimited(problem)
+    if free is not None:
+        return free
     extreme = extreme_motion(problem)
-    safe: CamProfile | None = None
     if extreme is not None and _room(problem) < NO_ROOM:
         return tidy(from_extreme(extreme), problem).profile(), SolveStatus.OPTIMAL, 0
     known, iterations = _confirmed(problem)
-    if known is not None:
-        return known, SolveStatus.OPTIMAL, iterations
-    gentlest = least_peak_motion(problem)
+    gentlest = _kept(least_peak_motion(problem), problem) if known is None else known
     if gentlest is not None:
-        profile = tidy(gentlest, problem).profile()
-        if excess(profile, problem) <= ALLOWED_EXCESS:
-            return profile, SolveStatus.OPTIMAL, iterations
+        return gentlest, SolveStatus.OPTIMAL, iterations
     witness = from_extreme(extreme) if extreme is not None else _possible(problem)
     if problem.confined:
         # the optimum of a mean square turns about where the gentlest motion does, not where the fastest does
         witness = least_peak_motion(replace(problem, objective="peak_acceleration")) or witness
+    safe: CamProfile | None = None
     if witness is not None:
         profile = tidy(witness, problem).profile()
         safe = profile if excess(profile, problem) <= ALLOWED_EXCESS or extreme is not None else None
-    reached = math.inf  # the least objective on any grid: a polished answer must be as good
+    return _first_as_good(problem, witness, safe, iterations)
+
+
+def _unlimited(problem: ScaledProblem) -> tuple[CamProfile, SolveStatus, int] | None:
+    """Solve without the limits, or without those of the position, where the answer keeps them; None where it does not."""
+    if problem.objective != "rms_jerk":
+        return None
+    free = _quintic(problem)
+    if excess(free, problem) <= ALLOWED_EXCESS:
+        return free, SolveStatus.OPTIMAL, 0
+    if not problem.confined:
+        return None
+    found = _solve_scaled(_unconfined(problem))
+    return found if excess(found[0], problem) <= ALLOWED_EXCESS else None
+
+
+def _first_as_good(
+    problem: ScaledProblem, witness: Motion | None, safe: CamProfile | None, iterations: int
+) -> tuple[CamProfile, SolveStatus, int]:
+    """Try the grids in turn until a polished answer is at least as good as any grid's; else give the best that keeps the limits."""
+    reached = math.inf  # the least objective on any grid
     for lengths, relax, thorough in _grids(problem, witness):
         grid, success, used = _on_grid(problem, lengths, relax)
         iterations += used
@@ -146,26 +157,41 @@ def _solve_scaled(problem: ScaledProblem) -> tuple[CamProfile, SolveStatus, int]
             continue
         if relax == 0.0:
             reached = min(reached, grid.objective)
-        polished, success, used = _polish(problem, grid, thorough)
+        polished, finer, used = _polished(problem, grid, thorough)
         iterations += used
-        if success and grid.degree > 1 and len(polished.lengths) > 1:
-            polished, finer, used = _read_again(problem, polished)
-            reached = min(reached, finer)
-            iterations += used
-        if success and polished.objective <= reached * (1 + GRID_ERROR[grid.degree]):
-            profile = tidy(polished, problem).profile()
-            if excess(profile, problem) <= ALLOWED_EXCESS:
+        reached = min(reached, finer)
+        if polished is not None and polished.objective <= reached * (1 + GRID_ERROR[grid.degree]):
+            profile = _kept(polished, problem)
+            if profile is not None:
                 return _better(profile, safe, problem), SolveStatus.OPTIMAL, iterations
-        if relax == 0.0:
-            profile = tidy(grid, problem).profile()
-            if excess(profile, problem) <= ALLOWED_EXCESS:
-                safe = _better(profile, safe, problem)
+        profile = _kept(grid, problem) if relax == 0.0 else None
+        if profile is not None:
+            safe = _better(profile, safe, problem)
     if safe is None:
         raise SolverError(
             f"IPOPT ({iterations} iterations) found no return that keeps the limits on any grid, although the job is not known to be "
             f"infeasible; loosen the limit that is nearest to binding by 1 % and report this job"
         )
     return safe, SolveStatus.OPTIMAL if _extreme_is_optimal(problem) else SolveStatus.ON_GRID, iterations
+
+
+def _polished(problem: ScaledProblem, grid: Motion, thorough: bool) -> tuple[Motion | None, float, int]:
+    """Polish a grid's answer, None if that fails; with the least objective on grids of its own arcs, and the iterations."""
+    polished, success, used = _polish(problem, grid, thorough)
+    if not success:
+        return None, math.inf, used
+    if grid.degree == 1 or len(polished.lengths) == 1:
+        return polished, math.inf, used
+    again, finer, more = _read_again(problem, polished)
+    return again, finer, used + more
+
+
+def _kept(motion: Motion | None, problem: ScaledProblem) -> CamProfile | None:
+    """Give the profile of a motion, None if there is no motion or it exceeds a limit."""
+    if motion is None:
+        return None
+    profile = tidy(motion, problem).profile()
+    return profile if excess(profile, problem) <= ALLOWED_EXCESS else None
 
 
 def _unconfined(problem: ScaledProblem) -> ScaledProblem:
@@ -191,9 +217,7 @@ def _confirmed(problem: ScaledProblem) -> tuple[CamProfile | None, int]:
     motion, statistics = programme(shape, known=True).solve(problem, start)
     iterations = int(statistics["iter_count"])
     if statistics["success"] and abs(motion.objective - start.objective) <= CONFIRMED * start.objective:
-        profile = tidy(motion, problem).profile()
-        if excess(profile, problem) <= ALLOWED_EXCESS:
-            return profile, iterations
+        return _kept(motion, problem), iterations
     return None, iterations
 
 
@@ -304,12 +328,11 @@ def smoothest(problem: ReturnProblem) -> CamProfile | None:
         if not success:
             continue
         polished, success, _ = _polish(scaled, grid, thorough=count == MEDIUM)
-        if success:
-            profile = tidy(polished, scaled).profile()
-            if excess(profile, scaled) <= ALLOWED_EXCESS:
-                return unscale_profile(profile, problem, scale)
-        profile = tidy(grid, scaled).profile()
-        if excess(profile, scaled) <= ALLOWED_EXCESS:
+        profile = _kept(polished, scaled) if success else None
+        if profile is not None:
+            return unscale_profile(profile, problem, scale)
+        profile = _kept(grid, scaled)
+        if profile is not None:
             on_grid = unscale_profile(profile, problem, scale)
     return on_grid
 

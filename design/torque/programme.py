@@ -44,6 +44,10 @@ LOBATTO = (
 )
 """Gauss-Lobatto points on the unit interval, and their weights: exact to degree 5, and at the nodes, where a peak may stand."""
 
+_WIDTHS: FloatArray = np.full(INTERVALS, 1.0 / INTERVALS)
+_SHARES: FloatArray = np.tile(1.0 / INTERVALS * LOBATTO[1], INTERVALS)
+"""Lengths of the intervals, and the shares of their Gauss-Lobatto points in a mean."""
+
 _OPTIONS: dict[str, Any] = QUIET | {"ipopt.tol": 1e-8, "ipopt.max_iter": 500, "ipopt.mu_strategy": "adaptive"}
 
 
@@ -107,7 +111,6 @@ class TorqueProgramme:
     def __init__(self, task: TorqueTask) -> None:
         n = INTERVALS
         self._task = task
-        self._h = np.full(n, 1.0 / n)
         h = 1.0 / n
         self._drawn = len(LOBATTO[0]) * n if task.aim == "energy" else 0
         x = ca.MX.sym("x", 3 * (n + 1) + 1 + self._drawn)
@@ -122,10 +125,9 @@ class TorqueProgramme:
         torque, power, available = (
             ca.vec(part) for part in interval(a[:-1].T, rise.T, v[:-1].T, q[:-1].T, ca.DM(np.arange(n) * h).T)
         )
-        self._shares = np.tile(h * LOBATTO[1], n)
         self._measure = ca.Function("measure", [x], [torque, power, available])
         units = ca.MX.sym("u", 2)  # of the torque or motion, and of the power
-        shares = ca.DM(self._shares)
+        shares = ca.DM(_SHARES)
         mean_square = ca.dot(shares, (torque / units[0]) ** 2)
         peaks: list[Any] = []
         match task.aim:
@@ -179,7 +181,7 @@ class TorqueProgramme:
         return ca.Function("interval", [a, rise, v, q, x], [force, force * velocity, available])
 
     def _state(self, guess: CamProfile, bound: float) -> FloatArray:
-        x = np.clip(np.concatenate([[0.0], np.cumsum(self._h)]), guess.start, guess.end)
+        x = np.clip(np.concatenate([[0.0], np.cumsum(_WIDTHS)]), guess.start, guess.end)
         return np.concatenate([guess(x, 2), guess(x, 1), guess(x), [bound], np.zeros(self._drawn)])
 
     def value(self, guess: CamProfile) -> float:
@@ -190,24 +192,24 @@ class TorqueProgramme:
         torque, power, available = (np.asarray(part).ravel() for part in self._measure(state))
         n = INTERVALS
         a = state[: n + 1]
-        jerk = np.diff(a) / self._h
+        jerk = np.diff(a) / _WIDTHS
         match self._task.aim:
             case "rms_torque":
-                return math.sqrt(float(self._shares @ torque**2))
+                return math.sqrt(float(_SHARES @ torque**2))
             case "peak_torque":
                 return float(np.abs(torque).max())
             case "energy":
-                return float(self._shares @ np.maximum(power, 0.0))
+                return float(_SHARES @ np.maximum(power, 0.0))
             case "load":
                 return float(np.abs(torque / available).max())
             case "peak_acceleration":
                 return float(np.abs(a).max())
             case "rms_acceleration":
-                return math.sqrt(float(self._h @ (a[:-1] ** 2 + a[:-1] * a[1:] + a[1:] ** 2)) / 3)
+                return math.sqrt(float(_WIDTHS @ (a[:-1] ** 2 + a[:-1] * a[1:] + a[1:] ** 2)) / 3)
             case "peak_jerk":
                 return float(np.abs(jerk).max())
             case "rms_jerk":
-                return math.sqrt(float(self._h @ jerk**2))
+                return math.sqrt(float(_WIDTHS @ jerk**2))
 
     def solve(self, problem: ScaledProblem, guess: CamProfile) -> TorqueAnswer:
         """Solve from a guess."""
@@ -224,7 +226,7 @@ class TorqueProgramme:
         factor = 1.0 - DRAWN_IN
         low, high = problem.least_ratio * factor, problem.greatest_ratio * factor
         slope, jerk = problem.greatest_slope * factor, problem.greatest_jerk * factor
-        place = problem.drift * np.concatenate([[0.0], np.cumsum(self._h)])
+        place = problem.drift * np.concatenate([[0.0], np.cumsum(_WIDTHS)])
         lower = [np.full(n + 1, -slope), np.full(n + 1, low), problem.least_position - place, np.zeros(1 + self._drawn)]
         upper = [np.full(n + 1, slope), np.full(n + 1, high), problem.greatest_position - place]
         upper.append(np.full(1 + self._drawn, np.inf))
@@ -249,7 +251,7 @@ class TorqueProgramme:
         )
         value = self._value(flat)
         return TorqueAnswer(
-            Motion(self._h, flat[: n + 1], value),
+            Motion(_WIDTHS, flat[: n + 1], value),
             value,
             residual,
             bool(statistics["success"]),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
@@ -97,53 +97,67 @@ def read_program(text: str, place: str = "program") -> NcProgram:
         A line that is none of: header, feed, bend, return, end; or a bend without a return. Each is named with its
         line.
     """
-    name, ended = "", False
-    feeds, bends, fed, bent = [], [], 0, False
+    read = _Read()
     faults: list[str] = []
-    motion = _MOTION.fullmatch
     for row, line in enumerate(text.splitlines(), start=1):
-        found = None if ended else motion(line)
-        if found is None:
-            if line.startswith(("%", "(")):
-                name = name or line.strip("%()")
-            elif ended:
-                faults.append(f"{place}, line {row}: {line[:60]!r} stands after the end of the program")
-            elif not (_END.fullmatch(line) or _HEAD.fullmatch(line)):
-                faults.append(f"{place}, line {row}: {line[:60]!r} is not a header, feed, bend, return or end line")
-            elif bent:
-                faults.append(_no_return(place, row, line))
-                bent = False
-            else:
-                ended = _END.fullmatch(line) is not None
-        else:
-            word, sign, whole, part = found.groups()
-            value = int(f"{sign}{whole}{part:0<3}")
-            if bent:
-                if value or word != _ANGLE:
-                    faults.append(_no_return(place, row, line))
-                bent = False
-            elif word == _ANGLE:
-                if 0 < value < FULL_TURN and value != FULL_TURN // 2:
-                    feeds.append(fed)
-                    bends.append(value if value < FULL_TURN // 2 else value - FULL_TURN)
-                    fed, bent = 0, True
-                else:
-                    faults.append(
-                        f"{place}, line {row}: mould angle {value / 1e3:.3f}°; a bend lies between 0 and 360°, not at 180°"
-                    )
-            else:
-                if value <= 0:
-                    faults.append(f"{place}, line {row}: feed {value / 1e3:.3f} mm; the rule is fed forwards only")
-                fed += value
+        found = None if read.ended else _MOTION.fullmatch(line)
+        fault = read.words(line) if found is None else read.motion(line, *found.groups())
+        if fault:
+            faults.append(f"{place}, line {row}: {fault}")
         if len(faults) == _MOST_FAULTS:
             break
-    if not faults and not ended:
+    if not faults and not read.ended:
         faults.append(f"{place}: the program has no end (M30)")
     if faults:
         raise InputError(*faults)
-    feeds.append(fed)
-    return NcProgram(name, np.array(feeds, dtype=np.int64), np.array(bends, dtype=np.int64))
+    feeds = np.array([*read.feeds, read.fed], dtype=np.int64)
+    return NcProgram(read.name, feeds, np.array(read.bends, dtype=np.int64))
 
 
-def _no_return(place: str, row: int, line: str) -> str:
-    return f"{place}, line {row}: the mould must return to zero after a bend; found {line[:60]!r}"
+@dataclass
+class _Read:
+    """What has been read of a program; each line answers with its fault, if it has one."""
+
+    name: str = ""
+    feeds: list[int] = field(default_factory=list)
+    bends: list[int] = field(default_factory=list)
+    fed: int = 0
+    """Fed since the last bend (µm)."""
+    bent: bool = False
+    """Whether the mould has not returned yet."""
+    ended: bool = False
+
+    def words(self, line: str) -> str | None:
+        """Read a line without motion: a name, words of the head, the end."""
+        if line.startswith(("%", "(")):
+            self.name = self.name or line.strip("%()")
+        elif self.ended:
+            return f"{line[:60]!r} stands after the end of the program"
+        elif not (_END.fullmatch(line) or _HEAD.fullmatch(line)):
+            return f"{line[:60]!r} is not a header, feed, bend, return or end line"
+        elif self.bent:
+            self.bent = False
+            return _no_return(line)
+        else:
+            self.ended = _END.fullmatch(line) is not None
+        return None
+
+    def motion(self, line: str, word: str, sign: str, whole: str, part: str) -> str | None:
+        """Read a feed, a bend or a return."""
+        value = int(f"{sign}{whole}{part:0<3}")
+        if self.bent:
+            self.bent = False
+            return _no_return(line) if value or word != _ANGLE else None
+        if word == _ANGLE:
+            if not 0 < value < FULL_TURN or value == FULL_TURN // 2:
+                return f"mould angle {value / 1e3:.3f}°; a bend lies between 0 and 360°, not at 180°"
+            self.feeds.append(self.fed)
+            self.bends.append(value if value < FULL_TURN // 2 else value - FULL_TURN)
+            self.fed, self.bent = 0, True
+            return None
+        self.fed += value
+        return f"feed {value / 1e3:.3f} mm; the rule is fed forwards only" if value <= 0 else None
+
+
+def _no_return(line: str) -> str:
+    return f"the mould must return to zero after a bend; found {line[:60]!r}"

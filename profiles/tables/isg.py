@@ -72,32 +72,17 @@ def write(table: CamTable, header: Header) -> dict[str, str]:
 
 def read(text: str, place: str) -> CamTable:
     """Read a table of one column (type 3) or of pairs (type 7), LINEAR, LINE_POLY5 or POLY5_LINE."""
-    keys: dict[str, tuple[str, int]] = {}
-    rows: list[tuple[str, int]] = []
-    begun = ended = False
-    for number, raw in enumerate(lines_of(text, place), start=1):
-        line = raw.partition("#")[0].strip()
-        if not line:
-            continue
-        if ended:
-            raise refuse(place, number, "something follows EndTable; one table stands in one file")
-        if begun:
-            ended = line.lower() == "endtable"
-            if not ended:
-                rows.append((line, number))
-            continue
-        begun = line.lower() == "begintable"
-        if begun:
-            continue
-        found = _KEY.fullmatch(line)
-        if not found:
-            raise refuse(place, number, f"{shown(line)} is no line of the table's head")
-        key = found[1].lower().replace(" ", "")
-        if key in keys:
-            raise refuse(place, number, f"{found[1]} is given twice")
-        keys[key] = (found[2], number)
-    if not ended:
-        raise refuse(place, None, f"the line {'EndTable' if begun else 'Begintable'} is missing")
+    lines = [(raw.partition("#")[0].strip(), number) for number, raw in enumerate(lines_of(text, place), start=1)]
+    lines = [(line, number) for line, number in lines if line]
+    head, table = _split(lines, "begintable")
+    keys = _head(head, place)
+    if table is None:
+        raise refuse(place, None, "the line Begintable is missing")
+    rows, rest = _split(table, "endtable")
+    if rest is None:
+        raise refuse(place, None, "the line EndTable is missing")
+    if rest:
+        raise refuse(place, rest[0][1], "something follows EndTable; one table stands in one file")
     for key in ("tabletype", "functiontype", "lines"):
         if key not in keys:
             raise refuse(place, None, f"the table's head has no {key.capitalize()}")
@@ -111,6 +96,26 @@ def read(text: str, place: str) -> CamTable:
             f"Tabletype {kind} with Functiontype {function} is not read; types 3 and 7 with 1, 4 or 5 are",
         )
     return _table(_cells(rows, 1 if kind == _COLUMN else 2, place), kind, function, text, place)
+
+
+def _split(lines: list[tuple[str, int]], word: str) -> tuple[list[tuple[str, int]], list[tuple[str, int]] | None]:
+    """Split lines at a word that stands alone; ``None`` for what follows if it does not."""
+    place = next((k for k, (line, _) in enumerate(lines) if line.lower() == word), None)
+    return (lines, None) if place is None else (lines[:place], lines[place + 1 :])
+
+
+def _head(lines: list[tuple[str, int]], place: str) -> dict[str, tuple[str, int]]:
+    """Read what stands before the table: each key once, with its value and line."""
+    keys: dict[str, tuple[str, int]] = {}
+    for line, number in lines:
+        found = _KEY.fullmatch(line)
+        if not found:
+            raise refuse(place, number, f"{shown(line)} is no line of the table's head")
+        key = found[1].lower().replace(" ", "")
+        if key in keys:
+            raise refuse(place, number, f"{found[1]} is given twice")
+        keys[key] = (found[2], number)
+    return keys
 
 
 def _cells(rows: list[tuple[str, int]], width: int, place: str) -> list[tuple[list[float], int]]:

@@ -63,3 +63,46 @@ def tokens_of(text: str, place: str) -> Iterator[Token]:
             if count > MOST_TOKENS:
                 raise refuse(place, line, f"the text goes on beyond {MOST_TOKENS} words; no cam table needs as many")
             yield Token(kind, text[word:at], line)
+
+
+_END = Token("end", "", 0)
+
+
+class Words:
+    """The words of a text, one after another: the one that stands here, and the one after it."""
+
+    def __init__(self, text: str, place: str) -> None:
+        self.place = place
+        self.line = 1
+        self._rest = tokens_of(text, place)
+        self.now, self.after = _END, next(self._rest, _END)
+        self.step()
+
+    def step(self) -> Token:
+        """Go on by one word and return the one left behind."""
+        past = self.now
+        self.now, self.after = self.after, next(self._rest, _END)
+        self.line = self.now.line or self.line
+        return past
+
+    def accept(self, text: str) -> bool:
+        """Go on if this is the word that stands here."""
+        word = self.now.text
+        if word == text or word.upper() == text:
+            self.step()
+            return True
+        return False
+
+    def expect(self, text: str) -> None:
+        """Go on if this is the word that stands here, refuse otherwise."""
+        if not self.accept(text):
+            raise self.refusal(f"{text!r} is missing before {shown(self.now.text) if self.now.text else 'the end'}")
+
+    def close(self, bracket: str) -> None:
+        """Go on behind the next closing bracket."""
+        while self.now.kind != "end" and not self.accept(bracket):
+            self.step()
+
+    def refusal(self, reason: str) -> Exception:
+        """Make an error at the present line."""
+        return refuse(self.place, self.line, reason)

@@ -213,23 +213,7 @@ def write_positions(table: CamTable, header: Header) -> dict[str, str]:
 
 def _positions(program: Program, text: str, place: str) -> CamTable:
     """Read an n × 2 table from assignments ``name[row, 0]`` and ``name[row, 1]`` or a flat initial value."""
-    cells: dict[tuple[int, int], tuple[float, int]] = {}
-    names: set[tuple[str | int, ...]] = set()
-    for array in program.declarations:
-        two = len(array.bounds) == 2 and array.bounds[1][1] - array.bounds[1][0] == 1
-        if not (two and array.type == "lreal" and isinstance(array.value, list)):
-            continue
-        names.add((array.name.lower(),))
-        for k, item in enumerate(array.value):
-            cells[array.bounds[0][0] + k // 2, k % 2] = (number_of(item, "a cell", place, array.line), array.line)
-    for entry in program.assignments:
-        path = entry.path
-        if len(path) < 3 or not (isinstance(path[-1], int) and isinstance(path[-2], int)):
-            continue
-        names.add(path[:-2])
-        if path[-1] not in (0, 1):
-            raise refuse(place, entry.line, f"a position table has the columns 0 and 1, not {path[-1]}")
-        cells[path[-2], path[-1]] = (number_of(entry.value, "a cell", place, entry.line), entry.line)
+    cells, names = _filled_cells(program, place)
     if not cells:
         raise refuse(place, None, "there are neither points of a motion function nor a position table")
     if len(names) > 1:
@@ -252,6 +236,30 @@ def _positions(program: Program, text: str, place: str) -> CamTable:
     check_count(count, 2, None, place)
     check_ascending(columns[0], lines, place)
     return make_table(*columns, law="spline", units=units_in(text))
+
+
+def _filled_cells(
+    program: Program, place: str
+) -> tuple[dict[tuple[int, int], tuple[float, int]], set[tuple[str | int, ...]]]:
+    """Find the cells that a program fills, by row and column with value and line, and the names of the arrays that it fills."""
+    cells: dict[tuple[int, int], tuple[float, int]] = {}
+    names: set[tuple[str | int, ...]] = set()
+    for array in program.declarations:
+        two = len(array.bounds) == 2 and array.bounds[1][1] - array.bounds[1][0] == 1
+        if not (two and array.type == "lreal" and isinstance(array.value, list)):
+            continue
+        names.add((array.name.lower(),))
+        for k, item in enumerate(array.value):
+            cells[array.bounds[0][0] + k // 2, k % 2] = (number_of(item, "a cell", place, array.line), array.line)
+    for entry in program.assignments:
+        path = entry.path
+        if len(path) < 3 or not (isinstance(path[-1], int) and isinstance(path[-2], int)):
+            continue
+        names.add(path[:-2])
+        if path[-1] not in (0, 1):
+            raise refuse(place, entry.line, f"a position table has the columns 0 and 1, not {path[-1]}")
+        cells[path[-2], path[-1]] = (number_of(entry.value, "a cell", place, entry.line), entry.line)
+    return cells, names
 
 
 TARGET = Target(
