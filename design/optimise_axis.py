@@ -15,8 +15,9 @@ from camwright.design.optimise import (
 from camwright.design.returns.curve_limits import motor_limits, motor_speed_limits
 from camwright.design.returns.ipopt import SolveStatus
 from camwright.design.servo_aware.axis_motion import AxisMotion, design_axis, servo_blind_optimum
+from camwright.design.servo_aware.axis_problem import AxisProblem
 from camwright.design.servo_aware.command_basis import Command
-from camwright.design.servo_aware.programme import AxisProblem, AxisProgramme
+from camwright.design.servo_aware.programme import AxisProgramme
 from camwright.design.servo_aware.rows import RATIO
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import (
@@ -163,7 +164,7 @@ def _without_choice(problem: AxisProblem, blind: Solution, value: float | None) 
     if programme.least_share() is not None:
         return []
     profile = assemble(blind.back, problem.task.machine, problem.task.from_return().cut)
-    errors = programme.errors(profile)
+    errors = programme.problem.errors(profile)
     if value is not None and max(errors) > problem.task.cut.sync_tolerance:
         return []
     kept = programme.keeps_axis_limits(profile)
@@ -191,7 +192,7 @@ def _infeasible(problem: AxisProblem, settles: Callable[[Cut], bool] | None) -> 
                 "a servo-aware design found no command that keeps the limits although the job allows one; report this job"
             )
         only = assemble(problem.structure, problem.task.machine, problem.task.from_return().cut)
-        share = max(AxisProgramme(problem).errors(only)) / tolerance
+        share = max(problem.errors(only)) / tolerance
     needed = max(1.0, share) * tolerance
     suggestions = () if settles is None else tuple(_suggestions(problem, needed, settles))
     ways = "; ".join(f"{each.change} {each.value:.6g} {each.unit}" for each in suggestions)

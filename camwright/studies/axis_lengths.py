@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from camwright.design.servo_aware.axis_problem import AxisProblem
 from camwright.design.servo_aware.command_basis import Command
-from camwright.design.servo_aware.programme import AxisProblem, AxisProgramme
+from camwright.design.servo_aware.programme import AxisProgramme
 from camwright.jobs.job import Job
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import SolverError

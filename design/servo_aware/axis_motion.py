@@ -6,14 +6,14 @@ mean squares quadratic ones, and both hold at every sampling phase and for every
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from camwright.design.returns.solver import objective_value
+from camwright.design.servo_aware.axis_problem import AxisProblem
 from camwright.design.servo_aware.axis_response import PHASES
+from camwright.design.servo_aware.gathered_rows import LEAST_ERROR
 from camwright.design.servo_aware.programme import (
     BAND_MARGIN,
-    LEAST_ERROR,
-    AxisProblem,
     AxisProgramme,
 )
 from camwright.profiles.errors import SolverError
@@ -83,7 +83,7 @@ def design_axis(problem: AxisProblem, objective: ObjectiveName) -> AxisMotion | 
     SolverError
         A solver ended without an answer.
     """
-    programme = AxisProgramme(problem, BETWEEN if objective == "sync_error" else 1.0)
+    programme = AxisProgramme(replace(problem, wider=BETWEEN if objective == "sync_error" else 1.0))
     if objective != "sync_error":
         kept = servo_blind_optimum(programme, objective)
         if kept is not None:
@@ -119,10 +119,10 @@ def servo_blind_optimum(programme: AxisProgramme, objective: CommandObjective) -
     if not programme.holds(profile):
         return None
     if objective == "rms_torque" or objective == "peak_torque" or objective == "energy":
-        value = programme.torque.value_of(problem.structure, objective)
+        value = programme.problem.torque.value_of(problem.structure, objective)
     else:
         value = objective_value(problem.structure, objective)
-    return AxisMotion(profile, programme.errors(profile), value, programme.solved, problem.axis_limits)
+    return AxisMotion(profile, programme.problem.errors(profile), value, programme.solved, problem.axis_limits)
 
 
 def _softest(programme: AxisProgramme, band: float) -> tuple[FloatArray, float] | None:
@@ -146,7 +146,7 @@ def _smoothest(
 
 def _motion(programme: AxisProgramme, unknowns: FloatArray, value: float | None = None) -> AxisMotion:
     profile = programme.profile(unknowns)
-    errors = programme.errors(profile)
+    errors = programme.problem.errors(profile)
     least = max(errors) if value is None else value
     axis_limits = programme.problem.axis_limits and programme.keeps_axis_limits(profile)
     return AxisMotion(profile, errors, least, programme.solved, axis_limits)

@@ -161,3 +161,33 @@ def test_own_modules_are_imported_for_good() -> None:
         if isinstance(node, ast.If) and any(waits(inner) for inner in ast.walk(node))
     ]
     assert hidden == ["camwright/__init__.py"]
+
+
+def attributes(kind: ast.ClassDef) -> set[str]:
+    """Attributes of an object that its methods set, or, of a dataclass that is not frozen, anybody."""
+    marks = [ast.unparse(decorator) for decorator in kind.decorator_list if "dataclass" in ast.unparse(decorator)]
+    fields = {
+        node.target.id for node in kind.body if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name)
+    }
+    stored = {
+        node.attr
+        for node in ast.walk(kind)
+        if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store)
+        if isinstance(node.value, ast.Name) and node.value.id == "self"
+    }
+    return stored | (fields if any("frozen=True" not in mark for mark in marks) else set())
+
+
+def test_no_class_has_more_than_six_attributes_that_change() -> None:
+    many = {
+        f"{path}: {node.name}": sorted(attributes(node))
+        for path, tree in modules().items()
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ClassDef) and len(attributes(node)) > 6
+    }
+    assert not many
+
+
+@pytest.mark.parametrize(("folder", "most"), [("camwright", 3), ("design", 5), ("validation", 7)])
+def test_few_modules_lie_outside_the_rooms(folder: str, most: int) -> None:
+    assert len([file for file in (ROOT / folder).glob("*.py") if file.name != "__init__.py"]) <= most

@@ -9,8 +9,9 @@ import pytest
 
 from camwright.design.optimise import solve
 from camwright.design.optimise_axis import solve_axis
+from camwright.design.servo_aware.axis_problem import AxisProblem
 from camwright.design.servo_aware.command_basis import Command, command_basis
-from camwright.design.servo_aware.programme import AxisProblem, AxisProgramme
+from camwright.design.servo_aware.programme import AxisProgramme
 from camwright.design.servo_aware.torque import AxisTorque
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError, SolverError

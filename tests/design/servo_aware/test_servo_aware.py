@@ -13,12 +13,12 @@ from scipy.optimize import linprog
 from camwright.design.optimise import solve
 from camwright.design.optimise_axis import solve_axis
 from camwright.design.servo_aware.axis_motion import design_axis
+from camwright.design.servo_aware.axis_problem import AxisProblem
 from camwright.design.servo_aware.axis_response import Axis
 from camwright.design.servo_aware.command_basis import INTERVALS, Command, command_basis
 from camwright.design.servo_aware.programme import (
     BAND_MARGIN,
     LEAST_ERROR,
-    AxisProblem,
     AxisProgramme,
 )
 from camwright.design.servo_aware.rows import RATIO
