@@ -16,9 +16,9 @@ from camwright.design.servo_aware.axis_motion import design_axis
 from camwright.design.servo_aware.axis_problem import AxisProblem
 from camwright.design.servo_aware.axis_response import Axis
 from camwright.design.servo_aware.command_basis import INTERVALS, Command, command_basis
+from camwright.design.servo_aware.gathered_rows import LEAST_ERROR
 from camwright.design.servo_aware.programme import (
     BAND_MARGIN,
-    LEAST_ERROR,
     AxisProgramme,
 )
 from camwright.design.servo_aware.rows import RATIO
