@@ -294,7 +294,7 @@ def test_the_limits_of_the_axis_are_given_up_only_for_the_tolerance() -> None:
     assert given_up.error < 1e-5
     held = AxisProgramme(AxisProblem(Task(KNIFE, tight, LIMITS), "shaped", (PAPER,), True))
     assert not held.reaches()
-    assert INTERVALS["shaped"] == len(held.basis.nodes) - 1
+    assert INTERVALS["shaped"] == len(held.problem.basis.nodes) - 1
 
 
 LONG = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4)
