@@ -70,7 +70,7 @@ def damaged(text: str, dice: random.Random) -> bytes:
 def sources() -> dict[str, str]:
     """Write a sound file for every target."""
     job = load_job()
-    results, refused = export_possible(baseline("double_s", job.machine, job.cut), job, list(TARGETS))
+    results, refused = export_possible(baseline("double_s", job.task), job, list(TARGETS))
     if refused:
         raise InputError(*(f"{name}: {fault}" for name, faults in refused.items() for fault in faults))
     return {result.target.name: next(iter(result.files.values())) for result in results}

@@ -165,7 +165,7 @@ def random_job(rng: np.random.Generator, kind: str) -> RandomJob:
     """Draw a job, its limits around what the quintic return needs; one in three with little room, one in three with a motor."""
     machine, cut = MACHINES[kind](rng)
     there = placed(machine, cut)
-    profile = baseline("poly_3_4_5", there, cut)
+    profile = baseline("poly_3_4_5", Task(there, cut, FREE))
     quintic, motor = measure_motion(profile, Task(there, cut, FREE)), measure_motor(profile, Task(there, cut, FREE))
     acceleration, jerk = quintic.peak_acceleration or 1.0, quintic.peak_jerk or 1.0
     if rng.integers(3) == 0:
@@ -225,7 +225,7 @@ def judge(job: RandomJob) -> tuple[str, str]:
 def quintic_passes(job: RandomJob) -> bool:
     """Tell whether the quintic return passes every check of a job, a crank's sync zone in the middle of its range if it is free."""
     machine, cut, limits = placed(job.machine, job.cut), job.cut, job.limits
-    profile = baseline("poly_3_4_5", machine, cut)
+    profile = baseline("poly_3_4_5", Task(machine, cut, FREE))
     report = validate(profile, Task(machine, cut, limits), servo_for(cut), sweep=False)
     return report.passed
 

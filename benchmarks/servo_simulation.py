@@ -16,6 +16,7 @@ loop and lifted simulation take turns. Prints one CSV row for each size below a 
 
 from __future__ import annotations
 
+import math
 import sys
 from bisect import bisect_right
 from math import floor, inf
@@ -24,14 +25,19 @@ from time import process_time
 import numpy as np
 
 from camwright.profiles.cut import Cut
+from camwright.profiles.limits import Limits
 from camwright.profiles.machines import RotaryKnife
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import baseline
 from camwright.profiles.servo import Servo, sample_plant
+from camwright.profiles.task import Task
 from camwright.validation.servo.axis_run import ServoRun
 from camwright.validation.servo.lifting import SUBSTEPS, lift
 from camwright.validation.servo.simulation import memory, simulate, whole_cycle
 from camwright.validation.servo.sweep import sweep_servos
+
+FREE = Limits(math.inf, math.inf, math.inf)
+"""Nothing here asks for limits."""
 
 AGREEMENT = 1e-14
 """Greatest difference of the axis (m) with which the two count as the same."""
@@ -143,7 +149,7 @@ def times(profile: CamProfile, servo: Servo) -> tuple[float, float, float]:
 
 def main() -> int:
     """Check, measure, print; the exit code tells whether the promise is kept."""
-    profile = baseline("poly_3_4_5", MACHINE, CUT)
+    profile = baseline("poly_3_4_5", Task(MACHINE, CUT, FREE))
     sizes = {"paper_servo": (SERVO,), "validate": (SERVO, *sweep_servos(SERVO))}
     print(
         "benchmark,size,simulations,commands,points,difference_m,lifted_ms,first_ms,plain_loop_ms,ratio,first_ratio,promised"

@@ -101,7 +101,7 @@ def main() -> int:
         print(row, flush=True)
         times.append(took)
     job = load_job()
-    smooth = baseline("poly_3_4_5", job.machine, job.cut)
+    smooth = baseline("poly_3_4_5", job.task)
     units = Units(Unit("mm", 1e-3), Unit("deg", job.machine.pitch / 360))
     print("logix_points,position_um,acceleration_rel")
     for points in (20, 35, 60, 100, 180, 360, 1001):

@@ -23,7 +23,6 @@ from camwright.design.torque.torque_return import solve_torque
 from camwright.design.torque.within_curve import keeps_curve, least_load, solve_within_curve
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
-from camwright.profiles.limits import Limits
 from camwright.profiles.machines import Machine
 from camwright.profiles.objective import OBJECTIVES, CommandObjective, MotionObjective, ObjectiveName, of_motion
 from camwright.profiles.polynomial.profile import CamProfile
@@ -128,7 +127,7 @@ def solve(task: Task, objective: CommandObjective, *, suggest: bool = True) -> S
     """
     machine, cut = task.machine, task.cut
     if not machine.placed:
-        return _solve_free_place(machine, cut, task.limits, objective, suggest)
+        return _solve_free_place(task, objective, suggest)
     machine.sync_start(cut)
     if task.limits.motor is not None:
         return _solve_for_motor(task, objective, suggest)
@@ -142,7 +141,7 @@ def solve(task: Task, objective: CommandObjective, *, suggest: bool = True) -> S
     if OBJECTIVES[decisive].form == "peak" and not _unique(problem):
         back = _smoothest(problem, back)
     value = _over_time(back, decisive, cut)
-    return Solution(machine, assemble(back, machine, cut), back, status, objective, value, iterations)
+    return Solution(machine, assemble(back, task), back, status, objective, value, iterations)
 
 
 def _over_time(back: CamProfile, objective: MotionObjective, cut: Cut) -> float:
@@ -185,7 +184,7 @@ def _solve_for_motor(task: Task, objective: CommandObjective, suggest: bool) -> 
         within = solve_within_curve(task, decisive or objective, starts)
         if within is not None:
             value = within.value if decisive is None else _over_time(within.back, decisive, task.cut)
-            profile = assemble(within.back, machine, task.cut)
+            profile = assemble(within.back, task)
             agreed = Starts(within.starts, within.agreeing, within.spread, within.residual, 1)
             found.append(
                 Solution(
@@ -245,18 +244,16 @@ def _solve_torque(task: Task, objective: CommandObjective, valleys: int) -> Solu
     problem = return_problem(task, "peak_acceleration")
     found = solve_torque(task, problem, objective)
     starts = Starts(found.starts, found.agreeing, found.spread, found.residual, valleys)
-    profile = assemble(found.back, task.machine, task.cut)
+    profile = assemble(found.back, task)
     return Solution(
         task.machine, profile, found.back, SolveStatus.ON_GRID, objective, found.value, found.iterations, starts
     )
 
 
-def _solve_free_place(
-    machine: Machine, cut: Cut, limits: Limits, objective: CommandObjective, suggest: bool
-) -> Solution:
+def _solve_free_place(task: Task, objective: CommandObjective, suggest: bool) -> Solution:
     """Choose the place of the sync zone first, by the objective of the motion or by the mean square of the torque."""
-    placement = place_for(machine, cut, limits, objective)
-    solution = solve(Task(placement.machine, cut, limits), objective, suggest=suggest)
+    placement = place_for(task, objective)
+    solution = solve(placement.task, objective, suggest=suggest)
     if solution.starts is None:
         return replace(solution, starts=Starts(1, 1, 0.0, 0.0, placement.valleys))
     return replace(solution, starts=replace(solution.starts, valleys=placement.valleys))

@@ -163,7 +163,7 @@ def _without_choice(problem: AxisProblem, blind: Solution, value: float | None) 
     programme = AxisProgramme(replace(problem, axis_limits=False))
     if programme.least_share() is not None:
         return []
-    profile = assemble(blind.back, problem.task.machine, problem.task.from_return().cut)
+    profile = assemble(blind.back, problem.task.from_return())
     errors = programme.problem.errors(profile)
     if value is not None and max(errors) > problem.task.cut.sync_tolerance:
         return []
@@ -191,7 +191,7 @@ def _infeasible(problem: AxisProblem, settles: Callable[[Cut], bool] | None) -> 
             raise SolverError(
                 "a servo-aware design found no command that keeps the limits although the job allows one; report this job"
             )
-        only = assemble(problem.structure, problem.task.machine, problem.task.from_return().cut)
+        only = assemble(problem.structure, problem.task.from_return())
         share = max(problem.errors(only)) / tolerance
     needed = max(1.0, share) * tolerance
     suggestions = () if settles is None else tuple(_suggestions(problem, needed, settles))

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from camwright.profiles.cut import Cut
-from camwright.profiles.machines import Machine
+from camwright.profiles.task import Task
 
 PLACES = 9
 """Places looked at first, evenly over the range that leaves room for the sync zone."""
@@ -26,20 +25,20 @@ class Placement:
 
     Parameters
     ----------
-    machine
-        The machine with its sync zone placed.
+    task
+        The task, the machine with its sync zone placed.
     cost
         Objective there.
     valleys
         Local minima seen among the places looked at first; 1 means that all of them led to the same place.
     """
 
-    machine: Machine
+    task: Task
     cost: float
     valleys: int
 
 
-def place_sync(machine: Machine, cut: Cut, cost: Callable[[Machine], float]) -> Placement | None:
+def place_sync(task: Task, cost: Callable[[Task], float]) -> Placement | None:
     """Choose the slave coordinate at mid sync zone that makes a cost least, by a scan and golden sections around its best places.
 
     Returns None if no place has a finite cost.
@@ -49,12 +48,13 @@ def place_sync(machine: Machine, cut: Cut, cost: Callable[[Machine], float]) -> 
     InputError
         The sync zone fits nowhere.
     """
-    least, greatest = machine.place_range(cut)
+    machine = task.machine
+    least, greatest = machine.place_range(task.cut)
     margin = MARGIN * (greatest - least)
     angles = np.linspace(least + margin, greatest - margin, PLACES)
 
     def at(angle: float) -> float:
-        return cost(machine.placed_at(angle))
+        return cost(task.with_machine(machine.placed_at(angle)))
 
     costs = [at(float(angle)) for angle in angles]
     if not any(math.isfinite(value) for value in costs):
@@ -72,7 +72,7 @@ def place_sync(machine: Machine, cut: Cut, cost: Callable[[Machine], float]) -> 
                 at, float(angles[max(0, i - 1)]), float(angles[min(PLACES - 1, i + 1)]), (costs[i], float(angles[i]))
             ),
         )
-    return Placement(machine.placed_at(best[1]), best[0], len(valleys))
+    return Placement(task.with_machine(machine.placed_at(best[1])), best[0], len(valleys))
 
 
 def _golden(at: Callable[[float], float], low: float, high: float, best: tuple[float, float]) -> tuple[float, float]:

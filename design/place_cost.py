@@ -13,9 +13,6 @@ from camwright.design.returns.possible import possible_rms
 from camwright.design.returns.problem import return_problem
 from camwright.design.returns.solver import grid_objective
 from camwright.design.torque.within_curve import load
-from camwright.profiles.cut import Cut
-from camwright.profiles.limits import Limits
-from camwright.profiles.machines import Machine
 from camwright.profiles.objective import CommandObjective, MotionObjective
 from camwright.profiles.returns import baseline
 from camwright.profiles.task import Task
@@ -29,9 +26,7 @@ ANGLES = 721
 
 
 def place_for(
-    machine: Machine,
-    cut: Cut,
-    limits: Limits,
+    task: Task,
     objective: CommandObjective,
 ) -> Placement:
     """Place the sync zone where an objective is least, or, where the limits are not enough at any place, where least is missing.
@@ -45,23 +40,22 @@ def place_for(
         The sync zone fits nowhere.
     """
 
-    def cost(placed: Machine) -> float:
-        task = Task(placed, cut, limits)
-        if not is_feasible(task):
-            return MISSING * _missing(task)
+    def cost(placed: Task) -> float:
+        if not is_feasible(placed):
+            return MISSING * _missing(placed)
         match objective:
             case "peak_acceleration":
-                return least_limit(task, "acceleration")
+                return least_limit(placed, "acceleration")
             case "peak_jerk":
-                return least_limit(task, "jerk")
+                return least_limit(placed, "jerk")
             case "rms_acceleration" | "rms_jerk":
-                return _rms(task, objective)
-        return _torque(task)
+                return _rms(placed, objective)
+        return _torque(placed)
 
-    found = place_sync(machine, cut, cost)
+    found = place_sync(task, cost)
     if found is None:
-        least, greatest = machine.place_range(cut)
-        return Placement(machine.placed_at(0.5 * (least + greatest)), math.inf, 1)
+        least, greatest = task.machine.place_range(task.cut)
+        return Placement(task.with_machine(task.machine.placed_at(0.5 * (least + greatest))), math.inf, 1)
     return found
 
 
@@ -70,7 +64,7 @@ def _missing(task: Task) -> float:
     limits = task.limits
     plain = motor_speed_limits(task.machine, limits)
     if limits.motor is not None and is_feasible(task.with_limits(plain)):
-        return load(baseline("poly_3_4_5", task.machine, task.cut), task, limits.motor)
+        return load(baseline("poly_3_4_5", task), task, limits.motor)
     return FAR * margin(task.with_limits(plain))
 
 
@@ -92,7 +86,7 @@ def _torque(task: Task) -> float:
     """
     task = task.from_return()
     machine = task.machine
-    cycle = baseline("poly_3_4_5", machine, task.cut)
+    cycle = baseline("poly_3_4_5", task)
     x = np.linspace(cycle.start, cycle.end, ANGLES)
     y = task.slave_at_start + cycle(x)
     torque = machine.inertia(y) * cycle(x, 2) + machine.inertia_slope(y) * cycle(x, 1) ** 2 / 2

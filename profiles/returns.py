@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
-from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
 from camwright.profiles.laws import LAWS, law
-from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile, join
+from camwright.profiles.task import Task
 
 BASELINES: tuple[str, ...] = ("linear_return", *(name for name in LAWS if name != "linear"))
 """Names of all baselines: the linear return of S1 and every law of the table, placed as a return."""
@@ -40,23 +37,18 @@ def place_law(name: str, length: float, height: float, ratio: float = 1.0) -> Ca
     return law(name).scale(master=length, slave=correction).add_line(ratio).over(0.0, length)
 
 
-def baseline_names(machine: Machine, cut: Cut) -> tuple[str, ...]:
+def baseline_names(task: Task) -> tuple[str, ...]:
     """Names of the baselines that a machine can have.
 
     Laws are defined for returns between two sync zones of the same constant ratio; where the ratio changes in the sync zone there are the
     linear return, the quintic between the zone's ends, and what the machine has of its own.
     """
-    if is_straight(machine, cut):
+    if task.straight:
         return BASELINES
-    return ("linear_return", "poly_3_4_5", *machine.own_baselines)
+    return ("linear_return", "poly_3_4_5", *task.machine.own_baselines)
 
 
-def is_straight(machine: Machine, cut: Cut) -> bool:
-    """Tell whether the slave's ratio is constant in the sync zone."""
-    return machine.sync_profile(cut).degree == 1
-
-
-def baseline(name: str, machine: Machine, cut: Cut) -> CamProfile:
+def baseline(name: str, task: Task) -> CamProfile:
     """One cycle of a baseline: its return and the machine's sync zone, with the origin that the cut states.
 
     Raises
@@ -64,23 +56,23 @@ def baseline(name: str, machine: Machine, cut: Cut) -> CamProfile:
     InputError
         There is no such baseline for this machine.
     """
-    if name not in baseline_names(machine, cut):
+    cut = task.cut
+    if name not in baseline_names(task):
         raise InputError(
-            f"there is no baseline {name!r} for this machine; the baselines are {', '.join(baseline_names(machine, cut))}"
+            f"there is no baseline {name!r} for this machine; the baselines are {', '.join(baseline_names(task))}"
         )
-    sync = machine.sync_profile(cut)
-    height = machine.pitch - sync.advance
+    sync, height = task.sync, task.height
     if name == "crank_tabulated":
-        quintic = assemble(quintic_between(sync, cut.return_zone, height), machine, replace(cut, origin="return"))
+        quintic = assemble(quintic_between(sync, cut.return_zone, height), task.from_return())
         table = tabulate_crank(quintic)
         return table if cut.origin == "return" else table.roll(cut.length - 0.5 * cut.sync_zone)
-    if is_straight(machine, cut):
+    if task.straight:
         back = place_law("linear" if name == "linear_return" else name, cut.return_zone, height, cut.sync_ratio)
     elif name == "linear_return":
         back = place_law("linear", cut.return_zone, height, 0.0)
     else:
         back = quintic_between(sync, cut.return_zone, height)
-    return assemble(back, machine, cut)
+    return assemble(back, task)
 
 
 def quintic_between(sync: CamProfile, length: float, height: float) -> CamProfile:
@@ -141,29 +133,13 @@ def tabulate_crank(cycle: CamProfile, points: int = 360) -> CamProfile:
     return CamProfile.from_arrays(breaks, np.stack([start, at[:-1], slope / 2], axis=1))
 
 
-def assemble(back: CamProfile, machine: Machine, cut: Cut) -> CamProfile:
+def assemble(back: CamProfile, task: Task) -> CamProfile:
     """Make one cycle over the master period ``[0, x_c]`` from a return over ``[0, x_c - l_s]`` and the machine's sync zone.
 
     The cycle starts at slave zero. With the origin at the cut it starts at mid sync zone, and the sync zone is split.
     """
-    sync = machine.sync_profile(cut)
-    height = machine.pitch - sync.advance
-    cycle = join(back, sync.shift(back.end - sync.start, height - float(sync(sync.start))))
+    cut, sync = task.cut, task.sync
+    cycle = join(back, sync.shift(back.end - sync.start, task.height - float(sync(sync.start))))
     if cut.origin == "cut":
         cycle = cycle.roll(cut.length - 0.5 * cut.sync_zone)
     return cycle.over(0.0, cut.length)
-
-
-def slave_at_start(machine: Machine, cut: Cut) -> float:
-    """Slave coordinate of the machine at which a cycle starts: add it to a profile's position to get the slave coordinate."""
-    sync = machine.sync_profile(cut)
-    passed = sync.end if cut.origin == "return" else 0.5 * cut.sync_zone
-    return machine.sync_start(cut) + float(sync(passed))
-
-
-def slave_zero(profile: CamProfile, machine: Machine, cut: Cut) -> float:
-    """Slave coordinate of the machine at a profile's slave zero: add it to the profile's positions to get slave coordinates.
-
-    A profile, whatever it counts from, starts where the machine is in sync; a shaped one counts from there and may start elsewhere.
-    """
-    return slave_at_start(machine, cut) - (0.0 if cut.shaped else float(profile(profile.start)))

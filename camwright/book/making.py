@@ -129,9 +129,7 @@ def _designed(job: Job) -> Design:
     """
     solution = solve_job(job, suggest=False)
     placed = replace(job, machine=solution.machine)
-    report = validate(
-        solution.profile, job.task.with_machine(placed.machine), job.servo, sweep=False, servo_aware=job.servo_aware
-    )
+    report = validate(solution.profile, placed.task, job.servo, sweep=False, servo_aware=job.servo_aware)
     if report.servo is None:
         raise InputError("the servo is unstable")
     row = Measured("optimised", solution.profile, report.motion, report.tool, report.motor, report.servo)

@@ -45,8 +45,8 @@ def run(
         return compare_objectives(
             asked, output_directory(out, asked), figures=not no_figures, voice=Voice(as_json, quiet)
         )
-    names = tuple(dict.fromkeys(laws)) if laws else law_names(asked.machine, asked.cut)
-    require_laws(names, asked.machine, asked.cut)
+    names = tuple(dict.fromkeys(laws)) if laws else law_names(asked.task)
+    require_laws(names, asked.task)
     voice = Voice(as_json, quiet)
     files: list[Path] = []
     with voice.progress(len(names) + 3) as step:

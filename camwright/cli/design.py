@@ -39,7 +39,7 @@ def run(
     asked = load_job(job)
     directory = output_directory(out, asked)
     voice = Voice(as_json, quiet)
-    with voice.progress(STEPS + len(law_names(asked.machine, asked.cut)) + 2) as step:
+    with voice.progress(STEPS + len(law_names(asked.task)) + 2) as step:
         result = optimise(asked, step)
         texts = {"design.json": design_text(result), "cam.csv": cam_text(result)}
         step("writing files")

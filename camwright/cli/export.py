@@ -51,7 +51,7 @@ def run(
     accuracy = Accuracy(position=quantity(max_error, "length"))
     stored = _design(design)
     job = stored.job
-    wanted = None if units is None else parse_units(units, job.machine, job.cut)
+    wanted = None if units is None else parse_units(units, job.task)
     directory = design.parent / "tables" if out is None else out
     voice = Voice(as_json, quiet)
     with voice.progress(len(names) + 1) as step:

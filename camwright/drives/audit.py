@@ -145,12 +145,12 @@ def audit(path: Path, job: Job, target: str | None = None, units: str | None = N
     rebuilt, notes = aligned(rebuilt.shift(-rebuilt.start), placed)
     cycle = one_cycle(rebuilt, job.cut)
     step("judging")
-    judgement = judge_table(rebuilt, job.task.with_machine(placed.machine), job.servo)
-    report = validate(cycle, job.task.with_machine(placed.machine), job.servo)
+    judgement = judge_table(rebuilt, placed.task, job.servo)
+    report = validate(cycle, placed.task, job.servo)
     step("solving")
     solution = solve_job(job)
     best = replace(job, machine=solution.machine)
-    best_report = validate(solution.profile, job.task.with_machine(best.machine), job.servo)
+    best_report = validate(solution.profile, best.task, job.servo)
     return Audit(
         layout,
         table,
@@ -194,7 +194,7 @@ def _units(table: CamTable, asked: str | None, job: Job, place: str) -> Units:
             )
         return table.units
     if asked is not None:
-        return parse_units(asked, job.machine, job.cut, table.period)
+        return parse_units(asked, job.task, table.period)
     if not (table.advance > 0 and job.machine.pitch > 0):
         raise InputError(
             f"{place}: the slave advances by {table.advance!r} in a cycle, so its unit cannot be told from the pitch; "

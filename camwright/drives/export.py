@@ -14,7 +14,6 @@ from camwright.house.provenance import camwright_version, provenance
 from camwright.jobs.job import Job
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import CamProfile
-from camwright.profiles.returns import slave_at_start
 from camwright.profiles.tables.cam_table import CamTable, Units
 from camwright.profiles.tables.deviation import Deviation, deviation
 from camwright.profiles.tables.knots import (
@@ -155,7 +154,7 @@ def _in_slave_units(accuracy: Accuracy, profile: CamProfile, job: Job) -> Accura
     """Turn what the tool may be off into what the slave may be off; nothing changes for a slave in m."""
     if job.machine.slave_unit == "m":
         return accuracy
-    y = slave_at_start(job.machine, job.cut) + profile(np.linspace(profile.start, profile.end, 721))
+    y = job.task.slave_at_start + profile(np.linspace(profile.start, profile.end, 721))
     lever = float(np.abs(job.machine.tool_ratio(y)).max())
     in_sync = abs(float(job.machine.sync_profile(job.cut)(0.0, 1)))
     return replace(accuracy, position=accuracy.position / lever, ratio=accuracy.ratio * in_sync)
@@ -229,7 +228,7 @@ def position_error(profile: CamProfile, rebuilt: CamProfile, off: Deviation, job
     inner = np.union1d(profile.breaks, rebuilt.breaks)
     x = np.linspace(max(profile.start, rebuilt.start), min(profile.end, rebuilt.end), _PLACES)
     x = np.union1d(x, inner[(inner > x[0]) & (inner < x[-1])])
-    begin = slave_at_start(job.machine, job.cut)
+    begin = job.task.slave_at_start
     return float(np.abs(job.machine.tool(begin + rebuilt(x)) - job.machine.tool(begin + profile(x))).max())
 
 

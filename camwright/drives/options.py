@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 
 from camwright.house.units import quantity
-from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
 from camwright.profiles.machines import Machine
 from camwright.profiles.tables.cam_table import Unit, Units
 from camwright.profiles.tables.targets import TARGETS, target_of
+from camwright.profiles.task import Task
 
 _MOST_NAMES = 50
 _LENGTHS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "in": 0.0254}
@@ -39,7 +39,7 @@ def default_units(machine: Machine) -> Units:
     return Units(Unit("mm", 1e-3), slave)
 
 
-def parse_units(text: str, machine: Machine, cut: Cut, period: float | None = None) -> Units:
+def parse_units(text: str, task: Task, period: float | None = None) -> Units:
     """Read ``mm,deg`` into the units of master and slave.
 
     A degree or a turn (``rev``) of the master is that part of the cycle, one of the slave that part of a turn of the
@@ -49,10 +49,8 @@ def parse_units(text: str, machine: Machine, cut: Cut, period: float | None = No
     ----------
     text
         Two units, separated by a comma.
-    machine
-        The machine, for the slave's turn.
-    cut
-        The cut, for the cycle.
+    task
+        The machine, for the slave's turn, and the cut, for the cycle.
     period
         Master period of a table that is read, in its own unit: allows ``cycle`` as the master's unit, the one in which
         that period is the cut length.
@@ -62,6 +60,7 @@ def parse_units(text: str, machine: Machine, cut: Cut, period: float | None = No
     InputError
         Not two units, or one that is not known or not the slave's.
     """
+    machine, cut = task.machine, task.cut
     names = [name.strip() for name in text.split(",")]
     if len(names) != 2:
         raise InputError(f"--units takes the master's unit and the slave's, for example mm,deg; got {text[:40]!r}")

@@ -16,9 +16,7 @@ from camwright.figures.style import (
     title,
 )
 from camwright.jobs.wording import machine_words
-from camwright.profiles.cut import Cut
-from camwright.profiles.machines import Machine
-from camwright.profiles.returns import slave_at_start
+from camwright.profiles.task import Task
 from camwright.studies.comparison import Comparison
 
 if TYPE_CHECKING:
@@ -63,12 +61,12 @@ def crank_figure(comparison: Comparison) -> Figure:
     turn, travel = figure.add_subplot(grid[0, 0]), figure.add_subplot(grid[0, 1])
     speed = figure.add_subplot(grid[1, :])
     acceleration = figure.add_subplot(grid[2, :], sharex=speed)
-    _turn(turn, machine, cut, machine.dead_centres)
+    _turn(turn, job.task, machine.dead_centres)
     for axes in (travel, speed, acceleration):
         shade_zones(axes, cut)
         axes.set_xlim(0.0, cut.length * 1e3)
     rpm, radians = machine.motor_ratio * cut.line_speed * 30 / np.pi, machine.motor_ratio * cut.line_speed**2
-    start = slave_at_start(machine, cut)
+    start = job.task.slave_at_start
     back = float(machine.tool(machine.dead_centres[0]))
     for name in (name for name in STYLES if name in shown):
         profile = shown[name]
@@ -102,13 +100,14 @@ def crank_figure(comparison: Comparison) -> Figure:
     return figure
 
 
-def _turn(axes: Axes, machine: Machine, cut: Cut, dead_centres: tuple[float, float]) -> None:
+def _turn(axes: Axes, task: Task, dead_centres: tuple[float, float]) -> None:
     """Draw the carriage over one turn of the crank from its back dead centre, with the zones on the crank and their ends."""
+    machine, cut = task.machine, task.cut
     back, front = dead_centres
     angle = np.linspace(back, back + 2 * np.pi, _ANGLES)
     lowest = float(machine.tool(back))
     axes.plot(np.degrees(angle), (machine.tool(angle) - lowest) * 1e3, color="black", linewidth=1.3)
-    sync, start = machine.sync_profile(cut), machine.sync_start(cut)
+    sync, start = task.sync, task.slave_at_sync_start
     shear = (cut.shear_zone_at, min(cut.shear_zone_at + cut.shear_zone, cut.sync_zone))
     ends = start + sync(np.array([0.0, cut.sync_zone, *shear]))
     first, last, cut_first, cut_last = np.degrees(ends)

@@ -15,11 +15,10 @@ from camwright.figures.style import (
     shade_zones,
     title,
 )
-from camwright.profiles.cut import Cut
 from camwright.profiles.machines import Machine
 from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
-from camwright.profiles.returns import slave_at_start
+from camwright.profiles.task import Task
 from camwright.studies.comparison import Comparison
 from camwright.validation.motion import RATIO_JUMP, SLOPE_JUMP, slope_scale
 
@@ -62,7 +61,7 @@ def profile_figure(comparison: Comparison) -> Figure:
         shade_zones(axes, cut)
     for name, profile in shown.items():
         x, y = curve(profile, 0)
-        travel.plot(x * 1e3, _travel(x, y, machine, cut), **LINES[name])
+        travel.plot(x * 1e3, _travel(x, y, comparison.job.task), **LINES[name])
         for axes, order, factor in ((ratio, 1, 1.0), (acceleration, 2, v**2), (jerk, 3, v**3)):
             x, value = curve(profile, order)
             axes.plot(x * 1e3, value * factor, **LINES[name])
@@ -92,12 +91,13 @@ def profile_figure(comparison: Comparison) -> Figure:
     return figure
 
 
-def _travel(x: FloatArray, y: FloatArray, machine: Machine, cut: Cut) -> FloatArray:
+def _travel(x: FloatArray, y: FloatArray, task: Task) -> FloatArray:
     """Give what the first panel draws: the correction ``y - x`` (mm), a carriage's place (mm), or an angle minus an even turn (deg)."""
+    machine = task.machine
     if machine.slave_unit == "rad":
-        return np.asarray(np.degrees(y - machine.pitch / cut.length * x))
+        return np.asarray(np.degrees(y - machine.pitch / task.cut.length * x))
     if machine.turns_back:
-        return np.asarray(slave_at_start(machine, cut) + y - y[0]) * 1e3
+        return np.asarray(task.slave_at_start + y - y[0]) * 1e3
     return (y - x) * 1e3
 
 

@@ -16,7 +16,6 @@ from camwright.figures.style import (
     title,
 )
 from camwright.profiles.polynomial.profile import FloatArray
-from camwright.profiles.returns import is_straight
 from camwright.studies.comparison import Comparison
 from camwright.studies.measured import Measured
 from camwright.validation.servo.axis_run import ServoRun
@@ -66,7 +65,7 @@ def servo_figure(comparison: Comparison, runs: Mapping[str, ServoRun]) -> Figure
         _meeting(axes, comparison[name], comparison, runs[name])
         axes.set_title(title(name))
         axes.set_xlabel("master from the start of the sync zone (mm)")
-    left.set_ylabel(f"{'slave' if is_straight(job.machine, job.cut) else 'tool'} from there (mm)")
+    left.set_ylabel(f"{'slave' if job.task.straight else 'tool'} from there (mm)")
     zone, shear = job.cut.sync_zone, (job.cut.shear_zone_at, job.cut.shear_zone_at + job.cut.shear_zone)
     for axes in (whole, close):
         shade_shear_zone(axes, *shear)

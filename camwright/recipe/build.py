@@ -17,7 +17,6 @@ from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
 from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
-from camwright.profiles.returns import slave_at_start
 from camwright.profiles.servo import mean_lag
 from camwright.recipe.manifest import sha256
 from camwright.recipe.model import (
@@ -124,7 +123,7 @@ def make_recipe(
         released=report.passed and all(result.passed for result in results),
         job=JobRecord(job.text, job_numbers(job)),
         slave_unit=job.machine.slave_unit,
-        slave_start=slave_at_start(job.machine, job.cut),
+        slave_start=job.task.slave_at_start,
         pitch=float(job.machine.pitch),
         objective=_objective(job, profile, report),
         profile=Profile(tuple(profile.breaks.tolist()), tuple(map(tuple, profile.coefficients.tolist()))),

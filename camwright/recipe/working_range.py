@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 from camwright.design.feasible.extremes import extremes
 from camwright.design.feasible.feasibility import binding_limit, edge, is_feasible, needed_limits
 from camwright.design.returns.curve_limits import motor_limits
 from camwright.jobs.job import Job
-from camwright.profiles.cut import Cut
 from camwright.profiles.limits import Limits
-from camwright.profiles.machines import Machine
 from camwright.profiles.task import Task
 from camwright.recipe.model import Edge, WorkingRange
 
@@ -44,46 +41,48 @@ def working_range(job: Job) -> WorkingRange:
     far = extremes(job.task)
     return WorkingRange(
         min_length=Edge(far.min_cut_length, far.cut_length_binding),
-        max_length=longest_cut(job.machine, job.cut, job.limits),
+        max_length=longest_cut(job.task),
         min_line_speed=Edge(None, NO_END),
         max_line_speed=Edge(far.max_line_speed, far.line_speed_binding),
     )
 
 
-def longest_cut(machine: Machine, cut: Cut, limits: Limits) -> Edge:
+def longest_cut(task: Task) -> Edge:
     """Find the longest cut at a line speed.
 
     A slave that can come to rest between two sync zones can wait there for any length. One that must not run backwards and has no
     room to stop can be slowed down by so much only.
     """
-    if can_rest(machine, cut, limits):
+    cut = task.cut
+    if can_rest(task):
         return Edge(None, NO_END)
 
     def works(length: float) -> bool:
-        return is_feasible(Task(machine, replace(cut, length=length), limits))
+        return is_feasible(task.with_length(length))
 
     far = LONGEST * cut.length
     if works(far) or not works(cut.length):
         return Edge(None, NOT_FOUND)
     found = edge(works, cut.length, far, _ACCURACY)
-    beyond = replace(cut, length=(found or cut.length) * (1 + _BEYOND))
-    return Edge(found, binding_limit(Task(machine, beyond, limits), needed_limits(Task(machine, beyond, limits))))
+    beyond = task.with_length((found or cut.length) * (1 + _BEYOND))
+    return Edge(found, binding_limit(beyond, needed_limits(beyond)))
 
 
-def can_rest(machine: Machine, cut: Cut, limits: Limits) -> bool:
+def can_rest(task: Task) -> bool:
     """Whether the slave can come to rest after a sync zone, and from rest into the next: enough room for both, or reversal allowed."""
+    machine, limits = task.machine, task.limits
     if limits.motor is not None:
-        return any(can_rest(machine, cut, each) for each in motor_limits(machine, limits))
-    sync, v = machine.sync_profile(cut), cut.line_speed
+        return any(can_rest(task.with_limits(each)) for each in motor_limits(machine, limits))
+    sync, v = task.sync, task.cut.line_speed
     after = stopping_distance(
         v * float(sync(sync.end, 1, side="left")), v * v * float(sync(sync.end, 2, side="left")), limits
     )
     before = stopping_distance(v * float(sync(0.0, 1)), -v * v * float(sync(0.0, 2)), limits)  # run backwards in time
     travel = float(sync(sync.end))
     if machine.guide is not None:
-        start = machine.sync_start(cut)
+        start = task.slave_at_sync_start
         return before <= start - machine.guide[0] and after <= machine.guide[1] - start - travel
-    return limits.reversal or before + after <= machine.pitch - travel
+    return task.reverses or before + after <= machine.pitch - travel
 
 
 def stopping_distance(speed: float, acceleration: float, limits: Limits) -> float:

@@ -31,7 +31,7 @@ def validate(profile: CamProfile | str | Path, job: Job) -> ValidationReport:
     >>> from camwright import load_job
     >>> from camwright.profiles.returns import baseline
     >>> job = load_job()
-    >>> report = validate(baseline("poly_3_4_5", job.machine, job.cut), job)
+    >>> report = validate(baseline("poly_3_4_5", job.task), job)
     >>> report.motion.sync_ratio_error
     0.0
     """

@@ -9,17 +9,15 @@ from dataclasses import dataclass, replace
 from camwright.house.progress import Step, ignore
 from camwright.jobs.job import Job
 from camwright.profiles.cross_cutter import QUINTIC_RATIO, quintic_return
-from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
-from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import (
     BASELINES,
     assemble,
     baseline,
     baseline_names,
-    is_straight,
 )
+from camwright.profiles.task import Task
 from camwright.studies.measured import Measured, measured
 from camwright.studies.screw import ScrewCarriage, screw_carriage
 
@@ -53,27 +51,29 @@ class Comparison:
         return next(row for row in self.rows if row.name == name)
 
 
-def law_names(machine: Machine, cut: Cut) -> tuple[str, ...]:
+def law_names(task: Task) -> tuple[str, ...]:
     """Names of all baselines of a machine: those of `camwright.profiles.returns`, and the return of S2 where it is another one.
 
     Examples
     --------
     >>> from camwright import load_job
     >>> job = load_job()
-    >>> "quintic" in law_names(job.machine, job.cut), "cycloid" in law_names(job.machine, job.cut)
+    >>> "quintic" in law_names(job.task), "cycloid" in law_names(job.task)
     (False, True)
     """
+    machine, cut = task.machine, task.cut
     if not machine.placed:
         least, greatest = machine.place_range(cut)
         machine = machine.placed_at(0.5 * (least + greatest))  # the names are the same at every place
-    names = baseline_names(machine, cut)
-    if not is_straight(machine, cut):
+        task = task.with_machine(machine)
+    names = baseline_names(task)
+    if not task.straight:
         return names
     mean = (machine.pitch - cut.sync_ratio * cut.sync_zone) / (cut.sync_ratio * cut.return_zone)
     return (*names, QUINTIC) if _LEAST_MEAN_RATIO < mean < QUINTIC_RATIO else names
 
 
-def require_laws(names: Sequence[str], machine: Machine, cut: Cut) -> None:
+def require_laws(names: Sequence[str], task: Task) -> None:
     """Refuse names of baselines that do not exist for a machine, all at once.
 
     Raises
@@ -83,7 +83,7 @@ def require_laws(names: Sequence[str], machine: Machine, cut: Cut) -> None:
     """
     import difflib
 
-    known = law_names(machine, cut)
+    known = law_names(task)
     faults = []
     for name in names:
         if name not in known:
@@ -114,9 +114,9 @@ def compare(job: Job, optimised: CamProfile, names: Sequence[str] | None = None,
     InputError
         There is no such baseline.
     """
-    chosen = law_names(job.machine, job.cut) if names is None else names
-    require_laws(chosen, job.machine, job.cut)
-    profiles = {"optimised": optimised, **{name: law_profile(name, job.machine, job.cut) for name in chosen}}
+    chosen = law_names(job.task) if names is None else names
+    require_laws(chosen, job.task)
+    profiles = {"optimised": optimised, **{name: law_profile(name, job.task) for name in chosen}}
     rows = []
     for name, profile in profiles.items():
         step(f"measuring {name}")
@@ -125,12 +125,13 @@ def compare(job: Job, optimised: CamProfile, names: Sequence[str] | None = None,
     return Comparison(job, tuple(rows))
 
 
-def law_profile(name: str, machine: Machine, cut: Cut) -> CamProfile:
+def law_profile(name: str, task: Task) -> CamProfile:
     """Make one cycle of a baseline."""
+    cut = task.cut
     if name != QUINTIC:
-        return baseline(name, machine, cut)
-    height = machine.pitch / cut.sync_ratio - cut.sync_zone  # S2 has ratio 1 in sync
-    return assemble(quintic_return(cut.return_zone, height).scale(slave=cut.sync_ratio), machine, cut)
+        return baseline(name, task)
+    height = task.machine.pitch / cut.sync_ratio - cut.sync_zone  # S2 has ratio 1 in sync
+    return assemble(quintic_return(cut.return_zone, height).scale(slave=cut.sync_ratio), task)
 
 
 def with_screw(comparison: Comparison) -> Comparison:

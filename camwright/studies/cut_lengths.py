@@ -67,7 +67,7 @@ def cut_lengths(job: Job) -> CutLengths | None:
     machine, cut, task, servo = job.machine, job.cut, job.task, job.servo
     if not machine.published or cut.sync_ratio != 1.0:
         return None
-    response = servo_response(baseline("linear_return", machine, cut), task, servo)
+    response = servo_response(baseline("linear_return", task), task, servo)
 
     def eq10(transition: float | None, shear_zone: float) -> float | None:
         if transition is None:

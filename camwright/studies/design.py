@@ -110,9 +110,9 @@ def optimise(job: Job, step: Step = ignore) -> Design:
     step("bounding the objective from below")
     bound = Bound(math.nan, "none")
     if not job.cut.shaped:  # what bounds a return does not bound the whole cycle
-        bound = lower_bound(solution.profile, job.task.with_machine(placed.machine), job.objective)
+        bound = lower_bound(solution.profile, placed.task, job.objective)
     step("checking")
-    report = judge(solution.profile, job.task.with_machine(placed.machine), job.servo, servo_aware=job.servo_aware)
+    report = judge(solution.profile, placed.task, job.servo, servo_aware=job.servo_aware)
     aware, robust = axis_study(placed, solution), robustness(placed, solution.profile, solution)
     comparison = with_screw(compare(placed, solution.profile, step=step))
     step("finding minimum cut lengths")

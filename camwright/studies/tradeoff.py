@@ -16,7 +16,6 @@ from camwright.jobs.job import Job
 from camwright.profiles.errors import SolverError
 from camwright.profiles.objective import COMMAND_OBJECTIVES, OBJECTIVES, CommandObjective, of_command
 from camwright.profiles.polynomial.profile import CamProfile
-from camwright.profiles.returns import slave_zero
 from camwright.studies.comparison import law_names, law_profile
 from camwright.validation.motion import Motion, measure_motion
 from camwright.validation.motor import measure_motor, motor_torque
@@ -113,7 +112,7 @@ class TradeOff:
 
 def step_count(job: Job) -> int:
     """Count the steps that `trade_off` tells."""
-    return len(_objectives(job)) + len(law_names(job.machine, job.cut))
+    return len(_objectives(job)) + len(law_names(job.task))
 
 
 def trade_off(job: Job, step: Step = ignore) -> TradeOff:
@@ -153,9 +152,9 @@ def trade_off(job: Job, step: Step = ignore) -> TradeOff:
         rows.append(_row(objective, "objective", solution.profile, here, measures))
     if not rows:
         raise SolverError(f"no objective was solved; the first, {failures[0].name}: {failures[0].reason}")
-    for name in law_names(placed.machine, placed.cut):
+    for name in law_names(placed.task):
         step(f"measuring {name}")
-        rows.append(_row(name, "baseline", law_profile(name, placed.machine, placed.cut), placed, measures))
+        rows.append(_row(name, "baseline", law_profile(name, placed.task), placed, measures))
     rows.sort(key=lambda row: _order(row.values[of_command(job.objective)]))
     return TradeOff(placed, measures, tuple(rows), tuple(failures))
 
@@ -224,7 +223,7 @@ def _keeps_stroke(profile: CamProfile, job: Job) -> bool:
     if job.machine.guide is None:
         return True
     low, high = job.machine.guide
-    start = slave_zero(profile, job.machine, job.cut) - low
+    start = job.task.slave_zero(profile) - low
     least, greatest = profile.extrema(0)
     rounding = _BEYOND * (high - low)
     return start + least.value >= -rounding and start + greatest.value <= high - low + rounding

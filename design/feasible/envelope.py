@@ -120,7 +120,7 @@ def envelope(
     for length in lengths:
         step(f"cut length {length * 1e3:.4g} mm")
         at_length = task.with_length(length)
-        placed = at_length.with_machine(placed_fastest(at_length))
+        placed = placed_fastest(at_length)
         row = _row(placed)
         rows.append(row)
         points += list(_points(placed, objective, line_speeds, row, step))
@@ -179,7 +179,7 @@ def quintic_speed(task: Task) -> float | None:
         if straight
         else quintic_between(task.sync, cut.return_zone, problem.height)
     )
-    cycle = assemble(back, task.machine, task.from_return().cut)
+    cycle = assemble(back, task.from_return())
     low, high = cycle.extrema(1)
     if low.value < -ROUNDING * high.value and not task.reverses:
         return None

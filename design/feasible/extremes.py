@@ -15,9 +15,6 @@ from camwright.design.feasible.feasibility import (
     slowdown,
 )
 from camwright.design.place import place_sync
-from camwright.profiles.cut import Cut
-from camwright.profiles.limits import Limits
-from camwright.profiles.machines import Machine
 from camwright.profiles.task import Task
 
 # Edges are found to rounding; to this share while a place on the crank is looked for.
@@ -57,9 +54,7 @@ def extremes(task: Task) -> Extremes:
     A crank whose sync zone is free has it, for each of the two, at the place that lets it go farthest.
     """
     speed, speed_binding = fastest_line(task)
-    placed = task.with_machine(
-        _placed(task, lambda there: min_cut_length(task.with_machine(there), COARSE) or math.inf)
-    )
+    placed = _placed(task, lambda there: min_cut_length(there, COARSE) or math.inf)
     length = min_cut_length(placed)
     beyond = placed.with_length((length or task.cut.length) * (1 - BEYOND))
     return Extremes(speed, speed_binding, length, _binding(beyond))
@@ -67,26 +62,25 @@ def extremes(task: Task) -> Extremes:
 
 def fastest_line(task: Task) -> tuple[float | None, str]:
     """Highest line speed at the job's cut length (m/s), None if no line speed works, and what binds there."""
-    placed = task.with_machine(placed_fastest(task))
+    placed = placed_fastest(task)
     speed = max_line_speed(placed)
     return speed, _binding(placed.at_speed((speed or task.cut.line_speed) * (1 + BEYOND)))
 
 
-def placed_fastest(task: Task) -> Machine:
+def placed_fastest(task: Task) -> Task:
     """Place the sync zone of a crank that leaves it free where the line can run fastest."""
-    return _placed(task, lambda there: -slowdown(task.with_machine(there), COARSE) or math.inf)
+    return _placed(task, lambda there: -slowdown(there, COARSE) or math.inf)
 
 
-def _placed(task: Task, cost: Callable[[Machine], float]) -> Machine:
+def _placed(task: Task, cost: Callable[[Task], float]) -> Task:
     """Place the sync zone of a crank that leaves it free where a cost is least, or, where nothing works, where most room is left."""
-    machine = task.machine
-    if machine.placed:
-        return machine
-    placement = place_sync(machine, task.cut, cost)
-    return roomiest(machine, task.cut, task.limits) if placement is None else placement.machine
+    if task.machine.placed:
+        return task
+    placement = place_sync(task, cost)
+    return roomiest(task) if placement is None else placement.task
 
 
-def roomiest(machine: Machine, cut: Cut, limits: Limits) -> Machine:
+def roomiest(task: Task) -> Task:
     """Place the sync zone where the limits leave most room.
 
     Raises
@@ -94,11 +88,11 @@ def roomiest(machine: Machine, cut: Cut, limits: Limits) -> Machine:
     InputError
         The sync zone fits nowhere.
     """
-    placement = place_sync(machine, cut, lambda placed: margin(Task(placed, cut, limits)))
+    placement = place_sync(task, margin)
     if placement is not None:
-        return placement.machine
-    least, greatest = machine.place_range(cut)
-    return machine.placed_at(0.5 * (least + greatest))
+        return placement.task
+    least, greatest = task.machine.place_range(task.cut)
+    return task.with_machine(task.machine.placed_at(0.5 * (least + greatest)))
 
 
 def max_line_speed(task: Task) -> float | None:

@@ -18,7 +18,6 @@ from camwright.design.returns.problem import ReturnProblem, return_problem
 from camwright.design.returns.scaling import resolved
 from camwright.profiles.closed_forms.overshoot import least_overshoot
 from camwright.profiles.closed_forms.transfer import Bounds
-from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import Machine
@@ -174,16 +173,16 @@ def needed_limits(task: Task) -> dict[str, float]:
 
     need = {name: alone(name) for name in LIMIT_NAMES}
     if task.machine.guide is not None:
-        need["stroke"] = _stroke_needed(task.machine, task.cut, limits)
+        need["stroke"] = _stroke_needed(task)
     return need
 
 
-def _stroke_needed(machine: Machine, cut: Cut, limits: Limits) -> float:
+def _stroke_needed(task: Task) -> float:
     """Least stroke with which the job works (slave unit); infinite if none does."""
-    travel = machine.sync_profile(cut).advance
-    wide = machine.with_guide(max(stroke_of(machine), 2 * travel))
+    travel = task.sync.advance
+    wide = task.machine.with_guide(max(stroke_of(task.machine), 2 * travel))
     found = math.inf
-    for demand in demands(Task(wide, cut, limits)):
+    for demand in demands(task.with_machine(wide)):
         problem = resolved(demand.problem)
         bounds = Bounds(problem.least_ratio, problem.greatest_ratio, problem.greatest_slope, problem.greatest_jerk)
         beyond = least_overshoot(problem.length, problem.start_ratio, -problem.height, bounds)

@@ -115,7 +115,7 @@ def servo_blind_optimum(programme: AxisProgramme, objective: CommandObjective) -
     problem = programme.problem
     if problem.structure is None:
         return None
-    profile = assemble(problem.structure, problem.task.machine, problem.task.from_return().cut)
+    profile = assemble(problem.structure, problem.task.from_return())
     if not programme.holds(profile):
         return None
     if objective == "rms_torque" or objective == "peak_torque" or objective == "energy":

@@ -60,9 +60,7 @@ def least_load(task: Task) -> TorqueSolution | None:
         found = solve_torque(task, return_problem(task.with_limits(plain), "peak_acceleration"), "load", curve)
     except SolverError:
         return None
-    return replace(
-        found, value=load(assemble(found.back, task.machine, task.cut), task, curve) / (1 - 2 * CURVE_DRAWN_IN)
-    )
+    return replace(found, value=load(assemble(found.back, task), task, curve) / (1 - 2 * CURVE_DRAWN_IN))
 
 
 def solve_within_curve(task: Task, aim: Aim, starts: Sequence[CamProfile]) -> TorqueSolution | None:
@@ -72,7 +70,7 @@ def solve_within_curve(task: Task, aim: Aim, starts: Sequence[CamProfile]) -> To
         return None
 
     def keeps(back: CamProfile) -> bool:
-        return keeps_curve(assemble(back, task.machine, task.cut), task, curve)
+        return keeps_curve(assemble(back, task), task, curve)
 
     problem = return_problem(task.with_limits(plain), "peak_acceleration")
     try:

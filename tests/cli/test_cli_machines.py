@@ -89,7 +89,7 @@ def test_a_machine_is_designed_written_and_judged_again(
     assert answer["passed"] is True
     asked = load_job(job)
     screw = {"screw_carriage"} if asked.machine.slave_unit == "rad" else set()
-    assert answer["profiles"].keys() == {"optimised", *law_names(asked.machine, asked.cut), *screw}
+    assert answer["profiles"].keys() == {"optimised", *law_names(asked.task), *screw}
     assert (answer["minimum_cut_length_mm"]["eq9"] is None) == (name != "cross-cutter")
     assert (answer["tangential_mismatch"] is None) == (name in ("flying-saw", "chasing-shear"))
     objective, best = answer["objective"], answer["profiles"]["optimised"]
@@ -166,9 +166,9 @@ def test_a_table_in_another_slave_unit_is_refused(crank_design: tuple[Path, Path
 
 def test_a_crank_has_the_laws_that_it_can_run() -> None:
     asked = load_job(EXAMPLES / "chasing-shear.toml")
-    assert law_names(asked.machine, asked.cut) == ("linear_return", "poly_3_4_5", "crank_tabulated")
+    assert law_names(asked.task) == ("linear_return", "poly_3_4_5", "crank_tabulated")
     saw = load_job(EXAMPLES / "flying-saw.toml")
-    assert law_names(saw.machine, saw.cut) == BASELINES
+    assert law_names(saw.task) == BASELINES
 
 
 def test_a_law_of_another_machine_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

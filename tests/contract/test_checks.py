@@ -20,7 +20,7 @@ from camwright.validation.servo.axis_motion import AxisPeaks, axis_checks
 JOB = load_job()
 """The paper's job: 400 mm around the drum, cuts of 600 mm at 80 m/min, 200 mm of them in sync."""
 
-CYCLE = baseline("poly_3_4_5", JOB.machine, JOB.cut)
+CYCLE = baseline("poly_3_4_5", JOB.task)
 """From rest to rest over the correction of 200 mm, in 400 mm of return zone; the correction makes up for what the line misses."""
 
 BELOW, ABOVE = 0.9, 1.1

@@ -11,7 +11,12 @@ import pytest
 from camwright import Design, load_job, optimise
 from camwright.design.place import place_sync
 from camwright.profiles.cut import Cut
-from camwright.profiles.machines import CrankSlider, Machine
+from camwright.profiles.limits import Limits
+from camwright.profiles.machines import CrankSlider
+from camwright.profiles.task import Task
+
+FREE = Limits(math.inf, math.inf, math.inf)
+"""Nothing here asks for limits."""
 
 
 @pytest.fixture(scope="module")
@@ -58,17 +63,18 @@ def test_the_sync_zone_is_looked_for_at_nine_places_and_found_to_two_thousandths
     asked: list[float] = []
     valley = places[1]
 
-    def cost(placed: Machine) -> float:
+    def cost(task: Task) -> float:
+        placed = task.machine
         assert isinstance(placed, CrankSlider)
         asked.append(placed.sync_at)
         off = abs(placed.sync_at - valley)
         return off if off < 0.4 * (places[1] - places[0]) else 10.0 - 0.1 * abs(placed.sync_at - places[5])
 
-    found = place_sync(machine, cut, cost)
+    found = place_sync(Task(machine, cut, FREE), cost)
     assert found is not None
-    assert isinstance(found.machine, CrankSlider)
+    assert isinstance(found.task.machine, CrankSlider)
     assert asked[:9] == pytest.approx(list(places), abs=1e-12)
-    assert abs(found.machine.sync_at - valley) <= 2e-3
+    assert abs(found.task.machine.sync_at - valley) <= 2e-3
 
 
 def test_a_servo_aware_design_predicts_the_simulated_error(tmp_path: Path) -> None:

@@ -6,6 +6,7 @@ noticed. To change a promise, change the document, the code and this table.
 
 from __future__ import annotations
 
+import math
 import re
 from pathlib import Path
 
@@ -24,10 +25,12 @@ from camwright.house.output import BROKEN_PIPE
 from camwright.jobs import job as job_file
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import CamwrightError, InfeasibleError, InputError, MissingExtraError, SolverError
+from camwright.profiles.limits import Limits
 from camwright.profiles.machines import RotaryKnife
 from camwright.profiles.tables import cam_csv, text, trace_csv
 from camwright.profiles.tables.knots import Accuracy
 from camwright.profiles.tables.targets import TARGETS
+from camwright.profiles.task import Task
 from camwright.recipe import verify
 from camwright.stored import design_file, profile_files
 from camwright.studies import axis_lengths, screw
@@ -35,6 +38,9 @@ from camwright.validation import motion, motor, rebuilt, report
 from camwright.validation.bounds import minimum_length
 from camwright.validation.identify import fit, identification, quality
 from camwright.validation.servo import axis_motion, lead, simulation
+
+FREE = Limits(math.inf, math.inf, math.inf)
+"""Nothing here asks for limits."""
 
 DOCS = Path(__file__).parents[2] / "docs"
 
@@ -162,7 +168,7 @@ def test_units_of_a_table_are_the_promised_ones() -> None:
         ("rev", 0.6, 0.4),
         ("0.5 um", 0.5e-6, 0.5e-6),
     ):
-        units = parse_units(f"{name},{name}", RotaryKnife(0.4), cut)
+        units = parse_units(f"{name},{name}", Task(RotaryKnife(0.4), cut, FREE))
         assert (units.master.size, units.slave.size) == pytest.approx((master, slave), rel=1e-15)
 
 

@@ -14,7 +14,7 @@ from camwright.profiles.returns import baseline
 from camwright.validation.rebuilt import judge_table
 
 JOB = load_job()
-CYCLE = baseline("poly_3_4_5", JOB.machine, JOB.cut)
+CYCLE = baseline("poly_3_4_5", JOB.task)
 PEAK = (80 / 60) ** 2 * 0.2 / 0.4**2 * 10 / 3**0.5
 """Peak acceleration of the quintic (m/s²)."""
 
@@ -42,7 +42,7 @@ def test_three_wraps_are_run() -> None:
 def missed(law: str, length: float, target: str) -> tuple[float, float, float]:
     """How far the motion that a drive makes of its table is off: position (m), ratio, acceleration over its peak."""
     cut = replace(JOB.cut, length=length)
-    profile = baseline(law, JOB.machine, cut)
+    profile = baseline(law, JOB.task.with_cut(cut))
     (written,) = export(profile, replace(JOB, cut=cut), [target])
     rebuilt = written.units.to_si(written.target.rebuild(written.table))
     x = np.linspace(1e-9, length - 1e-9, 40_001)

@@ -16,7 +16,6 @@ from camwright.profiles.errors import InfeasibleError, InputError
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import CrankSlider, LinearCarriage, RotaryKnife
 from camwright.profiles.motor import MotorCurve
-from camwright.profiles.returns import slave_zero
 from camwright.profiles.servo import Servo
 from camwright.profiles.servo_tolerance import ServoTolerance
 from camwright.profiles.task import Task
@@ -89,8 +88,8 @@ def test_both_origins_are_one_design(command: Command) -> None:
     from_cut = replace(cut, origin="cut")
     at = np.linspace(0.0, cut.length, 40)
     shift = cut.return_zone + 0.5 * cut.sync_zone  # master zero of one, on the other
-    first = one.profile(at + shift, outside="repeat") + slave_zero(one.profile, KNIFE, cut)
-    second = other.profile(at) + slave_zero(other.profile, KNIFE, from_cut)
+    first = one.profile(at + shift, outside="repeat") + Task(KNIFE, cut, LIMITS).slave_zero(one.profile)
+    second = other.profile(at) + Task(KNIFE, from_cut, LIMITS).slave_zero(other.profile)
     assert first - second == pytest.approx(np.full(40, KNIFE.pitch), abs=1e-12)
 
 

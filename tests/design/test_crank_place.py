@@ -36,7 +36,7 @@ def peak(placed: CrankSlider, cut: Cut, objective: CommandObjective) -> float:
 @pytest.mark.parametrize("objective", ["peak_acceleration", "peak_jerk"])
 @pytest.mark.parametrize("cut", [LONG, replace(LONG, length=2.0)])
 def test_no_other_place_has_a_lower_peak_of_the_whole_cycle(objective: CommandObjective, cut: Cut) -> None:
-    found = place_for(CRANK, cut, LIMITS, objective).machine
+    found = place_for(Task(CRANK, cut, LIMITS), objective).task.machine
     best = peak(found, cut, objective)
     least, greatest = CRANK.place_range(cut)
     for angle in np.linspace(least, greatest, 8)[1:-1]:
@@ -48,7 +48,7 @@ def test_no_other_place_has_a_lower_peak_of_the_whole_cycle(objective: CommandOb
 def test_the_sync_zone_can_have_the_higher_peak() -> None:
     """Far from the middle of the stroke it has, so the return alone would mislead."""
     cut = replace(LONG, length=2.0)
-    placed = place_for(CRANK, cut, LIMITS, "peak_acceleration").machine
+    placed = place_for(Task(CRANK, cut, LIMITS), "peak_acceleration").task.machine
     sync = placed.sync_profile(cut)
     in_sync = max(abs(extremum.value) for extremum in sync.extrema(2)) * cut.line_speed**2
     assert least_limit(Task(placed, cut, LIMITS), "acceleration") >= in_sync * (1 - 1e-5)
@@ -60,7 +60,7 @@ def test_the_sync_zone_can_have_the_higher_peak() -> None:
 
 def test_where_no_place_will_do_it_is_the_one_where_least_is_missing() -> None:
     cut = replace(LONG, line_speed=6.0)
-    placed = place_for(CRANK, cut, LIMITS, "rms_acceleration").machine
+    placed = place_for(Task(CRANK, cut, LIMITS), "rms_acceleration").task.machine
     assert not math.isnan(placed.sync_at)
     assert not is_feasible(Task(placed, cut, LIMITS))
 
@@ -68,5 +68,5 @@ def test_where_no_place_will_do_it_is_the_one_where_least_is_missing() -> None:
 def test_a_motor_too_weak_for_its_rectangles_is_placed_by_torque() -> None:
     weak = replace(LIMITS, motor=MotorCurve(((0.0, 1.0), (400.0, 1.0))))
     weaker = replace(LIMITS, motor=MotorCurve(((0.0, 0.5), (400.0, 0.5))))
-    places = [place_for(CRANK, LONG, limits, "rms_torque").machine.sync_at for limits in (weak, weaker)]
+    places = [place_for(Task(CRANK, LONG, limits), "rms_torque").task.machine.sync_at for limits in (weak, weaker)]
     assert places[0] == pytest.approx(places[1], abs=1e-12)

@@ -31,6 +31,9 @@ from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import BASELINES, baseline
 from camwright.profiles.task import Task
 
+FREE = Limits(math.inf, math.inf, math.inf)
+"""Nothing here asks for limits."""
+
 OBJECTIVES: tuple[MotionObjective, ...] = get_args(MotionObjective)
 Job = tuple[RotaryKnife, Cut, Limits, MotionObjective]
 
@@ -301,7 +304,7 @@ def check_against_baselines(result: Solution, job: Job) -> None:
     machine, cut, limits, objective = job
     order = order_of(objective)
     for name in SMOOTH_LAWS:
-        profile = baseline(name, machine, cut)
+        profile = baseline(name, Task(machine, cut, FREE))
         if worst_excess(profile, cut, limits) > 0:
             continue
         back = profile.restrict(cut.return_start, cut.return_start + cut.return_zone)

@@ -25,7 +25,7 @@ from camwright.profiles.servo import Servo
 from camwright.profiles.tables.cam_table import Unit, Units
 
 JOB = load_job()
-PROFILE = baseline("double_s", JOB.machine, JOB.cut)
+PROFILE = baseline("double_s", JOB.task)
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
@@ -95,7 +95,7 @@ def test_columns_in_degrees_of_the_cycle(units: str | None, tmp_path: Path) -> N
 @pytest.mark.parametrize("begin", [0.0, 0.05, 0.3, 0.55])
 def test_the_zeros_of_master_and_slave_are_the_users_affair(origin: Origin, begin: float, tmp_path: Path) -> None:
     job = replace(JOB, cut=replace(JOB.cut, origin=origin))
-    profile = baseline("cycloid", job.machine, job.cut)
+    profile = baseline("cycloid", job.task)
     result = audit(columns(tmp_path / "c.csv", profile, begin=begin), job, units="m,m")
     assert of(result, "sync_position") < 2e-6
     assert any("master zero is not the job's" in note for note in result.notes) == (begin > 0)
@@ -134,7 +134,7 @@ def test_what_is_no_cam_of_the_job_is_refused(text: str, units: str | None, mess
 
 def test_a_carriage_counted_in_steps(tmp_path: Path) -> None:
     job = load_job(EXAMPLES / "flying-saw.toml")
-    (written,) = export(baseline("double_s", job.machine, job.cut), job, ["trio"], force=True)
+    (written,) = export(baseline("double_s", job.task), job, ["trio"], force=True)
     name, text = next(iter(written.files.items()))
     (tmp_path / name).write_text(text)
     with pytest.raises(InputError, match="--units cycle,mm"):
@@ -148,7 +148,7 @@ def test_a_crank_is_placed_as_the_file_says(tmp_path: Path) -> None:
     free = load_job(EXAMPLES / "chasing-shear.toml")
     assert isinstance(free.machine, CrankSlider)
     job: Job = replace(free, machine=replace(free.machine, sync_at=math.radians(85)))
-    profile = baseline("poly_3_4_5", job.machine, job.cut)
+    profile = baseline("poly_3_4_5", job.task)
     (written,) = export(
         profile, job, ["codesys"], force=True, units=Units(Unit("mm", 1e-3), Unit("deg", math.radians(1), "rad"))
     )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -11,6 +13,7 @@ from knives import KNIVES, UNITS, chosen, knife
 from camwright import load_job
 from camwright.drives.export import export
 from camwright.profiles.cut import Cut
+from camwright.profiles.limits import Limits
 from camwright.profiles.machines import RotaryKnife
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import baseline
@@ -29,7 +32,11 @@ from camwright.profiles.tables.placing import (
     zone_ends,
 )
 from camwright.profiles.tables.targets import TARGETS
+from camwright.profiles.task import Task
 from camwright.validation.rebuilt import judge_table
+
+FREE = Limits(math.inf, math.inf, math.inf)
+"""Nothing here asks for limits."""
 
 FINE = Accuracy(1e-9, 1e-6, 1e-4)
 """More than most targets reach: the nearest is chosen then."""
@@ -112,18 +119,16 @@ def test_the_same_motion_is_judged_once(monkeypatch: pytest.MonkeyPatch) -> None
 
     monkeypatch.setattr("camwright.drives.export.judge_table", counted)
     job = load_job()
-    results = export(
-        baseline("double_s", job.machine, job.cut), job, ["codesys", "twincat", "pacdrive", "csv", "logix"]
-    )
+    results = export(baseline("double_s", job.task), job, ["codesys", "twincat", "pacdrive", "csv", "logix"])
     assert len(results) == 5
     assert len(calls) == len(set(calls)) < 2 * len(results)
-    alone = export(baseline("double_s", job.machine, job.cut), job, ["pacdrive"])[0]
+    alone = export(baseline("double_s", job.task), job, ["pacdrive"])[0]
     assert alone.judgement.checks == results[2].judgement.checks
 
 
 @pytest.mark.parametrize("law", ["cubic", "parabolic", "velocity_trapezoid"])
 def test_a_jump_of_the_acceleration_is_missed_and_said_to_be(law: str) -> None:
-    profile = baseline(law, RotaryKnife(0.4), Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4))
+    profile = baseline(law, Task(RotaryKnife(0.4), Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4), FREE))
     target = TARGETS["csv"]
     found = choose(profile, target, table_units(target, profile, UNITS), Accuracy())
     assert found.table.points <= target.max_points

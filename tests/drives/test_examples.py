@@ -16,7 +16,7 @@ from camwright.drives.export import Exported, export_possible
 from camwright.jobs.job import Job
 from camwright.profiles.machines import CrankSlider
 from camwright.profiles.polynomial.profile import CamProfile
-from camwright.profiles.returns import baseline, slave_at_start
+from camwright.profiles.returns import baseline
 from camwright.profiles.tables.target import SAFETY_NOTE, units_in
 from camwright.profiles.tables.targets import TARGETS, read_table
 from camwright.profiles.tables.text import decode
@@ -46,7 +46,7 @@ def written(name: str) -> Written:
     else:
         if isinstance(job.machine, CrankSlider):
             job = replace(job, machine=replace(job.machine, sync_at=sum(job.machine.place_range(job.cut)) / 2))
-        profile = baseline("poly_3_4_5", job.machine, job.cut)
+        profile = baseline("poly_3_4_5", job.task)
     results, refused = export_possible(profile, job, list(TARGETS), force=True)
     return Written(job, profile, {result.target.name: result for result in results}, refused)
 
@@ -80,7 +80,7 @@ def test_the_report_states_the_true_error(name: str, target: str) -> None:
     here, found = written(name), rebuilt(name, target)
     result, profile, machine = here.results[target], here.profile, here.job.machine
     x = np.linspace(max(profile.start, found.start), min(profile.end, found.end), 100_001)
-    start = slave_at_start(machine, here.job.cut) if machine.slave_unit == "rad" else 0.0
+    start = here.job.task.with_machine(machine).slave_at_start if machine.slave_unit == "rad" else 0.0
     meant, made = start + profile(x), start + found(x)
     if machine.slave_unit == "rad":
         meant, made = machine.tool(meant), machine.tool(made)

@@ -31,7 +31,7 @@ from camwright.stored.design_file import design_text
 from camwright.studies.design import optimise
 
 JOB = load_job()
-PROFILE = baseline("double_s", JOB.machine, JOB.cut)
+PROFILE = baseline("double_s", JOB.task)
 
 
 def test_all_targets_are_released_for_a_sound_cam() -> None:
@@ -83,12 +83,12 @@ def test_a_table_that_leaves_the_sync_tolerance_is_not_released(target: str) -> 
 
 
 def test_points_units_and_accuracy() -> None:
-    units = parse_units("deg,rev", JOB.machine, JOB.cut)
+    units = parse_units("deg,rev", JOB.task)
     (result,) = export(PROFILE, JOB, ["twincat"], units=units, points=20)
     assert result.table.points == 20
     assert result.table.x[-1] == pytest.approx(360)
     assert result.table.y[-1] == pytest.approx(1)
-    smooth = baseline("poly_3_4_5", JOB.machine, JOB.cut)
+    smooth = baseline("poly_3_4_5", JOB.task)
     (fine,) = export(smooth, JOB, ["s7-1500t-points"], accuracy=Accuracy(position=1e-9))
     (coarse,) = export(smooth, JOB, ["s7-1500t-points"], accuracy=Accuracy(position=1e-5))
     assert coarse.table.points < fine.table.points
@@ -100,8 +100,8 @@ def test_points_units_and_accuracy() -> None:
     [
         (lambda: parse_targets("codesys,omron"), "there is no target 'omron'"),
         (lambda: parse_targets(" ,"), "--to names one or more targets"),
-        (lambda: parse_units("mm", JOB.machine, JOB.cut), "--units takes the master's unit and the slave's"),
-        (lambda: parse_units("mm,furlong", JOB.machine, JOB.cut), "there is no unit 'furlong'"),
+        (lambda: parse_units("mm", JOB.task), "--units takes the master's unit and the slave's"),
+        (lambda: parse_units("mm,furlong", JOB.task), "there is no unit 'furlong'"),
         (lambda: export(PROFILE, JOB, ["s7-1500t", "codesys"], points=60), "s7-1500t: s7-1500t takes 2 to 51 points"),
     ],
 )
@@ -206,17 +206,17 @@ def test_all_leaves_out_who_cannot_take_the_cam(tmp_path: Path) -> None:
 
 def test_units_of_each_machine() -> None:
     drum = RotaryKnife(0.4, blades=2)  # a degree is one of the drum, whatever its blades
-    units = parse_units("deg,deg", drum, JOB.cut)
+    units = parse_units("deg,deg", JOB.task.with_machine(drum))
     assert (units.master.size, units.slave.size) == pytest.approx((0.6 / 360, 0.4 / 360))
-    count = parse_units("mm,0.5 um", drum, JOB.cut).slave
+    count = parse_units("mm,0.5 um", JOB.task.with_machine(drum)).slave
     assert count.symbol == "0.5um"
     assert count.size == pytest.approx(5e-7)
-    assert parse_units("cycle,mm", drum, JOB.cut, 4096.0).master.size == pytest.approx(0.6 / 4096)
+    assert parse_units("cycle,mm", JOB.task.with_machine(drum), 4096.0).master.size == pytest.approx(0.6 / 4096)
     with pytest.raises(InputError, match="there is no unit 'cycle' here"):
-        parse_units("cycle,mm", drum, JOB.cut)
+        parse_units("cycle,mm", JOB.task.with_machine(drum))
     crank = CrankSlider(0.15, 0.6)
-    assert parse_units("mm,deg", crank, JOB.cut).slave == Unit("deg", math.radians(1), "rad")
+    assert parse_units("mm,deg", JOB.task.with_machine(crank)).slave == Unit("deg", math.radians(1), "rad")
     assert default_units(crank).slave.si == "rad"
     with pytest.raises(InputError, match="there is no unit 'mm' here; the units are rad, deg, rev"):
-        parse_units("mm,mm", crank, JOB.cut)
-    assert parse_units("mm,rev", LinearCarriage(1.2, travel_per_turn=0.04), JOB.cut).slave.size == 0.04
+        parse_units("mm,mm", JOB.task.with_machine(crank))
+    assert parse_units("mm,rev", JOB.task.with_machine(LinearCarriage(1.2, travel_per_turn=0.04))).slave.size == 0.04

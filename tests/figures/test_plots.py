@@ -129,7 +129,7 @@ def test_arrows_stand_at_the_jumps_of_the_linear_return_and_nowhere_else(paper: 
 def test_a_machine_that_need_not_leave_the_line_is_drawn() -> None:
     job = load_job()
     job = replace(job, cut=replace(job.cut, length=job.machine.pitch))
-    straight = baseline("poly_3_4_5", job.machine, job.cut)
+    straight = baseline("poly_3_4_5", job.task)
     comparison = compare(job, straight, ["linear_return", "poly_3_4_5"])
     _, _, acceleration, _ = profile_figure(comparison).axes
     assert heights(acceleration) == [-30.0, 30.0]

@@ -18,7 +18,6 @@ from camwright.figures.servo import AXES, servo_figure
 from camwright.figures.style import LINES
 from camwright.jobs.job import load_job
 from camwright.profiles.machines import CrankSlider, LinearCarriage
-from camwright.profiles.returns import slave_at_start
 from camwright.studies.comparison import Comparison, compare
 from camwright.validation.servo.simulation import simulate
 
@@ -154,6 +153,6 @@ def test_maps_hold_with_either_origin(origin: str, crank: Comparison) -> None:
     optimum = solve(job.task, "rms_acceleration")
     travel = crank_figure(compare(job, optimum.profile, ["crank_tabulated"])).axes[1]
     _, y = curve(travel, LINES["optimised"]["color"])
-    start = slave_at_start(job.machine, job.cut)
+    start = job.task.slave_at_start
     assert y[0] == pytest.approx((job.machine.tool(start) - job.machine.tool(0.0)) * 1e3)
     assert y[0] == pytest.approx(y[-1], abs=1e-6)

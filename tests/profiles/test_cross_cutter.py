@@ -20,9 +20,14 @@ from camwright.profiles.cross_cutter import (
 )
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
+from camwright.profiles.limits import Limits
 from camwright.profiles.machines import RotaryKnife
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import assemble, place_law
+from camwright.profiles.task import Task
+
+FREE = Limits(math.inf, math.inf, math.inf)
+"""Nothing here asks for limits."""
 
 L_K, L_S = 0.4, 0.2
 HOLE = st.floats(critical_length(L_K, L_S), 0.7)
@@ -213,7 +218,7 @@ def test_any_cut_closes_and_agrees_with_a_return_placed_on_the_knife(
     assert cycle.advance == pytest.approx(circumference, abs=1e-12 * max(length, circumference))
     assert cycle.extrema(order=1)[0].value == pytest.approx(cross.least_ratio, abs=1e-9)
     cut = Cut(length, 1.0, sync, 0.0, sync / 2, 1e-4, "cut")
-    other = assemble(quintic_return(cut.return_zone, circumference - sync), RotaryKnife(circumference), cut)
+    other = assemble(quintic_return(cut.return_zone, circumference - sync), Task(RotaryKnife(circumference), cut, FREE))
     x = np.linspace(0.0, length, 101)
     np.testing.assert_allclose(cycle(x), other(x), atol=1e-11 * max(length, circumference))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -12,6 +13,7 @@ from hypothesis import strategies as st
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
 from camwright.profiles.laws import LAWS, law
+from camwright.profiles.limits import Limits
 from camwright.profiles.machines import RotaryKnife
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import (
@@ -20,6 +22,10 @@ from camwright.profiles.returns import (
     baseline,
     place_law,
 )
+from camwright.profiles.task import Task
+
+FREE = Limits(math.inf, math.inf, math.inf)
+"""Nothing here asks for limits."""
 
 KNIFE = RotaryKnife(0.4)
 CUT = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4)
@@ -51,7 +57,7 @@ def test_placed_law_is_the_line_and_the_law(name: str, length: float, height: fl
 
 def test_linear_return_is_that_of_the_paper() -> None:
     """``Y = k X`` with ``k = (y_c - l_s) / (x_c - l_s)``, then ``Y = X - x_c + y_c``; cycle after cycle."""
-    cycle = baseline("linear_return", KNIFE, CUT)
+    cycle = baseline("linear_return", Task(KNIFE, CUT, FREE))
     for n in range(3):
         t = np.linspace(0.0, 0.6, 601)
         y = np.where(t <= 0.4, 0.5 * t, t - 0.6 + 0.4) + 0.4 * n
@@ -63,7 +69,7 @@ def test_linear_return_is_that_of_the_paper() -> None:
 @given(jobs())
 def test_every_baseline_is_a_closed_cycle_in_sync(name: str, job: tuple[RotaryKnife, Cut]) -> None:
     machine, cut = job
-    cycle = baseline(name, machine, cut)
+    cycle = baseline(name, Task(machine, cut, FREE))
     assert (cycle.start, cycle.end) == (0.0, pytest.approx(cut.length, rel=1e-12))
     assert float(cycle(0.0)) == 0.0
     assert cycle.advance == pytest.approx(machine.pitch, rel=1e-12)
@@ -79,7 +85,10 @@ def test_every_baseline_is_a_closed_cycle_in_sync(name: str, job: tuple[RotaryKn
 @pytest.mark.parametrize("name", BASELINES)
 def test_the_origin_only_moves_the_cycle(name: str) -> None:
     """From mid sync zone, the cycle is the one from the start of the return, 0.1 m later."""
-    from_return, from_cut = baseline(name, KNIFE, CUT), baseline(name, KNIFE, replace(CUT, origin="cut"))
+    from_return, from_cut = (
+        baseline(name, Task(KNIFE, CUT, FREE)),
+        baseline(name, Task(KNIFE, replace(CUT, origin="cut"), FREE)),
+    )
     x = np.linspace(0.0, 0.6, 601)[1:-1]
     moved = from_return(x + 0.5, outside="repeat") - float(from_return(0.5))
     assert np.abs(from_cut(x) - moved).max() <= 1e-13
@@ -87,7 +96,7 @@ def test_the_origin_only_moves_the_cycle(name: str) -> None:
 
 def test_a_return_and_the_sync_zone_make_the_cycle() -> None:
     back = CamProfile.from_arrays([0.0, 0.1, 0.4], [[0.0, 1.0], [0.1, 1.0 / 3.0]])
-    cycle = assemble(back, KNIFE, CUT)
+    cycle = assemble(back, Task(KNIFE, CUT, FREE))
     assert cycle.breaks.tolist() == [0.0, 0.1, 0.4, 0.6]
     x = np.linspace(0.0, 0.4, 101)
     assert np.abs(cycle(x) - back(x)).max() <= 1e-16
@@ -96,4 +105,4 @@ def test_a_return_and_the_sync_zone_make_the_cycle() -> None:
 
 def test_unknown_baseline_is_refused() -> None:
     with pytest.raises(InputError, match=r"no baseline 'linear'.*; the baselines are linear_return, parabolic"):
-        baseline("linear", KNIFE, CUT)
+        baseline("linear", Task(KNIFE, CUT, FREE))

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
+from camwright.profiles.limits import Limits
 from camwright.profiles.machines import (
     CrankSlider,
     LinearCarriage,
@@ -23,10 +24,13 @@ from camwright.profiles.returns import (
     BASELINES,
     baseline,
     baseline_names,
-    is_straight,
     quintic_between,
     tabulate_crank,
 )
+from camwright.profiles.task import Task
+
+FREE = Limits(math.inf, math.inf, math.inf)
+"""Nothing here asks for limits."""
 
 CUT = Cut(0.9, 1.0, 0.1, 0.02, 0.07, 2e-4)
 KNIFE, HORIZONTAL = RotaryKnife(0.8, blades=2), RotaryKnife(0.8, blades=2, sync="horizontal")
@@ -58,21 +62,21 @@ def test_quintic_meets_both_ends(powers: list[float], zone: float, length: float
 def test_quintic_between_straight_ends_is_the_law() -> None:
     sync = KNIFE.sync_profile(CUT)
     back = quintic_between(sync, 0.8, 0.3)
-    law = baseline("poly_3_4_5", KNIFE, CUT).restrict(0.0, 0.8)
+    law = baseline("poly_3_4_5", Task(KNIFE, CUT, FREE)).restrict(0.0, 0.8)
     x = np.linspace(0.0, 0.8, 101)
     assert np.abs(back(x) - law(x)).max() <= 1e-14
 
 
 def test_which_machines_have_which_baselines() -> None:
-    assert (is_straight(KNIFE, CUT), is_straight(CARRIAGE, CUT)) == (True, True)
-    assert (is_straight(HORIZONTAL, CUT), is_straight(CRANK, CUT)) == (False, False)
-    assert baseline_names(KNIFE, CUT) == BASELINES
-    assert baseline_names(HORIZONTAL, CUT) == ("linear_return", "poly_3_4_5")
-    assert baseline_names(CRANK, CUT) == ("linear_return", "poly_3_4_5", "crank_tabulated")
+    assert (Task(KNIFE, CUT, FREE).straight, Task(CARRIAGE, CUT, FREE).straight) == (True, True)
+    assert (Task(HORIZONTAL, CUT, FREE).straight, Task(CRANK, CUT, FREE).straight) == (False, False)
+    assert baseline_names(Task(KNIFE, CUT, FREE)) == BASELINES
+    assert baseline_names(Task(HORIZONTAL, CUT, FREE)) == ("linear_return", "poly_3_4_5")
+    assert baseline_names(Task(CRANK, CUT, FREE)) == ("linear_return", "poly_3_4_5", "crank_tabulated")
     with pytest.raises(
         InputError, match=r"no baseline 'cycloid' for this machine; the baselines are linear_return, poly_3_4_5$"
     ):
-        baseline("cycloid", HORIZONTAL, CUT)
+        baseline("cycloid", Task(HORIZONTAL, CUT, FREE))
 
 
 @pytest.mark.parametrize(
@@ -81,8 +85,8 @@ def test_which_machines_have_which_baselines() -> None:
 @pytest.mark.parametrize("origin", ["return", "cut"])
 def test_every_baseline_closes(machine: Machine, origin: str) -> None:
     cut = replace(CUT, origin=origin, sync_ratio=1.02)
-    for name in baseline_names(machine, cut):
-        cycle = baseline(name, machine, cut)
+    for name in baseline_names(Task(machine, cut, FREE)):
+        cycle = baseline(name, Task(machine, cut, FREE))
         assert (cycle.start, cycle.end) == (0.0, cut.length)
         assert cycle.advance == pytest.approx(machine.pitch, abs=1e-13)
         assert np.abs(cycle.jumps(0)).max() <= 1e-13
@@ -93,7 +97,7 @@ def test_every_baseline_closes(machine: Machine, origin: str) -> None:
 
 @pytest.mark.parametrize("points", [360, 720])
 def test_tabulated_crank_closes_runs_forwards_and_is_near_its_curve(points: int) -> None:
-    quintic = baseline("poly_3_4_5", CRANK, CUT)
+    quintic = baseline("poly_3_4_5", Task(CRANK, CUT, FREE))
     table = tabulate_crank(quintic, points)
     x = np.linspace(0.0, CUT.length, 5001)
     assert table.advance == pytest.approx(2 * math.pi, rel=1e-13)
@@ -107,7 +111,7 @@ def test_tabulated_crank_closes_runs_forwards_and_is_near_its_curve(points: int)
 
 
 def test_tabulated_crank_gets_nearer_with_more_points() -> None:
-    quintic = baseline("poly_3_4_5", CRANK, CUT)
+    quintic = baseline("poly_3_4_5", Task(CRANK, CUT, FREE))
     x = np.linspace(0.0, CUT.length, 5001)
     errors = [np.abs(tabulate_crank(quintic, points)(x) - quintic(x)).max() for points in (360, 720, 1440)]
     assert errors[1] < 0.4 * errors[0]

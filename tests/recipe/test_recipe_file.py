@@ -151,9 +151,9 @@ def test_the_stopping_distance_is_half_of_the_shortest_hop_that_reaches_that_spe
 def test_a_knife_without_room_to_stop_has_a_longest_cut(paper_design) -> None:
     job = paper_design.job
     cut, limits = replace(job.cut, length=0.45), replace(job.limits, acceleration=8.0)
-    assert can_rest(job.machine, cut, job.limits)
-    assert not can_rest(job.machine, cut, limits)  # v²/a alone is 0.222 m, and 0.2 m are left of the circle
-    found = longest_cut(job.machine, cut, limits)
+    assert can_rest(job.task.with_cut(cut))
+    assert not can_rest(Task(job.machine, cut, limits))  # v²/a alone is 0.222 m, and 0.2 m are left of the circle
+    found = longest_cut(Task(job.machine, cut, limits))
     assert found.value is not None
     assert found.binding == "acceleration"
     assert is_feasible(Task(job.machine, replace(cut, length=found.value), limits))

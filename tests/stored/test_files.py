@@ -183,7 +183,7 @@ def test_the_table_has_its_origin_its_rows_and_its_breaks(paper: Design) -> None
 
 def test_a_table_rounded_to_micrometres_is_still_this_cycle(tmp_path: Path) -> None:
     job = load_job()
-    profile = baseline("poly_3_4_5", job.machine, job.cut)
+    profile = baseline("poly_3_4_5", job.task)
     x = np.linspace(0.0, 0.6, 91)
     file = tmp_path / "cam.csv"
     file.write_text(

@@ -13,7 +13,7 @@ from camwright.profiles.errors import InputError
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import CrankSlider, LinearCarriage, RotaryKnife
 from camwright.profiles.polynomial.profile import CamProfile
-from camwright.profiles.returns import BASELINES, baseline, slave_at_start
+from camwright.profiles.returns import BASELINES, baseline
 from camwright.profiles.task import Task
 from camwright.validation.motion import (
     Motion,
@@ -54,13 +54,13 @@ RMS_ACCELERATION = {
 
 @pytest.mark.parametrize("name", [name for name in PEAK_ACCELERATION if name not in ("cubic", "parabolic")])
 def test_peak_acceleration_is_the_law_s(name: str) -> None:
-    motion = measure_motion(baseline(name, KNIFE, CUT), Task(KNIFE, CUT, FREE))
+    motion = measure_motion(baseline(name, Task(KNIFE, CUT, FREE)), Task(KNIFE, CUT, FREE))
     assert motion.peak_acceleration == pytest.approx(PEAK_ACCELERATION[name] * abs(D) / T**2, rel=1e-10)
 
 
 @pytest.mark.parametrize("name", ["cubic", "parabolic"])
 def test_a_jump_of_the_ratio_slope_leaves_acceleration_bounded_and_jerk_not(name: str) -> None:
-    motion = measure_motion(baseline(name, KNIFE, CUT), Task(KNIFE, CUT, FREE))
+    motion = measure_motion(baseline(name, Task(KNIFE, CUT, FREE)), Task(KNIFE, CUT, FREE))
     assert motion.peak_acceleration == pytest.approx(PEAK_ACCELERATION[name] * abs(D) / T**2, rel=1e-12)
     assert (motion.peak_jerk, motion.rms_jerk) == (None, None)
 
@@ -69,12 +69,12 @@ def test_a_jump_of_the_ratio_slope_leaves_acceleration_bounded_and_jerk_not(name
 @pytest.mark.parametrize("origin", ["return", "cut"])
 def test_rms_acceleration_is_the_law_s_over_the_return_zone(name: str, origin: str) -> None:
     cut = replace(CUT, origin=origin)
-    motion = measure_motion(baseline(name, KNIFE, cut), Task(KNIFE, cut, FREE))
+    motion = measure_motion(baseline(name, Task(KNIFE, cut, FREE)), Task(KNIFE, cut, FREE))
     assert motion.rms_acceleration == pytest.approx(RMS_ACCELERATION[name] * abs(D) / T**2, rel=1e-9)
 
 
 def test_jerk_of_the_quintic() -> None:
-    motion = measure_motion(baseline("poly_3_4_5", KNIFE, CUT), Task(KNIFE, CUT, FREE))
+    motion = measure_motion(baseline("poly_3_4_5", Task(KNIFE, CUT, FREE)), Task(KNIFE, CUT, FREE))
     assert motion.peak_jerk == pytest.approx(60 * abs(D) / T**3, rel=1e-12)
     assert motion.rms_jerk == pytest.approx(math.sqrt(720) * abs(D) / T**3, rel=1e-12)
     assert motion.min_speed == pytest.approx(CUT.line_speed + 15 / 8 * D / T, rel=1e-12)
@@ -84,7 +84,7 @@ def test_jerk_of_the_quintic() -> None:
 @pytest.mark.parametrize("origin", ["return", "cut"])
 def test_linear_return_has_no_bounded_acceleration(origin: str) -> None:
     cut = replace(CUT, origin=origin)
-    motion = measure_motion(baseline("linear_return", KNIFE, cut), Task(KNIFE, cut, FREE))
+    motion = measure_motion(baseline("linear_return", Task(KNIFE, cut, FREE)), Task(KNIFE, cut, FREE))
     assert motion == Motion(
         pytest.approx(80 / 60), pytest.approx(40 / 60), None, None, None, None, pytest.approx(0.0, abs=1e-15)
     )
@@ -95,7 +95,7 @@ def test_linear_return_has_no_bounded_acceleration(origin: str) -> None:
 @pytest.mark.parametrize("length", [0.31, 0.4, 0.6, 0.7301])
 def test_every_baseline_is_in_sync_and_no_grid_point_exceeds_its_peaks(name: str, origin: str, length: float) -> None:
     cut = replace(CUT, length=length, sync_zone=0.1301, shear_zone_at=0.09, origin=origin)
-    profile = baseline(name, KNIFE, cut)
+    profile = baseline(name, Task(KNIFE, cut, FREE))
     motion = measure_motion(profile, Task(KNIFE, cut, FREE))
     assert motion.sync_ratio_error <= 1e-12
     x = np.linspace(0.0, profile.end, 2001)
@@ -110,7 +110,7 @@ def test_every_baseline_is_in_sync_and_no_grid_point_exceeds_its_peaks(name: str
 
 def test_sync_ratio_error_sees_both_halves_of_a_split_sync_zone() -> None:
     cut = replace(CUT, origin="cut")
-    profile = baseline("poly_3_4_5", KNIFE, cut)
+    profile = baseline("poly_3_4_5", Task(KNIFE, cut, FREE))
     for piece, at in ((0, 0.0), (profile.pieces - 1, 0.5)):
         coefficients = profile.coefficients.copy()
         coefficients[piece, 2] += 0.5e-3 / 0.1  # ratio off by 1e-3 at the end of a piece of 0.1 m
@@ -120,14 +120,14 @@ def test_sync_ratio_error_sees_both_halves_of_a_split_sync_zone() -> None:
 
 
 def test_sync_ratio_error_ignores_a_break_that_rounding_has_moved_into_the_zone() -> None:
-    profile = baseline("linear_return", KNIFE, CUT)
+    profile = baseline("linear_return", Task(KNIFE, CUT, FREE))
     breaks = profile.breaks.copy()
     breaks[1] = np.nextafter(breaks[1], 1.0)
     assert sync_ratio_error(CamProfile(breaks, profile.coefficients.copy()), Task(KNIFE, CUT, FREE)).value <= 1e-12
 
 
 def test_jumps_and_scale_of_a_parabolic_return() -> None:
-    profile = baseline("parabolic", KNIFE, CUT)
+    profile = baseline("parabolic", Task(KNIFE, CUT, FREE))
     jump = greatest_jump(profile, 2)
     peak = 4 * abs(D) / 0.4**2  # ratio slope (1/m) over the return zone of 0.4 m
     assert (jump.value, jump.at) == (pytest.approx(2 * peak), pytest.approx(0.2))
@@ -155,7 +155,7 @@ def test_a_slave_in_rad_is_measured_against_a_turn() -> None:
 
 
 def test_a_position_jump_makes_the_acceleration_unbounded() -> None:
-    profile = baseline("poly_3_4_5", KNIFE, CUT)
+    profile = baseline("poly_3_4_5", Task(KNIFE, CUT, FREE))
     coefficients = profile.coefficients.copy()
     coefficients[0, 0] -= 1e-9
     motion = measure_motion(CamProfile(profile.breaks.copy(), coefficients), Task(KNIFE, CUT, FREE))
@@ -164,7 +164,7 @@ def test_a_position_jump_makes_the_acceleration_unbounded() -> None:
 
 
 def test_a_profile_of_another_cut_is_refused_with_both_lengths() -> None:
-    profile = baseline("poly_3_4_5", KNIFE, CUT)
+    profile = baseline("poly_3_4_5", Task(KNIFE, CUT, FREE))
     with pytest.raises(InputError, match=r"from 0\.0 m to 0\.6 m, but one cycle of this cut runs from 0 m .* 0\.61 m"):
         measure_motion(profile, Task(KNIFE, replace(CUT, length=0.61), FREE))
     with pytest.raises(InputError, match=r"from 0\.1 m to 0\.7 m"):
@@ -177,11 +177,11 @@ CRANK = CrankSlider(0.15, 0.6, 0.02, sync_at=1.5)
 @pytest.mark.parametrize("origin", ["return", "cut"])
 def test_the_carriage_of_a_crank_against_differences(origin: str) -> None:
     cut = replace(CUT, length=0.9, sync_zone=0.1, origin=origin)
-    cycle = baseline("poly_3_4_5", CRANK, cut)
+    cycle = baseline("poly_3_4_5", Task(CRANK, cut, FREE))
     tool, slave = measure_tool(cycle, Task(CRANK, cut, FREE)), measure_motion(cycle, Task(CRANK, cut, FREE))
     h = 1e-5
     x = np.linspace(2 * h, cut.length - 2 * h, 20_001)
-    start = slave_at_start(CRANK, cut)
+    start = Task(CRANK, cut, FREE).slave_at_start
     at = [CRANK.tool(start + cycle(x + k * h)) for k in (-1, 0, 1)]
     velocity = cut.line_speed * (at[2] - at[0]) / (2 * h)
     acceleration = cut.line_speed**2 * (at[2] - 2 * at[1] + at[0]) / h**2
@@ -200,13 +200,16 @@ def test_the_carriage_of_a_crank_against_differences(origin: str) -> None:
 
 
 def test_a_slave_in_metres_is_its_own_tool() -> None:
-    cycle = baseline("cycloid", KNIFE, CUT)
+    cycle = baseline("cycloid", Task(KNIFE, CUT, FREE))
     assert measure_tool(cycle, Task(KNIFE, CUT, FREE)) == measure_motion(cycle, Task(KNIFE, CUT, FREE))
 
 
 def test_sync_ratio_is_judged_against_what_is_asked() -> None:
     carriage = LinearCarriage(0.6)
     fast = replace(CUT, sync_ratio=1.05)
-    assert measure_motion(baseline("cycloid", carriage, fast), Task(carriage, fast, FREE)).sync_ratio_error <= 1e-12
-    found = measure_motion(baseline("cycloid", carriage, CUT), Task(carriage, fast, FREE))
+    assert (
+        measure_motion(baseline("cycloid", Task(carriage, fast, FREE)), Task(carriage, fast, FREE)).sync_ratio_error
+        <= 1e-12
+    )
+    found = measure_motion(baseline("cycloid", Task(carriage, CUT, FREE)), Task(carriage, fast, FREE))
     assert found.sync_ratio_error == pytest.approx(1 - 1 / 1.05, rel=1e-9)

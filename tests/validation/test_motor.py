@@ -22,7 +22,7 @@ from camwright.profiles.machines import (
 )
 from camwright.profiles.motor import MotorCurve
 from camwright.profiles.polynomial.profile import CamProfile
-from camwright.profiles.returns import baseline, slave_at_start
+from camwright.profiles.returns import baseline
 from camwright.profiles.task import Task
 from camwright.validation.motion import measure_motion
 from camwright.validation.motor import (
@@ -43,7 +43,7 @@ CRANK = CrankSlider(0.15, 0.6, 0.02, 0.5, 20.0, 10.0, 1.5)
 
 def by_quadrature(profile: CamProfile, machine: Machine, cut: Cut) -> tuple[float, float, float, float]:
     """Naive twin: peak, root mean square, energy drawn and fed back by the formulas on a grid and by adaptive quadrature."""
-    start, v = slave_at_start(machine, cut), cut.line_speed
+    start, v = Task(machine, cut, FREE).slave_at_start, cut.line_speed
 
     def force(x: float) -> float:
         y, velocity, acceleration = start + float(profile(x)), v * float(profile(x, 1)), v**2 * float(profile(x, 2))
@@ -64,7 +64,7 @@ def by_quadrature(profile: CamProfile, machine: Machine, cut: Cut) -> tuple[floa
 
 @pytest.mark.parametrize("machine", [KNIFE, CARRIAGE, CRANK], ids=["knife", "carriage", "crank"])
 def test_measures_against_quadrature(machine: Machine) -> None:
-    profile = baseline("poly_3_4_5", machine, CUT)
+    profile = baseline("poly_3_4_5", Task(machine, CUT, FREE))
     found = measure_motor(profile, Task(machine, CUT, FREE))
     peak, rms, drawn, regenerated = by_quadrature(profile, machine, CUT)
     assert found.peak_torque == pytest.approx(peak, rel=1e-5)  # the grid misses the peak by a little
@@ -77,15 +77,15 @@ def test_measures_against_quadrature(machine: Machine) -> None:
 @pytest.mark.parametrize("machine", [KNIFE, CARRIAGE, CRANK], ids=["knife", "carriage", "crank"])
 def test_measures_do_not_depend_on_the_origin(machine: Machine) -> None:
     other = replace(CUT, origin="cut")
-    here = measure_motor(baseline("poly_3_4_5", machine, CUT), Task(machine, CUT, FREE))
-    there = measure_motor(baseline("poly_3_4_5", machine, other), Task(machine, other, FREE))
+    here = measure_motor(baseline("poly_3_4_5", Task(machine, CUT, FREE)), Task(machine, CUT, FREE))
+    there = measure_motor(baseline("poly_3_4_5", Task(machine, other, FREE)), Task(machine, other, FREE))
     for name in ("peak_torque", "rms_torque", "peak_speed", "min_velocity", "energy", "regenerated"):
         assert getattr(there, name) == pytest.approx(getattr(here, name), rel=1e-9)
 
 
 def test_constant_inertia_is_the_motion_s_own_measure() -> None:
-    motion = measure_motion(baseline("poly_3_4_5", KNIFE, CUT), Task(KNIFE, CUT, FREE))
-    found = measure_motor(baseline("poly_3_4_5", KNIFE, CUT), Task(KNIFE, CUT, FREE))
+    motion = measure_motion(baseline("poly_3_4_5", Task(KNIFE, CUT, FREE)), Task(KNIFE, CUT, FREE))
+    found = measure_motor(baseline("poly_3_4_5", Task(KNIFE, CUT, FREE)), Task(KNIFE, CUT, FREE))
     per_force = KNIFE.inertia(0.0) / KNIFE.motor_ratio
     assert found.peak_torque == pytest.approx(per_force * motion.peak_acceleration, rel=1e-12)
     share = math.sqrt(CUT.return_zone / CUT.length)
@@ -111,7 +111,7 @@ def test_a_sprung_profile_in_closed_form() -> None:
 
 @pytest.mark.parametrize("machine", [KNIFE, CRANK], ids=["knife", "crank"])
 def test_without_friction_a_cycle_takes_no_net_energy(machine: Machine) -> None:
-    found = measure_motor(baseline("poly_3_4_5", machine, CUT), Task(machine, CUT, FREE))
+    found = measure_motor(baseline("poly_3_4_5", Task(machine, CUT, FREE)), Task(machine, CUT, FREE))
     assert found.energy == pytest.approx(found.regenerated, rel=1e-10)
 
 
@@ -120,7 +120,7 @@ def test_without_friction_a_cycle_takes_no_net_energy(machine: Machine) -> None:
 def test_net_energy_is_the_friction_s_work(length: float, friction: float) -> None:
     knife = replace(KNIFE, drum_friction=friction)
     cut = replace(CUT, length=length)
-    profile = baseline("cycloid", knife, cut)  # a long cut makes it run backwards
+    profile = baseline("cycloid", Task(knife, cut, FREE))  # a long cut makes it run backwards
     found = measure_motor(profile, Task(knife, cut, FREE))
     turned = (
         quad(lambda x: abs(float(profile(x, 1))), 0.0, length, limit=400, points=profile.breaks[1:-1])[0] / knife.radius
@@ -133,9 +133,9 @@ def test_net_energy_is_the_friction_s_work(length: float, friction: float) -> No
 def test_crank_s_kinetic_energy_is_the_torque_s_work(radius: float, rod: float, offset: float, at: float) -> None:
     crank = CrankSlider(radius, radius * (rod + abs(offset)), radius * offset, 0.2, 10.0, 3.0, at)
     cut = replace(CUT, sync_zone=0.2 * radius, length=6 * radius)
-    profile = baseline("poly_3_4_5", crank, cut)
+    profile = baseline("poly_3_4_5", Task(crank, cut, FREE))
     torque = motor_torque(profile, Task(crank, cut, FREE))
-    start = slave_at_start(crank, cut)
+    start = Task(crank, cut, FREE).slave_at_start
 
     def kinetic(x: float) -> float:
         return 0.5 * float(crank.inertia(start + float(profile(x)))) * (cut.line_speed * float(profile(x, 1))) ** 2
@@ -162,13 +162,13 @@ def test_friction_asks_for_nothing_at_standstill() -> None:
 
 
 def test_what_cannot_be_told_is_none() -> None:
-    profile = baseline("linear_return", KNIFE, CUT)
+    profile = baseline("linear_return", Task(KNIFE, CUT, FREE))
     speed = pytest.approx(CUT.line_speed / KNIFE.radius * 5)
     assert measure_motor(profile, Task(KNIFE, CUT, FREE)) == MotorMeasures(
         None, None, speed, pytest.approx(0.375 * speed.expected), None, None
     )
     bare = replace(KNIFE, drum_inertia=0.0)
-    found = measure_motor(baseline("cycloid", KNIFE, CUT), Task(bare, CUT, FREE))
+    found = measure_motor(baseline("cycloid", Task(KNIFE, CUT, FREE)), Task(bare, CUT, FREE))
     assert (found.peak_torque, found.rms_torque, found.energy, found.regenerated) == (None, None, None, None)
     assert not bare.moves_something
     assert CrankSlider(0.15, 0.6, carriage_mass=1.0).moves_something  # though at a dead centre it weighs nothing
@@ -177,7 +177,7 @@ def test_what_cannot_be_told_is_none() -> None:
 @pytest.mark.parametrize("machine", [KNIFE, CARRIAGE, CRANK], ids=["knife", "carriage", "crank"])
 @pytest.mark.parametrize("top", [0.8, 1.0, 1.3])
 def test_greatest_load_against_a_grid(machine: Machine, top: float) -> None:
-    profile = baseline("poly_3_4_5", machine, CUT)
+    profile = baseline("poly_3_4_5", Task(machine, CUT, FREE))
     found = measure_motor(profile, Task(machine, CUT, FREE))
     t, w = found.peak_torque, found.peak_speed
     curve = MotorCurve(((0.0, 1.1 * t), (0.4 * w, t), (top * w, 0.3 * t)))

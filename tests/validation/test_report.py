@@ -51,7 +51,7 @@ NAMES = (
 def judged(
     name: str, cut: Cut = CUT, limits: Limits = LIMITS, servo: Servo = PAPER, machine: RotaryKnife = KNIFE
 ) -> ValidationReport:
-    return validate(baseline(name, KNIFE, cut), Task(machine, cut, limits), servo)
+    return validate(baseline(name, Task(KNIFE, cut, LIMITS)), Task(machine, cut, limits), servo)
 
 
 def failed(report: ValidationReport) -> dict[str, Check]:
@@ -113,7 +113,7 @@ def test_a_profile_that_does_not_close_fails() -> None:
 
 
 def test_a_ratio_off_by_a_millionth_in_sync_fails() -> None:
-    profile = baseline("double_s", KNIFE, CUT)
+    profile = baseline("double_s", Task(KNIFE, CUT, LIMITS))
     coefficients = profile.coefficients.copy()
     coefficients[-1, 1] += 1e-6
     report = validate(CamProfile(profile.breaks.copy(), coefficients), Task(KNIFE, CUT, LIMITS), PAPER)
@@ -123,7 +123,7 @@ def test_a_ratio_off_by_a_millionth_in_sync_fails() -> None:
 
 
 def test_a_table_of_rounded_points_is_judged_and_fails_for_its_jumps() -> None:
-    profile = baseline("cycloid", KNIFE, CUT)
+    profile = baseline("cycloid", Task(KNIFE, CUT, LIMITS))
     x = np.linspace(0.0, 0.6, 181)
     y = np.round(profile(x), 6)
     table = CamProfile(x, np.column_stack([y[:-1], np.diff(y) / np.diff(x)]))
@@ -166,7 +166,7 @@ def test_a_cut_shorter_than_the_physical_bound_fails_it() -> None:
 
 def test_another_cut_s_profile_is_refused() -> None:
     with pytest.raises(InputError, match=r"runs over the master from 0\.0 m to 0\.6 m"):
-        validate(baseline("double_s", KNIFE, CUT), Task(KNIFE, replace(CUT, length=0.7), LIMITS), PAPER)
+        validate(baseline("double_s", Task(KNIFE, CUT, LIMITS)), Task(KNIFE, replace(CUT, length=0.7), LIMITS), PAPER)
 
 
 CARRIAGE = LinearCarriage(0.7, home=0.1, mass=30.0, travel_per_turn=0.04)
@@ -185,7 +185,7 @@ SHORT = replace(CUT, sync_zone=0.1, shear_zone_at=0.05)
 def test_a_quintic_passes_every_check_of_its_machine(machine: Machine, origin: str) -> None:
     cut = replace(SHORT, origin=origin, sync_ratio=1.03, sync_tolerance=1e-3)
     limits = replace(OPEN, reversal=isinstance(machine, RotaryKnife))
-    report = validate(baseline("poly_3_4_5", machine, cut), Task(machine, cut, limits), QUICK)
+    report = validate(baseline("poly_3_4_5", Task(machine, cut, LIMITS)), Task(machine, cut, limits), QUICK)
     assert failed(report) == {}
     names = {check.name for check in report.checks}
     assert ("stroke" in names) == isinstance(machine, LinearCarriage)
@@ -198,7 +198,7 @@ def test_a_quintic_passes_every_check_of_its_machine(machine: Machine, origin: s
 
 
 def test_a_carriage_that_leaves_its_stroke_fails_at_the_place() -> None:
-    cycle = baseline("poly_3_4_5", CARRIAGE, SHORT)
+    cycle = baseline("poly_3_4_5", Task(CARRIAGE, SHORT, LIMITS))
     way = cycle.extrema(0)[1].value - cycle.extrema(0)[0].value
     check = failed(validate(cycle, Task(replace(CARRIAGE, stroke=0.99 * way), SHORT, OPEN), QUICK))["stroke"]
     assert check.limit == pytest.approx(0.99 * way / 2)
@@ -208,7 +208,7 @@ def test_a_carriage_that_leaves_its_stroke_fails_at_the_place() -> None:
 
 
 def test_a_carriage_may_run_back_whatever_the_limits_say() -> None:
-    cycle = baseline("poly_3_4_5", CARRIAGE, SHORT)
+    cycle = baseline("poly_3_4_5", Task(CARRIAGE, SHORT, LIMITS))
     assert "reversal" not in failed(validate(cycle, Task(CARRIAGE, SHORT, OPEN), QUICK))
     slow = -0.9 * SHORT.line_speed * cycle.extrema(1)[0].value
     assert {"speed", "reversal"} <= set(
@@ -218,7 +218,7 @@ def test_a_carriage_may_run_back_whatever_the_limits_say() -> None:
 
 def test_minimum_lengths_with_over_speed_are_those_of_a_faster_line() -> None:
     fast = replace(CUT, sync_ratio=1.1)
-    report = validate(baseline("cycloid", KNIFE, fast), Task(KNIFE, fast, LIMITS), PAPER)
+    report = validate(baseline("cycloid", Task(KNIFE, fast, LIMITS)), Task(KNIFE, fast, LIMITS), PAPER)
     check = {check.name: check for check in report.checks}["minimum_cut_length"]
     zone = report.servo.settling + fast.shear_zone
     # eq. 8 with the slave's travel of 1.1 l_s in the sync zone
@@ -226,7 +226,7 @@ def test_minimum_lengths_with_over_speed_are_those_of_a_faster_line() -> None:
 
 
 def test_a_motor_s_curve_is_judged_where_it_is_given() -> None:
-    cycle = baseline("poly_3_4_5", CRANK, SHORT)
+    cycle = baseline("poly_3_4_5", Task(CRANK, SHORT, LIMITS))
     motor = validate(cycle, Task(CRANK, SHORT, OPEN), QUICK).motor
     torque, speed = motor.peak_torque, motor.peak_speed
 
@@ -243,7 +243,7 @@ def test_a_motor_s_curve_is_judged_where_it_is_given() -> None:
 
 def test_a_motor_s_curve_and_a_jump_of_the_speed() -> None:
     limits = replace(OPEN, motor=MotorCurve(((0.0, 1.0), (1e4, 1.0))))
-    linear = baseline("linear_return", CARRIAGE, SHORT)
+    linear = baseline("linear_return", Task(CARRIAGE, SHORT, LIMITS))
     assert failed(validate(linear, Task(CARRIAGE, SHORT, limits), QUICK))["motor_torque"].value is None
     names = {check.name for check in validate(linear, Task(replace(CARRIAGE, mass=0.0), SHORT, limits), QUICK).checks}
     assert "motor_speed" in names

@@ -16,7 +16,7 @@ from camwright.validation.rebuilt import ALLOWANCE, TableJudgement, judge_table
 
 LIMITS = Limits(200 / 60, 30.0, 3000.0)
 SERVO = Servo(120.0, 0.7, 35.0, 0.004, 1.0)
-SMOOTH = baseline("poly_3_4_5", KNIFE, cut())
+SMOOTH = baseline("poly_3_4_5", Task(KNIFE, cut(), LIMITS))
 
 
 def judged(profile: CamProfile, limits: Limits = LIMITS, origin: str = "return", wraps: int = 3) -> TableJudgement:
@@ -35,7 +35,7 @@ def value(judgement: TableJudgement, name: str) -> float:
 
 @pytest.mark.parametrize("origin", ["return", "cut"])
 def test_a_sound_cycle_passes(origin: str) -> None:
-    judgement = judged(baseline("poly_3_4_5", KNIFE, cut(origin=origin)), origin=origin)
+    judgement = judged(baseline("poly_3_4_5", Task(KNIFE, cut(origin=origin), LIMITS)), origin=origin)
     assert judgement.passed
     assert value(judgement, "sync_position") <= 1e-14
     assert value(judgement, "sync_ratio") <= 1e-12
@@ -77,14 +77,14 @@ def test_the_jerk_is_the_mean_over_a_sample_time_at_the_worst_phase() -> None:
 
 def test_a_jump_of_the_ratio_is_an_acceleration_over_a_sample_time() -> None:
     # the linear return: the ratio steps from 1 to 1/2, in one sample time
-    judgement = judged(baseline("linear_return", KNIFE, cut()))
+    judgement = judged(baseline("linear_return", Task(KNIFE, cut(), LIMITS)))
     assert value(judgement, "acceleration") == pytest.approx(0.5 * (80 / 60) / 0.004, rel=1e-3)
     assert "acceleration" in failed(judgement)
 
 
 def test_reversal_is_found() -> None:
     long = cut(1.4)
-    profile = baseline("poly_3_4_5", KNIFE, long)
+    profile = baseline("poly_3_4_5", Task(KNIFE, long, LIMITS))
     judgement = judge_table(profile, Task(KNIFE, long, LIMITS), SERVO)
     assert "reversal" in failed(judgement)
     allowed = judge_table(profile, Task(KNIFE, long, Limits(10.0, 30.0, 3000.0, reversal=True)), SERVO)

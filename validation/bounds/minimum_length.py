@@ -200,15 +200,15 @@ class _Laws:
 
     def cycle(self, shape: Cut) -> CamProfile:
         """Cycle with the return of this search."""
-        machine = self.task.machine
+        task = self.task.with_cut(shape)
         if self.law != "least_acceleration":
-            return baseline(self.law, machine, shape)
-        speed, acceleration, jerk = _over_master(self.task.limits, shape.line_speed)
-        rise, length = machine.pitch - shape.length, shape.return_zone
+            return baseline(self.law, task)
+        speed, acceleration, jerk = task.greatest_ratio, task.greatest_slope, task.greatest_jerk
+        rise, length = task.machine.pitch - shape.length, shape.return_zone
         # rounding may ask for a little more than the limit at the shortest return
         least = min(acceleration, least_acceleration(rise, length, speed - 1, jerk))
         motion = in_time(rise, length, speed - 1, least, jerk).profile()
-        return assemble(motion.over(0.0, length).add_line(1.0), machine, shape)
+        return assemble(motion.over(0.0, length).add_line(1.0), task)
 
     def holds(self, shape: Cut) -> bool:
         """Whether the axis is within tolerance in the whole shear zone at every phase."""

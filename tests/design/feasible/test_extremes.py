@@ -1,5 +1,6 @@
 """How fast and how short: edges of what is possible, against Ruckig and against solving on both sides."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -21,6 +22,9 @@ from camwright.profiles.machines import (
 )
 from camwright.profiles.returns import assemble
 from camwright.profiles.task import Task
+
+FREE = Limits(math.inf, math.inf, math.inf)
+"""Nothing here asks for limits."""
 
 KNIFE = (RotaryKnife(0.4), Cut(0.35, 80 / 60, 0.1, 0.04, 0.06, 1e-4), Limits(200 / 60, 30.0, 3000.0))
 CARRIAGE = (
@@ -95,7 +99,7 @@ def test_quintic_speed_is_where_its_own_extrema_meet_a_limit() -> None:
     machine, cut, limits = KNIFE
     speed = quintic_speed(Task(machine, cut, limits))
     assert speed is not None
-    cycle = assemble(quintic_return(cut.return_zone, machine.pitch - cut.sync_zone), machine, cut)
+    cycle = assemble(quintic_return(cut.return_zone, machine.pitch - cut.sync_zone), Task(machine, cut, FREE))
     shares = [
         cycle.extrema(1)[1].value * speed / limits.speed,
         cycle.extrema(2)[1].value * speed**2 / limits.acceleration,

@@ -316,8 +316,10 @@ def test_rows_begin_where_the_blind_optimum_fails() -> None:
     # its axis swings back beyond standstill by a little, which it may not: one more programme, no more
     blind = solve(Task(KNIFE, LONG, LIMITS), "rms_jerk")
     programme = AxisProgramme(AxisProblem(Task(KNIFE, LONG, LIMITS), "in_sync", (PAPER,), True, blind.back))
-    assert not programme.holds(assemble(blind.back, KNIFE, LONG))
-    assert AxisProgramme(replace(programme.problem, axis_limits=False)).holds(assemble(blind.back, KNIFE, LONG))
+    assert not programme.holds(assemble(blind.back, Task(KNIFE, LONG, LIMITS)))
+    assert AxisProgramme(replace(programme.problem, axis_limits=False)).holds(
+        assemble(blind.back, Task(KNIFE, LONG, LIMITS))
+    )
     found = programme.solve("rms_jerk", 1.0)
     assert found is not None
     assert programme.solved == 1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -18,6 +19,7 @@ from camwright.design.servo_aware.servo_weights import (
 )
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
+from camwright.profiles.limits import Limits
 from camwright.profiles.machines import RotaryKnife
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.profiles.returns import baseline
@@ -27,7 +29,11 @@ from camwright.profiles.servo import (
     plant_matrices,
     sample_plant,
 )
+from camwright.profiles.task import Task
 from camwright.validation.servo.simulation import simulate
+
+FREE = Limits(math.inf, math.inf, math.inf)
+"""Nothing here asks for limits."""
 
 PAPER = Servo(120.0, 0.7, 35.0, 0.004, 1.0)
 CUT = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4)
@@ -100,7 +106,7 @@ def test_what_is_left_out_is_forgotten() -> None:
 
 
 def test_the_sum_is_the_validations_simulation() -> None:
-    profile = baseline("poly_3_4_5", RotaryKnife(0.4), CUT)
+    profile = baseline("poly_3_4_5", Task(RotaryKnife(0.4), CUT, FREE))
     run = simulate(profile, CUT, PAPER)
     for phase, point in ((0, 0), (3, 41), (11, 500)):
         sub = point % 8

@@ -18,7 +18,6 @@ from camwright.profiles.machines import CrankSlider, RotaryKnife
 from camwright.profiles.motor import MotorCurve
 from camwright.profiles.objective import CommandObjective
 from camwright.profiles.polynomial.profile import CamProfile
-from camwright.profiles.returns import slave_at_start
 from camwright.profiles.task import Task
 
 KNIFE = RotaryKnife(0.4, gear_ratio=3.0, drum_inertia=0.05, drum_friction=0.4)
@@ -29,7 +28,7 @@ LIMITS = Limits(200 / 60, 30.0, 3000.0)
 def used(profile: CamProfile, machine: RotaryKnife | CrankSlider, cut: Cut) -> tuple[np.ndarray, np.ndarray]:
     """Naive twin: motor speed and torque at many places of the cycle."""
     x = np.linspace(profile.start, profile.end, 20001)
-    y = slave_at_start(machine, cut) + profile(x)
+    y = Task(machine, cut, LIMITS).slave_at_start + profile(x)
     velocity = profile(x, 1) * cut.line_speed
     acceleration = profile(x, 2) * cut.line_speed**2
     force = (

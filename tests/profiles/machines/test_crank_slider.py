@@ -16,7 +16,7 @@ from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import CrankSlider
-from camwright.profiles.returns import baseline, slave_at_start
+from camwright.profiles.returns import baseline
 from camwright.profiles.task import Task
 from camwright.validation.motion import sync_ratio_error
 from camwright.validation.motor import measure_motor
@@ -103,7 +103,7 @@ def test_carriage_moves_with_the_material_on_200_random_cranks() -> None:
     rng = np.random.default_rng(3)
     for _ in range(200):
         crank, cut = any_crank(rng)
-        cycle = baseline("poly_3_4_5", crank, cut)
+        cycle = baseline("poly_3_4_5", Task(crank, cut, LIMITS))
         # independent road: the carriage's position by the map itself, and its ratio by the map's derivative
         start = crank.sync_start(cut)
         sync = crank.sync_profile(cut)
@@ -119,7 +119,7 @@ def test_carriage_moves_with_the_material_on_200_random_cranks() -> None:
 
 def test_a_sync_zone_at_the_wrong_place_is_found_out() -> None:
     crank = replace(CRANK, sync_at=1.4)
-    cycle = baseline("poly_3_4_5", crank, CUT)
+    cycle = baseline("poly_3_4_5", Task(crank, CUT, LIMITS))
     assert sync_ratio_error(cycle, Task(crank, CUT, LIMITS)).value <= 1e-12
     assert sync_ratio_error(cycle, Task(replace(crank, sync_at=1.5), CUT, LIMITS)).value > 1e-3
 
@@ -127,10 +127,10 @@ def test_a_sync_zone_at_the_wrong_place_is_found_out() -> None:
 def test_cycles_of_both_origins_are_the_same_motion() -> None:
     crank = replace(CRANK, sync_at=1.5)
     other = replace(CUT, origin="cut")
-    here, there = baseline("poly_3_4_5", crank, CUT), baseline("poly_3_4_5", crank, other)
+    here, there = baseline("poly_3_4_5", Task(crank, CUT, LIMITS)), baseline("poly_3_4_5", Task(crank, other, LIMITS))
     x = np.linspace(0.0, 0.8, 50)
-    position = crank.tool(slave_at_start(crank, CUT) + here(x))
-    assert np.abs(crank.tool(slave_at_start(crank, other) + there(x + 0.05)) - position).max() <= 1e-14
+    position = crank.tool(Task(crank, CUT, LIMITS).slave_at_start + here(x))
+    assert np.abs(crank.tool(Task(crank, other, LIMITS).slave_at_start + there(x + 0.05)) - position).max() <= 1e-14
 
 
 @pytest.mark.parametrize("objective", ["rms_jerk", "rms_torque"])
@@ -143,7 +143,9 @@ def test_the_designed_crank_never_turns_back_and_is_in_sync(objective: str) -> N
     assert found.profile.advance == pytest.approx(2 * math.pi, rel=1e-13)
     assert sync_ratio_error(found.profile, Task(found.machine, CUT, LIMITS)).value <= 1e-9
     if objective == "rms_torque":  # at least 15 % below the table of S3 made from a quintic return
-        table = measure_motor(baseline("crank_tabulated", found.machine, CUT), Task(found.machine, CUT, LIMITS))
+        table = measure_motor(
+            baseline("crank_tabulated", Task(found.machine, CUT, LIMITS)), Task(found.machine, CUT, LIMITS)
+        )
         assert measure_motor(found.profile, Task(found.machine, CUT, LIMITS)).rms_torque <= 0.85 * table.rms_torque
 
 

@@ -19,7 +19,7 @@ from camwright.profiles.machines import (
     Machine,
     RotaryKnife,
 )
-from camwright.profiles.returns import baseline, slave_at_start
+from camwright.profiles.returns import baseline
 from camwright.profiles.task import Task
 from camwright.validation.motion import sync_ratio_error
 
@@ -40,11 +40,11 @@ MACHINES = (
 def test_the_tool_moves_with_the_material_in_every_cycle(machine: Machine, ratio: float) -> None:
     for origin in ("return", "cut"):
         cut = replace(CUT, sync_ratio=ratio, origin=origin)
-        cycle = baseline("poly_3_4_5", machine, cut)
+        cycle = baseline("poly_3_4_5", Task(machine, cut, FREE))
         assert sync_ratio_error(cycle, Task(machine, cut, FREE)).value <= 1e-9
         # by hand: the tool's travel over both ends of the zone; the next pitch is the next blade
         start, end = cut.sync_parts[-1]
-        y = slave_at_start(machine, cut) - machine.pitch + cycle(np.linspace(start, end, 51))
+        y = Task(machine, cut, FREE).slave_at_start - machine.pitch + cycle(np.linspace(start, end, 51))
         travel = machine.tool(y) - machine.tool(y[0])
         assert np.abs(travel - ratio * np.linspace(0.0, end - start, 51)).max() <= 1e-13
 
@@ -80,7 +80,7 @@ def test_horizontal_sync_is_exact(circumference: float, share: float, ratio: flo
     angle = (knife.sync_start(cut) + sync(np.linspace(0.0, zone, 201))) / knife.radius
     # the blade's horizontal speed over the line's
     assert np.abs(np.cos(angle) * sync(np.linspace(0.0, zone, 201), 1) / ratio - 1).max() <= 1e-9
-    assert sync_ratio_error(baseline("poly_3_4_5", knife, cut), Task(knife, cut, FREE)).value <= 1e-9
+    assert sync_ratio_error(baseline("poly_3_4_5", Task(knife, cut, FREE)), Task(knife, cut, FREE)).value <= 1e-9
     assert angle[-1] == pytest.approx(-angle[0], abs=1e-13)
     assert sync.advance == pytest.approx(2 * knife.radius * math.asin(ratio * zone / 2 / knife.radius), rel=1e-13)
 
@@ -91,7 +91,7 @@ def test_tangential_mismatch_is_what_horizontal_sync_makes_good() -> None:
     half = 0.5 * 1.05 * 0.1 / knife.radius
     assert knife.tangential_mismatch(cut) == pytest.approx(1 - math.cos(half), rel=1e-12)
     horizontal = replace(knife, sync="horizontal")
-    tangential = baseline("poly_3_4_5", knife, cut)
+    tangential = baseline("poly_3_4_5", Task(knife, cut, FREE))
     # judged as a horizontal knife, the tangential cycle is off by the mismatch at the ends of the zone
     assert sync_ratio_error(tangential, Task(horizontal, cut, FREE)).value == pytest.approx(
         knife.tangential_mismatch(cut), rel=1e-9

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from functools import cache
 
-from camwright.profiles import returns
 from camwright.profiles.cut import Cut
+from camwright.profiles.limits import Limits
 from camwright.profiles.machines import RotaryKnife
 from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.returns import baseline
 from camwright.profiles.tables.cam_table import Unit, Units
 from camwright.profiles.tables.knots import (
     Accuracy,
@@ -17,7 +19,10 @@ from camwright.profiles.tables.knots import (
 )
 from camwright.profiles.tables.target import Header
 from camwright.profiles.tables.targets import TARGETS
+from camwright.profiles.task import Task
 
+FREE = Limits(math.inf, math.inf, math.inf)
+"""Nothing here asks for limits."""
 KNIFE = RotaryKnife(0.4)
 UNITS = Units(Unit("mm", 1e-3), Unit("deg", 0.4 / 360))
 HEADER = Header("Knife 600", "0.1.0", "ab" * 32, (("peak acceleration", "12.5 m/s2"),))
@@ -37,7 +42,7 @@ def cut(length: float = 0.6, origin: str = "return") -> Cut:
 @cache
 def knife(name: str) -> CamProfile:
     law, length, origin = KNIVES[name]
-    return returns.baseline(law, KNIFE, cut(length, origin))
+    return baseline(law, Task(KNIFE, cut(length, origin), FREE))
 
 
 @cache

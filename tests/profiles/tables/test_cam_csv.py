@@ -14,6 +14,7 @@ from scipy.interpolate import BPoly, CubicSpline
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
 from camwright.profiles.laws import law
+from camwright.profiles.limits import Limits
 from camwright.profiles.machines import RotaryKnife
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import BASELINES, baseline
@@ -23,6 +24,10 @@ from camwright.profiles.tables.cam_csv import (
     table_positions,
     write_cam_csv,
 )
+from camwright.profiles.task import Task
+
+FREE = Limits(math.inf, math.inf, math.inf)
+"""Nothing here asks for limits."""
 
 KNIFE = RotaryKnife(0.4)
 CUT = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4)
@@ -71,7 +76,7 @@ def test_the_text_is_comments_a_header_and_rows() -> None:
 
 @pytest.mark.parametrize("name", BASELINES)
 def test_a_smooth_baseline_survives_its_table(name: str) -> None:
-    profile = baseline(name, KNIFE, CUT)
+    profile = baseline(name, Task(KNIFE, CUT, FREE))
     rows = read_cam_csv(write_cam_csv(profile, 361, []), "")
     table = rebuild(rows.x, rows.y, rows.dy, rows.d2y)
     x = np.linspace(0.0, CUT.length, 5001)
@@ -84,7 +89,7 @@ def test_a_smooth_baseline_survives_its_table(name: str) -> None:
 
 
 def test_cubic_pieces_come_back_as_themselves_without_noise() -> None:
-    profile = baseline("acceleration_trapezoid", KNIFE, CUT)
+    profile = baseline("acceleration_trapezoid", Task(KNIFE, CUT, FREE))
     rows = read_cam_csv(write_cam_csv(profile, 361, []), "")
     table = rebuild(rows.x, rows.y, rows.dy, rows.d2y)
     assert not table.coefficients[:, 4:].any()
@@ -109,7 +114,7 @@ def test_rows_with_derivatives_are_quintics_as_scipys() -> None:
 
 
 def test_rows_of_positions_are_a_periodic_spline() -> None:
-    profile = baseline("poly_4_5_6_7", KNIFE, CUT)
+    profile = baseline("poly_4_5_6_7", Task(KNIFE, CUT, FREE))
     x = np.linspace(0.0, CUT.length, 181)
     table = rebuild(x, profile(x))
     assert np.abs(table.jumps(1)).max() < 1e-10

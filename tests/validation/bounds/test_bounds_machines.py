@@ -92,7 +92,7 @@ def test_no_baseline_has_less_torque_than_the_bound(friction: float, length: flo
     cut = replace(CUT, length=length)
     open_limits = Limits(100.0, 1e5, 1e8, reversal=True)
     for name in ("poly_3_4_5", "cycloid", "double_s"):
-        cycle = baseline(name, machine, cut)
+        cycle = baseline(name, Task(machine, cut, LIMITS))
         motor = measure_motor(cycle, Task(machine, cut, LIMITS))
         assert motor.rms_torque >= lower_bound(cycle, Task(machine, cut, open_limits), "rms_torque").value * (1 - 1e-9)
         peak = lower_bound(cycle, Task(machine, cut, open_limits), "peak_torque")
@@ -113,13 +113,13 @@ def test_least_torque_without_friction_reaches_the_bound(objective: str) -> None
 )
 @pytest.mark.parametrize("objective", COMMAND_OBJECTIVES)
 def test_there_is_no_bound_where_the_ratio_changes_in_sync(machine: Machine, objective: str) -> None:
-    bound = lower_bound(baseline("poly_3_4_5", machine, CUT), Task(machine, CUT, LIMITS), objective)
+    bound = lower_bound(baseline("poly_3_4_5", Task(machine, CUT, LIMITS)), Task(machine, CUT, LIMITS), objective)
     assert math.isnan(bound.value)
     assert bound.method == "none"
 
 
 def test_energy_and_weightless_machines_have_no_bound_and_unknown_objectives_are_refused() -> None:
-    cycle = baseline("poly_3_4_5", KNIFE, CUT)
+    cycle = baseline("poly_3_4_5", Task(KNIFE, CUT, LIMITS))
     assert lower_bound(cycle, Task(KNIFE, CUT, LIMITS), "energy").method == "none"
     assert lower_bound(cycle, Task(replace(KNIFE, drum_inertia=0.0), CUT, LIMITS), "rms_torque").method == "none"
     with pytest.raises(InputError, match=r"no objective 'haste'; the objectives are peak_acceleration, "):

@@ -139,7 +139,7 @@ def lower(name: str, sync_zone: float, limits: Limits) -> float:
 def cycle(name: str, shape: Cut, limits: Limits) -> CamProfile:
     """Cycle of the linear return or of the return of least acceleration, this one by the law of the double-S."""
     if name == "linear":
-        return baseline("linear_return", KNIFE, shape)
+        return baseline("linear_return", Task(KNIFE, shape, FREE))
     v, rise, length = shape.line_speed, 0.4 - shape.length, shape.return_zone
     speed, jerk = limits.speed / v - 1, limits.jerk / v**3
     motion = fastest(rise, speed, least_acceleration(rise, length, speed, jerk), jerk)
@@ -147,7 +147,7 @@ def cycle(name: str, shape: Cut, limits: Limits) -> CamProfile:
     back = motion.profile()
     breaks = back.breaks * (length / back.end)
     breaks[-1] = length
-    return assemble(CamProfile(breaks, back.coefficients.copy()).add_line(1.0), KNIFE, shape)
+    return assemble(CamProfile(breaks, back.coefficients.copy()).add_line(1.0), Task(KNIFE, shape, FREE))
 
 
 def works(name: str, length: float, sync_zone: float, cut: Cut, limits: Limits) -> bool:

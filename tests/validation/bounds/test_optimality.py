@@ -85,7 +85,7 @@ def test_no_motion_is_below_a_bound(
         optimum = solve(Task(KNIFE, cut, limits), objective).profile
     except InputError:
         return
-    motions = [profile for name in BASELINES if keeps(profile := baseline(name, KNIFE, cut), cut, limits)]
+    motions = [profile for name in BASELINES if keeps(profile := baseline(name, Task(KNIFE, cut, LIMITS)), cut, limits)]
     bounds = [lower_bound(profile, Task(KNIFE, cut, limits), objective).value for profile in [optimum, *motions[:2]]]
     for profile in [optimum, *motions]:
         assert max(bounds) <= measured(profile, cut, objective) * (1 + 1e-8)
@@ -123,7 +123,7 @@ def test_bound_does_not_depend_on_the_origin(objective: MotionObjective, origin:
 
 
 def test_closed_forms_are_taken_where_they_hold() -> None:
-    profile = baseline("poly_3_4_5", KNIFE, CUT)
+    profile = baseline("poly_3_4_5", Task(KNIFE, CUT, LIMITS))
     free = Limits(1e3, 1e6, 1e9)
     time, distance = 0.3, 0.2
     quintic = lower_bound(profile, Task(KNIFE, CUT, replace(free, reversal=True)), "rms_jerk")
@@ -138,7 +138,9 @@ def test_closed_forms_are_taken_where_they_hold() -> None:
 @pytest.mark.parametrize("objective", ["peak_acceleration", "rms_acceleration", "peak_jerk", "rms_jerk"])
 def test_straight_line_has_the_bound_zero(objective: str) -> None:
     cut = replace(CUT, length=0.4)
-    assert lower_bound(baseline("poly_3_4_5", KNIFE, cut), Task(KNIFE, cut, LIMITS), objective).value == 0.0
+    assert (
+        lower_bound(baseline("poly_3_4_5", Task(KNIFE, cut, LIMITS)), Task(KNIFE, cut, LIMITS), objective).value == 0.0
+    )
 
 
 # -- the dual road by itself, where the answer is known -------------------------------------------------------------------
@@ -239,4 +241,4 @@ def test_softest_motion_is_proved_by_duality(speed: float, acceleration: float, 
 
 def test_unknown_objective_is_refused() -> None:
     with pytest.raises(InputError, match=r"there is no objective 'peak_snap'; .*peak_acceleration, rms_acceleration"):
-        lower_bound(baseline("poly_3_4_5", KNIFE, CUT), Task(KNIFE, CUT, LIMITS), "peak_snap")
+        lower_bound(baseline("poly_3_4_5", Task(KNIFE, CUT, LIMITS)), Task(KNIFE, CUT, LIMITS), "peak_snap")

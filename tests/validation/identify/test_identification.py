@@ -16,16 +16,21 @@ from camwright.cli.main import main
 from camwright.jobs.job import BUNDLED_JOB, parse_job
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
+from camwright.profiles.limits import Limits
 from camwright.profiles.machines import RotaryKnife
 from camwright.profiles.returns import baseline
 from camwright.profiles.servo import Servo, sample_plant
+from camwright.profiles.task import Task
 from camwright.profiles.trace import Trace
 from camwright.validation.identify.identification import identify
 from camwright.validation.identify.quality import require_usable
 
+FREE = Limits(math.inf, math.inf, math.inf)
+"""Nothing here asks for limits."""
+
 PAPER = Servo(120.0, 0.7, 35.0, 0.004, 1.0, 0.002)
 CUT = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4)
-CYCLES = {law: baseline(law, RotaryKnife(0.4), CUT) for law in ("poly_3_4_5", "linear_return")}
+CYCLES = {law: baseline(law, Task(RotaryKnife(0.4), CUT, FREE)) for law in ("poly_3_4_5", "linear_return")}
 STEP, ROWS, NOISE = 1e-3, 2000, 10e-6
 Command = Callable[[float], float]
 

@@ -46,7 +46,7 @@ MACHINES: dict[str, tuple[Machine, Cut]] = {
 @pytest.mark.parametrize("servo", [PAPER, LATE], ids=["paper", "late"])
 def test_the_peaks_are_those_of_the_designs_rows(name: str, servo: Servo) -> None:
     machine, cut = MACHINES[name]
-    profile = baseline("poly_3_4_5", machine, cut)
+    profile = baseline("poly_3_4_5", Task(machine, cut, FREE))
     peaks = axis_peaks(profile, cut, servo)
     from_return = profile.roll(cut.return_start) if cut.return_start else profile
     axis = Axis(Task(machine, replace(cut, origin="return"), FREE), servo)
@@ -61,7 +61,7 @@ def test_the_peaks_are_those_of_the_designs_rows(name: str, servo: Servo) -> Non
 
 
 def test_the_velocity_is_the_slope_of_the_simulated_axis() -> None:
-    profile = baseline("poly_3_4_5", KNIFE, CUT)
+    profile = baseline("poly_3_4_5", Task(KNIFE, CUT, FREE))
     run = simulate(profile, CUT, PAPER)
     inside = (run.master >= 0) & (run.master <= CUT.length)
     ratio = run.axis_ratio[inside]
@@ -107,7 +107,7 @@ def test_running_backwards_is_judged_by_what_is_allowed() -> None:
 
 
 def test_an_unstable_servo_and_a_foreign_profile_are_refused() -> None:
-    profile = baseline("poly_3_4_5", KNIFE, CUT)
+    profile = baseline("poly_3_4_5", Task(KNIFE, CUT, FREE))
     with pytest.raises(InputError, match="the servo is unstable"):
         axis_peaks(profile, CUT, replace(PAPER, position_gain=200.0))
     with pytest.raises(InputError, match="but one cycle of this cut runs"):

@@ -69,7 +69,7 @@ def test_offset_and_variation_are_those_of_the_whole_simulation(law: str) -> Non
     # the shear zone in the middle of the sync zone, where the phases of the linear return still differ
     cut = replace(CUT, line_speed=80 / 60, shear_zone_at=0.08)
     servo = Servo(120.0, 0.7, 35.0, 0.004, 1.0, 0.0037)
-    profile = baseline(law, KNIFE, cut)
+    profile = baseline(law, Task(KNIFE, cut, FREE))
     for error in length_errors(profile, Task(KNIFE, cut, FREE), servo):
         slower = replace(cut, line_speed=error.share * cut.line_speed)
         for lead, offset in ((0.0, error.offset), (mean_lag(servo), error.offset_with_lead)):
@@ -84,7 +84,7 @@ def test_offset_and_variation_are_those_of_the_whole_simulation(law: str) -> Non
 
 def test_a_shear_zone_of_no_length_is_judged_at_its_point() -> None:
     cut = replace(CUT, shear_zone=0.0, shear_zone_at=0.2)
-    profile = baseline("poly_3_4_5", KNIFE, cut)
+    profile = baseline("poly_3_4_5", Task(KNIFE, cut, FREE))
     servo = replace(PAPER, dead_time=0.005)
     error = length_errors(profile, Task(KNIFE, cut, FREE), servo)[-1]
     run = simulate(profile, cut, servo)
@@ -96,7 +96,7 @@ def test_a_shear_zone_of_no_length_is_judged_at_its_point() -> None:
 def test_the_offset_of_a_crank_is_that_of_its_carriage() -> None:
     crank = CrankSlider(0.15, 0.6, 0.02, sync_at=1.2)
     cut = replace(CUT, length=1.8, sync_zone=0.1, shear_zone=0.02, shear_zone_at=0.08)
-    profile = baseline("poly_3_4_5", crank, cut)
+    profile = baseline("poly_3_4_5", Task(crank, cut, FREE))
     fast = Servo(2000.0, 0.8, 300.0, 2e-4, 1.0)
     late, prompt = (
         length_errors(profile, Task(crank, cut, FREE), replace(fast, dead_time=time)) for time in (0.002, 0.0)

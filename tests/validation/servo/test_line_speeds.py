@@ -42,7 +42,7 @@ def test_scaled_servo_does_over_the_master_what_the_servo_does_at_that_speed(
     servo = Servo(bandwidth, 0.8, gain, sample, feedforward, dead_time=0.003, lead_time=0.001)
     if not spectral_radius(servo) < 0.99:
         return
-    profile = baseline("poly_3_4_5", KNIFE, CUT)
+    profile = baseline("poly_3_4_5", Task(KNIFE, CUT, FREE))
     real = simulate(profile, replace(CUT, line_speed=share * CUT.line_speed), servo)
     scaled = simulate(profile, CUT, servo.at_speed(share))
     assert real.axis.shape == scaled.axis.shape
@@ -66,7 +66,7 @@ def test_scaled_servo_does_over_the_master_what_the_servo_does_at_that_speed(
     ],
 )
 def test_errors_are_those_of_each_line_speed_by_itself(machine: Machine, cut: Cut, law: str) -> None:
-    profile = baseline(law, machine, cut)
+    profile = baseline(law, Task(machine, cut, FREE))
     servos = [replace(PAPER, dead_time=0.002, velocity_feedforward=0.95), replace(PAPER, bandwidth=90.0)]
     found = line_speed_errors(profile, Task(machine, cut, FREE), servos, SPEEDS)
     assert found.shape == (2, len(SPEEDS))
@@ -77,7 +77,7 @@ def test_errors_are_those_of_each_line_speed_by_itself(machine: Machine, cut: Cu
 
 
 def test_more_phases_see_at_least_what_fewer_see() -> None:
-    profile = baseline("linear_return", KNIFE, CUT)
+    profile = baseline("linear_return", Task(KNIFE, CUT, FREE))
     few, many = (line_speed_errors(profile, TASK, [PAPER], SPEEDS, phases)[0] for phases in (16, 64))
     assert (many >= few - 1e-12).all()
     assert (many <= 1.05 * few).all()
@@ -86,7 +86,7 @@ def test_more_phases_see_at_least_what_fewer_see() -> None:
 
 def test_a_servo_that_is_unstable_is_infinitely_far_off_at_every_speed() -> None:
     found = line_speed_errors(
-        baseline("cycloid", KNIFE, CUT), TASK, [replace(PAPER, position_gain=300.0), PAPER], SPEEDS
+        baseline("cycloid", Task(KNIFE, CUT, FREE)), TASK, [replace(PAPER, position_gain=300.0), PAPER], SPEEDS
     )
     assert np.isinf(found[0]).all()
     assert np.isfinite(found[1]).all()
@@ -94,4 +94,4 @@ def test_a_servo_that_is_unstable_is_infinitely_far_off_at_every_speed() -> None
 
 def test_a_line_that_hardly_moves_is_refused() -> None:
     with pytest.raises(InputError, match=r"takes \d+ samples: .* the limit is 131072"):
-        line_speed_errors(baseline("cycloid", KNIFE, CUT), TASK, [PAPER], np.array([1e-6]))
+        line_speed_errors(baseline("cycloid", Task(KNIFE, CUT, FREE)), TASK, [PAPER], np.array([1e-6]))

@@ -48,7 +48,7 @@ CRANK = CrankSlider(0.15, 0.6, 0.02, sync_at=1.2)
     ],
 )
 def test_errors_are_those_of_each_servo_by_itself(machine: Machine, cut: Cut, law: str) -> None:
-    profile = baseline(law, machine, cut)
+    profile = baseline(law, Task(machine, cut, FREE))
     servo = replace(PAPER, velocity_feedforward=0.9, lead_time=0.003)
     drawn = RANGES.draw(servo, 20, 4)
     found = shear_zone_errors(profile, Task(machine, cut, FREE), drawn)
@@ -61,13 +61,13 @@ def test_errors_are_those_of_each_servo_by_itself(machine: Machine, cut: Cut, la
 def test_servos_of_all_the_published_ranges_go_together() -> None:
     ranges = ServoTolerance(**PAPER_RANGES, dead_time=(0.0, 0.02))
     drawn = ranges.draw(PAPER, 30, 11)
-    profile = baseline("poly_3_4_5", KNIFE, CUT)
+    profile = baseline("poly_3_4_5", Task(KNIFE, CUT, FREE))
     alone = [servo_response(profile, Task(KNIFE, CUT, FREE), each).shear_zone_error for each in drawn]
     assert np.abs(shear_zone_errors(profile, Task(KNIFE, CUT, FREE), drawn) - alone).max() <= 1e-9
 
 
 def test_one_grid_for_all_is_as_good_as_one_for_each() -> None:
-    profile = baseline("poly_3_4_5", KNIFE, CUT)
+    profile = baseline("poly_3_4_5", Task(KNIFE, CUT, FREE))
     same = replace(RANGES, sample_time=(0.004, 0.004), dead_time=(0.001, 0.001)).draw(PAPER, 10, 2)
     together = shear_zone_errors(profile, Task(KNIFE, CUT, FREE), same)
     among = shear_zone_errors(profile, Task(KNIFE, CUT, FREE), [*same, replace(PAPER, sample_time=0.0037)])
@@ -75,7 +75,7 @@ def test_one_grid_for_all_is_as_good_as_one_for_each() -> None:
 
 
 def test_how_they_are_grouped_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    profile = baseline("cycloid", KNIFE, CUT)
+    profile = baseline("cycloid", Task(KNIFE, CUT, FREE))
     drawn = RANGES.draw(PAPER, 12, 3)
     whole = shear_zone_errors(profile, Task(KNIFE, CUT, FREE), drawn)
     monkeypatch.setattr(monte_carlo, "_VALUES", 1)
@@ -83,7 +83,7 @@ def test_how_they_are_grouped_changes_nothing(monkeypatch: pytest.MonkeyPatch) -
 
 
 def test_a_servo_that_is_unstable_is_infinitely_far_off() -> None:
-    profile = baseline("cycloid", KNIFE, CUT)
+    profile = baseline("cycloid", Task(KNIFE, CUT, FREE))
     found = shear_zone_errors(profile, Task(KNIFE, CUT, FREE), [PAPER, replace(PAPER, position_gain=300.0), PAPER])
     assert math.isinf(found[1])
     assert (
@@ -94,14 +94,18 @@ def test_a_servo_that_is_unstable_is_infinitely_far_off() -> None:
 
 
 def test_no_servos_have_no_errors() -> None:
-    assert shear_zone_errors(baseline("cycloid", KNIFE, CUT), Task(KNIFE, CUT, FREE), []).shape == (0,)
+    assert shear_zone_errors(baseline("cycloid", Task(KNIFE, CUT, FREE)), Task(KNIFE, CUT, FREE), []).shape == (0,)
 
 
 def test_a_servo_that_hardly_forgets_is_refused() -> None:
     with pytest.raises(InputError, match=r"takes \d+ samples: .* the limit is 131072"):
-        shear_zone_errors(baseline("cycloid", KNIFE, CUT), Task(KNIFE, CUT, FREE), [replace(PAPER, position_gain=0.01)])
+        shear_zone_errors(
+            baseline("cycloid", Task(KNIFE, CUT, FREE)), Task(KNIFE, CUT, FREE), [replace(PAPER, position_gain=0.01)]
+        )
 
 
 def test_a_profile_of_another_cut_is_refused() -> None:
     with pytest.raises(InputError, match="but one cycle of this cut runs"):
-        shear_zone_errors(baseline("cycloid", KNIFE, CUT), Task(KNIFE, replace(CUT, length=0.5), FREE), [PAPER])
+        shear_zone_errors(
+            baseline("cycloid", Task(KNIFE, CUT, FREE)), Task(KNIFE, replace(CUT, length=0.5), FREE), [PAPER]
+        )

@@ -14,7 +14,7 @@ from camwright.profiles.cut import Cut
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import CrankSlider, RotaryKnife
 from camwright.profiles.polynomial.profile import CamProfile
-from camwright.profiles.returns import baseline, slave_at_start
+from camwright.profiles.returns import baseline
 from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
 from camwright.validation.servo.axis_run import ServoRun
@@ -32,7 +32,7 @@ PAPER = Servo(120.0, 0.7, 35.0, 0.004, 1.0)
 
 
 def linear(cut: Cut) -> CamProfile:
-    return baseline("linear_return", KNIFE, cut)
+    return baseline("linear_return", Task(KNIFE, cut, FREE))
 
 
 def test_crossing_of_the_paper() -> None:
@@ -172,7 +172,7 @@ def test_sweep_has_all_corners_and_the_centre() -> None:
 
 
 def test_sweep_responses_are_those_of_each_servo() -> None:
-    profile = baseline("cycloid", KNIFE, CUT)
+    profile = baseline("cycloid", Task(KNIFE, CUT, FREE))
     found = servo_sweep(profile, Task(KNIFE, CUT, FREE), PAPER)
     assert found.unstable == ()
     assert found.cases[-1].response == servo_response(profile, Task(KNIFE, CUT, FREE), found.cases[-1].servo)
@@ -196,7 +196,7 @@ def test_errors_of_a_crank_are_those_of_its_carriage() -> None:
     crank = CrankSlider(0.15, 0.6, 0.02, sync_at=1.2)
     cut = replace(CUT, length=0.9, sync_zone=0.1, shear_zone_at=0.05)
     off = 1e-3  # an axis that is ahead by a milliradian throughout
-    cycle = baseline("poly_3_4_5", crank, cut)
+    cycle = baseline("poly_3_4_5", Task(crank, cut, FREE))
     run = simulate(cycle, cut, PAPER)
     position, ratio = (cycle(run.master, order, outside="repeat") for order in (0, 1))
     ahead = replace(run, command=position, axis=position + off, axis_ratio=ratio)
@@ -207,7 +207,7 @@ def test_errors_of_a_crank_are_those_of_its_carriage() -> None:
     per_material = crank.sync_profile(cut)(master - zone, 1)
     assert slope == pytest.approx((crank.tool_ratio(alpha + off) - crank.tool_ratio(alpha)) * per_material, abs=1e-6)
     response = measure_response(ahead, cycle, Task(crank, cut, FREE))
-    angle = slave_at_start(crank, cut) + position
+    angle = Task(crank, cut, FREE).slave_at_start + position
     assert response.peak_following_error == pytest.approx(
         np.abs(crank.tool(angle + off) - crank.tool(angle)).max(), rel=1e-9
     )
@@ -218,8 +218,8 @@ def test_response_of_two_blades_in_horizontal_sync_does_not_depend_on_the_origin
     cut = replace(CUT, length=0.5)
     other = replace(cut, origin="cut")
     quick = Servo(1000.0, 0.8, 120.0, 0.0005, 1.0)
-    here = servo_response(baseline("poly_3_4_5", knife, cut), Task(knife, cut, FREE), quick)
-    there = servo_response(baseline("poly_3_4_5", knife, other), Task(knife, other, FREE), quick)
+    here = servo_response(baseline("poly_3_4_5", Task(knife, cut, FREE)), Task(knife, cut, FREE), quick)
+    there = servo_response(baseline("poly_3_4_5", Task(knife, other, FREE)), Task(knife, other, FREE), quick)
     assert here.crossing is not None
     for name in ("crossing", "overshoot", "peak_following_error", "shear_zone_error"):
         assert getattr(there, name) == pytest.approx(getattr(here, name), rel=1e-7)

@@ -9,16 +9,21 @@ import numpy as np
 import pytest
 
 from camwright.profiles.cut import Cut
+from camwright.profiles.limits import Limits
 from camwright.profiles.machines import RotaryKnife
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.profiles.returns import baseline
 from camwright.profiles.servo import Servo, sample_plant
+from camwright.profiles.task import Task
 from camwright.validation.servo.sampled_axis import axis_response, decays, mean_response
 from camwright.validation.servo.simulation import simulate
 
+FREE = Limits(math.inf, math.inf, math.inf)
+"""Nothing here asks for limits."""
+
 PAPER = Servo(120.0, 0.7, 35.0, 0.004, 1.0)
 CUT = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4)
-CYCLE = baseline("poly_3_4_5", RotaryKnife(0.4), CUT)
+CYCLE = baseline("poly_3_4_5", Task(RotaryKnife(0.4), CUT, FREE))
 
 
 def cam(time: FloatArray) -> FloatArray:

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
+from camwright.profiles.limits import Limits
 from camwright.profiles.machines import RotaryKnife
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import baseline
@@ -24,6 +25,7 @@ from camwright.profiles.servo import (
     mean_lag,
     sample_plant,
 )
+from camwright.profiles.task import Task
 from camwright.validation.servo.axis_run import hermite
 from camwright.validation.servo.lifting import BLOCK, SUBSTEPS, lift, lift_side_by_side, loops_of
 from camwright.validation.servo.simulation import (
@@ -34,6 +36,9 @@ from camwright.validation.servo.simulation import (
     steady_following_error,
 )
 from camwright.validation.servo.sweep import sweep_servos
+
+FREE = Limits(math.inf, math.inf, math.inf)
+"""Nothing here asks for limits."""
 
 KNIFE = RotaryKnife(0.4)
 CUT = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4)
@@ -82,7 +87,7 @@ def naive_axis(
 def test_simulation_is_the_plain_loop_in_its_later_cycles(name: str, origin: str, feedforward: float) -> None:
     cut = replace(CUT, origin=origin)
     servo = replace(PAPER, velocity_feedforward=feedforward)
-    profile = baseline(name, KNIFE, cut)
+    profile = baseline(name, Task(KNIFE, cut, FREE))
     run = simulate(profile, cut, servo)
     cycles = math.ceil((memory(servo) + 30) * servo.sample_time / cut.period)
     for phase in (0, 5, PHASES - 1):
@@ -101,7 +106,7 @@ def test_simulation_is_the_plain_loop_in_its_later_cycles(name: str, origin: str
 
 def test_a_continuous_run_over_many_cycles_passes_through_the_phases_of_the_simulation() -> None:
     # 0.45 s a cycle, 4 ms a sample: 112.5 samples, so two phases alternate, half a sample apart
-    profile = baseline("poly_3_4_5", KNIFE, CUT)
+    profile = baseline("poly_3_4_5", Task(KNIFE, CUT, FREE))
     run = simulate(profile, CUT, PAPER)
     master, axis, _ = naive_axis(profile, CUT, PAPER, 0.0, 112 * 8)
     for phase, cycles in ((0, (4, 6)), (PHASES // 2, (3, 5))):
@@ -127,7 +132,7 @@ def test_simulation_is_the_plain_loop_for_any_servo_and_cut(
 ) -> None:
     servo = Servo(bandwidth, damping, gain, sample_time, feedforward)
     cut = replace(CUT, length=length, line_speed=speed)
-    profile = baseline("modified_sine", KNIFE, cut)
+    profile = baseline("modified_sine", Task(KNIFE, cut, FREE))
     run = simulate(profile, cut, servo)
     cycles = math.ceil((memory(servo) + 30) * sample_time / cut.period)
     first = run.master[3, 0] + cycles * length
@@ -143,7 +148,7 @@ def test_simulation_is_the_plain_loop_for_any_servo_and_cut(
 )
 def test_a_delayed_command_is_that_of_the_plain_loop(dead_time: float, lead_time: float) -> None:
     servo = replace(PAPER, velocity_feedforward=0.6, dead_time=dead_time, lead_time=lead_time)
-    profile = baseline("modified_sine", KNIFE, CUT)
+    profile = baseline("modified_sine", Task(KNIFE, CUT, FREE))
     run, prompt = (simulate(profile, CUT, each) for each in (servo, servo.loop))
     assert np.array_equal(run.master, prompt.master)
     assert np.array_equal(run.command, prompt.command)
@@ -158,7 +163,7 @@ def test_a_delayed_command_is_that_of_the_plain_loop(dead_time: float, lead_time
 
 
 def test_lead_makes_up_for_dead_time() -> None:
-    profile = baseline("cycloid", KNIFE, CUT)
+    profile = baseline("cycloid", Task(KNIFE, CUT, FREE))
     prompt = simulate(profile, CUT, PAPER)
     led = simulate(profile, CUT, replace(PAPER, dead_time=0.0125, lead_time=0.0125))
     assert np.array_equal(led.axis, prompt.axis)
@@ -168,13 +173,13 @@ def test_lead_makes_up_for_dead_time() -> None:
 
 def test_dead_time_in_whole_samples_only_moves_the_axis_later() -> None:
     # the loop does not know: three samples later it is where it would have been
-    profile = baseline("cycloid", KNIFE, CUT)
+    profile = baseline("cycloid", Task(KNIFE, CUT, FREE))
     prompt, late = (simulate(profile, CUT, replace(PAPER, dead_time=n * PAPER.sample_time)) for n in (0, 3))
     assert np.abs(late.axis[:, 3 * SUBSTEPS :] - prompt.axis[:, : -3 * SUBSTEPS]).max() <= 1e-12
 
 
 def test_the_matrices_do_not_depend_on_dead_time_and_lead() -> None:
-    profile = baseline("cycloid", KNIFE, CUT)
+    profile = baseline("cycloid", Task(KNIFE, CUT, FREE))
     simulate(profile, CUT, PAPER)
     before = lift.cache_info().misses, memory.cache_info().misses
     simulate(profile, CUT, replace(PAPER, dead_time=0.00321, lead_time=0.001))
@@ -182,7 +187,7 @@ def test_the_matrices_do_not_depend_on_dead_time_and_lead() -> None:
 
 
 def test_phases_are_equally_spaced_and_cover_the_cycle() -> None:
-    run = simulate(baseline("linear_return", KNIFE, CUT), CUT, PAPER)
+    run = simulate(baseline("linear_return", Task(KNIFE, CUT, FREE)), CUT, PAPER)
     sample = CUT.line_speed * PAPER.sample_time
     assert run.phases == PHASES
     assert np.allclose(np.diff(run.master[:, 0]), sample / PHASES, rtol=1e-9)
@@ -204,7 +209,7 @@ def test_steady_following_error_is_that_of_the_loop(feedforward: float, delay: f
     assert master[-1] - axis[-1] == pytest.approx(expected, rel=1e-6)
 
     long = replace(CUT, length=3.0)
-    run = simulate(baseline("linear_return", KNIFE, long), long, servo)
+    run = simulate(baseline("linear_return", Task(KNIFE, long, FREE)), long, servo)
     ratio = 0.2 / 2.8
     x, axis, _ = run.window(2.79, 2.79)
     assert ratio * x - axis == pytest.approx(steady_following_error(ratio * CUT.line_speed, servo), rel=1e-6)
@@ -215,7 +220,7 @@ def test_steady_following_error_without_feedforward_is_speed_over_gain() -> None
 
 
 def test_a_profile_and_its_position_offset_move_the_axis_alike() -> None:
-    profile = baseline("cycloid", KNIFE, CUT)
+    profile = baseline("cycloid", Task(KNIFE, CUT, FREE))
     here, there = simulate(profile, CUT, PAPER), simulate(profile.shift(0.0, 5.0), CUT, PAPER)
     assert np.allclose(there.axis, here.axis + 5.0, rtol=0, atol=1e-13)
     assert np.allclose(there.command, here.command + 5.0, rtol=0, atol=1e-13)
@@ -223,7 +228,7 @@ def test_a_profile_and_its_position_offset_move_the_axis_alike() -> None:
 
 def test_many_pieces_shorter_than_the_grid_change_nothing() -> None:
     # the same curve cut into 5000 pieces: many between two points, none of some pieces among the points
-    profile = baseline("poly_3_4_5", KNIFE, CUT)
+    profile = baseline("poly_3_4_5", Task(KNIFE, CUT, FREE))
     edges = np.union1d(np.linspace(0.0, CUT.length, 5001), profile.breaks)
     edges = np.append(edges[:-1][np.diff(edges) > 1e-9], CUT.length)
     pieces = [profile.restrict(a, b).coefficients[0] for a, b in pairwise(edges)]
@@ -234,7 +239,7 @@ def test_many_pieces_shorter_than_the_grid_change_nothing() -> None:
 
 
 def test_window_has_its_ends_and_lies_on_the_axis() -> None:
-    profile = baseline("linear_return", KNIFE, CUT)
+    profile = baseline("linear_return", Task(KNIFE, CUT, FREE))
     run = simulate(profile, CUT, PAPER)
     start, end = 0.40013, 0.59977
     master, axis, ratio = run.window(start, end)
@@ -252,7 +257,7 @@ def test_window_has_its_ends_and_lies_on_the_axis() -> None:
 
 def test_the_cubic_between_two_points_is_the_axis() -> None:
     # over twice the step, inside one sample, it meets the point between; the error grows with step^4
-    run = simulate(baseline("linear_return", KNIFE, CUT), CUT, PAPER)
+    run = simulate(baseline("linear_return", Task(KNIFE, CUT, FREE)), CUT, PAPER)
     step = run.master[0, 1] - run.master[0, 0]
     middle = np.array([i for i in range(1, run.master.shape[1] - 1) if i % SUBSTEPS])
     ends, slopes = ((a[:, middle - 1], a[:, middle + 1]) for a in (run.axis, run.axis_ratio))
@@ -261,7 +266,7 @@ def test_the_cubic_between_two_points_is_the_axis() -> None:
 
 
 def test_window_of_no_length_is_its_point() -> None:
-    run = simulate(baseline("linear_return", KNIFE, CUT), CUT, PAPER)
+    run = simulate(baseline("linear_return", Task(KNIFE, CUT, FREE)), CUT, PAPER)
     master, axis, _ = run.window(0.5, 0.5)
     assert (master == 0.5).all()
     assert np.abs(axis - axis[:, :1]).max() == 0.0
@@ -298,17 +303,17 @@ def test_an_unstable_servo_is_refused_with_its_pole() -> None:
     with pytest.raises(
         InputError, match=r"servo is unstable: .* magnitude 1\.\d+, the limit is 1; lower the position gain"
     ):
-        simulate(baseline("linear_return", KNIFE, CUT), CUT, unstable)
+        simulate(baseline("linear_return", Task(KNIFE, CUT, FREE)), CUT, unstable)
 
 
 def test_a_servo_that_hardly_forgets_is_refused() -> None:
     with pytest.raises(InputError, match=r"takes \d+ samples: .* the limit is 131072; raise the line speed"):
-        simulate(baseline("linear_return", KNIFE, CUT), CUT, replace(PAPER, position_gain=0.01))
+        simulate(baseline("linear_return", Task(KNIFE, CUT, FREE)), CUT, replace(PAPER, position_gain=0.01))
 
 
 def test_long_cycles_take_fewer_phases_and_stay_right() -> None:
     slow = replace(CUT, line_speed=CUT.line_speed / 100)
-    profile = baseline("linear_return", KNIFE, slow)
+    profile = baseline("linear_return", Task(KNIFE, slow, FREE))
     run = simulate(profile, slow, PAPER)
     assert run.phases == SUBSTEPS
     middle = 7000 * SUBSTEPS  # in the return zone, just before the sync zone, and beyond its start
@@ -321,12 +326,12 @@ def test_long_cycles_take_fewer_phases_and_stay_right() -> None:
 
 def test_a_profile_of_another_cut_is_refused() -> None:
     with pytest.raises(InputError, match=r"0\.6 m, but one cycle of this cut runs from 0 m to the cut length 0\.5 m"):
-        simulate(baseline("linear_return", KNIFE, CUT), replace(CUT, length=0.5), PAPER)
+        simulate(baseline("linear_return", Task(KNIFE, CUT, FREE)), replace(CUT, length=0.5), PAPER)
 
 
 @pytest.mark.parametrize("size", [1, 2, BLOCK])
 def test_servos_side_by_side_are_each_by_itself_in_any_part_and_block(size: int) -> None:
-    profile = baseline("cycloid", KNIFE, CUT)
+    profile = baseline("cycloid", Task(KNIFE, CUT, FREE))
     servos = [PAPER, replace(PAPER, sample_time=0.0031, dead_time=0.002), replace(PAPER, velocity_feedforward=0.4)]
     past = max(memory(servo.loop) for servo in servos)
     lifted = lift_side_by_side(loops_of(servos), past, (2, 0, 1), size)
