@@ -100,19 +100,6 @@ class SampledPlant:
     input: FloatArray
 
 
-def plant_matrices(servo: Servo) -> tuple[FloatArray, FloatArray]:
-    """Continuous plant ``z' = A z + b u``: ``omega² / (s² + 2 zeta omega s + omega²)`` and an integrator (S1).
-
-    Returns
-    -------
-    (A, b)
-        Shapes ``(3, 3)`` and ``(3,)``; state as in `SampledPlant`.
-    """
-    w, z = servo.bandwidth, servo.damping
-    a = np.array([[-2 * z * w, -w * w, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
-    return a, np.array([w * w, 0.0, 0.0])
-
-
 @lru_cache(maxsize=4096)
 def sample_plant(servo: Servo, time: float) -> SampledPlant:
     """Discretise the plant exactly for an input held over ``time`` (s): closed form of the matrix exponential.

@@ -170,7 +170,7 @@ def feed_delay(feed: Moves, bend: Moves, turn: FloatArray, drive: BenderDrive) -
     t = bends.reaching(np.maximum(angle - drive.play, 0.0))[:, None] * part
     finger = angle[:, None] - bends.position(t)
     t = t[which]
-    allowed = _clear(np.cos(finger)[which], np.sin(finger)[which], turn[:, None], drive.finger_radius)
+    allowed = clearance(np.cos(finger)[which], np.sin(finger)[which], turn[:, None], drive.finger_radius)
     # no further than at any later time: the feed never runs back
     allowed = np.minimum.accumulate(allowed[:, ::-1], axis=1)[:, ::-1]
     feeds, which = _different(feed)
@@ -182,13 +182,11 @@ def feed_delay(feed: Moves, bend: Moves, turn: FloatArray, drive: BenderDrive) -
     return np.asarray(np.where(free, 0.0, needed).max(axis=1, initial=0.0), dtype=np.float64)
 
 
-def clearance(finger: FloatArray, turn: FloatArray, radius: float) -> FloatArray:
-    """Greatest feed (m) that the finger at an angle (rad) leaves to a rule bent by ``turn`` (rad, in (0, pi))."""
-    return _clear(np.cos(finger), np.sin(finger), turn, radius)
+def clearance(cos: FloatArray, sin: FloatArray, turn: FloatArray, radius: float) -> FloatArray:
+    """Greatest feed (m) that the finger leaves to a rule bent by ``turn`` (rad, in (0, pi)), from the cosine and sine of its angle.
 
-
-def _clear(cos: FloatArray, sin: FloatArray, turn: FloatArray, radius: float) -> FloatArray:
-    """`clearance` from the finger's cosine and sine: ``sin(turn - phi) / sin(turn) = cos(phi) - sin(phi) / tan(turn)``."""
+    ``sin(turn - phi) / sin(turn) = cos(phi) - sin(phi) / tan(turn)``.
+    """
     flank = cos - sin / np.tan(turn)
     return np.asarray(radius * np.maximum(np.minimum(cos, flank), 0.0), dtype=np.float64)
 

@@ -78,11 +78,6 @@ class DoubleS:
         return CamProfile.from_arrays(breaks, rows)
 
 
-def shortest_time(distance: float, speed: float, acceleration: float, jerk: float) -> float:
-    """Shortest time from rest to rest over a distance."""
-    return fastest(distance, speed, acceleration, jerk).time
-
-
 def fastest(distance: float, speed: float, acceleration: float, jerk: float) -> DoubleS:
     """Return the fastest motion from rest to rest over a distance, for a finite jerk limit.
 
@@ -176,32 +171,6 @@ def least_jerk(distance: float, time: float, speed: float, acceleration: float) 
     return acceleration / rest if rest > 0 else math.inf
 
 
-def least_speed(distance: float, time: float, acceleration: float, jerk: float) -> float:
-    """Least peak speed of a motion from rest to rest over a distance in a time; infinite if there is none.
-
-    The motion speeds up as fast as it may, cruises and slows down: ``D = V (T - t(V))`` with the time ``t(V)`` to full speed,
-    ``V/A + A/J`` or ``2 sqrt(V/J)``. The first is a quadratic in ``V``, the second a cubic in ``sqrt(V)``.
-    """
-    if distance == 0:
-        return 0.0
-    if greatest_reach(time, math.inf, acceleration, jerk) < distance:
-        return math.inf
-    edge = acceleration**2 / jerk  # the speed above which full acceleration is reached
-    if greatest_reach(time, edge, acceleration, jerk) < distance:
-        rest = time - acceleration / jerk
-        return 2 * distance / (rest + math.sqrt(max(0.0, rest**2 - 4 * distance / acceleration)))
-    # V T - 2 V^1.5 / sqrt(J) = D: increasing up to the peak J T²/16 of the motion without cruise
-    low, high = 0.0, min(jerk * time**2 / 16, edge)
-    while True:
-        middle = 0.5 * (low + high)
-        if middle in (low, high):
-            return high
-        if middle * (time - 2 * math.sqrt(middle / jerk)) < distance:
-            low = middle
-        else:
-            high = middle
-
-
 def shortest_return_length(height: float, speed: float, acceleration: float, jerk: float) -> float:
     """Shortest length of a return that leaves and meets the sync zone at ``k = 1``.
 
@@ -224,12 +193,3 @@ def shortest_return_length(height: float, speed: float, acceleration: float, jer
             low = middle
         else:
             high = middle
-
-
-def fastest_return(height: float, speed: float, acceleration: float, jerk: float) -> CamProfile:
-    """Shortest return that leaves and meets the sync zone at ``k = 1``: arguments as in `shortest_return_length`."""
-    length = shortest_return_length(height, speed, acceleration, jerk)
-    motion = fastest(height - length, speed - 1, acceleration, jerk).profile()
-    breaks = motion.breaks * (length / motion.end)  # equal but for rounding
-    breaks[-1] = length
-    return CamProfile(breaks, motion.coefficients.copy()).add_line(1.0)

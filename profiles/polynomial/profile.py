@@ -407,25 +407,6 @@ class CamProfile:
             tail = join(tail, head)
         return tail.shift(-start, -float(self(start)))
 
-    def merge(self, tolerance: float = 1e-9) -> CamProfile:
-        """Join neighbouring pieces that are the same polynomial.
-
-        Two pieces are the same when the left one, carried on over the right one's length, differs from it in no power by more
-        than ``tolerance`` of the largest contribution that this power makes anywhere in the profile.
-        """
-        width = np.diff(self.breaks)
-        powers = np.arange(self.degree + 1)
-        weight = float(width.max()) ** powers
-        size = np.maximum(np.abs(self.coefficients * weight).max(axis=0), 1e-300)
-        breaks, kept = [float(self.breaks[0])], [self.coefficients[0]]
-        for i in range(1, self.pieces):
-            carried = rows.recentred(kept[-1][None, :], np.array([self.breaks[i] - breaks[-1]]))[0]
-            if (np.abs(carried - self.coefficients[i]) * weight <= tolerance * size).all():
-                continue
-            breaks.append(float(self.breaks[i]))
-            kept.append(self.coefficients[i])
-        return CamProfile.from_arrays([*breaks, self.end], kept)
-
     # -- storage ----------------------------------------------------------------------------------------------------
 
     def to_dict(self) -> dict[str, list[float] | list[list[float]]]:

@@ -58,10 +58,6 @@ class Units:
         """Turn a profile in these units into one in SI units."""
         return profile.scale(master=self.master.size, slave=self.slave.size)
 
-    def from_si(self, profile: CamProfile) -> CamProfile:
-        """Turn a profile in SI units into one in these units."""
-        return profile.scale(master=1.0 / self.master.size, slave=1.0 / self.slave.size)
-
 
 @dataclass(frozen=True, eq=False)
 class CamTable:

@@ -17,10 +17,10 @@ from scipy.sparse import csr_array, eye_array, hstack, vstack
 from camwright.design.optimise import Solution, solve
 from camwright.design.returns.ipopt import SolveStatus
 from camwright.profiles.closed_forms.reach import (
+    fastest,
     least_acceleration,
     least_jerk,
     shortest_return_length,
-    shortest_time,
 )
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InfeasibleError
@@ -445,7 +445,7 @@ def test_shortest_possible_return(objective: MotionObjective, share: float) -> N
         solve(Task(machine, replace(cut, length=shortest * (1 - 1e-6) + sync), limits), objective)
     if share == 1.0:
         rest = 0.3 - shortest
-        assert shortest_time(rest, 3.0 - v, 80.0, 4e3) == pytest.approx(cut.return_zone / v, rel=1e-6)
+        assert fastest(rest, 3.0 - v, 80.0, 4e3).time == pytest.approx(cut.return_zone / v, rel=1e-6)
         assert result.minimised <= {"a": 80.0, "j": 4e3}["a" if order_of(objective) == 2 else "j"] * (1 + 1e-9)
 
 

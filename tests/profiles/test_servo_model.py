@@ -11,7 +11,6 @@ from scipy.linalg import expm
 from camwright.profiles.servo import (
     Servo,
     closed_loop,
-    plant_matrices,
     sample_plant,
     spectral_radius,
 )
@@ -19,6 +18,12 @@ from camwright.profiles.servo import (
 PAPER = Servo(120.0, 0.7, 35.0, 0.004, 1.0)
 ROUNDING = 2e-12
 """Relative rounding of the closed forms and of expm, over the ranges below."""
+
+
+def plant_matrices(servo: Servo) -> tuple[np.ndarray, np.ndarray]:
+    """Continuous plant ``z' = A z + b u``: ``omega² / (s² + 2 zeta omega s + omega²)`` and an integrator (S1)."""
+    w, z = servo.bandwidth, servo.damping
+    return np.array([[-2 * z * w, -w * w, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]), np.array([w * w, 0.0, 0.0])
 
 
 def exponential(servo: Servo, time: float) -> tuple[np.ndarray, np.ndarray]:

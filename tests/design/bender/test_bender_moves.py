@@ -118,20 +118,28 @@ def test_the_overlapped_feed_stays_clear_of_the_finger(feed: float, mould: float
     fed = f.position((t - wait)[None, :])[0]
     fed[t < wait] = 0
     near = finger > DRIVE.play
-    assert (fed[near] <= clearance(finger[near], np.full(near.sum(), turn), DRIVE.finger_radius) + 1e-9).all()
+    assert (
+        fed[near]
+        <= clearance(np.cos(finger[near]), np.sin(finger[near]), np.full(near.sum(), turn), DRIVE.finger_radius) + 1e-9
+    ).all()
     # and it does not wait for long without need: 15 ms earlier it would meet the finger, or it starts with the return
     if wait > 0.015:
         early = f.position((t - wait + 0.015)[None, :])[0] * (t > wait - 0.015)
-        assert (early[near] > clearance(finger[near], np.full(near.sum(), turn), DRIVE.finger_radius)).any()
+        assert (
+            early[near]
+            > clearance(np.cos(finger[near]), np.sin(finger[near]), np.full(near.sum(), turn), DRIVE.finger_radius)
+        ).any()
 
 
 def test_clearance_by_geometry():
     # finger on the axis: the radius; on the flank: nothing; half way up a right angle: r sin(45°) / sin(90°)
     angles = np.radians([0.0, 90.0, 45.0])
-    assert clearance(angles, np.full(3, math.pi / 2), 8e-3) == pytest.approx([8e-3, 0, 8e-3 / math.sqrt(2)], abs=1e-12)
+    assert clearance(np.cos(angles), np.sin(angles), np.full(3, math.pi / 2), 8e-3) == pytest.approx(
+        [8e-3, 0, 8e-3 / math.sqrt(2)], abs=1e-12
+    )
     # the flank of a bend by gamma begins at x and passes the finger: the finger is on its line at exactly the clearance
     gamma, phi = math.radians(60), math.radians(25)
-    x = float(clearance(np.array([phi]), np.array([gamma]), 8e-3)[0])
+    x = float(clearance(np.array([math.cos(phi)]), np.array([math.sin(phi)]), np.array([gamma]), 8e-3)[0])
     finger = 8e-3 * np.array([math.cos(phi), math.sin(phi)])
     assert math.atan2(finger[1], finger[0] - x) == pytest.approx(gamma)
 

@@ -26,7 +26,6 @@ from camwright.profiles.returns import baseline
 from camwright.profiles.servo import (
     Servo,
     gain_margin,
-    plant_matrices,
     sample_plant,
 )
 from camwright.profiles.task import Task
@@ -37,6 +36,12 @@ FREE = Limits(math.inf, math.inf, math.inf)
 
 PAPER = Servo(120.0, 0.7, 35.0, 0.004, 1.0)
 CUT = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4)
+
+
+def plant_matrices(servo: Servo) -> tuple[np.ndarray, np.ndarray]:
+    """Continuous plant ``z' = A z + b u``: ``omega² / (s² + 2 zeta omega s + omega²)`` and an integrator (S1)."""
+    w, z = servo.bandwidth, servo.damping
+    return np.array([[-2 * z * w, -w * w, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]), np.array([w * w, 0.0, 0.0])
 
 
 def plain_loop(servo: Servo, command: list[float], part: float, steps: int = 200) -> tuple[float, float, float]:

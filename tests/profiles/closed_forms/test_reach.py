@@ -12,14 +12,11 @@ from hypothesis import strategies as st
 
 from camwright.profiles.closed_forms.reach import (
     fastest,
-    fastest_return,
     greatest_reach,
     in_time,
     least_acceleration,
     least_jerk,
-    least_speed,
     shortest_return_length,
-    shortest_time,
 )
 from camwright.profiles.errors import InputError
 
@@ -48,7 +45,7 @@ LIMITS = (size(0.01, 100.0), size(0.01, 1e3), size(0.01, 1e5))
 @given(size(1e-3, 1e2), *LIMITS)
 def test_shortest_time_is_that_of_ruckig(distance: float, speed: float, acceleration: float, jerk: float) -> None:
     expected = by_ruckig(distance, 0.0, speed, acceleration, jerk, -speed)
-    assert shortest_time(distance, speed, acceleration, jerk) == pytest.approx(expected, rel=1e-9)
+    assert fastest(distance, speed, acceleration, jerk).time == pytest.approx(expected, rel=1e-9)
 
 
 @given(size(0.1, 10.0), st.floats(1.05, 10.0), size(0.1, 1e3), size(0.1, 1e5))
@@ -56,17 +53,6 @@ def test_shortest_return_is_that_of_ruckig(height: float, speed: float, accelera
     """Over the master the material moves at 1: from ratio 1 to ratio 1 in the shortest master travel."""
     expected = by_ruckig(height, 1.0, speed, acceleration, jerk, 0.0)
     assert shortest_return_length(height, speed, acceleration, jerk) == pytest.approx(expected, rel=1e-9)
-
-
-@given(size(0.1, 10.0), st.floats(1.05, 10.0), size(0.1, 1e3), size(0.1, 1e5))
-def test_fastest_return_keeps_its_limits(height: float, speed: float, acceleration: float, jerk: float) -> None:
-    back = fastest_return(height, speed, acceleration, jerk)
-    assert back.length == pytest.approx(shortest_return_length(height, speed, acceleration, jerk), rel=1e-15)
-    assert back.advance == pytest.approx(height, rel=1e-9)
-    assert [float(back(end, 1)) for end in (back.start, back.end)] == pytest.approx([1.0, 1.0], abs=1e-9 * speed)
-    assert back.extrema(1)[1].value <= speed * (1 + 1e-9)
-    assert max(abs(extremum.value) for extremum in back.extrema(2)) <= acceleration * (1 + 1e-9)
-    assert max(abs(extremum.value) for extremum in back.extrema(3)) <= jerk * (1 + 1e-9)
 
 
 @given(size(1e-3, 1e2), *LIMITS)
@@ -85,7 +71,7 @@ def test_fastest_motion_is_what_it_says(distance: float, speed: float, accelerat
 @given(size(1e-2, 1e2), *LIMITS)
 def test_reach_and_time_are_inverse(time: float, speed: float, acceleration: float, jerk: float) -> None:
     distance = greatest_reach(time, speed, acceleration, jerk)
-    assert shortest_time(distance, speed, acceleration, jerk) == pytest.approx(time, rel=1e-9)
+    assert fastest(distance, speed, acceleration, jerk).time == pytest.approx(time, rel=1e-9)
 
 
 @given(size(1e-2, 1e2), *LIMITS, st.sampled_from(range(4)), st.floats(1.0, 3.0))
@@ -105,7 +91,6 @@ def test_each_least_limit_just_reaches(
     """What is needed of one limit lies below what there is, does, and a little less does not."""
     distance = share * greatest_reach(time, speed, acceleration, jerk)
     needs = (
-        (least_speed(distance, time, acceleration, jerk), lambda x: (x, acceleration, jerk), speed),
         (least_acceleration(distance, time, speed, jerk), lambda x: (speed, x, jerk), acceleration),
         (least_jerk(distance, time, speed, acceleration), lambda x: (speed, acceleration, x), jerk),
     )
@@ -149,8 +134,7 @@ def test_least_peaks_without_other_limits(distance: float, time: float) -> None:
 
 
 def test_nothing_to_do_needs_nothing() -> None:
-    assert shortest_time(0.0, 1.0, 1.0, 1.0) == 0.0
-    assert least_speed(0.0, 1.0, 1.0, 1.0) == 0.0
+    assert fastest(0.0, 1.0, 1.0, 1.0).time == 0.0
     assert least_acceleration(0.0, 1.0, 1.0, 1.0) == 0.0
     assert least_jerk(0.0, 1.0, 1.0, 1.0) == 0.0
 
@@ -158,8 +142,6 @@ def test_nothing_to_do_needs_nothing() -> None:
 @pytest.mark.parametrize(
     "needed",
     [
-        least_speed(1.0, 1.0, 3.9, math.inf),  # bang-bang at 4 is the least
-        least_speed(1.0, 1.0, 1e6, 31.9),
         least_acceleration(1.0, 1.0, 1.0, 1e9),  # at speed 1 all the time is not from rest
         least_acceleration(1.0, 1.0, 10.0, 31.9),
         least_acceleration(1.0, 1.0, 1.5, 50.0),

@@ -270,27 +270,6 @@ def test_roll_begins_elsewhere(profile: CamProfile, share: float) -> None:
     assert np.abs(rolled(x) - expected).max() <= 1e-10 * (size(profile) + size(profile, 1))
 
 
-@given(profiles(), st.lists(st.floats(0.05, 0.95), max_size=5))
-def test_merge_undoes_cuts(profile: CamProfile, cuts: list[float]) -> None:
-    places = sorted({profile.start + share * profile.length for share in cuts} - set(profile.breaks.tolist()))
-    ends = [profile.start, *places, profile.end]
-    if min(np.diff(ends)) < 1e-6 * profile.length:
-        return
-    cut = join(*(profile.restrict(a, b) for a, b in pairwise(ends)))
-    merged = cut.merge()
-    assert merged.pieces <= profile.pieces
-    x = inside(profile)
-    # neighbours count as the same within 1e-9 of the largest contribution of a power; one such step for each piece
-    assert np.abs(merged(x) - profile(x)).max() <= 1e-8 * size(profile)
-
-
-def test_merge_keeps_what_differs() -> None:
-    ramp = CamProfile.from_arrays([0.0, 1.0, 2.0, 3.0], [[0.0, 1.0], [1.0, 1.0], [2.0, 1.001]])
-    merged = ramp.merge()
-    assert merged.breaks.tolist() == [0.0, 2.0, 3.0]
-    assert merged.coefficients.tolist() == [[0.0, 1.0], [2.0, 1.001]]
-
-
 # -- storage -------------------------------------------------------------------------------------------------------------
 
 

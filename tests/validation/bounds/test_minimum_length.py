@@ -13,7 +13,6 @@ from camwright.profiles.closed_forms.reach import (
     fastest,
     least_acceleration,
     shortest_return_length,
-    shortest_time,
 )
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
@@ -80,7 +79,7 @@ def test_physical_bound_solves_its_equation(shear: float, v: float, acceleration
     limits = Limits(200 / 60, acceleration, jerk)
     length = physical(Task(KNIFE, cut, limits)).length
     assert shear < length < KNIFE.pitch
-    time = shortest_time(KNIFE.pitch - length, limits.speed - v, acceleration, jerk)
+    time = fastest(KNIFE.pitch - length, limits.speed - v, acceleration, jerk).time
     assert length == pytest.approx(shear + v * time, rel=1e-9)
 
 
