@@ -10,6 +10,7 @@ from pathlib import Path
 
 from camwright.book.entry import Entry
 from camwright.book.plan import Book
+from camwright.house.files import flush, put
 from camwright.profiles.errors import InputError
 
 MANIFEST = "book.json"
@@ -84,10 +85,7 @@ class BookFolder:
         aside.mkdir()
         for name, text in texts.items():
             (aside / name).write_bytes(text.encode())
-        target.parent.mkdir(parents=True, exist_ok=True)
-        if target.exists():  # placed, but the journal did not come to know
-            shutil.rmtree(target)
-        os.replace(aside, target)
+        put(aside, target)  # a folder stands there where the journal did not come to know of it
 
     def write(self, name: str, pieces: Iterator[str]) -> str:
         """Write a file of the book's own, piece by piece, aside first; gives its SHA-256."""
@@ -97,9 +95,8 @@ class BookFolder:
                 data = piece.encode()
                 digest.update(data)
                 file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(aside, self.root / name)
+        flush(aside)
+        put(aside, self.root / name)
         return digest.hexdigest()
 
     def aside(self, name: str) -> Path:
@@ -108,7 +105,7 @@ class BookFolder:
 
     def take(self, name: str) -> str:
         """Move a file from aside into its place; gives its SHA-256."""
-        os.replace(self._aside / name, self.root / name)
+        put(self._aside / name, self.root / name)
         return digest_of(self.root / name)
 
     def finish(self) -> None:

@@ -24,7 +24,7 @@ from camwright.bender.program_file import bend_outlines
 from camwright.bender.sending import send
 from camwright.bender.sheet import write_sheet
 from camwright.cli.options import Json, Quiet
-from camwright.house.files import staged
+from camwright.house.files import staged, write_files
 from camwright.house.output import Voice
 from camwright.house.progress import Step
 from camwright.profiles.errors import InputError, MissingExtraError
@@ -151,11 +151,9 @@ def _calibrate(measurements: Path, bender: BenderJob, out: Path | None, voice: V
     """Make a springback table from test bends."""
     result = calibrate(measurements, bender)
     directory = Path("out") / measurements.stem if out is None else out
-    with staged(directory) as aside:
-        (aside / f"{measurements.stem}.toml").write_text(result.text, encoding="utf-8")
-        (aside / f"{measurements.stem}-residuals.csv").write_text(residuals_text(result), encoding="utf-8")
-    files = [directory / f"{measurements.stem}.toml", directory / f"{measurements.stem}-residuals.csv"]
-
+    texts = {f"{measurements.stem}.toml": result.text, f"{measurements.stem}-residuals.csv": residuals_text(result)}
+    write_files(directory, texts)
+    files = [directory / name for name in texts]
     voice.answer(lambda: calibration_answer(result, files), lambda: _calibration_view(result, files))
     return 0
 

@@ -11,7 +11,7 @@ from rich.table import Table
 
 from camwright.cli.options import Json, Quiet
 from camwright.cli.views.files import files_view
-from camwright.house.files import staged
+from camwright.house.files import write_files
 from camwright.house.output import Voice
 from camwright.jobs.examples import Example, example, examples
 from camwright.profiles.errors import InputError
@@ -36,8 +36,7 @@ def run(
     file = directory / one.path.name
     if file.exists() or file.is_symlink():
         raise InputError(f"{file}: there already; name another directory with --out")
-    with staged(directory) as aside:
-        (aside / file.name).write_bytes(one.path.read_bytes())
+    write_files(directory, {file.name: one.path.read_bytes()})
     voice.answer(lambda: {"files": [str(file)]}, lambda: files_view([file]))
     return 0
 

@@ -13,7 +13,7 @@ from rich.text import Text
 
 from camwright.cli.options import Json, Quiet
 from camwright.cli.views.files import files_view
-from camwright.house.files import staged
+from camwright.house.files import write_files
 from camwright.house.output import Voice
 from camwright.profiles.errors import InputError
 from camwright.profiles.trace import Trace
@@ -60,9 +60,7 @@ def run(
         recorded, found = identify_file(trace, velocity_feedforward)
     files: list[Path] = []
     if out is not None:
-        with staged(out.parent) as aside:
-            (aside / out.name).write_bytes(servo_text(trace, recorded, found).encode())
-        files.append(out)
+        files = write_files(out.parent, {out.name: servo_text(trace, recorded, found)})
 
     voice.answer(lambda: identify_answer(trace, recorded, found, files), lambda: _view(trace, recorded, found, files))
     return 0

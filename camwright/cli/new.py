@@ -12,7 +12,7 @@ from rich.console import RenderableType
 from rich.text import Text
 
 from camwright.cli.options import Json, Quiet
-from camwright.house.files import staged
+from camwright.house.files import write_files
 from camwright.house.output import Voice
 from camwright.jobs.examples import Example, example, examples
 from camwright.jobs.job import parse_job
@@ -153,8 +153,7 @@ def _write(file: Path, text: str) -> None:
     """Write a new file; never over another."""
     if file.exists() or file.is_symlink():
         raise InputError(f"{file}: there already; name another with --out")
-    with staged(file.parent) as aside:
-        (aside / file.name).write_bytes(text.encode())
+    write_files(file.parent, {file.name: text})
 
 
 def _answer(file: Path, base: Example, values: dict[str, Any]) -> dict[str, Any]:

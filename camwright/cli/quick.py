@@ -11,7 +11,7 @@ from rich.table import Table
 
 from camwright.cli.options import Json, Quiet
 from camwright.cli.views.files import files_view
-from camwright.house.files import staged
+from camwright.house.files import write_files
 from camwright.house.output import Voice
 from camwright.studies.quick import QuickAnswer, quick_answer, quick_cam_text, read_cross_cut
 
@@ -37,8 +37,7 @@ def run(
     file: Path | None = None
     if out is not None:
         file = out / "cam.csv"
-        with staged(out) as aside:
-            (aside / file.name).write_bytes(quick_cam_text(cut).encode())
+        write_files(out, {file.name: quick_cam_text(cut)})
 
     def data() -> dict[str, Any]:
         return answer.to_dict() if file is None else {**answer.to_dict(), "files": [str(file)]}

@@ -11,7 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from camwright.cli.options import Json, Quiet
-from camwright.house.files import read_text
+from camwright.house.files import read_text, require_replaceable
 from camwright.house.output import Voice
 from camwright.house.progress import Step
 from camwright.jobs.job import parse_job
@@ -19,7 +19,6 @@ from camwright.profiles.errors import InputError
 from camwright.profiles.tables.targets import TARGETS, target_of
 from camwright.recipe.build import STEPS, designed, make_recipe
 from camwright.recipe.compare import Change, compare_answer, compare_recipes, read_recipe
-from camwright.recipe.folder import require_replaceable
 from camwright.recipe.manifest import sha256
 from camwright.recipe.model import Recipe
 from camwright.recipe.write import WRITE_STEPS, is_recipe, recipe_files, require_extra, write_folder

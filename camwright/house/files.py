@@ -6,7 +6,7 @@ import contextlib
 import os
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 from camwright.profiles.errors import InputError
@@ -98,6 +98,127 @@ def staged(directory: Path) -> Iterator[Path]:
     shutil.rmtree(aside)
 
 
+def write_files(directory: Path, files: Mapping[str, str | bytes]) -> list[Path]:
+    """Write files by name into a directory, all or none as `staged` has it; texts in UTF-8. Gives their paths."""
+    with staged(directory) as aside:
+        for name, content in files.items():
+            (aside / name).write_bytes(content.encode() if isinstance(content, str) else content)
+    return [directory / name for name in sorted(files)]
+
+
+def flush(place: Path) -> None:
+    """Bring a file, or every file of a folder, to the disk before its name stands for a finished one."""
+    for file in sorted(place.rglob("*")) if place.is_dir() else [place]:
+        if file.is_file():
+            with file.open("rb") as stream:
+                os.fsync(stream.fileno())
+
+
+def put(new: Path, target: Path) -> None:
+    """Move what was written aside, on the same file system, to where it shall stand; a file there is replaced, a folder removed before."""
+    target.parent.mkdir(parents=True, exist_ok=True)
+    if target.is_dir() and not target.is_symlink():
+        shutil.rmtree(target)
+    os.replace(new, target)
+
+
+@contextlib.contextmanager
+def replaced(directory: Path, ours: Callable[[Path], bool]) -> Iterator[Path]:
+    """Give a folder to write into; at the end it takes the place of the directory, or nothing has changed.
+
+    The folder lies beside the directory, on the same file system. What stands there already is replaced as a whole if it is ours
+    or an empty directory; anything else is left alone.
+
+    Parameters
+    ----------
+    directory
+        Where the folder shall stand.
+    ours
+        Whether an existing directory may be replaced.
+
+    Yields
+    ------
+    Path
+        The folder aside.
+
+    Raises
+    ------
+    InputError
+        Something else is in the way, or the folder cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> place = Path(tempfile.mkdtemp()) / "new"
+    >>> with replaced(place, lambda old: False) as aside:
+    ...     _ = (aside / "note.txt").write_text("done")
+    >>> [file.name for file in place.iterdir()]
+    ['note.txt']
+    """
+    target, aside = _prepared(directory, ours)
+    try:
+        new = aside / "new"
+        new.mkdir()
+        yield new
+        flush(new)
+        _swap(new, target, aside / "old")
+    except OSError as error:
+        raise _refusal(directory, error) from error
+    finally:
+        shutil.rmtree(aside, ignore_errors=True)
+
+
+def require_replaceable(directory: Path, ours: Callable[[Path], bool]) -> None:
+    """Refuse a directory that is not to be replaced, before the work that would fill it.
+
+    Raises
+    ------
+    InputError
+        Something else is there, or it cannot be looked at.
+    """
+    try:
+        _require_free(directory, Path(os.path.abspath(directory)), ours)
+    except (OSError, ValueError) as error:  # ValueError: a path with a null character
+        raise _refusal(directory, error) from error
+
+
+def _prepared(directory: Path, ours: Callable[[Path], bool]) -> tuple[Path, Path]:
+    """Make sure that the directory may be replaced; where it is, and a new folder beside it."""
+    try:
+        target = Path(os.path.abspath(directory))  # ".." and "." have no name to rename to; links stay links
+        _require_free(directory, target, ours)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        return target, Path(tempfile.mkdtemp(prefix=".camwright-", dir=target.parent))
+    except (OSError, ValueError) as error:  # ValueError: a path with a null character
+        raise _refusal(directory, error) from error
+
+
+def _refusal(directory: Path, error: OSError | ValueError) -> InputError:
+    return InputError(
+        f"{directory!s}: the folder cannot be written: {_reason(error)}; what was there is unchanged; choose another --out"
+    )
+
+
+def _require_free(directory: Path, target: Path, ours: Callable[[Path], bool]) -> None:
+    if not os.path.lexists(target):
+        return
+    if target.is_symlink() or not target.is_dir() or (any(target.iterdir()) and not ours(target)):
+        raise InputError(f"{directory}: something else is there, which is not overwritten; choose another --out")
+
+
+def _swap(new: Path, target: Path, old: Path) -> None:
+    """Put the new folder where the old one stands; if that fails, the old one stands there again."""
+    was_there = target.exists()
+    if was_there:
+        os.rename(target, old)
+    try:
+        os.rename(new, target)
+    except OSError:
+        if was_there:
+            os.rename(old, target)
+        raise
+
+
 def _make(directory: Path) -> list[Path]:
     """Make a directory and the missing ones above it; those that were made, the outermost first."""
     made: list[Path] = []
@@ -120,10 +241,9 @@ def _move_all(new: Path, directory: Path, old: Path) -> None:
     """Flush every file to the disk and move it into the directory; on failure put everything back."""
     names = sorted(file.name for file in new.iterdir())
     for name in names:
-        with (new / name).open("rb") as file:
-            os.fsync(file.fileno())
         if (directory / name).is_dir():
             raise IsADirectoryError(21, f"a directory is in the way of the file {name}")
+    flush(new)
     old.mkdir()
     moved: list[str] = []
     try:

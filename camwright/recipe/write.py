@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from camwright.house.files import replaced
 from camwright.house.progress import Step, ignore
 from camwright.recipe.build import MadeRecipe
-from camwright.recipe.folder import replaced
 from camwright.recipe.fonts import font_files, require
 from camwright.recipe.html import recipe_html
 from camwright.recipe.manifest import MANIFEST_FILE, manifest_text

@@ -191,3 +191,16 @@ def test_no_class_has_more_than_six_attributes_that_change() -> None:
 @pytest.mark.parametrize(("folder", "most"), [("camwright", 3), ("design", 5), ("validation", 7)])
 def test_few_modules_lie_outside_the_rooms(folder: str, most: int) -> None:
     assert len([file for file in (ROOT / folder).glob("*.py") if file.name != "__init__.py"]) <= most
+
+
+def test_files_are_put_in_their_place_by_one_module() -> None:
+    moving = {"replace", "rename", "renames", "fsync", "move", "mkdtemp"}
+    elsewhere = {
+        f"{path}: {node.func.value.id}.{node.func.attr}"
+        for path, tree in modules().items()
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in moving
+        if isinstance(node.func.value, ast.Name) and node.func.value.id in ("os", "shutil", "tempfile")
+        if path != "camwright/house/files.py"
+    }
+    assert not elsewhere

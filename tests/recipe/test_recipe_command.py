@@ -106,12 +106,11 @@ def test_a_failure_while_writing_leaves_the_old_recipe(
     say: Say, paper_job: Path, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     before = contents(folder)
-    from camwright.recipe import folder as module
 
     def full(_: Path) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(module, "_flush", full)
+    monkeypatch.setattr("camwright.house.files.flush", full)
     code, _, complaint = say("recipe", paper_job, "--targets", "csv", "--out", folder)
     assert code == 2
     assert "No space left on device; what was there is unchanged" in complaint
