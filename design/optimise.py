@@ -24,6 +24,7 @@ from camwright.design.torque.within_curve import keeps_curve, least_load, solve_
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
 from camwright.profiles.machines import Machine
+from camwright.profiles.message import Message
 from camwright.profiles.objective import OBJECTIVES, CommandObjective, MotionObjective, ObjectiveName, of_motion
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import assemble
@@ -219,8 +220,10 @@ def require_moving(machine: Machine, objective: ObjectiveName) -> None:
     """
     if OBJECTIVES[objective].of == "motor" and not machine.moves_something:
         raise InputError(
-            f"[objective] minimise = {objective!r} needs to know what the motor moves: give the machine's inertia or mass, or minimise "
-            f"rms_acceleration"
+            Message(
+                f"{{@minimise}} = {objective!r} needs to know what the motor moves: give the machine's inertia or mass, or minimise "
+                "rms_acceleration"
+            )
         )
 
 

@@ -28,6 +28,7 @@ from camwright.profiles.errors import (
 )
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import Machine
+from camwright.profiles.message import Message, Value
 from camwright.profiles.objective import OBJECTIVES, ObjectiveName, of_command
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import assemble
@@ -197,16 +198,17 @@ def _infeasible(problem: AxisProblem, settles: Callable[[Cut], bool] | None) -> 
     suggestions = () if settles is None else tuple(_suggestions(problem, needed, settles))
     ways = "; ".join(f"{each.change} {each.value:.6g} {each.unit}" for each in suggestions)
     excess = (needed - tolerance) * 1e3
-    return InfeasibleError(
-        f"[cut] sync_tolerance = {tolerance * 1e3:g} mm: no {problem.command} command within the limits holds the axis to it in the shear "
-        f"zone and the ratio of the axis to {_percent(cut, tolerance)} (twice the tolerance over the shear zone); the least that one holds "
-        f"is {needed * 1e3:.6g} mm and {_percent(cut, needed)}, {excess:.4g} mm too much"
-        + (f"; what works: {ways}" if ways else ""),
-        "sync_tolerance",
-        excess,
-        "mm",
-        suggestions,
+    text = (
+        f"{{@sync_tolerance}} = {{tolerance}}: no {problem.command} command within the limits holds the axis to it in the shear zone and "
+        f"the ratio of the axis to {_percent(cut, tolerance)} (twice the tolerance over the shear zone); the least that one holds is "
+        f"{{needed}} and {_percent(cut, needed)}, {{excess}} too much" + (f"; what works: {ways}" if ways else "")
     )
+    values = (
+        ("tolerance", Value(tolerance, "m", 6)),
+        ("needed", Value(needed, "m", 6)),
+        ("excess", Value(needed - tolerance, "m", 4)),
+    )
+    return InfeasibleError(Message(text, values), "sync_tolerance", excess, "mm", suggestions)
 
 
 def _suggestions(problem: AxisProblem, needed: float, settles: Callable[[Cut], bool]) -> Iterator[Suggestion]:

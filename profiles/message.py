@@ -9,7 +9,8 @@ from typing import Literal
 
 Toward = Literal["nearest", "below", "above"]
 
-_PLACE = re.compile(r"\{(@?)(\w+)\}")
+HOLE = re.compile(r"\{(@?)([\w.]+)\}")
+"""A hole in a sentence: the sign of a quantity's name, and the name."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,8 @@ class Message:
     Parameters
     ----------
     text
-        The sentence, with ``{name}`` where a value belongs and ``{@quantity}`` where a quantity is named, which a job file has a place for.
+        The sentence, with ``{name}`` where a value belongs and ``{@quantity}`` where a quantity is named, which a job file has a
+        place for; a number of the machine is ``{@machine.stroke}``.
     values
         The values by name.
 
@@ -73,6 +75,6 @@ class Message:
 
         def filled(found: re.Match[str]) -> str:
             name = found[2]
-            return name.replace("_", " ") if found[1] else known[name].written(1.0, known[name].unit)
+            return name.rpartition(".")[2].replace("_", " ") if found[1] else known[name].written(1.0, known[name].unit)
 
-        return _PLACE.sub(filled, self.text)
+        return HOLE.sub(filled, self.text)

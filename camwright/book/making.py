@@ -19,6 +19,7 @@ from camwright.drives.export import Exported, export_possible, export_report
 from camwright.house.json_text import to_json
 from camwright.house.provenance import provenance
 from camwright.jobs.job import Job
+from camwright.jobs.wording import error_words
 from camwright.profiles.errors import InfeasibleError, InputError, SolverError
 from camwright.stored.design_file import design_text
 from camwright.studies.axis_study import axis_study, solve_job
@@ -100,18 +101,20 @@ def make(book: Book, combination: Combination) -> tuple[Entry, dict[str, str]]:
     try:
         design = _designed(job)
     except InfeasibleError as error:
-        return Entry(number, "infeasible", binding=error.binding, reason=str(error), limit=limit), {}
+        return Entry(number, "infeasible", binding=error.binding, reason="\n".join(error_words(error)), limit=limit), {}
     except InputError as error:
         return _no_job(number, error, limit), {}
     except SolverError as error:
-        return Entry(number, "failed", reason=str(error), limit=limit), {}
+        return Entry(number, "failed", reason="\n".join(error_words(error)), limit=limit), {}
     return _exported(number, design, book.targets, limit)
 
 
 def _no_job(number: int, error: InputError, limit: Limit | None) -> Entry:
     """Enter a combination that is no job; what binds is the key of the job file that the first fault names."""
-    key = re.search(r"\[\w+\] (\w+)", error.faults[0])
-    return Entry(number, "infeasible", binding=key[1] if key else "job", reason="; ".join(error.faults), limit=limit)
+    key = re.search(r"\[\w+\] (\w+)", error_words(error)[0])
+    return Entry(
+        number, "infeasible", binding=key[1] if key else "job", reason="; ".join(error_words(error)), limit=limit
+    )
 
 
 def _limit(job: Job) -> Limit | None:

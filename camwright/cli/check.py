@@ -12,7 +12,7 @@ from camwright.cli.options import GivenJob, Json, Quiet
 from camwright.cli.views.numbers import millimetres, number
 from camwright.house.output import Voice
 from camwright.jobs.job import Job, load_job
-from camwright.jobs.wording import machine_words
+from camwright.jobs.machine_words import machine_words
 
 
 def run(job: GivenJob, as_json: Json = False, quiet: Quiet = False) -> int:

@@ -13,6 +13,7 @@ from camwright.answers.error import error_answer
 from camwright.house.json_text import to_json
 from camwright.house.output import BROKEN_PIPE, complain, prepare_streams, silence_stdout
 from camwright.house.provenance import camwright_version
+from camwright.jobs.wording import error_words
 from camwright.profiles.errors import CamwrightError
 
 COMMANDS = {
@@ -116,7 +117,7 @@ def _run(arguments: list[str]) -> int:
     try:
         return int(_application(arguments)(arguments, prog_name="camwright", standalone_mode=False) or 0)
     except CamwrightError as error:
-        exit_code, message, failure = error.exit_code, str(error), error
+        exit_code, message, failure = error.exit_code, "\n".join(error_words(error)), error
     except _UsageError as error:
         exit_code, message, failure = 2, cast("typer.BadParameter", error).format_message(), None
     if "--json" in arguments:

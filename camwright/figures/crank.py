@@ -15,7 +15,7 @@ from camwright.figures.style import (
     shade_zones,
     title,
 )
-from camwright.jobs.wording import machine_words
+from camwright.jobs.machine_words import machine_words
 from camwright.profiles.task import Task
 from camwright.studies.comparison import Comparison
 

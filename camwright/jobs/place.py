@@ -21,5 +21,5 @@ def not_placed(machine: Machine, file: str) -> InputError:
     """Say that neither file nor job knows the place."""
     return InputError(
         f"{file}: does not say where on the {machine.noun} its sync zone lies, and neither does the job; give "
-        f"{place_of(machine.place_name)}"
+        f"{place_of(f'machine.{machine.place_name}')}"
     )

@@ -3,24 +3,22 @@
 from __future__ import annotations
 
 import math
-import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 
-from camwright.house.units import KINDS
-from camwright.profiles.machines import Machine
-from camwright.profiles.machines.fields import MachineField, Quantity, fields_of
-from camwright.profiles.message import Message, Value
-
-_PLACE = re.compile(r"\{(@?)(\w+)\}")
+from camwright.profiles.errors import CamwrightError, InfeasibleError, InputError
+from camwright.profiles.message import HOLE, Message, Value
 
 TABLES: dict[str, tuple[str, ...]] = {
     "cut": ("length", "line_speed", "sync_zone", "shear_zone", "shear_zone_at", "sync_tolerance", "sync_ratio"),
     "limits": ("speed", "acceleration", "jerk", "reversal", "motor"),
     "servo": ("position_gain", "sample_time", "bandwidth", "damping"),
     "objective": ("minimise",),
+    "output": ("points",),
 }
-"""Tables of a job file that hold the quantities which messages name; all others stand in that of the machine."""
+"""Tables of a job file that hold the quantities which messages name; a machine names its own as ``machine.stroke``."""
 
-_SHOWN: dict[str, tuple[float, str, int | None]] = {
+SHOWN: dict[str, tuple[float, str, int | None]] = {
     "m": (1e3, "mm", None),
     "m/s": (60.0, "m/min", None),
     "rad": (math.degrees(1.0), "deg", 3),
@@ -31,13 +29,14 @@ _SHOWN: dict[str, tuple[float, str, int | None]] = {
 
 def place_of(quantity: str) -> str:
     """Say where in a job file a quantity stands: ``[table] key``."""
-    table = next((table for table, keys in TABLES.items() if quantity in keys), "machine")
-    return f"[{table}] {quantity}"
+    table, _, key = quantity.rpartition(".")
+    table = table or next(name for name, keys in TABLES.items() if key in keys)
+    return f"[{table}] {key}"
 
 
 def value_words(value: Value) -> str:
     """Write a value in the unit that people use for it."""
-    factor, unit, decimals = _SHOWN.get(value.unit, (1.0, value.unit, None))
+    factor, unit, decimals = SHOWN.get(value.unit, (1.0, value.unit, None))
     return value.written(factor, unit, decimals)
 
 
@@ -46,26 +45,30 @@ def words(message: Message | str) -> str:
     if isinstance(message, str):
         return message
     known = dict(message.values)
-    return _PLACE.sub(
+    return HOLE.sub(
         lambda found: place_of(found[2]) if found[1] else value_words(known[found[2]]),
         message.text,
     )
 
 
-def machine_words(machine: Machine, digits: int = 4) -> str:
-    """Say in a line what a machine is like: its lengths, and what is not as usual."""
-    found = (_field_words(each, getattr(machine, each.name), digits) for each in fields_of(type(machine)))
-    return ", ".join(each for each in found if each)
+def error_words(error: CamwrightError) -> tuple[str, ...]:
+    """Word the faults that an error tells, one message each."""
+    if isinstance(error, InputError):
+        return tuple(words(message) for message in error.messages)
+    if isinstance(error, InfeasibleError):
+        return (words(error.message),)
+    return (str(error),)
 
 
-def _field_words(each: MachineField, value: float | str, digits: int) -> str:
-    """Word one number of a machine; nothing for what is not shown or as usual."""
-    name = each.key.replace("_", " ")
-    if not each.about.shown:
-        return ""
-    if isinstance(each.about, Quantity):
-        factor, unit, _ = _SHOWN.get(KINDS[each.about.kind].unit, (1.0, KINDS[each.about.kind].unit, None))
-        return f"{name} {float(value) * factor:.{digits}g} {unit}"
-    if value == each.default:
-        return ""
-    return f"{value} {name}"
+@contextmanager
+def in_job_words() -> Iterator[None]:
+    """Let errors that leave speak of the job file; also a decorator."""
+    try:
+        yield
+    except InfeasibleError as error:
+        message = words(error.message)
+        raise InfeasibleError(message, error.binding, error.excess, error.unit, error.suggestions) from error
+    except InputError as error:
+        if not any(isinstance(message, Message) for message in error.messages):
+            raise
+        raise InputError(*error_words(error)) from error

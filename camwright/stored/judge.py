@@ -5,12 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 
 from camwright.jobs.job import Job
+from camwright.jobs.wording import in_job_words
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.stored.profile_files import read_cycle
 from camwright.validation.report import ValidationReport
 from camwright.validation.report import validate as judge
 
 
+@in_job_words()
 def validate(profile: CamProfile | str | Path, job: Job) -> ValidationReport:
     """Judge one cycle by a job's machine, limits and servo.
 

@@ -10,6 +10,7 @@ import numpy as np
 from camwright.design.optimise import Solution, solve
 from camwright.design.optimise_axis import solve_axis
 from camwright.jobs.job import Job
+from camwright.jobs.wording import in_job_words
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.servo import Servo
@@ -86,6 +87,7 @@ def between_of(job: Job) -> tuple[Servo, ...]:
     return () if job.servo_tolerance is None else job.servo_tolerance.between(job.servo)
 
 
+@in_job_words()
 def solve_job(job: Job, *, suggest: bool = True) -> Solution:
     """Design the cycle of a job, servo-aware if it says so.
 

@@ -13,6 +13,7 @@ from camwright.design.returns.solver import objective_value, solve_return
 from camwright.profiles.cross_cutter import quintic_return
 from camwright.profiles.errors import InputError, SolverError
 from camwright.profiles.machines import Machine
+from camwright.profiles.message import Message, Value
 from camwright.profiles.objective import OBJECTIVES, MotionObjective
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import assemble, quintic_between
@@ -113,8 +114,10 @@ def envelope(
     short = [length for length in lengths if length <= cut.sync_zone]
     if short:
         raise InputError(
-            f"the envelope cannot begin at a cut length of {min(short) * 1e3:.6g} mm: it must be above the sync zone, "
-            f"[cut] sync_zone = {cut.sync_zone * 1e3:.6g} mm"
+            Message(
+                "the envelope cannot begin at a cut length of {length}: it must be above the sync zone, {@sync_zone} = {zone}",
+                (("length", Value(min(short), "m", 6)), ("zone", Value(cut.sync_zone, "m", 6))),
+            )
         )
     rows, points = [], []
     for length in lengths:

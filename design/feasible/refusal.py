@@ -18,6 +18,7 @@ from camwright.design.feasible.feasibility import (
     with_limit,
 )
 from camwright.profiles.errors import InfeasibleError, Suggestion
+from camwright.profiles.message import Message, Value
 from camwright.profiles.motor import MotorCurve
 from camwright.profiles.task import Task
 
@@ -32,8 +33,13 @@ LONGEST = 64.0
 EDGE = 1e-9
 
 _UNITS = {
-    "m": {"speed": (60.0, "m/min"), "acceleration": (1.0, "m/s^2"), "jerk": (1.0, "m/s^3")},
-    "rad": {"speed": (30.0 / math.pi, "rpm"), "acceleration": (1.0, "rad/s^2"), "jerk": (1.0, "rad/s^3")},
+    "m": {"stroke": (1e3, "mm"), "speed": (60.0, "m/min"), "acceleration": (1.0, "m/s^2"), "jerk": (1.0, "m/s^3")},
+    "rad": {
+        "stroke": (math.degrees(1.0), "deg"),
+        "speed": (30.0 / math.pi, "rpm"),
+        "acceleration": (1.0, "rad/s^2"),
+        "jerk": (1.0, "rad/s^3"),
+    },
 }
 
 
@@ -73,23 +79,20 @@ def infeasible(task: Task, *, suggest: bool = True, load: float | None = None) -
     need = needed_limits(task)
     binding = binding_limit(task, need)
     torque = _torque_needed(task) if load is None else load
-    excess, unit, words = _words(task, binding, need, torque)
-    message = (
-        f"no motion returns the slave in time: {words} ([cut] length {cut.length * 1e3:g} mm at [cut] line_speed "
-        f"{cut.line_speed * 60:g} m/min, sync zone {cut.sync_zone * 1e3:g} mm)"
+    excess, unit, why = _why(task, binding, need, torque)
+    text = f"no motion returns the slave in time: {why.text} ({{@length}} {{length}} at {{@line_speed}} {{line_speed}}, sync zone {{zone}})"
+    values = (
+        *why.values,
+        ("length", Value(cut.length, "m", 6)),
+        ("line_speed", Value(cut.line_speed, "m/s", 6)),
+        ("zone", Value(cut.sync_zone, "m", 6)),
     )
     if not suggest:
-        return InfeasibleError(message, binding, excess, unit, ())
+        return InfeasibleError(Message(text, values), binding, excess, unit, ())
     suggestions = tuple(_suggestions(task, need, torque))
     offers = "; ".join(_offer(suggestion) for suggestion in suggestions)
-    return InfeasibleError(
-        f"{message}. "
-        + (f"What works, each alone: {offers}" if offers else "No single change of speed, length or limit works"),
-        binding,
-        excess,
-        unit,
-        suggestions,
-    )
+    works = f"What works, each alone: {offers}" if offers else "No single change of speed, length or limit works"
+    return InfeasibleError(Message(f"{text}. {works}", values), binding, excess, unit, suggestions)
 
 
 def _torque_needed(task: Task) -> float:
@@ -106,35 +109,30 @@ def _stronger(curve: MotorCurve, factor: float) -> MotorCurve:
     return MotorCurve(tuple((speed, torque * factor) for speed, torque in curve.points))
 
 
-def _words(task: Task, binding: str, need: dict[str, float], torque: float) -> tuple[float | None, str, str]:
+def _why(task: Task, binding: str, need: dict[str, float], torque: float) -> tuple[float | None, str, Message]:
     """By how much the binding limit is exceeded, its unit, and both in words."""
     if binding == "reversal":
-        return (
-            None,
-            "",
-            f"[limits] reversal = false binds, the slave would have to run backwards from {task.cut.line_speed * 60:g} m/min",
-        )
+        text = "{@reversal} = false binds, the slave would have to run backwards from {from}"
+        return None, "", Message(text, (("from", Value(task.cut.line_speed, "m/s", 6)),))
     if binding == "sync_zone":
-        return None, "", "[cut] sync_zone binds, the machine cannot be in sync over it"
+        return None, "", Message("{@sync_zone} binds, the machine cannot be in sync over it")
     if binding == "motor":
         if math.isinf(torque):
-            return None, "%", "[limits] motor binds, the motor does not reach the speed that is needed"
+            return None, "%", Message("{@motor} binds, the motor does not reach the speed that is needed")
         more = 100 * (torque - 1)
-        return more, "%", f"[limits] motor binds, {more:.3g} % more torque is needed at the speeds of the motion"
-    machine = task.machine
-    if binding == "stroke":
-        have, needed, unit, place = stroke_of(machine) * 1e3, need["stroke"] * 1e3, "mm", "[machine] stroke"
-    else:
-        factor, unit = _UNITS[machine.slave_unit][binding]
-        have, needed, place = getattr(task.limits, binding) * factor, need[binding] * factor, f"[limits] {binding}"
+        return more, "%", Message(f"{{@motor}} binds, {more:.3g} % more torque is needed at the speeds of the motion")
+    slave = task.machine.slave_unit
+    factor, unit = _UNITS[slave][binding]
+    si = slave + {"stroke": "", "speed": "/s", "acceleration": "/s^2", "jerk": "/s^3"}[binding]
+    have = stroke_of(task.machine) if binding == "stroke" else float(getattr(task.limits, binding))
+    needed = need[binding]
+    values = ("have", Value(have, si, 6)), ("needed", Value(needed, si, 6))
     if not math.isfinite(needed):
-        return None, unit, f"{place} {have:g} {unit} binds, and no other value of it alone would do"
+        text = f"{_named(binding)} {{have}} binds, and no other value of it alone would do"
+        return None, unit, Message(text, values[:1])
     share = 100 * (needed / have - 1)
-    return (
-        needed - have,
-        unit,
-        f"{place} binds, {needed:.6g} {unit} is needed, {have:g} {unit} is given ({share:.3g} % too little)",
-    )
+    text = f"{_named(binding)} binds, {{needed}} is needed, {{have}} is given ({share:.3g} % too little)"
+    return (needed - have) * factor, unit, Message(text, values)
 
 
 def _suggestions(task: Task, need: dict[str, float], torque: float) -> Iterator[Suggestion]:
@@ -158,7 +156,7 @@ def _suggestions(task: Task, need: dict[str, float], torque: float) -> Iterator[
         def with_stroke(stroke: float) -> bool:
             return is_feasible(task.with_machine(machine.with_guide(stroke)))
 
-        yield from _written("stroke", need["stroke"], 1e3, "mm", True, with_stroke)
+        yield from _written("stroke", need["stroke"], *_UNITS[machine.slave_unit]["stroke"], True, with_stroke)
     for name in LIMIT_NAMES:
         if not getattr(limits, name) < need[name] < math.inf:
             continue
@@ -211,12 +209,16 @@ def rounded_to(value: float, digits: int, up: bool) -> float:
     return (math.ceil(value * scale - 1e-6) if up else math.floor(value * scale + 1e-6)) / scale
 
 
+def _named(change: str) -> str:
+    """Name what binds or may change, as in a `Message`; a stroke is the machine's own."""
+    return "{@machine.stroke}" if change == "stroke" else f"{{@{change}}}"
+
+
 def _offer(suggestion: Suggestion) -> str:
-    """Write a suggestion as it would stand in the job file."""
-    table = {"line_speed": "cut", "length": "cut", "stroke": "machine"}.get(suggestion.change, "limits")
-    place = f"[{table}] {suggestion.change}"
+    """Write a suggestion, its quantity as in a `Message`."""
+    quantity = _named(suggestion.change)
     if suggestion.change == "reversal":
-        return f"{place} = true"
+        return f"{quantity} = true"
     if suggestion.change == "motor":
-        return f"{place} with {suggestion.value:.15g} % of its torque"
-    return f'{place} = "{suggestion.value:.15g} {suggestion.unit}"'
+        return f"{quantity} with {suggestion.value:.15g} % of its torque"
+    return f'{quantity} = "{suggestion.value:.15g} {suggestion.unit}"'

@@ -17,6 +17,7 @@ from functools import lru_cache
 import numpy as np
 
 from camwright.profiles.errors import InputError
+from camwright.profiles.message import Message
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.profiles.servo import (
     Servo,
@@ -59,14 +60,18 @@ def memory(servo: Servo) -> int:
     radius = spectral_radius(servo)
     if not radius < 1.0:
         raise InputError(
-            f"[servo] position_gain = {servo.position_gain:g} 1/s: the servo is unstable, its largest pole in the z-plane has the "
-            f"magnitude {radius:.6g} and the limit is 1; it is stable below {servo.position_gain * gain_margin(servo):.6g} 1/s"
+            Message(
+                f"{{@position_gain}} = {servo.position_gain:g} 1/s: the servo is unstable, its largest pole in the z-plane has the "
+                f"magnitude {radius:.6g} and the limit is 1; it is stable below {servo.position_gain * gain_margin(servo):.6g} 1/s"
+            )
         )
     count = max(4, math.ceil(math.log(FORGOTTEN) / math.log(max(radius, 1e-3))))
     if count > MOST_SAMPLES:
         raise InputError(
-            f"[servo] position_gain = {servo.position_gain:g} 1/s: the servo remembers {count} samples of {servo.sample_time:g} s, the "
-            f"limit for a servo-aware design is {MOST_SAMPLES}; raise the position gain or the sample time"
+            Message(
+                f"{{@position_gain}} = {servo.position_gain:g} 1/s: the servo remembers {count} samples of {servo.sample_time:g} s, the "
+                f"limit for a servo-aware design is {MOST_SAMPLES}; raise the position gain or the sample time"
+            )
         )
     return count
 

@@ -22,7 +22,9 @@ _SETTLED = 1e-15
 """Step of the inverse map (rad) that is rounding."""
 _MOST_STEPS = 64
 """Steps of the inverse map, and of the place of least speed: bisection alone needs no more."""
-_NOT_CHOSEN = "the place of the sync zone on the crank is not chosen yet; design the job first, or give {@sync_at}"
+_NOT_CHOSEN = (
+    "the place of the sync zone on the crank is not chosen yet; design the job first, or give {@machine.sync_at}"
+)
 
 
 @dataclass(frozen=True)
@@ -164,8 +166,9 @@ class CrankSlider(Machine):
             "shorter": Value(longest, "m", toward="below"),
         }
         text = (
-            "{@rod} = {rod}: not above {@crank} + |offset| = {least}, so the crank could not turn all the way round; lengthen the rod to "
-            "{longer} at least" + (", or shorten the crank to {shorter} at most" if longest > 0 else "")
+            "{@machine.rod} = {rod}: not above {@machine.crank} + |offset| = {least}, so the crank could not turn all the way round; "
+            "lengthen the rod to {longer} at least"
+            + (", or shorten the crank to {shorter} at most" if longest > 0 else "")
         )
         return (Message(text, tuple(values.items())),)
 
@@ -266,7 +269,7 @@ def _misplaced(machine: CrankSlider, zone: float, travel: float) -> Message:
         "greatest": Value(greatest, "rad", toward="below"),
     }
     text = (
-        "{@sync_at} = {at}: leaves no room for the sync zone of {zone} between the dead centres; place it between {least} and "
+        "{@machine.sync_at} = {at}: leaves no room for the sync zone of {zone} between the dead centres; place it between {least} and "
         "{greatest}, or leave it out, and the design chooses"
     )
     return Message(text, tuple(values.items()))

@@ -85,8 +85,8 @@ class LinearCarriage(Machine):
             "shorter": Value(self.stroke / cut.sync_ratio, "m", toward="below"),
         }
         text = (
-            "{@stroke} = {stroke}: not above the {travel} that the carriage travels in the sync zone; lengthen it to {longer} at least, "
-            "or shorten {@sync_zone} to {shorter} at most"
+            "{@machine.stroke} = {stroke}: not above the {travel} that the carriage travels in the sync zone; lengthen it to {longer} at "
+            "least, or shorten {@sync_zone} to {shorter} at most"
         )
         return (Message(text, tuple(values.items())),)
 

@@ -163,10 +163,10 @@ class RotaryKnife(Machine):
         if travel < self.pitch:
             return ()
         if self.blades == 1 and cut.sync_ratio == 1.0:
-            room = "{@circumference} = {circumference}, so the knife would turn a whole turn in sync"
+            room = "{@machine.circumference} = {circumference}, so the knife would turn a whole turn in sync"
         else:
             room = (
-                f"the {{longest}} that {{@circumference}} = {{circumference}}, blades = {self.blades} and {{@sync_ratio}} = "
+                f"the {{longest}} that {{@machine.circumference}} = {{circumference}}, blades = {self.blades} and {{@sync_ratio}} = "
                 f"{cut.sync_ratio:.6g} leave to one blade, so no return zone is left"
             )
         given |= {

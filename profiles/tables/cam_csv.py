@@ -12,6 +12,7 @@ import numpy as np
 
 from camwright.profiles.errors import InputError
 from camwright.profiles.machines.machine import SlaveUnit
+from camwright.profiles.message import Message
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 
 _LENGTHS: dict[str, tuple[float, float]] = {
@@ -93,8 +94,10 @@ def table_positions(profile: CamProfile, points: int) -> FloatArray:
     breaks = profile.breaks
     if points < len(breaks):
         raise InputError(
-            f"[output] points = {points}: too few to hold the {len(breaks)} ends of the profile's pieces; "
-            f"write points = {len(breaks)} or more"
+            Message(
+                f"{{@points}} = {points}: too few to hold the {len(breaks)} ends of the profile's pieces; "
+                f"write points = {len(breaks)} or more"
+            )
         )
     x = np.linspace(profile.start, profile.end, points)
     nearest = np.rint((breaks - profile.start) * ((points - 1) / profile.length))

@@ -25,6 +25,7 @@ from camwright.design.feasible.extremes import extremes
 from camwright.design.optimise import solve
 from camwright.drives.export import export
 from camwright.jobs.job import load_job
+from camwright.jobs.wording import words
 from camwright.profiles.errors import (
     InfeasibleError,
     InputError,
@@ -69,7 +70,7 @@ def test_the_index_says_what_designs_made_one_by_one_say(done: Path) -> None:
             with pytest.raises(InfeasibleError) as caught:
                 solve(own.task.with_cut(cut), own.objective)
             assert row["binding"] == caught.value.binding
-            assert str(caught.value).startswith(row["reason"])
+            assert words(caught.value.message).startswith(row["reason"])
             assert not row["folder"]
             continue
         solution = solve(own.task.with_cut(cut), own.objective)

@@ -112,7 +112,7 @@ def test_a_tolerance_that_no_command_keeps_is_refused_with_ways_out_that_work(na
     error = refused.value
     assert error.excess is not None
     assert (error.binding, error.unit) == ("sync_tolerance", "mm")
-    assert f"[cut] sync_tolerance = {cut.sync_tolerance * 1e3:g} mm" in str(error)
+    assert f"sync tolerance = {cut.sync_tolerance:g} m" in str(error)
     assert {each.change for each in error.suggestions} == {"sync_tolerance", "line_speed", "length"}
     for each in error.suggestions:
         assert f"{each.change} {each.value:.6g} {each.unit}" in str(error)

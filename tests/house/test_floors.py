@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import ast
+import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
+from camwright.jobs.wording import place_of
 from camwright.profiles.machines import MACHINES
+from camwright.profiles.message import HOLE
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -88,6 +91,24 @@ def _names(node: ast.AST) -> set[str]:
     """Names that an expression is made of, attributes included."""
     found = {each.id for each in ast.walk(node) if isinstance(each, ast.Name)}
     return found | {each.attr for each in ast.walk(node) if isinstance(each, ast.Attribute)}
+
+
+@pytest.mark.parametrize("folder", ["profiles", "design", "validation"])
+def test_the_lower_floors_do_not_speak_of_job_files(folder: str) -> None:
+    """What they name in a message the front door knows a place for; they name no table of a job file themselves."""
+    tables = "|".join(("cut", "limits", "machine", "servo", "objective", "output"))
+    faults, named = [], set()
+    for file in sorted((ROOT / folder).rglob("*.py")):
+        tree = ast.parse(file.read_text(encoding="utf-8"))
+        texts = [
+            each.value for each in ast.walk(tree) if isinstance(each, ast.Constant) and isinstance(each.value, str)
+        ]
+        faults += [f"{file.name}: {text}" for text in texts if re.search(rf"\[({tables})(\.\w+)?\]", text)]
+        named |= {name for text in texts for sign, name in HOLE.findall(text) if sign and name}
+    assert faults == []
+    assert (len(named) > 2) == (folder != "validation")
+    for name in named - {"quantity"}:  # that stands for any in what says how a message is written
+        assert re.fullmatch(r"\[\w+\] \w+", place_of(name)), name
 
 
 def test_nobody_asks_what_kind_a_machine_is() -> None:

@@ -55,7 +55,11 @@ class PendulumShear(Machine):
         if 0.5 * cut.sync_ratio * cut.sync_zone < self.arm:
             return ()
         values = ("arm", Value(self.arm, "m")), ("most", Value(2 * self.arm / cut.sync_ratio, "m", toward="below"))
-        return (Message("{@arm} = {arm}: too short for the sync zone; shorten {@sync_zone} to {most} at most", values),)
+        return (
+            Message(
+                "{@machine.arm} = {arm}: too short for the sync zone; shorten {@sync_zone} to {most} at most", values
+            ),
+        )
 
     def sync_profile(self, cut: Cut) -> CamProfile:
         """Travel in the sync zone: the blade's place along the material is ``r sin(y / r)``."""
