@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import doctest
+import importlib.util
 import io
 import re
 import shutil
@@ -12,10 +13,11 @@ from pathlib import Path
 
 import pytest
 
-from camwright.cli.main import main
+from camwright.cli.main import COMMANDS, main
+from camwright.jobs.keys import job_keys
 
 ROOT = Path(__file__).parents[2]
-DOCUMENTS = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+DOCUMENTS = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 LEFT_OUT = "…"
 
@@ -25,7 +27,7 @@ def blocks(document: Path, language: str) -> list[str]:
 
 
 def with_blocks(language: str) -> list[object]:
-    return [pytest.param(file, id=file.name) for file in DOCUMENTS if blocks(file, language)]
+    return [pytest.param(file, id=file.relative_to(ROOT).as_posix()) for file in DOCUMENTS if blocks(file, language)]
 
 
 @pytest.fixture
@@ -126,7 +128,7 @@ def test_the_readmes_test_command_is_what_ci_runs() -> None:
     assert tests[0] in (line.strip() for line in script)
 
 
-@pytest.mark.parametrize("document", [pytest.param(file, id=file.name) for file in DOCUMENTS])
+@pytest.mark.parametrize("document", [pytest.param(file, id=file.relative_to(ROOT).as_posix()) for file in DOCUMENTS])
 def test_links_pictures_and_paths_of_a_document_are_there(document: Path) -> None:
     text = document.read_text()
     links = [link for link in re.findall(r"\]\(([^)#]+)\)", text) if not link.startswith("http")]
@@ -134,3 +136,18 @@ def test_links_pictures_and_paths_of_a_document_are_there(document: Path) -> Non
     missing = [link for link in links if not (document.parent / link).exists()]
     missing += [path for path in paths if not (ROOT / path).exists()]
     assert missing == []
+
+
+def test_the_generated_pages_are_what_the_code_says() -> None:
+    """Keys and commands of the reference are made from the schema and the command line: ``python docs/generate.py``."""
+    spec = importlib.util.spec_from_file_location("generate", ROOT / "docs" / "generate.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    for path, text in module.pages().items():
+        assert path.read_text(encoding="utf-8") == text, f"{path.name}: run python docs/generate.py"
+    commands = (ROOT / "docs" / "reference" / "commands.md").read_text(encoding="utf-8")
+    assert all(f"## `camwright {name}`" in commands for name in COMMANDS)
+    keys = (ROOT / "docs" / "reference" / "keys.md").read_text(encoding="utf-8")
+    assert all(f"| `{key.name}` |" in keys for key in job_keys())
