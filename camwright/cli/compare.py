@@ -21,6 +21,7 @@ from camwright.jobs.job import Job, load_job
 from camwright.profiles.errors import InputError
 from camwright.studies.axis_study import solve_job
 from camwright.studies.comparison import compare, law_names, require_laws, with_screw
+from camwright.studies.screw import require_screw
 from camwright.studies.tradeoff import step_count, trade_off, tradeoff_answer
 
 
@@ -32,6 +33,10 @@ def run(
     objectives: Annotated[
         bool, typer.Option("--objectives", help="Compare what every objective costs in the others instead.")
     ] = False,
+    screw: Annotated[
+        bool,
+        typer.Option("--screw", help="Compare a crank with the same carriage on a screw, designed for the same cut."),
+    ] = False,
     out: Out = None,
     as_json: Json = False,
     no_figures: NoFigures = False,
@@ -40,19 +45,26 @@ def run(
     """Compare the optimal cam with the linear return and the standard motion laws."""
     asked = load_job(job)
     if objectives:
-        if laws:
-            raise InputError("--objectives compares all laws; leave out --with")
+        if laws or screw:
+            raise InputError(
+                f"--objectives compares all laws of one machine; leave out {'--with' if laws else '--screw'}"
+            )
         return compare_objectives(
             asked, output_directory(out, asked), figures=not no_figures, voice=Voice(as_json, quiet)
         )
     names = tuple(dict.fromkeys(laws)) if laws else law_names(asked.task)
     require_laws(names, asked.task)
+    if screw:
+        require_screw(asked)
     voice = Voice(as_json, quiet)
     files: list[Path] = []
-    with voice.progress(len(names) + 3) as step:
+    with voice.progress(len(names) + 3 + screw) as step:
         step("solving")
         solution = solve_job(asked)
-        result = with_screw(compare(replace(asked, machine=solution.machine), solution.profile, names, step))
+        result = compare(replace(asked, machine=solution.machine), solution.profile, names, step)
+        if screw:
+            step("designing the carriage on a screw")
+            result = with_screw(result)
         if not no_figures:
             step("writing files")
             directory = output_directory(out, asked)

@@ -39,7 +39,7 @@ class Comparison:
     rows
         The profiles, sorted by peak acceleration, the unbounded ones last.
     screw
-        For a crank: the same cut by a carriage on a screw, another machine beside the rows.
+        The same cut by a carriage on a screw, another machine beside the rows; where it was asked for.
     """
 
     job: Job
@@ -135,5 +135,11 @@ def law_profile(name: str, task: Task) -> CamProfile:
 
 
 def with_screw(comparison: Comparison) -> Comparison:
-    """Add the carriage on a screw to the comparison of a crank; others stay as they are."""
+    """Add the carriage on a screw to the comparison of a crank.
+
+    Raises
+    ------
+    InputError
+        There is none: `camwright.studies.screw.screw_carriage`.
+    """
     return replace(comparison, screw=screw_carriage(comparison.job, comparison["optimised"]))

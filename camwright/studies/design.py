@@ -11,7 +11,7 @@ from camwright.jobs.job import Job
 from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.studies.axis_study import AxisStudy, Robustness, axis_study, robustness, solve_job
-from camwright.studies.comparison import Comparison, compare, with_screw
+from camwright.studies.comparison import Comparison, compare
 from camwright.studies.cut_lengths import CutLengths, cut_lengths
 from camwright.validation.bounds.optimality import Bound, lower_bound
 from camwright.validation.report import ValidationReport
@@ -114,6 +114,6 @@ def optimise(job: Job, step: Step = ignore) -> Design:
     step("checking")
     report = judge(solution.profile, placed.task, job.servo, servo_aware=job.servo_aware)
     aware, robust = axis_study(placed, solution), robustness(placed, solution.profile, solution)
-    comparison = with_screw(compare(placed, solution.profile, step=step))
+    comparison = compare(placed, solution.profile, step=step)
     step("finding minimum cut lengths")
     return Design(placed, solution, bound, report, comparison, cut_lengths(placed), aware, robust)

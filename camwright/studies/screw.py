@@ -9,7 +9,7 @@ import numpy as np
 
 from camwright.design.optimise import solve
 from camwright.jobs.job import Job
-from camwright.profiles.errors import InfeasibleError
+from camwright.profiles.errors import InputError
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import Machine
 from camwright.profiles.objective import of_command
@@ -69,7 +69,21 @@ class ScrewCarriage:
         )
 
 
-def screw_carriage(job: Job, crank: Measured) -> ScrewCarriage | None:
+def require_screw(job: Job) -> None:
+    """Refuse a machine that has no equal on a screw, before anything is solved.
+
+    Raises
+    ------
+    InputError
+        The machine is no crank, or its carriage has no mass.
+    """
+    if job.machine.on_screw(1.0, 1.0) is None:
+        raise InputError(
+            "--screw: only a crank whose carriage has a mass has an equal on a screw; leave it out, or give [machine] carriage_mass"
+        )
+
+
+def screw_carriage(job: Job, crank: Measured) -> ScrewCarriage:
     """Optimise the screw-driven carriage that does a crank's cut.
 
     Equal are: cut, objective, servo, mass of the carriage, stroke, greatest speed of the motor; and the greatest speed, acceleration and
@@ -84,28 +98,34 @@ def screw_carriage(job: Job, crank: Measured) -> ScrewCarriage | None:
 
     Returns
     -------
-    ScrewCarriage or None
-        None where there is nothing to compare: the machine has no equal on a screw, or a carriage on a screw cannot do
-        the cut within these limits.
+    ScrewCarriage
+        The carriage beside the crank.
+
+    Raises
+    ------
+    InputError
+        There is nothing to compare: the machine has no equal on a screw, acceleration or jerk of the crank's carriage are unbounded, or
+        motors do nothing.
+    InfeasibleError
+        A carriage on a screw cannot do the cut within these limits.
     """
+    require_screw(job)
     machine, tool = job.machine, crank.tool
-    if tool.peak_acceleration is None or tool.peak_jerk is None:
-        return None
+    if tool.peak_acceleration is None or tool.peak_jerk is None or not crank.motor.rms_torque:
+        raise InputError(
+            "--screw: the crank's cycle gives no limits to compare with: its acceleration or jerk is unbounded, or it needs no torque; "
+            "give [limits] jerk"
+        )
     room = 1 + _ROOM
     limits = Limits(tool.peak_speed * room, tool.peak_acceleration * room, tool.peak_jerk * room, reversal=True)
     motor_speed = crank.motor.peak_speed
     first = machine.on_screw(tool.peak_speed, motor_speed)
-    if first is None:
-        return None
-    try:
-        profile = solve(Task(first, job.cut, limits), of_command(job.objective)).profile
-    except InfeasibleError:
-        return None
+    assert first is not None  # noqa: S101 - required above
+    profile = solve(Task(first, job.cut, limits), of_command(job.objective)).profile
     # the motion of a carriage does not depend on the lead: it is chosen last, by the speed that the carriage reaches
     screw = machine.on_screw(job.cut.line_speed * _greatest_ratio(profile), motor_speed) or first
     row = measured(SCREW, profile, replace(job, machine=screw, limits=limits))
-    if row.motor.rms_torque is None or not crank.motor.rms_torque:
-        return None
+    assert row.motor.rms_torque is not None  # noqa: S101 - its carriage has a mass
     heating = row.motor.rms_torque / crank.motor.rms_torque
     return ScrewCarriage(screw, limits, row, crank, reversals(profile), heating)
 

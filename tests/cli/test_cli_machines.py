@@ -88,8 +88,7 @@ def test_a_machine_is_designed_written_and_judged_again(
     job, out, answer = designed(name)
     assert answer["passed"] is True
     asked = load_job(job)
-    screw = {"screw_carriage"} if asked.machine.slave_unit == "rad" else set()
-    assert answer["profiles"].keys() == {"optimised", *law_names(asked.task), *screw}
+    assert answer["profiles"].keys() == {"optimised", *law_names(asked.task)}
     assert (answer["minimum_cut_length_mm"]["eq9"] is None) == (name != "cross-cutter")
     assert (answer["tangential_mismatch"] is None) == (name in ("flying-saw", "chasing-shear"))
     objective, best = answer["objective"], answer["profiles"]["optimised"]
@@ -264,3 +263,26 @@ def test_tables_of_angles_are_read_in_degrees_too(tmp_path: Path) -> None:
     file.write_text("x [mm],y [deg],dy/dx [1],d2y/dx2 [1/m]\n0,0,0,0\n")
     with pytest.raises(InputError, match="does not go with y, which is an angle"):
         read_cycle(file, job)
+
+
+def test_a_crank_is_compared_with_its_carriage_on_a_screw_where_that_is_asked(
+    designed: Callable[[str], tuple[Path, Path, dict[str, Any]]], capsys: pytest.CaptureFixture[str]
+) -> None:
+    job, _, _ = designed("chasing-shear")
+    command = ["compare", str(job), "--no-figures", "--with", "linear_return", "--json"]
+    assert main(command) == 0
+    plain = strict(capsys.readouterr().out)["profiles"]
+    assert main([*command, "--screw"]) == 0
+    beside = strict(capsys.readouterr().out)["profiles"]
+    assert plain.keys() == {"optimised", "linear_return"}
+    assert beside.keys() == {*plain, "screw_carriage"}
+    assert plain == {name: beside[name] for name in plain}
+
+
+def test_a_screw_is_refused_where_there_is_none_and_beside_objectives(
+    designed: Callable[[str], tuple[Path, Path, dict[str, Any]]], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["compare", str(EXAMPLES / "flying-saw.toml"), "--screw"]) == 2
+    assert "--screw: only a crank whose carriage has a mass" in capsys.readouterr().err
+    assert main(["compare", str(EXAMPLES / "chasing-shear.toml"), "--objectives", "--screw"]) == 2
+    assert "leave out --screw" in capsys.readouterr().err

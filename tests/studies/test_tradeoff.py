@@ -21,7 +21,7 @@ from camwright.design.optimise import (
 from camwright.figures.tradeoff import tradeoff_figure
 from camwright.house.output import Voice
 from camwright.jobs.job import Job, load_job
-from camwright.profiles.errors import SolverError
+from camwright.profiles.errors import InfeasibleError, InputError, SolverError
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import (
     CrankSlider,
@@ -259,12 +259,15 @@ def test_lead_and_speeds() -> None:
 def test_there_is_no_screw_where_there_is_nothing_to_compare(crank: tuple[Job, Comparison]) -> None:
     job, comparison = crank
     best = comparison["optimised"]
-    assert screw_carriage(replace(job, machine=RotaryKnife(0.4)), best) is None
-    assert screw_carriage(replace(job, machine=replace(job.machine, carriage_mass=0.0)), best) is None
-    assert screw_carriage(job, comparison["linear_return"]) is None
+    for machine in (RotaryKnife(0.4), replace(job.machine, carriage_mass=0.0)):
+        with pytest.raises(InputError, match="--screw: only a crank whose carriage has a mass has an equal on a screw"):
+            screw_carriage(replace(job, machine=machine), best)
+    with pytest.raises(InputError, match=r"--screw: .* its acceleration or jerk is unbounded"):
+        screw_carriage(job, comparison["linear_return"])
     # a carriage that may accelerate a hundredth as much cannot turn within the stroke
     weak = replace(best, tool=replace(best.tool, peak_acceleration=0.01 * best.tool.peak_acceleration))
-    assert screw_carriage(job, weak) is None
+    with pytest.raises(InfeasibleError):
+        screw_carriage(job, weak)
 
 
 def test_reversals_are_counted_over_the_seam() -> None:
