@@ -29,6 +29,7 @@ BOOKS = {
 """Cut lengths (mm) and line speeds (m/min) of the books; an example that is not here gets none."""
 
 SUBCOMMANDS = (
+    "new", "examples", "keys", "schema",
     "design", "compare", "limits", "validate", "check", "quick", "envelope", "identify", "book", "export", "audit", "targets",
     "recipe", "verify", "bend",
 )  # fmt: skip
@@ -289,6 +290,17 @@ def single_cases() -> Iterator[Case]:
         yield Case(f"help/{name}", (name, "--help"))
     yield Case("design-bundled", ("design", "--no-figures", "--json"))
     yield Case("targets", ("targets", "--json"))
+    for of in ("job", "design", "recipe"):
+        yield Case(f"schema/{of}", ("schema", of))
+    yield Case("keys", ("keys", "--json"))
+    yield Case("keys-length", ("keys", "length"))
+    yield Case("keys-unknown", ("keys", "lenght", "--json"))
+    yield Case("examples", ("examples", "--json"))
+    yield Case("examples-write", ("examples", "paper-600", "--out", "runs/examples", "--json"))
+    for machine in ("rotary_knife", "linear_carriage", "crank_slider"):
+        yield Case(f"new/{machine}", ("new", machine, "--out", f"runs/new/{machine}.toml", "--json"))
+    yield Case("new/length", ("new", "rotary_knife", "--length", "700 mm", "--out", "runs/new/length.toml", "--json"))
+    yield Case("new/no-unit", ("new", "rotary_knife", "--length", "700", "--out", "runs/new/no-unit.toml", "--json"))
     yield Case("targets-spoken", ("targets",))
     for length in ("300 mm", "600 mm", "628.6 mm", "900 mm", "40 in"):
         lengths = ("--circumference", "400 mm", "--sync", "200 mm", "--length", length)

@@ -10,6 +10,8 @@ from typing import Any
 
 import pytest
 
+from camwright.cli.main import COMMANDS
+
 HERE = Path(__file__).parent
 
 
@@ -29,9 +31,10 @@ def recorded(file: Path, only: str) -> dict[str, Any]:
 def test_every_command_and_example_is_asked() -> None:
     listed = golden("list")
     assert listed.returncode == 0, listed.stderr
-    asked = [line.split(": ", 1)[1].split()[0] for line in listed.stdout.splitlines()]
-    commands = {line.split(": ", 1)[1].split()[0] for line in listed.stdout.splitlines() if line.startswith("help/")}
-    assert commands <= set(asked)
+    cases = dict(line.split(": ", 1) for line in listed.stdout.splitlines() if not line.endswith(": "))
+    commands = {arguments.split()[0] for name, arguments in cases.items() if name.startswith("help/")}
+    assert commands == set(COMMANDS)
+    assert commands <= {arguments.split()[0] for name, arguments in cases.items() if not name.startswith("help/")}
     for example in (HERE.parents[1] / "examples").glob("*.toml"):
         assert f"examples/{example.name}" in listed.stdout
 
