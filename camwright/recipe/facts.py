@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from camwright.house.units import KINDS
@@ -21,16 +21,24 @@ class Fact:
     Parameters
     ----------
     key
-        Key of its name in the catalogue.
+        Key of a job file, or what it is called.
     value
         A number (SI), a word of the catalogue, yes or no, or nothing.
     unit
         SI unit of a number; ``"curve"`` for pairs of motor speed and torque.
+    group
+        ``"machine"`` for what the machine says of itself, whose words other parameters may have too.
     """
 
     key: str
     value: Any
     unit: str = "1"
+    group: str = ""
+
+    @property
+    def name(self) -> str:
+        """Key of its name in the catalogue."""
+        return f"{self.group}.{self.key}" if self.group else self.key
 
 
 PRODUCT = {
@@ -61,7 +69,8 @@ def machine_facts(recipe: Recipe) -> list[Fact]:
     values = recipe.job.si["machine"]
     units = {each.key: _unit(each) for each in fields_of(MACHINES[values["kind"]])}
     order = dict.fromkeys(each.key for machine in MACHINES.values() for each in fields_of(machine))
-    return [Fact("kind", values["kind"], "word"), *_listed(values, {key: units[key] for key in order if key in units})]
+    facts = [Fact("kind", values["kind"], "word"), *_listed(values, {key: units[key] for key in order if key in units})]
+    return [replace(fact, group="machine") for fact in facts]
 
 
 def _unit(each: MachineField) -> str:

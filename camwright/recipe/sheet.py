@@ -87,7 +87,7 @@ _COLUMNS = (("section.machine", "section.servo"), ("section.product", "section.l
 
 
 def _group(recipe: Recipe, heading: str, words: Catalogue) -> Block:
-    rows = [[words(fact.key), fact_text(fact, words)] for fact in GROUPS[heading](recipe)]
+    rows = [[words(fact.name), fact_text(fact, words)] for fact in GROUPS[heading](recipe)]
     return {"heading": words(heading), "rows": rows}
 
 

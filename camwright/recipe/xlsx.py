@@ -107,7 +107,7 @@ def _parameters(page: _Page, recipe: Recipe, words: Catalogue) -> None:
         page.gap()
         page.head(words(heading))
         for fact in listed(recipe):
-            page.row(words(fact.key), *_value(fact, words))
+            page.row(words(fact.name), *_value(fact, words))
     page.gap()
     page.head(words("section.range"))
     cut, far = recipe.job.si["cut"], recipe.working_range

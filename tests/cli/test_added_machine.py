@@ -122,7 +122,7 @@ def test_its_recipe_is_written_in_every_language(language: str, capsys: pytest.C
     assert main(["recipe", str(JOB), "--targets", "csv", "--language", language, "--out", "recipe", "--quiet"]) == 0
     html = next(Path("recipe").glob("*.html")).read_text(encoding="utf-8")
     assert catalogue(language)("before.direction.pendulum_shear") in html  # type: ignore[arg-type]
-    assert catalogue(language)("arm") in html  # type: ignore[arg-type]
+    assert catalogue(language)("machine.arm") in html  # type: ignore[arg-type]
 
 
 def test_its_formulas_are_each_others_derivatives() -> None:

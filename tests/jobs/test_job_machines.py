@@ -6,8 +6,9 @@ import json
 import math
 import re
 import tomllib
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Annotated, ClassVar
 
 import jsonschema
 import numpy as np
@@ -19,7 +20,8 @@ from camwright.jobs.job import Job, load_job, parse_job
 from camwright.jobs.numbers import job_numbers
 from camwright.jobs.structure import job_schema
 from camwright.profiles.errors import InputError
-from camwright.profiles.machines import CrankSlider, LinearCarriage, RotaryKnife
+from camwright.profiles.machines import MACHINES, CrankSlider, LinearCarriage, RotaryKnife
+from camwright.profiles.machines.fields import Quantity
 from camwright.profiles.motor import MotorCurve
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -318,3 +320,21 @@ def test_examples_keep_the_schema_and_others_do_not(name: str) -> None:
     for key, value in (("kind", "saw"), ("wheels", 3)):
         with pytest.raises(jsonschema.ValidationError):
             jsonschema.validate({**data, "machine": {**data["machine"], key: value}}, schema)
+
+
+def test_a_machine_may_have_keys_of_other_tables(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A number of the machine is never taken for one of the cut, nor the other way round."""
+
+    @dataclass(frozen=True)
+    class Named(LinearCarriage):
+        kind: ClassVar[str] = "named"
+        length: Annotated[float, Quantity("length")] = 3.0
+        speed: Annotated[float, Quantity("speed")] = 4.0
+
+    monkeypatch.setitem(MACHINES, "named", Named)
+    text = (EXAMPLES / "flying-saw.toml").read_text(encoding="utf-8")
+    job = parse_job(text.replace('kind = "linear_carriage"', 'kind = "named"\nlength = "7 m"'), "job.toml")
+    plain = parse_job(text, "job.toml")
+    assert (job.cut, job.limits) == (plain.cut, plain.limits)
+    assert isinstance(job.machine, Named)
+    assert (job.machine.length, job.machine.speed) == (7.0, 4.0)

@@ -70,7 +70,9 @@ def test_every_key_is_used_and_every_used_key_exists() -> None:
     code = "\n".join(file.read_text(encoding="utf-8") for file in sorted((ROOT / "camwright/recipe").glob("*.py")))
     literal = set(re.findall(r'words\(\s*"([\w.]+)"', code))
     assert literal <= set(catalogue("en").messages)
-    machine_keys = {each.key for machine in MACHINES.values() for each in fields_of(machine)}
+    machine_keys = {f"machine.{each.key}" for machine in MACHINES.values() for each in fields_of(machine)} | {
+        "machine.kind"
+    }
     groups = ("column", "word", "binding", "before", "check", "record")  # put together from a group and a name
     for key in catalogue("en").messages:
         assert key.partition(".")[0] in groups or key in machine_keys or f'"{key}"' in code, key
@@ -78,7 +80,7 @@ def test_every_key_is_used_and_every_used_key_exists() -> None:
 
 @pytest.mark.parametrize("kind", MACHINES)
 def test_every_machine_is_named_and_has_its_instructions(kind: str) -> None:
-    keys = {each.key for each in fields_of(MACHINES[kind])}
+    keys = {f"machine.{each.key}" for each in fields_of(MACHINES[kind])}
     words = {f"before.{what}.{kind}" for what in ("direction", "scale", "zero")} | {f"word.{kind}"}
     assert keys | words <= set(catalogue("en").messages)
 
@@ -88,7 +90,7 @@ def test_every_number_of_a_job_has_a_name(name: str) -> None:
     numbers = job_numbers(load_job(ROOT / "examples" / f"{name}.toml"))
     assert set(numbers["cut"]) <= set(PRODUCT)
     assert set(numbers["servo"]) <= set(SERVO)
-    for key in (*numbers["machine"], *numbers["cut"], *numbers["servo"]):
+    for key in (*(f"machine.{key}" for key in numbers["machine"]), *numbers["cut"], *numbers["servo"]):
         assert key in catalogue("en").messages, key
 
 
