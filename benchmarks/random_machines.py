@@ -42,7 +42,7 @@ from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
 from camwright.validation.motion import measure_motion
 from camwright.validation.motor import measure_motor
-from camwright.validation.report import validate
+from camwright.validation.report import judge
 
 FREE = Limits(math.inf, math.inf, math.inf)
 """Nothing here asks for limits."""
@@ -213,10 +213,10 @@ def apply(job: RandomJob, suggestion: Suggestion) -> RandomJob:
             raise ValueError(f"unknown suggestion {suggestion!r}")
 
 
-def judge(job: RandomJob) -> tuple[str, str]:
+def outcome(job: RandomJob) -> tuple[str, str]:
     """Design a job and validate it; how it ended, and what failed with its numbers."""
     solution = solve(job.task, job.objective)
-    report = validate(solution.profile, job.task.with_machine(solution.machine), servo_for(job.cut), sweep=False)
+    report = judge(solution.profile, job.task.with_machine(solution.machine), servo_for(job.cut), sweep=False)
     failed = [check for check in report.checks if not check.passed]
     numbers = "; ".join(f"{check.name} {check.value!r} limit {check.limit!r} at {check.at!r}" for check in failed)
     return ("check failed" if failed else PASSED), numbers
@@ -226,7 +226,7 @@ def quintic_passes(job: RandomJob) -> bool:
     """Tell whether the quintic return passes every check of a job, a crank's sync zone in the middle of its range if it is free."""
     machine, cut, limits = placed(job.machine, job.cut), job.cut, job.limits
     profile = baseline("poly_3_4_5", Task(machine, cut, FREE))
-    report = validate(profile, Task(machine, cut, limits), servo_for(cut), sweep=False)
+    report = judge(profile, Task(machine, cut, limits), servo_for(cut), sweep=False)
     return report.passed
 
 
@@ -234,7 +234,7 @@ def measure(job: RandomJob) -> End:
     """Design one job, follow every suggestion if it is infeasible, and note the end."""
     start = process_time()
     try:
-        end, note = judge(job)
+        end, note = outcome(job)
     except InfeasibleError as error:
         refused = process_time()
         end, note = follow(job, error)
@@ -253,7 +253,7 @@ def follow(job: RandomJob, error: InfeasibleError) -> tuple[str, str]:
     for suggestion in error.suggestions:
         named = f"{error.binding}: {suggestion.change} {suggestion.value!r} {suggestion.unit}"
         try:
-            then, numbers = judge(apply(job, suggestion))
+            then, numbers = outcome(apply(job, suggestion))
         except CamwrightError as other:
             return f"infeasible, then {type(other).__name__}", f"{named}: {other}"
         if then != PASSED:

@@ -28,7 +28,7 @@ from camwright.profiles.errors import CamwrightError, InfeasibleError, InputErro
 from camwright.profiles.objective import OBJECTIVES, ObjectiveName
 from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
-from camwright.validation.report import validate
+from camwright.validation.report import judge
 
 RESULTS = Path(__file__).parent / "results"
 AGREEMENT = 1e-8
@@ -65,7 +65,7 @@ def ended(job: RandomJob, servo: Servo, command: Command, objective: ObjectiveNa
     axis = solution.axis
     if axis is None:
         return "no axis", ""
-    report = validate(solution.profile, Task(solution.machine, cut, job.limits), servo, sweep=False, servo_aware=True)
+    report = judge(solution.profile, Task(solution.machine, cut, job.limits), servo, sweep=False, servo_aware=True)
     if objective == "sync_error" and axis.error > cut.sync_tolerance:
         return "least error too large", ""
     failed = {check.name for check in report.checks if not check.passed} - (set() if axis.axis_limits else OF_THE_AXIS)

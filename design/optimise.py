@@ -35,7 +35,7 @@ KEPT_PEAK = 1e-6
 
 
 @dataclass(frozen=True)
-class Starts:
+class Agreement:
     """What several starts of a problem that is not convex agree on.
 
     Parameters
@@ -79,7 +79,7 @@ class Solution:
         did its root mean square or peak (N or N·m), or the mean power drawn (W), at the slave over the return; the sync error in m.
     iterations
         Iterations of IPOPT, all together.
-    starts
+    agreement
         Agreement of several starts; None where the problem is convex.
     axis
         What a servo-aware design found, whose `iterations` are programmes solved; None for a servo-blind one.
@@ -92,7 +92,7 @@ class Solution:
     objective_name: ObjectiveName
     minimised: float
     iterations: int
-    starts: Starts | None = None
+    agreement: Agreement | None = None
     axis: AxisMotion | None = None
 
 
@@ -186,7 +186,7 @@ def _solve_for_motor(task: Task, objective: CommandObjective, suggest: bool) -> 
         if within is not None:
             value = within.value if decisive is None else _over_time(within.back, decisive, task.cut)
             profile = assemble(within.back, task)
-            agreed = Starts(within.starts, within.agreeing, within.spread, within.residual, 1)
+            agreed = Agreement(within.starts, within.agreeing, within.spread, within.residual, 1)
             found.append(
                 Solution(
                     machine, profile, within.back, SolveStatus.ON_GRID, objective, value, within.iterations, agreed
@@ -246,10 +246,10 @@ def _solve_torque(task: Task, objective: CommandObjective, valleys: int) -> Solu
 
     problem = return_problem(task, "peak_acceleration")
     found = solve_torque(task, problem, objective)
-    starts = Starts(found.starts, found.agreeing, found.spread, found.residual, valleys)
+    agreement = Agreement(found.starts, found.agreeing, found.spread, found.residual, valleys)
     profile = assemble(found.back, task)
     return Solution(
-        task.machine, profile, found.back, SolveStatus.ON_GRID, objective, found.value, found.iterations, starts
+        task.machine, profile, found.back, SolveStatus.ON_GRID, objective, found.value, found.iterations, agreement
     )
 
 
@@ -257,6 +257,6 @@ def _solve_free_place(task: Task, objective: CommandObjective, suggest: bool) ->
     """Choose the place of the sync zone first, by the objective of the motion or by the mean square of the torque."""
     placement = place_for(task, objective)
     solution = solve(placement.task, objective, suggest=suggest)
-    if solution.starts is None:
-        return replace(solution, starts=Starts(1, 1, 0.0, 0.0, placement.valleys))
-    return replace(solution, starts=replace(solution.starts, valleys=placement.valleys))
+    if solution.agreement is None:
+        return replace(solution, agreement=Agreement(1, 1, 0.0, 0.0, placement.valleys))
+    return replace(solution, agreement=replace(solution.agreement, valleys=placement.valleys))

@@ -13,7 +13,7 @@ BASELINES: tuple[str, ...] = ("linear_return", *(name for name in LAWS if name !
 """Names of all baselines: the linear return of S1 and every law of the table, placed as a return."""
 
 
-def place_law(name: str, length: float, height: float, ratio: float = 1.0) -> CamProfile:
+def law_return(name: str, length: float, height: float, ratio: float = 1.0) -> CamProfile:
     """Place a motion law as a return that leaves and meets the sync zone at the same ratio.
 
     The return is the straight line of that ratio plus the law, which makes up for what the line would miss::
@@ -67,9 +67,9 @@ def baseline(name: str, task: Task) -> CamProfile:
         table = tabulate_crank(quintic)
         return table if cut.origin == "return" else table.roll(cut.length - 0.5 * cut.sync_zone)
     if task.straight:
-        back = place_law("linear" if name == "linear_return" else name, cut.return_zone, height, cut.sync_ratio)
+        back = law_return("linear" if name == "linear_return" else name, cut.return_zone, height, cut.sync_ratio)
     elif name == "linear_return":
-        back = place_law("linear", cut.return_zone, height, 0.0)
+        back = law_return("linear", cut.return_zone, height, 0.0)
     else:
         back = quintic_between(sync, cut.return_zone, height)
     return assemble(back, task)

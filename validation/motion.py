@@ -37,7 +37,7 @@ _EDGE = 1e-12
 
 
 @dataclass(frozen=True)
-class Motion:
+class MotionMeasures:
     """Measures of one cycle over time, of the slave or of the tool (``u`` is m or rad).
 
     ``None`` stands for unbounded. The peaks are of the whole cycle, the root mean squares of the return zone alone,
@@ -173,7 +173,7 @@ def _tool_in_sync(part: CamProfile, profile: CamProfile, task: Task) -> CamProfi
     return compose(ratio, part)
 
 
-def measure_motion(profile: CamProfile, task: Task) -> Motion:
+def measure_motion(profile: CamProfile, task: Task) -> MotionMeasures:
     """Measure the slave at the line speed of the cut, by roots of its polynomials and exact integration.
 
     Over time ``velocity = v y'``, ``acceleration = v² y''``, ``jerk = v³ y'''``.
@@ -195,7 +195,7 @@ def measure_motion(profile: CamProfile, task: Task) -> Motion:
     return _measure(profile, task.cut, steady, steady and is_smooth(profile), sync_ratio_error(profile, task).value)
 
 
-def measure_tool(profile: CamProfile, task: Task, slave: Motion | None = None) -> Motion:
+def measure_tool(profile: CamProfile, task: Task, slave: MotionMeasures | None = None) -> MotionMeasures:
     """Measure the tool (m) like `measure_motion` the slave; where the slave is counted in m both are the same.
 
     Parameters
@@ -213,7 +213,7 @@ def measure_tool(profile: CamProfile, task: Task, slave: Motion | None = None) -
     return _measure(tool_profile(profile, task), task.cut, steady, smooth, slave.sync_ratio_error)
 
 
-def _measure(profile: CamProfile, cut: Cut, steady: bool, smooth: bool, in_sync: float) -> Motion:
+def _measure(profile: CamProfile, cut: Cut, steady: bool, smooth: bool, in_sync: float) -> MotionMeasures:
     v = cut.line_speed
     start, end = cut.return_start, cut.return_start + cut.return_zone
     back = profile.restrict(start, min(end, profile.end)) if steady else profile
@@ -221,7 +221,7 @@ def _measure(profile: CamProfile, cut: Cut, steady: bool, smooth: bool, in_sync:
     def rms(order: int) -> float:
         return v**order * math.sqrt(back.mean_square(order))
 
-    return Motion(
+    return MotionMeasures(
         peak_speed=v * greatest_magnitude(profile, 1).value,
         min_speed=v * profile.extrema(1)[0].value,
         peak_acceleration=v**2 * greatest_magnitude(profile, 2).value if steady else None,

@@ -18,7 +18,7 @@ from camwright.validation.motion import (
     POSITION_JUMP,
     RATIO_JUMP,
     SLOPE_JUMP,
-    Motion,
+    MotionMeasures,
     greatest_jump,
     greatest_magnitude,
     measure_motion,
@@ -72,8 +72,8 @@ class ValidationReport:
     """
 
     checks: tuple[Check, ...]
-    motion: Motion
-    tool: Motion
+    motion: MotionMeasures
+    tool: MotionMeasures
     motor: MotorMeasures
     tangential_mismatch: float | None
     servo: ServoResponse | None
@@ -86,7 +86,7 @@ class ValidationReport:
         return all(check.passed for check in self.checks)
 
 
-def validate(
+def judge(
     profile: CamProfile,
     task: Task,
     servo: Servo,
@@ -191,7 +191,7 @@ def _closure(profile: CamProfile, machine: Machine) -> list[Check]:
     ]
 
 
-def _motion(profile: CamProfile, task: Task, motion: Motion) -> list[Check]:
+def _motion(profile: CamProfile, task: Task, motion: MotionMeasures) -> list[Check]:
     """Sync zone, speed, acceleration, jerk and reversal, exact."""
     machine, cut, limits = task.machine, task.cut, task.limits
     v, unit = cut.line_speed, machine.slave_unit

@@ -27,6 +27,6 @@ def objective_answer(design: Design) -> dict[str, Any]:
     }
 
 
-def starts_answer(design: Design) -> dict[str, Any] | None:
+def agreement_answer(design: Design) -> dict[str, Any] | None:
     """Write what several starts agree on; null where one was enough because the problem is convex."""
-    return None if design.solution.starts is None else asdict(design.solution.starts)
+    return None if design.solution.agreement is None else asdict(design.solution.agreement)

@@ -13,7 +13,7 @@ from camwright.answers.axis import (
     lead_answer,
     robust_answer,
 )
-from camwright.answers.objective import objective_answer, starts_answer
+from camwright.answers.objective import agreement_answer, objective_answer
 from camwright.design.feasible.extremes import Extremes
 from camwright.jobs.job import Job
 from camwright.profiles.machines.machine import SlaveUnit
@@ -23,7 +23,7 @@ from camwright.studies.cut_lengths import CutLengths
 from camwright.studies.design import Design
 from camwright.studies.measured import Measured
 from camwright.validation.check import Check
-from camwright.validation.motion import Motion
+from camwright.validation.motion import MotionMeasures
 from camwright.validation.motor import MotorMeasures
 from camwright.validation.report import ValidationReport
 from camwright.validation.servo.response import ServoResponse
@@ -41,7 +41,7 @@ def design_answer(design: Design, files: Sequence[Path]) -> dict[str, Any]:
         "status": design.solution.status.value,
         "objective": objective_answer(design),
         "lower_bound_method": design.bound.method,
-        "starts": starts_answer(design),
+        "starts": agreement_answer(design),
         "pieces": design.profile.pieces,
         "profiles": _profiles(design.comparison),
         "checks": _checks(design.report.checks),
@@ -108,7 +108,7 @@ def _row(row: Measured, unit: SlaveUnit) -> dict[str, Any]:
 
 
 def _measures(
-    slave: Motion, tool: Motion, motor: MotorMeasures, response: ServoResponse | None, unit: SlaveUnit
+    slave: MotionMeasures, tool: MotionMeasures, motor: MotorMeasures, response: ServoResponse | None, unit: SlaveUnit
 ) -> dict[str, Any]:
     """Measures of a profile; null where a value is unbounded or does not exist. A slave that turns has its own measures."""
     measures: dict[str, Any] = {

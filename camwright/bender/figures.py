@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camwright.bender.pictures import (
+    Frame,
     Line,
     Marks,
-    Panel,
     Picture,
     write_pictures,
 )
@@ -86,8 +86,8 @@ def _proof(outline: BentOutline) -> Picture:
     content = max(height, square)
     above = [_TOP + _GRID * math.floor(0.5 * (content - up) / _GRID) for up in (height, square)]
     panels = (
-        Panel(_LEFT, above[0], width, height, middle - half, middle + half, (under, over, start, place), "x (mm)", "y (mm)"),
-        Panel(_LEFT + width + _BETWEEN, above[1], square, square, worst - reach, worst + reach, (*close, marks, place),
+        Frame(_LEFT, above[0], width, height, middle - half, middle + half, (under, over, start, place), "x (mm)", "y (mm)"),
+        Frame(_LEFT + width + _BETWEEN, above[1], square, square, worst - reach, worst + reach, (*close, marks, place),
               "x (mm)", title="at the largest deviation"),
     )  # fmt: skip
     closing = outline.proof.closing_error
@@ -145,7 +145,7 @@ def _times(outline: BentOutline) -> Picture:
         low, high = min(float(values.min()), 0.0), max(float(values.max()), 0.0)
         room = 0.05 * ((high - low) or 1.0)
         panels.append(
-            Panel(_LEFT, top + i * (height + _GRID), width, height, np.array([-0.01 * last, low - room]),
+            Frame(_LEFT, top + i * (height + _GRID), width, height, np.array([-0.01 * last, low - room]),
                   np.array([1.01 * last, high + room]), lines, "time (s)" if i == len(rows) - 1 else "", label,
                   grid=True, apart=30.0)
         )  # fmt: skip

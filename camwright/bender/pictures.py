@@ -77,7 +77,7 @@ class Marks:
 
 
 @dataclass(frozen=True, eq=False)
-class Panel:
+class Frame:
     """One system of axes.
 
     Parameters
@@ -132,7 +132,7 @@ class Picture:
     height: float
     title: str
     title_left: float
-    panels: Sequence[Panel]
+    panels: Sequence[Frame]
     legend: Sequence[Line | Marks]
     legend_below: bool = True
 
@@ -172,21 +172,21 @@ def simplified(points: FloatArray) -> FloatArray:
     return np.asarray(kept, dtype=np.float64)
 
 
-def _placed(panel: Panel, points: FloatArray) -> FloatArray:
+def _on_page(panel: Frame, points: FloatArray) -> FloatArray:
     """Turn places of a panel into places in its frame (pt), y downwards."""
     size = np.array([panel.width, panel.height])
     part = (points - panel.low) / (panel.high - panel.low)
     return np.asarray(np.round(np.where([False, True], 1.0 - part, part) * size, 2), dtype=np.float64)
 
 
-def _lines(panel: Panel) -> str:
+def _lines(panel: Frame) -> str:
     """Write the lines of a panel as SVG: typst takes it in a fifth of the time of as many segments of its own."""
     box = f"0 0 {panel.width:g} {panel.height:g}"
     head = f'<svg xmlns="http://www.w3.org/2000/svg" width="{panel.width:g}" height="{panel.height:g}" viewBox="{box}"'
     found = [f"{head} {_STROKES}>"]
     for item in panel.items:
         if isinstance(item, Line):
-            places = _placed(panel, item.points)
+            places = _on_page(panel, item.points)
             ends = np.flatnonzero(np.isnan(places).any(axis=1))
             parts = [part[~np.isnan(part).any(axis=1)] for part in np.split(places, ends)]
             paths = [" ".join(map(str, simplified(part).ravel().tolist())) for part in parts if len(part) > 1]
@@ -203,20 +203,20 @@ def _look(item: Line | Marks) -> dict[str, Any]:
     return {"shape": "line", "colour": item.colour, "width": item.width, "dashed": item.dashed, "label": item.label}
 
 
-def _panel(panel: Panel) -> dict[str, Any]:
+def _panel(panel: Frame) -> dict[str, Any]:
     axes = []
     for axis, most in enumerate((panel.width / _APART, panel.height / panel.apart)):
         values, labels = ticks(float(panel.low[axis]), float(panel.high[axis]), max(3, round(most)))
         marks = np.repeat(np.array(values)[:, None], 2, axis=1)
         axes.append(
-            [[place, label] for place, label in zip(_placed(panel, marks)[:, axis].tolist(), labels, strict=True)]
+            [[place, label] for place, label in zip(_on_page(panel, marks)[:, axis].tolist(), labels, strict=True)]
         )
-    zero = float(_placed(panel, np.zeros((1, 2)))[0, 1])
+    zero = float(_on_page(panel, np.zeros((1, 2)))[0, 1])
     return {
         "frame": [panel.left, panel.top, panel.width, panel.height],
         "lines": _lines(panel),
         "marks": [
-            {**_look(item), "points": _placed(panel, item.points).tolist()}
+            {**_look(item), "points": _on_page(panel, item.points).tolist()}
             for item in panel.items
             if isinstance(item, Marks)
         ],

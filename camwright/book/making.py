@@ -27,7 +27,7 @@ from camwright.studies.comparison import Comparison
 from camwright.studies.design import Design
 from camwright.studies.measured import Measured
 from camwright.validation.bounds.optimality import Bound
-from camwright.validation.report import validate
+from camwright.validation.report import judge
 
 _ONE_AT_A_TIME = threading.Lock()
 # the solver is not made for several threads of one process, and workers of a cluster may have them
@@ -132,7 +132,7 @@ def _designed(job: Job) -> Design:
     """
     solution = solve_job(job, suggest=False)
     placed = replace(job, machine=solution.machine)
-    report = validate(solution.profile, placed.task, job.servo, sweep=False, servo_aware=job.servo_aware)
+    report = judge(solution.profile, placed.task, job.servo, sweep=False, servo_aware=job.servo_aware)
     if report.servo is None:
         raise InputError("the servo is unstable")
     row = Measured("optimised", solution.profile, report.motion, report.tool, report.motor, report.servo)

@@ -10,7 +10,7 @@ import typer
 from rich.console import Group
 
 from camwright.answers.studies import compare_answer
-from camwright.cli.options import GivenJob, Json, NoFigures, Out, Quiet, output_directory, placed
+from camwright.cli.options import GivenJob, Json, NoFigures, Out, Quiet, final_paths, output_directory
 from camwright.cli.views.files import files_view
 from camwright.cli.views.profiles import profiles_view
 from camwright.cli.views.tradeoff import tradeoff_view
@@ -70,7 +70,7 @@ def run(
             directory = output_directory(out, asked)
             with staged(directory) as aside:
                 comparison_figure(result, aside)
-                files = placed(aside, directory)
+                files = final_paths(aside, directory)
 
     voice.answer(lambda: compare_answer(result, files), lambda: Group(profiles_view(result), files_view(files)))
     return 0

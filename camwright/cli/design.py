@@ -11,7 +11,7 @@ from rich.text import Text
 
 from camwright.answers.objective import objective_unit
 from camwright.answers.studies import design_answer
-from camwright.cli.options import JobOrPaper, Json, NoFigures, Out, Quiet, output_directory, placed
+from camwright.cli.options import JobOrPaper, Json, NoFigures, Out, Quiet, final_paths, output_directory
 from camwright.cli.views.checks import checks_view
 from camwright.cli.views.files import files_view
 from camwright.cli.views.lead import lead_view
@@ -48,7 +48,7 @@ def run(
                 (aside / name).write_bytes(text.encode())
             if not no_figures:
                 design_figures(result, aside)
-            files = placed(aside, directory)
+            files = final_paths(aside, directory)
 
     voice.answer(lambda: design_answer(result, files), lambda: _view(result, files))
     return 0 if result.passed else 1
@@ -84,7 +84,7 @@ def _head(design: Design) -> list[str]:
             f"{math.degrees(machine.place):.5g}°" if machine.slave_unit == "rad" else f"{millimetres(machine.place)} mm"
         )
         lines.append(f"sync zone on the {machine.noun}: its middle at {place}")
-    starts = solution.starts
+    starts = solution.agreement
     if starts is not None:
         lines.append(
             f"{starts.agreeing} of {starts.converged} starts agree, spread {starts.spread:.1e}, KKT residual "

@@ -8,7 +8,7 @@ import typer
 from rich.console import Group, RenderableType
 from rich.table import Table
 
-from camwright.cli.options import GivenJob, Json, NoFigures, Out, Quiet, output_directory, placed
+from camwright.cli.options import GivenJob, Json, NoFigures, Out, Quiet, final_paths, output_directory
 from camwright.cli.views.files import files_view
 from camwright.figures.envelope import envelope_figure
 from camwright.house.files import staged
@@ -39,7 +39,7 @@ def run(
             (aside / name).write_bytes(text.encode())
         if not no_figures:
             envelope_figure(answer, aside)
-        files = placed(aside, directory)
+        files = final_paths(aside, directory)
 
     def data() -> dict[str, Any]:
         return {**answer.to_dict(), "files": [str(file) for file in files]}

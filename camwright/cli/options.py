@@ -25,6 +25,6 @@ def output_directory(out: Path | None, job: Job) -> Path:
     return Path("out") / job.name if out is None else out
 
 
-def placed(aside: Path, directory: Path) -> list[Path]:
+def final_paths(aside: Path, directory: Path) -> list[Path]:
     """Paths that the files aside will have."""
     return [directory / name for name in sorted(file.name for file in aside.iterdir())]

@@ -24,7 +24,7 @@ from camwright.profiles.tables.targets import detect, read_table, target_of
 from camwright.profiles.tables.text import read_text
 from camwright.studies.axis_study import solve_job
 from camwright.validation.rebuilt import TableJudgement, differences, judge_table, one_cycle, sampled_peaks
-from camwright.validation.report import ValidationReport, validate
+from camwright.validation.report import ValidationReport, judge
 
 MEASURES: dict[str, str] = {
     "peak_speed": "peak speed",
@@ -139,18 +139,18 @@ def audit(path: Path, job: Job, target: str | None = None, units: str | None = N
     text = read_text(path)
     layout = detect(text, str(path)) if target is None else target_of(target)
     table = read_table(layout, text, str(path))
-    placed = replace(job, machine=_placed(job.machine, text, str(path)))
+    placed = replace(job, machine=_with_place(job.machine, text, str(path)))
     rebuilt = _units(table, units, placed, str(path)).to_si(layout.rebuild(table))
     one_cycle(rebuilt, job.cut)  # refuses another period
     rebuilt, notes = aligned(rebuilt.shift(-rebuilt.start), placed)
     cycle = one_cycle(rebuilt, job.cut)
     step("judging")
     judgement = judge_table(rebuilt, placed.task, job.servo)
-    report = validate(cycle, placed.task, job.servo)
+    report = judge(cycle, placed.task, job.servo)
     step("solving")
     solution = solve_job(job)
     best = replace(job, machine=solution.machine)
-    best_report = validate(solution.profile, best.task, job.servo)
+    best_report = judge(solution.profile, best.task, job.servo)
     return Audit(
         layout,
         table,
@@ -167,7 +167,7 @@ def audit(path: Path, job: Job, target: str | None = None, units: str | None = N
     )
 
 
-def _placed(machine: Machine, text: str, place: str) -> Machine:
+def _with_place(machine: Machine, text: str, place: str) -> Machine:
     """Give the job's machine; where the job leaves the place of its sync zone free, it is that of the file."""
     if machine.placed:
         return machine

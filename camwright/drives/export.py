@@ -198,7 +198,7 @@ def _export(
     _, error, expected = judge(choice.rebuilt)
     head = Header(job.name, camwright_version(), job.sha256, _facts(expected, job, error))
     result = _written(judge, choice, target, head, accuracy)
-    if target.number_format == "float32" and target.placing == "free":
+    if target.number_format == "float32" and target.spacing == "free":
         dense = choose(profile, target, table_units(target, profile, wanted), accuracy, DENSE, zones)
         result = replace(result, dense=dense)
     if result.passed:

@@ -40,7 +40,7 @@ from camwright.recipe.working_range import working_range
 from camwright.stored.design_file import StoredDesign
 from camwright.studies.axis_study import solve_job, sync_error
 from camwright.validation.check import Check
-from camwright.validation.report import ValidationReport, validate
+from camwright.validation.report import ValidationReport, judge
 
 STEPS = 4
 """Steps that `make_recipe` tells beside one for each target."""
@@ -104,7 +104,7 @@ def make_recipe(
     """
     job, profile = design.job, design.profile
     step("checking")
-    report = validate(profile, job.task, job.servo, servo_aware=job.servo_aware)
+    report = judge(profile, job.task, job.servo, servo_aware=job.servo_aware)
     step("simulating lower speeds")
     speeds = at_speeds(profile, job, report)
     step("finding the working range")

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from camwright.answers.axis import axis_answer, robust_answer
-from camwright.answers.objective import objective_answer, starts_answer
+from camwright.answers.objective import agreement_answer, objective_answer
 from camwright.house.files import read_text
 from camwright.house.provenance import SCHEMA_VERSION, provenance
 from camwright.jobs.job import Job, parse_job
@@ -52,7 +52,7 @@ def design_text(design: Design) -> str:
         "status": design.solution.status.value,
         "objective": objective_answer(design),
         "lower_bound_method": design.bound.method,
-        "starts": starts_answer(design),
+        "starts": agreement_answer(design),
         "servo_aware": axis_answer(design.axis),
         "robust": robust_answer(design.robust),
         "profile": design.profile.to_dict(),
@@ -106,10 +106,10 @@ def parse_design(text: str, place: str) -> StoredDesign:
         profile = CamProfile.from_dict(data["profile"])
     except InputError as error:
         raise InputError(f"{place}: {error}") from error
-    return StoredDesign(profile, _placed(parse_job(job["toml"], f"{place}, job.toml"), job.get("si"), place))
+    return StoredDesign(profile, _with_place(parse_job(job["toml"], f"{place}, job.toml"), job.get("si"), place))
 
 
-def _placed(job: Job, numbers: object, place: str) -> Job:
+def _with_place(job: Job, numbers: object, place: str) -> Job:
     """Put a sync zone that the job leaves free where the design chose it."""
     machine = job.machine
     if machine.placed:

@@ -8,8 +8,7 @@ from camwright.jobs.job import Job
 from camwright.jobs.wording import in_job_words
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.stored.profile_files import read_cycle
-from camwright.validation.report import ValidationReport
-from camwright.validation.report import validate as judge
+from camwright.validation.report import ValidationReport, judge
 
 
 @in_job_words()

@@ -76,7 +76,7 @@ def read_cycle(path: Path, job: Job) -> tuple[CamProfile, Machine]:
             f"{path}: the slave is counted in {unit}, but that of the job's machine in {job.machine.slave_unit}; name the job that the "
             "file was made for"
         )
-    return _one_cycle(profile, job.cut.length, str(path)), _placed(job, place, str(path))
+    return _one_cycle(profile, job.cut.length, str(path)), _with_place(job, place, str(path))
 
 
 def _stated_place(machine: Machine, text: str) -> float:
@@ -87,7 +87,7 @@ def _stated_place(machine: Machine, text: str) -> float:
         return math.nan
 
 
-def _placed(job: Job, place: float, file: str) -> Machine:
+def _with_place(job: Job, place: float, file: str) -> Machine:
     """Give the job's machine, a free sync zone placed where the file has it."""
     machine = job.machine
     if machine.placed:

@@ -14,8 +14,7 @@ from camwright.studies.axis_study import AxisStudy, Robustness, axis_study, robu
 from camwright.studies.comparison import Comparison, compare
 from camwright.studies.cut_lengths import CutLengths, cut_lengths
 from camwright.validation.bounds.optimality import Bound, lower_bound
-from camwright.validation.report import ValidationReport
-from camwright.validation.report import validate as judge
+from camwright.validation.report import ValidationReport, judge
 
 STEPS = 4
 """Steps that `optimise` tells beside the measuring of each profile."""

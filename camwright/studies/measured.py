@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from camwright.jobs.job import Job
 from camwright.profiles.polynomial.profile import CamProfile
-from camwright.validation.motion import Motion, measure_motion, measure_tool
+from camwright.validation.motion import MotionMeasures, measure_motion, measure_tool
 from camwright.validation.motor import MotorMeasures, measure_motor
 from camwright.validation.servo.response import ServoResponse, servo_response
 
@@ -33,8 +33,8 @@ class Measured:
 
     name: str
     profile: CamProfile
-    motion: Motion
-    tool: Motion
+    motion: MotionMeasures
+    tool: MotionMeasures
     motor: MotorMeasures
     response: ServoResponse
 

@@ -17,7 +17,7 @@ from camwright.profiles.errors import SolverError
 from camwright.profiles.objective import COMMAND_OBJECTIVES, OBJECTIVES, CommandObjective, of_command
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.studies.comparison import law_names, law_profile
-from camwright.validation.motion import Motion, measure_motion
+from camwright.validation.motion import MotionMeasures, measure_motion
 from camwright.validation.motor import measure_motor, motor_torque
 
 Kind = Literal["objective", "baseline"]
@@ -204,7 +204,7 @@ def _row(name: str, kind: Kind, profile: CamProfile, job: Job, measures: Sequenc
     return Row(name, kind, profile, values, able)
 
 
-def _keeps_limits(motion: Motion, job: Job) -> bool:
+def _keeps_limits(motion: MotionMeasures, job: Job) -> bool:
     """Whether a motion keeps speed, acceleration, jerk and, where it is forbidden, does not turn back."""
     limits = job.limits
     if motion.peak_acceleration is None or motion.peak_jerk is None:

@@ -54,7 +54,7 @@ def extremes(task: Task) -> Extremes:
     A crank whose sync zone is free has it, for each of the two, at the place that lets it go farthest.
     """
     speed, speed_binding = fastest_line(task)
-    placed = _placed(task, lambda there: min_cut_length(there, COARSE) or math.inf)
+    placed = _at_best_place(task, lambda there: min_cut_length(there, COARSE) or math.inf)
     length = min_cut_length(placed)
     beyond = placed.with_length((length or task.cut.length) * (1 - BEYOND))
     return Extremes(speed, speed_binding, length, _binding(beyond))
@@ -69,10 +69,10 @@ def fastest_line(task: Task) -> tuple[float | None, str]:
 
 def placed_fastest(task: Task) -> Task:
     """Place the sync zone of a crank that leaves it free where the line can run fastest."""
-    return _placed(task, lambda there: -slowdown(there, COARSE) or math.inf)
+    return _at_best_place(task, lambda there: -slowdown(there, COARSE) or math.inf)
 
 
-def _placed(task: Task, cost: Callable[[Task], float]) -> Task:
+def _at_best_place(task: Task, cost: Callable[[Task], float]) -> Task:
     """Place the sync zone of a crank that leaves it free where a cost is least, or, where nothing works, where most room is left."""
     if task.machine.placed:
         return task

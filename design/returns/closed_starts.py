@@ -8,12 +8,12 @@ import numpy as np
 
 from camwright.design.returns.scaling import ScaledProblem
 from camwright.design.returns.structure import VANISHED, extreme_motion
-from camwright.design.returns.transcription import Arc, Motion
+from camwright.design.returns.transcription import Arc, ScaledMotion
 from camwright.profiles.closed_forms.softest import softest
 from camwright.profiles.objective import OBJECTIVES
 
 
-def known_start(problem: ScaledProblem) -> tuple[Motion, tuple[Arc, ...]] | None:
+def known_start(problem: ScaledProblem) -> tuple[ScaledMotion, tuple[Arc, ...]] | None:
     """Optimum in closed form, with the arcs that it has and their objective; None where no closed form is known.
 
     That is so for the least RMS jerk and for all but motions from rest to rest. Limits of the position are left out of account.
@@ -44,4 +44,4 @@ def known_start(problem: ScaledProblem) -> tuple[Motion, tuple[Arc, ...]] | None
     arcs += [("free", fall, -level), ("hold", hold, -level), ("free", rise, 0.0)]
     arcs = [arc for arc in arcs if arc[1] > VANISHED]
     lengths, ends = np.array([arc[1] for arc in arcs]), [arc[2] for arc in arcs]
-    return Motion(lengths, np.array([0.0, *ends]), objective), tuple(arc[0] for arc in arcs)
+    return ScaledMotion(lengths, np.array([0.0, *ends]), objective), tuple(arc[0] for arc in arcs)

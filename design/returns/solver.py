@@ -30,7 +30,7 @@ from camwright.design.returns.structure import (
 )
 from camwright.design.returns.transcription import (
     Arc,
-    Motion,
+    ScaledMotion,
     Shape,
 )
 from camwright.profiles.closed_forms.reach import greatest_reach
@@ -146,7 +146,7 @@ def _unlimited(problem: ScaledProblem) -> tuple[CamProfile, SolveStatus, int] | 
 
 
 def _first_as_good(
-    problem: ScaledProblem, witness: Motion | None, safe: CamProfile | None, iterations: int
+    problem: ScaledProblem, witness: ScaledMotion | None, safe: CamProfile | None, iterations: int
 ) -> tuple[CamProfile, SolveStatus, int]:
     """Try the grids in turn until a polished answer is at least as good as any grid's; else give the best that keeps the limits."""
     reached = math.inf  # the least objective on any grid
@@ -175,7 +175,7 @@ def _first_as_good(
     return safe, SolveStatus.OPTIMAL if _extreme_is_optimal(problem) else SolveStatus.ON_GRID, iterations
 
 
-def _polished(problem: ScaledProblem, grid: Motion, thorough: bool) -> tuple[Motion | None, float, int]:
+def _polished(problem: ScaledProblem, grid: ScaledMotion, thorough: bool) -> tuple[ScaledMotion | None, float, int]:
     """Polish a grid's answer, None if that fails; with the least objective on grids of its own arcs, and the iterations."""
     polished, success, used = _polish(problem, grid, thorough)
     if not success:
@@ -186,7 +186,7 @@ def _polished(problem: ScaledProblem, grid: Motion, thorough: bool) -> tuple[Mot
     return again, finer, used + more
 
 
-def _kept(motion: Motion | None, problem: ScaledProblem) -> CamProfile | None:
+def _kept(motion: ScaledMotion | None, problem: ScaledProblem) -> CamProfile | None:
     """Give the profile of a motion, None if there is no motion or it exceeds a limit."""
     if motion is None:
         return None
@@ -198,10 +198,10 @@ def _unconfined(problem: ScaledProblem) -> ScaledProblem:
     return replace(problem, least_position=-math.inf, greatest_position=math.inf)
 
 
-def _possible(problem: ScaledProblem) -> Motion | None:
+def _possible(problem: ScaledProblem) -> ScaledMotion | None:
     """Give a motion that keeps the limits, from a closed form; None if there is none."""
     found = possible_motion(problem)
-    return None if found is None else Motion(np.diff(found[0]), found[1], math.nan)
+    return None if found is None else ScaledMotion(np.diff(found[0]), found[1], math.nan)
 
 
 def _confirmed(problem: ScaledProblem) -> tuple[CamProfile | None, int]:
@@ -229,7 +229,7 @@ def _quintic(problem: ScaledProblem) -> CamProfile:
     return CamProfile.from_arrays([0.0, 1.0], [row])
 
 
-def _read_again(problem: ScaledProblem, polished: Motion) -> tuple[Motion, float, int]:
+def _read_again(problem: ScaledProblem, polished: ScaledMotion) -> tuple[ScaledMotion, float, int]:
     """Look at the arcs of a polished motion on grids of their own, until nothing new shows: arcs shorter than an interval come to light.
 
     Returns
@@ -355,7 +355,7 @@ def grid_objective(problem: ReturnProblem) -> float:
     return value * abs(scale) / problem.length**of.order
 
 
-def _grids(problem: ScaledProblem, witness: Motion | None) -> Iterator[tuple[FloatArray, float, bool]]:
+def _grids(problem: ScaledProblem, witness: ScaledMotion | None) -> Iterator[tuple[FloatArray, float, bool]]:
     """Grids to try in turn, each with the share by which the limits are widened on it and with how thoroughly to polish."""
     degree = _degree(problem)
     arcs = None if witness is None else witness.lengths[witness.lengths > VANISHED]
@@ -395,18 +395,18 @@ def _degree(problem: ScaledProblem) -> int:
     return 3 if problem.objective == "rms_jerk" else 1
 
 
-def _on_grid(problem: ScaledProblem, lengths: FloatArray, relax: float) -> tuple[Motion, bool, int]:
+def _on_grid(problem: ScaledProblem, lengths: FloatArray, relax: float) -> tuple[ScaledMotion, bool, int]:
     """Solve with given lengths of the pieces, starting from the quintic through the boundary values."""
     degree = _degree(problem)
     shape = Shape(FREE * len(lengths), degree, False, problem.objective, problem.confined)
     nodes = np.concatenate([[0.0], np.cumsum(lengths)])
     x = np.interp(np.arange(len(lengths) * degree + 1) / degree, np.arange(len(lengths) + 1), nodes)
     bend = 60 * x - 180 * x**2 + 120 * x**3
-    motion, statistics = programme(shape).solve(problem, Motion(lengths, problem.height * bend, 60.0), relax)
+    motion, statistics = programme(shape).solve(problem, ScaledMotion(lengths, problem.height * bend, 60.0), relax)
     return motion, bool(statistics["success"]), int(statistics["iter_count"])
 
 
-def _polish(problem: ScaledProblem, grid: Motion, thorough: bool) -> tuple[Motion, bool, int]:
+def _polish(problem: ScaledProblem, grid: ScaledMotion, thorough: bool) -> tuple[ScaledMotion, bool, int]:
     """Solve for few pieces of unknown length, starting from the structure of a grid solution.
 
     A quintic grid can be read in several ways. They are tried in turn, with limits at the nodes alone and then, if ``thorough``, with
@@ -434,8 +434,8 @@ def _polish(problem: ScaledProblem, grid: Motion, thorough: bool) -> tuple[Motio
 
 
 def _polish_arcs(
-    problem: ScaledProblem, start: Motion, arcs: tuple[Arc, ...], at_nodes: bool = False
-) -> tuple[Motion, bool, int]:
+    problem: ScaledProblem, start: ScaledMotion, arcs: tuple[Arc, ...], at_nodes: bool = False
+) -> tuple[ScaledMotion, bool, int]:
     """Solve for arcs of unknown length; with limits at the nodes alone it is a success only if they are kept between, too."""
     shape = Shape(arcs, start.degree, True, problem.objective, problem.confined, at_nodes)
     if shape.overdetermined:

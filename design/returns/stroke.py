@@ -10,7 +10,7 @@ import numpy as np
 from camwright.design.returns.possible import possible_motion
 from camwright.design.returns.scaling import ScaledProblem
 from camwright.design.returns.structure import VANISHED
-from camwright.design.returns.transcription import Motion
+from camwright.design.returns.transcription import ScaledMotion
 from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.polynomial.profile import FloatArray
 
@@ -23,7 +23,7 @@ KEPT = 1e-9
 MOST_STRIDES = 40
 
 
-def least_peak_motion(problem: ScaledProblem) -> Motion | None:
+def least_peak_motion(problem: ScaledProblem) -> ScaledMotion | None:
     """Give the motion of least peak acceleration, or jerk, of a slave that must keep to a stroke.
 
     Whether the limits leave any motion is known in closed form (`camwright.profiles.closed_forms.overshoot`), and a higher limit
@@ -63,7 +63,7 @@ def least_peak_motion(problem: ScaledProblem) -> Motion | None:
         else:
             high, found = middle, gentler
     nodes, accelerations = found
-    return Motion(np.diff(nodes), accelerations, math.nan)
+    return ScaledMotion(np.diff(nodes), accelerations, math.nan)
 
 
 def _peak(nodes: FloatArray, accelerations: FloatArray, *, slope: bool) -> float:

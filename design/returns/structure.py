@@ -15,7 +15,7 @@ from camwright.design.returns.scaling import ScaledProblem
 from camwright.design.returns.transcription import (
     SPLIT,
     Arc,
-    Motion,
+    ScaledMotion,
     piece_coefficients,
     subdivision,
 )
@@ -41,7 +41,7 @@ LEAST_INTERVALS = 3
 NO_CORNER = 5e-9
 
 
-def read_cubic(grid: Motion, problem: ScaledProblem) -> tuple[Motion, tuple[Arc, ...]]:
+def read_cubic(grid: ScaledMotion, problem: ScaledProblem) -> tuple[ScaledMotion, tuple[Arc, ...]]:
     """First guess of the seven arcs from a piecewise linear acceleration on a grid (degree 1).
 
     With constant limits every optimum of a peak or of the mean square of the acceleration has this structure or less: ramp, hold,
@@ -63,7 +63,7 @@ def read_cubic(grid: Motion, problem: ScaledProblem) -> tuple[Motion, tuple[Arc,
     for end in (-1, 0):
         if levels[end] != 0.0:
             _split_at_zero(lengths, levels, arcs, end)
-    return Motion(np.array(lengths), np.array(levels), grid.objective), tuple(arcs)
+    return ScaledMotion(np.array(lengths), np.array(levels), grid.objective), tuple(arcs)
 
 
 def _split_at_zero(lengths: list[float], levels: list[float], arcs: list[Arc], end: int) -> None:
@@ -113,7 +113,7 @@ def _phase(
     return rise, max(0.0, end - rise - fall), fall, level
 
 
-def read_quintic(grid: Motion, problem: ScaledProblem, touched: bool) -> tuple[Motion, tuple[Arc, ...]]:
+def read_quintic(grid: ScaledMotion, problem: ScaledProblem, touched: bool) -> tuple[ScaledMotion, tuple[Arc, ...]]:
     """Read runs of intervals with the same active limit (speed, acceleration, jerk, none), one piece each (degree 3).
 
     An optimum may touch a limit in a single point, or keep to it for less than an interval; there too the piece ends. With
@@ -147,12 +147,12 @@ def read_quintic(grid: Motion, problem: ScaledProblem, touched: bool) -> tuple[M
         # Bernstein coefficients that interpolate the grid's acceleration at the piece's ends and thirds
         third = _values(x, rows, left + (right - left) * np.arange(4) / 3)
         coefficients += (_THROUGH_THIRDS @ third).tolist()
-    return Motion(np.diff(breaks), np.array(coefficients), grid.objective), tuple(arcs)
+    return ScaledMotion(np.diff(breaks), np.array(coefficients), grid.objective), tuple(arcs)
 
 
-def readings_of(grid: Motion, problem: ScaledProblem) -> list[tuple[Motion, tuple[Arc, ...]]]:
+def readings_of(grid: ScaledMotion, problem: ScaledProblem) -> list[tuple[ScaledMotion, tuple[Arc, ...]]]:
     """Ways to read a quintic grid, each once: a cruise no longer than an interval may be a point where the speed is touched."""
-    found: dict[tuple[Arc, ...], Motion] = {}
+    found: dict[tuple[Arc, ...], ScaledMotion] = {}
     strict, loose = (read_quintic(grid, problem, touched) for touched in (False, True))
     step = float(grid.lengths.max())
     for start, arcs in (_without_short_cruise(*strict, step), _without_short_cruise(*loose, step), strict, loose):
@@ -160,7 +160,9 @@ def readings_of(grid: Motion, problem: ScaledProblem) -> list[tuple[Motion, tupl
     return [(start, arcs) for arcs, start in found.items()]
 
 
-def _without_short_cruise(start: Motion, arcs: tuple[Arc, ...], step: float) -> tuple[Motion, tuple[Arc, ...]]:
+def _without_short_cruise(
+    start: ScaledMotion, arcs: tuple[Arc, ...], step: float
+) -> tuple[ScaledMotion, tuple[Arc, ...]]:
     """Make a free arc, a short cruise and a free arc two free arcs that meet at the greatest speed."""
     p = start.degree
     for i in range(1, len(arcs) - 1):
@@ -168,7 +170,7 @@ def _without_short_cruise(start: Motion, arcs: tuple[Arc, ...], step: float) -> 
             lengths = np.delete(start.lengths, i)
             lengths[i - 1 : i + 1] += start.lengths[i] / 2
             a = np.delete(start.accelerations, np.arange(i * p, (i + 1) * p))
-            return Motion(lengths, a, start.objective), (*arcs[: i - 1], "fall", *arcs[i + 1 :])
+            return ScaledMotion(lengths, a, start.objective), (*arcs[: i - 1], "fall", *arcs[i + 1 :])
     return start, arcs
 
 
@@ -242,14 +244,14 @@ def subdivide(arcs: FloatArray, count: int) -> FloatArray:
     return np.concatenate([np.full(n, length / n) for length, n in zip(arcs, parts, strict=True)])
 
 
-def from_extreme(motion: DoubleS) -> Motion:
+def from_extreme(motion: DoubleS) -> ScaledMotion:
     """Write an extreme motion in the programme's coordinates (degree 1)."""
     arcs = [motion.ramp, motion.hold, motion.ramp, motion.cruise, motion.ramp, motion.hold, motion.ramp]
     top = motion.acceleration
-    return Motion(np.array(arcs), np.array([0.0, top, top, 0.0, 0.0, -top, -top, 0.0]), math.nan)
+    return ScaledMotion(np.array(arcs), np.array([0.0, top, top, 0.0, 0.0, -top, -top, 0.0]), math.nan)
 
 
-def tidy(motion: Motion, problem: ScaledProblem) -> Motion:
+def tidy(motion: ScaledMotion, problem: ScaledProblem) -> ScaledMotion:
     """Drop corners that are none, keep short ramps within the jerk limit, and meet the end conditions to rounding.
 
     The solver leaves residuals of about 1e-11. A ramp as short as that would break the jerk limit by them, so every piece is made at
@@ -265,11 +267,11 @@ def tidy(motion: Motion, problem: ScaledProblem) -> Motion:
         rise = p * np.abs(np.diff(a).reshape(len(lengths), p) @ subdivision(p - 1, SPLIT).T).max(axis=1)
         lengths = np.maximum(lengths, rise / (problem.greatest_jerk * (1 - 1e-10)))
         lengths[int(np.argmax(lengths))] -= lengths.sum() - 1.0
-        q, v = Motion(lengths, a, 0.0).nodes()
+        q, v = ScaledMotion(lengths, a, 0.0).nodes()
         gap = np.array([problem.end_ratio - v[-1], problem.height - q[-1]])
         a = a.copy()
         a[1:-1] += np.linalg.lstsq(_end_response(lengths, p)[:, 1:-1], gap, rcond=None)[0]
-    return Motion(lengths, a, motion.objective)
+    return ScaledMotion(lengths, a, motion.objective)
 
 
 def _without_false_corners(lengths: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray]:

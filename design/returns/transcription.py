@@ -80,7 +80,7 @@ class Shape:
 
 
 @dataclass(frozen=True, eq=False)
-class Motion:
+class ScaledMotion:
     """A motion of the scaled problem in the programme's own coordinates.
 
     Parameters
@@ -215,7 +215,9 @@ class Programme:
         }
         self._solver = ca.nlpsol("camwright", "ipopt", programme, options)
 
-    def solve(self, problem: ScaledProblem, start: Motion, relax: float = 0.0) -> tuple[Motion, dict[str, Any]]:
+    def solve(
+        self, problem: ScaledProblem, start: ScaledMotion, relax: float = 0.0
+    ) -> tuple[ScaledMotion, dict[str, Any]]:
         """Solve for the numbers of a problem from a starting motion.
 
         Parameters
@@ -285,7 +287,7 @@ class Programme:
         )
         found = self._unpack(np.asarray(answer["x"], dtype=np.float64).ravel())
         lengths = np.maximum(found["h"], 0.0) if self.shape.free_lengths else start.lengths
-        return Motion(lengths, found["a"], float(answer["f"])), dict(self._solver.stats())
+        return ScaledMotion(lengths, found["a"], float(answer["f"])), dict(self._solver.stats())
 
     def _hold_limits(self, lower: dict[str, Any], upper: dict[str, Any], guess: dict[str, Any]) -> None:
         """Put holds, cruises, ramps and the ends of falls on the limits that they keep to, those nearest to the guess.

@@ -17,7 +17,7 @@ import numpy as np
 from camwright.design.returns.ipopt import QUIET
 from camwright.design.returns.problem import ReturnProblem
 from camwright.design.returns.scaling import ScaledProblem
-from camwright.design.returns.transcription import Motion
+from camwright.design.returns.transcription import ScaledMotion
 from camwright.profiles.cut import Cut
 from camwright.profiles.machines import Machine
 from camwright.profiles.motor import MotorCurve
@@ -98,7 +98,7 @@ class TorqueAnswer:
         Its iterations.
     """
 
-    motion: Motion
+    motion: ScaledMotion
     value: float
     residual: float
     success: bool
@@ -251,7 +251,7 @@ class TorqueProgramme:
         )
         value = self._value(flat)
         return TorqueAnswer(
-            Motion(_WIDTHS, flat[: n + 1], value),
+            ScaledMotion(_WIDTHS, flat[: n + 1], value),
             value,
             residual,
             bool(statistics["success"]),

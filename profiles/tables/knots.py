@@ -18,9 +18,9 @@ from camwright.profiles.tables.cam_table import (
     Units,
     sample_profile,
 )
+from camwright.profiles.tables.candidates import candidates, required_points, zone_ends
 from camwright.profiles.tables.deviation import Deviation, deviation, glance
 from camwright.profiles.tables.number_formats import NumberFormat, rounded
-from camwright.profiles.tables.placing import candidates, required_points, zone_ends
 from camwright.profiles.tables.target import Target
 
 
@@ -156,7 +156,7 @@ def _chosen(profile: CamProfile, target: Target, units: Units, x: FloatArray) ->
 
 def _rebuilt(profile: CamProfile, target: Target, units: Units, x: FloatArray) -> tuple[CamTable, CamProfile]:
     """Sample the profile where the target's number format can put its points, and rebuild the motion."""
-    if target.placing == "equidistant" and target.number_format == "int32":  # the drive counts points
+    if target.spacing == "equidistant" and target.number_format == "int32":  # the drive counts points
         finest = Unit("0.1um", 1e-7) if units.slave.si == "m" else Unit("1e-5deg", math.radians(1e-5), "rad")
         units = Units(Unit("step", profile.length / (len(x) - 1)), finest)
     # the chord between two points in float32 has not quite the ratio that its neighbours end with

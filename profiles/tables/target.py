@@ -11,7 +11,7 @@ from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.tables.cam_table import CamTable, Unit, Units
 from camwright.profiles.tables.number_formats import NumberFormat
 
-Placing = Literal["pieces", "free", "equidistant"]
+Spacing = Literal["pieces", "free", "equidistant"]
 """Where a target's points may lie: at the ends of the profile's pieces (carried whole), anywhere, or evenly spaced."""
 
 SAFETY_NOTE = (
@@ -135,7 +135,7 @@ class Target:
         What the controller computes between the points.
     law
         The law that its pieces follow in a `CamTable`.
-    placing
+    spacing
         Where its points may lie.
     max_points
         Most points of a table, or ``None`` if no limit is documented.
@@ -167,7 +167,7 @@ class Target:
     title: str
     interpolation: str
     law: Literal["quintic", "spline", "line"]
-    placing: Placing
+    spacing: Spacing
     max_points: int | None
     number_format: NumberFormat
     evidence: str

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 from camwright.bender.pictures import (
     FINEST,
+    Frame,
     Line,
     Marks,
-    Panel,
     Picture,
     simplified,
     ticks,
@@ -80,7 +80,7 @@ def picture(count: int) -> Picture:
     wave = np.stack([np.arange(count), np.arange(count) % 2], axis=1).astype(np.float64)
     wave[count // 2] = np.nan  # two stretches
     items = (Line(wave, "#11304f", 0.9, "a wave"), Marks(wave[:1], "#c1121f", 6.0, "ring", "its start"))
-    panel = Panel(60, 48, 480, 240, np.array([0.0, -1.0]), np.array([count, 2.0]), items, "x (mm)", "y (mm)", "wave")
+    panel = Frame(60, 48, 480, 240, np.array([0.0, -1.0]), np.array([count, 2.0]), items, "x (mm)", "y (mm)", "wave")
     return Picture(648, 360, "A <wave> & its start", 60, (panel,), items)
 
 

@@ -33,7 +33,7 @@ from camwright.profiles.errors import (
     SolverError,
 )
 from camwright.stored.design_file import read_design
-from camwright.validation.report import validate
+from camwright.validation.report import judge
 
 
 @pytest.fixture(scope="module")
@@ -74,7 +74,7 @@ def test_the_index_says_what_designs_made_one_by_one_say(done: Path) -> None:
             assert not row["folder"]
             continue
         solution = solve(own.task.with_cut(cut), own.objective)
-        report = validate(solution.profile, own.task.with_cut(cut), own.servo)
+        report = judge(solution.profile, own.task.with_cut(cut), own.servo)
         (table,) = export(solution.profile, own, ["csv"])
         assert (row["status"] == "passed") == (report.passed and table.passed)
         failed = [check.name for check in report.checks if not check.passed]

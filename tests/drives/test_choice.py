@@ -17,6 +17,12 @@ from camwright.profiles.limits import Limits
 from camwright.profiles.machines import RotaryKnife
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import baseline
+from camwright.profiles.tables.candidates import (
+    _evenly,
+    candidates,
+    required_points,
+    zone_ends,
+)
 from camwright.profiles.tables.deviation import Deviation, deviation, glance
 from camwright.profiles.tables.knots import (
     Accuracy,
@@ -24,12 +30,6 @@ from camwright.profiles.tables.knots import (
     _rebuilt,
     choose,
     table_units,
-)
-from camwright.profiles.tables.placing import (
-    _evenly,
-    candidates,
-    required_points,
-    zone_ends,
 )
 from camwright.profiles.tables.targets import TARGETS
 from camwright.profiles.task import Task

@@ -113,7 +113,7 @@ def test_the_cycle_starts_closes_and_repeats(name: str, target: str) -> None:
     assert thrice.advance == pytest.approx(3 * pitch, abs=3e-7 * scale)
     zones = [cut.return_zone] if cut.origin == "return" else [0.5 * cut.sync_zone, cut.length - 0.5 * cut.sync_zone]
     for end in zones:
-        if TARGETS[target].placing != "equidistant":
+        if TARGETS[target].spacing != "equidistant":
             assert np.abs(found.breaks - end).min() <= 1e-6 * cut.length
 
 

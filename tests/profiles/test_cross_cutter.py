@@ -23,7 +23,7 @@ from camwright.profiles.errors import InputError
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import RotaryKnife
 from camwright.profiles.polynomial.profile import CamProfile
-from camwright.profiles.returns import assemble, place_law
+from camwright.profiles.returns import assemble, law_return
 from camwright.profiles.task import Task
 
 FREE = Limits(math.inf, math.inf, math.inf)
@@ -202,7 +202,7 @@ def test_above_the_critical_ratio_and_for_a_slave_that_comes_back_it_is_the_law_
         height = length * QUINTIC_RATIO * (1 + 1e-12)
     x = np.linspace(0.0, length, 50)
     np.testing.assert_allclose(
-        quintic_return(length, height)(x), place_law("poly_3_4_5", length, height)(x), atol=1e-13 * length
+        quintic_return(length, height)(x), law_return("poly_3_4_5", length, height)(x), atol=1e-13 * length
     )
 
 

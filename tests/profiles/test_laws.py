@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from camwright.profiles.errors import InputError
 from camwright.profiles.laws import LAWS, from_acceleration, law
-from camwright.profiles.returns import place_law
+from camwright.profiles.returns import law_return
 
 FloatArray = NDArray[np.float64]
 PI = math.pi
@@ -107,9 +107,9 @@ def test_longest_zone_without_reversal(name: str) -> None:
     """The return's least ratio ``1 - V (1 - height / length)`` is zero at the length ``height V / (V - 1)``."""
     velocity, height = MEASURES[name][0], 0.3
     longest = height * velocity / (velocity - 1)
-    assert place_law(name, longest, height).extrema(1)[0].value == pytest.approx(0.0, abs=1e-12)
-    assert place_law(name, 1.001 * longest, height).extrema(1)[0].value < -1e-4
-    assert place_law(name, 0.999 * longest, height).extrema(1)[0].value > 1e-4
+    assert law_return(name, longest, height).extrema(1)[0].value == pytest.approx(0.0, abs=1e-12)
+    assert law_return(name, 1.001 * longest, height).extrema(1)[0].value < -1e-4
+    assert law_return(name, 0.999 * longest, height).extrema(1)[0].value > 1e-4
 
 
 @pytest.mark.parametrize("name", LAWS)

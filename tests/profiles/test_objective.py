@@ -19,7 +19,7 @@ from camwright.profiles.objective import (
     of_command,
     of_motion,
 )
-from camwright.validation.motion import Motion
+from camwright.validation.motion import MotionMeasures
 from camwright.validation.motor import MotorMeasures
 
 HOME = Path(camwright.__file__).parent
@@ -45,7 +45,7 @@ def test_the_units_are_those_of_the_measures() -> None:
 
 @pytest.mark.parametrize("name", COMMAND_OBJECTIVES)
 def test_every_objective_of_the_command_is_measured_by_its_name(name: ObjectiveName) -> None:
-    measures = MotorMeasures if OBJECTIVES[name].of == "motor" else Motion
+    measures = MotorMeasures if OBJECTIVES[name].of == "motor" else MotionMeasures
     assert name in measures.__dataclass_fields__
 
 

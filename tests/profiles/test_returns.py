@@ -20,7 +20,7 @@ from camwright.profiles.returns import (
     BASELINES,
     assemble,
     baseline,
-    place_law,
+    law_return,
 )
 from camwright.profiles.task import Task
 
@@ -47,7 +47,7 @@ def test_baselines_are_the_linear_return_and_all_laws() -> None:
 @pytest.mark.parametrize("name", LAWS)
 @given(st.floats(0.05, 5), st.floats(0.05, 5), st.floats(0.2, 2))
 def test_placed_law_is_the_line_and_the_law(name: str, length: float, height: float, ratio: float) -> None:
-    back = place_law(name, length, height, ratio)
+    back = law_return(name, length, height, ratio)
     x = np.linspace(0.0, length, 201)
     expected = ratio * x + (height - ratio * length) * law(name)(np.clip(x / length, 0.0, 1.0))
     assert back.end == length

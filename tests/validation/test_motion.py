@@ -16,7 +16,7 @@ from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import BASELINES, baseline
 from camwright.profiles.task import Task
 from camwright.validation.motion import (
-    Motion,
+    MotionMeasures,
     greatest_jump,
     greatest_magnitude,
     is_steady,
@@ -85,7 +85,7 @@ def test_jerk_of_the_quintic() -> None:
 def test_linear_return_has_no_bounded_acceleration(origin: str) -> None:
     cut = replace(CUT, origin=origin)
     motion = measure_motion(baseline("linear_return", Task(KNIFE, cut, FREE)), Task(KNIFE, cut, FREE))
-    assert motion == Motion(
+    assert motion == MotionMeasures(
         pytest.approx(80 / 60), pytest.approx(40 / 60), None, None, None, None, pytest.approx(0.0, abs=1e-15)
     )
 

@@ -22,7 +22,7 @@ from camwright.profiles.returns import baseline
 from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
 from camwright.validation.check import Check
-from camwright.validation.report import ValidationReport, validate
+from camwright.validation.report import ValidationReport, judge
 
 KNIFE = RotaryKnife(0.4)
 CUT = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4)
@@ -51,7 +51,7 @@ NAMES = (
 def judged(
     name: str, cut: Cut = CUT, limits: Limits = LIMITS, servo: Servo = PAPER, machine: RotaryKnife = KNIFE
 ) -> ValidationReport:
-    return validate(baseline(name, Task(KNIFE, cut, LIMITS)), Task(machine, cut, limits), servo)
+    return judge(baseline(name, Task(KNIFE, cut, LIMITS)), Task(machine, cut, limits), servo)
 
 
 def failed(report: ValidationReport) -> dict[str, Check]:
@@ -116,7 +116,7 @@ def test_a_ratio_off_by_a_millionth_in_sync_fails() -> None:
     profile = baseline("double_s", Task(KNIFE, CUT, LIMITS))
     coefficients = profile.coefficients.copy()
     coefficients[-1, 1] += 1e-6
-    report = validate(CamProfile(profile.breaks.copy(), coefficients), Task(KNIFE, CUT, LIMITS), PAPER)
+    report = judge(CamProfile(profile.breaks.copy(), coefficients), Task(KNIFE, CUT, LIMITS), PAPER)
     faults = failed(report)
     assert faults["sync_ratio"].value == pytest.approx(1e-6, rel=1e-6)
     assert {"position_closure", "ratio_joins"} <= set(faults)
@@ -127,7 +127,7 @@ def test_a_table_of_rounded_points_is_judged_and_fails_for_its_jumps() -> None:
     x = np.linspace(0.0, 0.6, 181)
     y = np.round(profile(x), 6)
     table = CamProfile(x, np.column_stack([y[:-1], np.diff(y) / np.diff(x)]))
-    faults = failed(validate(table, Task(KNIFE, CUT, LIMITS), PAPER))
+    faults = failed(judge(table, Task(KNIFE, CUT, LIMITS), PAPER))
     assert {"ratio_joins", "sync_ratio", "acceleration", "jerk"} <= set(faults)
     assert faults["acceleration"].value is None
 
@@ -166,7 +166,7 @@ def test_a_cut_shorter_than_the_physical_bound_fails_it() -> None:
 
 def test_another_cut_s_profile_is_refused() -> None:
     with pytest.raises(InputError, match=r"runs over the master from 0\.0 m to 0\.6 m"):
-        validate(baseline("double_s", Task(KNIFE, CUT, LIMITS)), Task(KNIFE, replace(CUT, length=0.7), LIMITS), PAPER)
+        judge(baseline("double_s", Task(KNIFE, CUT, LIMITS)), Task(KNIFE, replace(CUT, length=0.7), LIMITS), PAPER)
 
 
 CARRIAGE = LinearCarriage(0.7, home=0.1, mass=30.0, travel_per_turn=0.04)
@@ -185,7 +185,7 @@ SHORT = replace(CUT, sync_zone=0.1, shear_zone_at=0.05)
 def test_a_quintic_passes_every_check_of_its_machine(machine: Machine, origin: str) -> None:
     cut = replace(SHORT, origin=origin, sync_ratio=1.03, sync_tolerance=1e-3)
     limits = replace(OPEN, reversal=isinstance(machine, RotaryKnife))
-    report = validate(baseline("poly_3_4_5", Task(machine, cut, LIMITS)), Task(machine, cut, limits), QUICK)
+    report = judge(baseline("poly_3_4_5", Task(machine, cut, LIMITS)), Task(machine, cut, limits), QUICK)
     assert failed(report) == {}
     names = {check.name for check in report.checks}
     assert ("stroke" in names) == isinstance(machine, LinearCarriage)
@@ -200,25 +200,23 @@ def test_a_quintic_passes_every_check_of_its_machine(machine: Machine, origin: s
 def test_a_carriage_that_leaves_its_stroke_fails_at_the_place() -> None:
     cycle = baseline("poly_3_4_5", Task(CARRIAGE, SHORT, LIMITS))
     way = cycle.extrema(0)[1].value - cycle.extrema(0)[0].value
-    check = failed(validate(cycle, Task(replace(CARRIAGE, stroke=0.99 * way), SHORT, OPEN), QUICK))["stroke"]
+    check = failed(judge(cycle, Task(replace(CARRIAGE, stroke=0.99 * way), SHORT, OPEN), QUICK))["stroke"]
     assert check.limit == pytest.approx(0.99 * way / 2)
     assert check.value == pytest.approx(way / 2, rel=1e-9)
     assert float(cycle(check.at, 1)) == pytest.approx(0.0, abs=1e-6)
-    assert "stroke" not in failed(validate(cycle, Task(replace(CARRIAGE, stroke=1.001 * way), SHORT, OPEN), QUICK))
+    assert "stroke" not in failed(judge(cycle, Task(replace(CARRIAGE, stroke=1.001 * way), SHORT, OPEN), QUICK))
 
 
 def test_a_carriage_may_run_back_whatever_the_limits_say() -> None:
     cycle = baseline("poly_3_4_5", Task(CARRIAGE, SHORT, LIMITS))
-    assert "reversal" not in failed(validate(cycle, Task(CARRIAGE, SHORT, OPEN), QUICK))
+    assert "reversal" not in failed(judge(cycle, Task(CARRIAGE, SHORT, OPEN), QUICK))
     slow = -0.9 * SHORT.line_speed * cycle.extrema(1)[0].value
-    assert {"speed", "reversal"} <= set(
-        failed(validate(cycle, Task(CARRIAGE, SHORT, replace(OPEN, speed=slow)), QUICK))
-    )
+    assert {"speed", "reversal"} <= set(failed(judge(cycle, Task(CARRIAGE, SHORT, replace(OPEN, speed=slow)), QUICK)))
 
 
 def test_minimum_lengths_with_over_speed_are_those_of_a_faster_line() -> None:
     fast = replace(CUT, sync_ratio=1.1)
-    report = validate(baseline("cycloid", Task(KNIFE, fast, LIMITS)), Task(KNIFE, fast, LIMITS), PAPER)
+    report = judge(baseline("cycloid", Task(KNIFE, fast, LIMITS)), Task(KNIFE, fast, LIMITS), PAPER)
     check = {check.name: check for check in report.checks}["minimum_cut_length"]
     zone = report.servo.settling + fast.shear_zone
     # eq. 8 with the slave's travel of 1.1 l_s in the sync zone
@@ -227,11 +225,11 @@ def test_minimum_lengths_with_over_speed_are_those_of_a_faster_line() -> None:
 
 def test_a_motor_s_curve_is_judged_where_it_is_given() -> None:
     cycle = baseline("poly_3_4_5", Task(CRANK, SHORT, LIMITS))
-    motor = validate(cycle, Task(CRANK, SHORT, OPEN), QUICK).motor
+    motor = judge(cycle, Task(CRANK, SHORT, OPEN), QUICK).motor
     torque, speed = motor.peak_torque, motor.peak_speed
 
     def faults(points: tuple[tuple[float, float], ...]) -> dict[str, Check]:
-        return failed(validate(cycle, Task(CRANK, SHORT, replace(OPEN, motor=MotorCurve(points))), QUICK))
+        return failed(judge(cycle, Task(CRANK, SHORT, replace(OPEN, motor=MotorCurve(points))), QUICK))
 
     assert faults(((0.0, torque), (speed, torque))) == {}
     weak = faults(((0.0, 0.9 * torque), (speed, 0.9 * torque)))
@@ -244,7 +242,7 @@ def test_a_motor_s_curve_is_judged_where_it_is_given() -> None:
 def test_a_motor_s_curve_and_a_jump_of_the_speed() -> None:
     limits = replace(OPEN, motor=MotorCurve(((0.0, 1.0), (1e4, 1.0))))
     linear = baseline("linear_return", Task(CARRIAGE, SHORT, LIMITS))
-    assert failed(validate(linear, Task(CARRIAGE, SHORT, limits), QUICK))["motor_torque"].value is None
-    names = {check.name for check in validate(linear, Task(replace(CARRIAGE, mass=0.0), SHORT, limits), QUICK).checks}
+    assert failed(judge(linear, Task(CARRIAGE, SHORT, limits), QUICK))["motor_torque"].value is None
+    names = {check.name for check in judge(linear, Task(replace(CARRIAGE, mass=0.0), SHORT, limits), QUICK).checks}
     assert "motor_speed" in names
     assert "motor_torque" not in names  # the job does not say what the motor moves

@@ -9,7 +9,7 @@ import numpy as np
 from camwright.validation.identify.fit import (
     CONFIDENCE,
     ROUNDS,
-    Solution,
+    Minimum,
     TraceFit,
     moved,
     without,
@@ -33,7 +33,7 @@ _WHITE = 1.3
 """Squared residual over the squared noise of the rows up to which nothing else is looked for."""
 
 
-def with_clock(fit: TraceFit, found: Solution) -> Solution:
+def with_clock(fit: TraceFit, found: Minimum) -> Minimum:
     """Fit the clock too where the trace shows it."""
     mean = fit.residual(found.values, None)
     noise = found.cost / len(fit.times)
@@ -48,7 +48,7 @@ def with_clock(fit: TraceFit, found: Solution) -> Solution:
     return best if seen else found
 
 
-def _comb(fit: TraceFit, found: Solution, reach: float) -> tuple[Solution, float]:
+def _comb(fit: TraceFit, found: Minimum, reach: float) -> tuple[Minimum, float]:
     """Fit the clock, the sample time scanned so finely that no tooth of its comb is missed.
 
     Parameters

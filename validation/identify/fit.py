@@ -51,7 +51,7 @@ _UNSTABLE = 1e3
 
 
 @dataclass(frozen=True, eq=False)
-class Solution:
+class Minimum:
     """A minimum.
 
     Parameters
@@ -177,7 +177,7 @@ class TraceFit:
         late = servo.delay + (1.0 - servo.velocity_feedforward) / servo.position_gain
         return np.asarray(found[self.rows] + begin + velocity * (self.step * self.rows - late))
 
-    def doubt(self, found: Solution) -> float:
+    def doubt(self, found: Minimum) -> float:
         """Squared residual that the command between the rows may account for, which nobody knows: large where it has corners.
 
         A spline through every second row misses the others; one through all rows misses a fourth of that, at a corner.
@@ -192,7 +192,7 @@ class TraceFit:
         effect = np.asarray(irfft(rfft(missed) * mean_response(Servo(**found.values), rates), rows))
         return float(np.sum((effect / 4.0) ** 2))
 
-    def solve(self, alpha: float) -> Solution:
+    def solve(self, alpha: float) -> Minimum:
         """Fit all parameters but the velocity feed-forward and the clock, from many starts."""
         names = tuple(name for name in RANGES if name != "velocity_feedforward")
         lag, found = self.lag, []
@@ -229,7 +229,7 @@ class TraceFit:
             columns.append((sides[0] - sides[1]) / (2.0 * step))
         return np.stack(columns, axis=1)
 
-    def minimum(self, start: dict[str, float], names: tuple[str, ...], clock: float | None, rounds: int) -> Solution:
+    def minimum(self, start: dict[str, float], names: tuple[str, ...], clock: float | None, rounds: int) -> Minimum:
         """Least squares over some parameters, and the clock if one is given, from a start; ranges are kept."""
         from scipy.optimize import least_squares
 
@@ -275,7 +275,7 @@ class TraceFit:
             name: float(each) * (values[name] if name in _LOGARITHMIC else 1.0)
             for name, each in zip(names, spread, strict=False)
         }
-        return Solution(values, names, phase, cost, spreads)
+        return Minimum(values, names, phase, cost, spreads)
 
 
 def without(signal: FloatArray, rows: FloatArray) -> FloatArray:

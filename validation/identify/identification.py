@@ -17,7 +17,7 @@ from camwright.validation.identify.fit import (
     CONFIDENCE,
     RANGES,
     ROUNDS,
-    Solution,
+    Minimum,
     TraceFit,
 )
 from camwright.validation.identify.quality import require_usable
@@ -120,7 +120,7 @@ def identify(trace: Trace, place: str, velocity_feedforward: float | None = None
     )
 
 
-def _choose(fit: TraceFit) -> tuple[Solution, Origin]:
+def _choose(fit: TraceFit) -> tuple[Minimum, Origin]:
     """Fit the velocity feed-forward too, or take it as 0 or 1 where this is about as good."""
     from scipy.optimize import minimize_scalar
 
@@ -146,19 +146,19 @@ def _choose(fit: TraceFit) -> tuple[Solution, Origin]:
     return with_clock(fit, fit.minimum(best.values, free, None, ROUNDS)), "trace"
 
 
-def _about_as_good(fit: TraceFit, simple: Solution, free: Solution) -> bool:
+def _about_as_good(fit: TraceFit, simple: Minimum, free: Minimum) -> bool:
     """Whether a fit of one parameter less is not significantly worse."""
     noise = free.cost / len(fit.times)
     return simple.cost - free.cost <= CONFIDENCE**2 * (noise + fit.doubt(free))
 
 
-def _with_doubt(fit: TraceFit, found: Solution) -> Solution:
+def _with_doubt(fit: TraceFit, found: Minimum) -> Minimum:
     """Widen the confidence by what the command between the rows may do."""
     wider = math.sqrt(1.0 + fit.doubt(found) * len(fit.times) / found.cost)
     return replace(found, spreads={name: wider * spread for name, spread in found.spreads.items()})
 
 
-def _faults(solution: Solution, fit: float) -> Iterator[str]:
+def _faults(solution: Minimum, fit: float) -> Iterator[str]:
     """Say what the trace does not tell, or tells of no servo of this kind."""
     if not fit > _WORST_FIT:
         yield (

@@ -24,7 +24,7 @@ from camwright.design.returns.structure import (
     subdivide,
     tidy,
 )
-from camwright.design.returns.transcription import Motion, piece_coefficients
+from camwright.design.returns.transcription import ScaledMotion, piece_coefficients
 from camwright.profiles.closed_forms.reach import greatest_reach, least_acceleration, least_jerk
 
 PEAK = ScaledProblem(1.0, 0.0, 0.0, 0.0, -10.0, 10.0, 100.0, 100.0, "peak_acceleration")
@@ -147,11 +147,11 @@ def test_no_start_without_a_closed_form(change: dict[str, object]) -> None:
 JERK = replace(PEAK, objective="rms_jerk", greatest_slope=4.0, greatest_jerk=50.0, greatest_ratio=0.9, least_ratio=-0.9)
 
 
-def cubic_acceleration(values: list[float]) -> Motion:
+def cubic_acceleration(values: list[float]) -> ScaledMotion:
     """Straight lines between the values, as pieces of degree 3 of equal length."""
     a = np.interp(np.arange((len(values) - 1) * 3 + 1) / 3, np.arange(len(values)), values)
     count = len(values) - 1
-    return Motion(np.full(count, 1 / count), a, 0.0)
+    return ScaledMotion(np.full(count, 1 / count), a, 0.0)
 
 
 @pytest.mark.parametrize("touched", [False, True])
@@ -160,7 +160,7 @@ def test_arcs_are_told_by_the_active_limit_with_free_pieces_between(touched: boo
     lengths = np.array([0.08, 0.12, 0.3, 0.3, 0.12, 0.08])
     a = np.interp(np.arange(19) / 3, np.arange(7), [0.0, 4.0, 4.0, 0.0, -4.0, -4.0, 0.0])
     problem = replace(JERK, greatest_ratio=9.0, least_ratio=-9.0)
-    motion, arcs = read_quintic(Motion(lengths, a, 0.0), problem, touched)
+    motion, arcs = read_quintic(ScaledMotion(lengths, a, 0.0), problem, touched)
     assert arcs[:3] == ("ramp", "free", "hold")
     assert arcs[-3:] == ("hold", "free", "ramp")
     assert motion.lengths.sum() == pytest.approx(1.0)
@@ -181,7 +181,7 @@ def test_a_short_cruise_may_be_a_touched_speed() -> None:
     """The speed reaches 0.9 on one interval of ten: read as a cruise and as a point between two free arcs."""
     x = np.linspace(0, 1, 11)
     a = np.interp(np.arange(31) / 30, x, [0, 4, 4, 1, 0.1, 0, 0, -0.1, -1, -4, 0])
-    motion = Motion(np.full(10, 0.1), a, 0.0)
+    motion = ScaledMotion(np.full(10, 0.1), a, 0.0)
     top = float(motion.nodes()[1].max())
     readings = readings_of(
         motion, replace(JERK, greatest_ratio=top, least_ratio=-9.0, greatest_slope=9.0, greatest_jerk=999.0)
@@ -207,7 +207,7 @@ def test_a_quintic_is_read_without_loss() -> None:
             (-5 * v[0] + 18 * v[1] - 9 * v[2] + 2 * v[3]) / 6,
             (2 * v[0] - 9 * v[1] + 18 * v[2] - 5 * v[3]) / 6,
         ]
-    grid = Motion(np.full(10, 0.1), np.append(thirds, exact[-1]), 720.0)
+    grid = ScaledMotion(np.full(10, 0.1), np.append(thirds, exact[-1]), 720.0)
     problem = replace(JERK, greatest_ratio=9.0, least_ratio=-9.0, greatest_slope=9.0, greatest_jerk=99.0)
     motion, arcs = read_quintic(grid, problem, touched=True)
     assert arcs == ("free",)
@@ -217,12 +217,12 @@ def test_a_quintic_is_read_without_loss() -> None:
 # -- tidying ----------------------------------------------------------------------------------------------------------------
 
 
-def noisy(motion: Motion, seed: int, size: float) -> Motion:
+def noisy(motion: ScaledMotion, seed: int, size: float) -> ScaledMotion:
     rng = np.random.default_rng(seed)
     a = motion.accelerations + size * rng.normal(size=len(motion.accelerations))
     a[[0, -1]] = 0.0
     lengths = motion.lengths * (1 + size * rng.normal(size=len(motion.lengths)))
-    return Motion(lengths, a, motion.objective)
+    return ScaledMotion(lengths, a, motion.objective)
 
 
 @given(st.integers(0, 1000), st.floats(40, 1e5))
@@ -242,7 +242,7 @@ def test_false_corners_and_vanished_pieces_go() -> None:
     lengths = np.array([0.1, 0.15, 0.0, 0.25, 0.25, 0.0, 0.25])
     level = 16 / 3 * 0.25
     a = np.array([0.0, 0.4 * level, level, level, 0.0, -level, -level, 0.0])
-    motion = tidy(Motion(lengths, a, 0.0), replace(PEAK, height=level * 0.25**2 * 2))
+    motion = tidy(ScaledMotion(lengths, a, 0.0), replace(PEAK, height=level * 0.25**2 * 2))
     assert motion.lengths.tolist() == pytest.approx([0.25, 0.5, 0.25])
     assert motion.accelerations.tolist() == pytest.approx([0.0, level, -level, 0.0])
 
@@ -250,12 +250,12 @@ def test_false_corners_and_vanished_pieces_go() -> None:
 def test_tidying_leaves_a_polished_quintic_as_it_is() -> None:
     """The hull of a long piece's jerk is far wider than its jerk: it must not be taken for a broken limit."""
     # jerk 60, -30, 60 at ends and middle; its Bernstein coefficients are 60, -120, 60
-    motion = Motion(np.ones(1), np.array([0.0, 20.0, -20.0, 0.0]), 720.0)
+    motion = ScaledMotion(np.ones(1), np.array([0.0, 20.0, -20.0, 0.0]), 720.0)
     problem = replace(PEAK, objective="rms_jerk", greatest_jerk=61.0)
     tidied = tidy(motion, problem)
     assert tidied.lengths == pytest.approx([1.0], abs=1e-15)
     assert tidied.accelerations == pytest.approx([0.0, 20.0, -20.0, 0.0], abs=1e-12)
-    two = Motion(np.array([0.5, 0.5]), np.array([0.0, 10.0, 5.0, 0.0, -5.0, -10.0, 0.0]), 720.0)
+    two = ScaledMotion(np.array([0.5, 0.5]), np.array([0.0, 10.0, 5.0, 0.0, -5.0, -10.0, 0.0]), 720.0)
     tidied = tidy(two, problem)
     assert tidied.lengths == pytest.approx([0.5, 0.5], abs=1e-12)
     assert piece_coefficients(tidied.accelerations, 3).shape == (2, 4)

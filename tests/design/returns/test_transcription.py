@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from camwright.design.returns.scaling import ScaledProblem
 from camwright.design.returns.transcription import (
     Arc,
-    Motion,
     Programme,
+    ScaledMotion,
     Shape,
     _gram,
     _inner,
@@ -38,12 +38,12 @@ def bernstein(coefficients: FloatArray) -> Polynomial:
 
 
 @st.composite
-def motions(draw: st.DrawFn) -> Motion:
+def motions(draw: st.DrawFn) -> ScaledMotion:
     degree, pieces = draw(st.sampled_from([1, 2, 3])), draw(st.integers(1, 6))
     raw = np.array(draw(st.lists(st.floats(0.05, 1.0), min_size=pieces, max_size=pieces)))
     count = pieces * degree + 1
     a = draw(st.lists(st.floats(-50, 50, allow_subnormal=False), min_size=count, max_size=count))
-    return Motion(raw / raw.sum(), np.array(a), 0.0)
+    return ScaledMotion(raw / raw.sum(), np.array(a), 0.0)
 
 
 @pytest.mark.parametrize("degree", range(6))
@@ -88,7 +88,7 @@ def test_parts_that_meet_share_a_coefficient(degree: int, parts: int) -> None:
 
 
 @given(motions())
-def test_neighbours_share_a_coefficient(motion: Motion) -> None:
+def test_neighbours_share_a_coefficient(motion: ScaledMotion) -> None:
     p = motion.degree
     rows = piece_coefficients(motion.accelerations, p)
     assert rows.shape == (len(motion.lengths), p + 1)
@@ -97,7 +97,7 @@ def test_neighbours_share_a_coefficient(motion: Motion) -> None:
 
 
 @given(motions())
-def test_profile_is_the_integral_of_the_acceleration(motion: Motion) -> None:
+def test_profile_is_the_integral_of_the_acceleration(motion: ScaledMotion) -> None:
     """Naive twin: integrate each Bernstein piece twice with numpy's polynomials, from rest at zero."""
     profile = motion.profile()
     q, v = 0.0, 0.0
@@ -125,7 +125,7 @@ def test_profile_is_the_integral_of_the_acceleration(motion: Motion) -> None:
 
 def test_pieces_of_no_length_are_left_out() -> None:
     for nothing in (0.0, 1e-17):
-        motion = Motion(np.array([0.5, nothing, 0.5]), np.array([0.0, 1.0, 1.0, 0.0]), 0.0)
+        motion = ScaledMotion(np.array([0.5, nothing, 0.5]), np.array([0.0, 1.0, 1.0, 0.0]), 0.0)
         assert motion.profile().breaks.tolist() == [0.0, 0.5, 1.0]
 
 
@@ -148,7 +148,7 @@ def test_free_optimum_of_the_programme(degree: int) -> None:
     """Least mean square of the acceleration: the cubic, 12; on a grid that holds it but for the ends at rest, a little more."""
     lengths = np.full(20, 1 / 20)
     programme = Programme(Shape(("free",) * 20, degree, False, "rms_acceleration"), QUIET)
-    start = Motion(lengths, np.zeros(20 * degree + 1), 0.0)
+    start = ScaledMotion(lengths, np.zeros(20 * degree + 1), 0.0)
     motion, statistics = programme.solve(FREE, start)
     assert statistics["success"]
     profile = motion.profile()
@@ -161,7 +161,7 @@ def test_free_optimum_of_the_programme(degree: int) -> None:
 def test_one_quintic_piece_is_the_least_rms_jerk() -> None:
     programme = Programme(Shape(("free",), 3, True, "rms_jerk"), QUIET)
     problem = ScaledProblem(1.0, 0.0, 0.0, 0.0, -100.0, 100.0, 1e4, 1e6, "rms_jerk")
-    motion, statistics = programme.solve(problem, Motion(np.ones(1), np.array([0.0, 15.0, -15.0, 0.0]), 700.0))
+    motion, statistics = programme.solve(problem, ScaledMotion(np.ones(1), np.array([0.0, 15.0, -15.0, 0.0]), 700.0))
     assert statistics["success"]
     assert motion.objective == pytest.approx(720, rel=1e-9)
     assert motion.accelerations == pytest.approx([0.0, 20.0, -20.0, 0.0], abs=1e-6)
@@ -170,7 +170,7 @@ def test_one_quintic_piece_is_the_least_rms_jerk() -> None:
 def test_known_arcs_are_what_they_say() -> None:
     shape = Shape(("ramp", "hold", "cruise"), 3, True, "rms_jerk")
     programme = Programme(shape, QUIET)
-    start = Motion(np.array([0.3, 0.3, 0.4]), np.zeros(10), 0.0)
+    start = ScaledMotion(np.array([0.3, 0.3, 0.4]), np.zeros(10), 0.0)
     motion, _ = programme.solve(ScaledProblem(1.0, 3.0, 0.0, 0.0, -9.0, 9.0, 1e4, 1e6, "rms_jerk"), start)
     ramp, hold, cruise = piece_coefficients(motion.accelerations, 3)
     assert np.abs(np.diff(ramp, 2)).max() <= 1e-6
@@ -183,7 +183,7 @@ def test_limits_at_the_nodes_put_arcs_on_them_and_keep_the_jerk_continuous() -> 
     shape = Shape(("free", "cruise", "free"), 3, True, "rms_jerk", at_nodes=True)
     problem = ScaledProblem(1.0, 0.0, 0.0, 0.0, -9.0, 1.3, 1e4, 1e6, "rms_jerk")
     a = np.array([0.0, 12.0, 3.0, 0.0, 0.0, 0.0, 0.0, -3.0, -12.0, 0.0])
-    motion, statistics = Programme(shape, QUIET).solve(problem, Motion(np.array([0.3, 0.4, 0.3]), a, 3000.0))
+    motion, statistics = Programme(shape, QUIET).solve(problem, ScaledMotion(np.array([0.3, 0.4, 0.3]), a, 3000.0))
     assert statistics["success"]
     profile = motion.profile()
     assert profile.extrema(1)[1].value == pytest.approx(1.3, rel=1e-6)

@@ -27,7 +27,7 @@ from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
 from camwright.validation.motor import measure_motor
-from camwright.validation.report import validate
+from camwright.validation.report import judge
 
 STIFF = Servo(200.0, 0.8, 50.0, 0.002, 1.0)
 CRANK = CrankSlider(0.15, 0.6, 0.02, crank_inertia=0.5, carriage_mass=40.0, sync_at=1.2)
@@ -87,7 +87,7 @@ def test_a_shaped_design_needs_less_than_designs_for_the_motion(cost: MotorObjec
     for other in others:
         values = np.stack([other.profile(x, order) for order in range(3)])
         assert mixed(1e-3, values) >= here * (1 - (1e-5 if cost != "peak_torque" else 5e-3))
-    report = validate(found.profile, Task(CRANK, cut, LIMITS), STIFF, sweep=False, servo_aware=True)
+    report = judge(found.profile, Task(CRANK, cut, LIMITS), STIFF, sweep=False, servo_aware=True)
     assert [check.name for check in report.checks if not check.passed] == []
 
 

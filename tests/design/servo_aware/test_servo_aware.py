@@ -36,7 +36,7 @@ from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.returns import assemble
 from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
-from camwright.validation.report import validate
+from camwright.validation.report import judge
 from camwright.validation.servo.response import servo_response
 
 KNIFE = RotaryKnife(0.4)
@@ -200,7 +200,7 @@ def test_every_machine_keeps_limits_closure_and_tolerance(
     simulated = servo_response(profile, Task(machine, cut, LIMITS), servo).shear_zone_error
     assert axis.errors[0] == pytest.approx(simulated, abs=1e-9)
     assert simulated <= cut.sync_tolerance
-    report = validate(profile, Task(machine, cut, limits), servo, sweep=False, servo_aware=True)
+    report = judge(profile, Task(machine, cut, limits), servo, sweep=False, servo_aware=True)
     failed = {check.name for check in report.checks if not check.passed}
     assert failed <= (set() if axis.axis_limits else {"axis_speed", "axis_acceleration", "axis_reversal"})
 
@@ -252,7 +252,7 @@ def test_random_knife_jobs_end_in_a_design_that_holds_or_in_a_way_out(
     assert axis.errors[0] == pytest.approx(simulated, abs=1e-9)
     if cost != "sync_error":
         assert simulated <= tolerance
-    report = validate(solution.profile, Task(KNIFE, cut, LIMITS), servo, sweep=False, servo_aware=True)
+    report = judge(solution.profile, Task(KNIFE, cut, LIMITS), servo, sweep=False, servo_aware=True)
     names = {check.name for check in report.checks if not check.passed}
     allowed = {"shear_zone_error"} if cost == "sync_error" else set()
     assert names <= (allowed if axis.axis_limits else allowed | {"axis_speed", "axis_acceleration", "axis_reversal"})

@@ -71,9 +71,9 @@ def candidates(
     """
     limit = target.max_points or (MOST_LINE if target.law == "line" else MOST_SPLINE)
     most = points or min(limit, MOST_LINE if target.law == "line" else MOST_SPLINE)
-    if target.placing == "equidistant":
+    if target.spacing == "equidistant":
         yield from _even(profile, required, most, points)
-    elif target.placing == "pieces":
+    elif target.spacing == "pieces":
         yield from _pieces(profile, target, required, allowed, points)
     else:
         before = -1
