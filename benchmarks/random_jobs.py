@@ -65,12 +65,12 @@ def random_job(rng: np.random.Generator) -> Job:
 
 def worst_excess(result: Solution, job: Job) -> float:
     """Largest share by which the whole cycle exceeds a limit, over time, exactly."""
-    _, cut, limits, _ = job
+    machine, cut, limits, _ = job
     v = cut.line_speed
     (low, high), slope, jerk = (result.profile.extrema(1), result.profile.extrema(2), result.profile.extrema(3))
     return max(
         v * high.value / limits.speed - 1,
-        (limits.least_velocity - v * low.value) / limits.speed,
+        (Task(machine, cut, limits).least_velocity - v * low.value) / limits.speed,
         v**2 * max(-slope[0].value, slope[1].value) / limits.acceleration - 1,
         v**3 * max(-jerk[0].value, jerk[1].value) / limits.jerk - 1,
     )

@@ -48,13 +48,12 @@ def place_sync(task: Task, cost: Callable[[Task], float]) -> Placement | None:
     InputError
         The sync zone fits nowhere.
     """
-    machine = task.machine
-    least, greatest = machine.place_range(task.cut)
+    least, greatest = task.machine.place_range(task.cut)
     margin = MARGIN * (greatest - least)
     angles = np.linspace(least + margin, greatest - margin, PLACES)
 
     def at(angle: float) -> float:
-        return cost(task.with_machine(machine.placed_at(angle)))
+        return cost(task.placed_at(angle))
 
     costs = [at(float(angle)) for angle in angles]
     if not any(math.isfinite(value) for value in costs):
@@ -72,7 +71,7 @@ def place_sync(task: Task, cost: Callable[[Task], float]) -> Placement | None:
                 at, float(angles[max(0, i - 1)]), float(angles[min(PLACES - 1, i + 1)]), (costs[i], float(angles[i]))
             ),
         )
-    return Placement(task.with_machine(machine.placed_at(best[1])), best[0], len(valleys))
+    return Placement(task.placed_at(best[1]), best[0], len(valleys))
 
 
 def _golden(at: Callable[[float], float], low: float, high: float, best: tuple[float, float]) -> tuple[float, float]:

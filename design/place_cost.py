@@ -25,10 +25,7 @@ ANGLES = 721
 """Places of the cycle at which the torque of a stand-in is taken."""
 
 
-def place_for(
-    task: Task,
-    objective: CommandObjective,
-) -> Placement:
+def place_for(task: Task, objective: CommandObjective) -> Placement:
     """Place the sync zone where an objective is least, or, where the limits are not enough at any place, where least is missing.
 
     A peak is that of the whole cycle, for the sync zone can have a higher one than the return. Root mean squares are those of the return,
@@ -53,10 +50,7 @@ def place_for(
         return _torque(placed)
 
     found = place_sync(task, cost)
-    if found is None:
-        least, greatest = task.machine.place_range(task.cut)
-        return Placement(task.with_machine(task.machine.placed_at(0.5 * (least + greatest))), math.inf, 1)
-    return found
+    return Placement(task.placed_midway(), math.inf, 1) if found is None else found
 
 
 def _missing(task: Task) -> float:

@@ -30,8 +30,3 @@ class Limits:
     jerk: float
     reversal: bool = False
     motor: MotorCurve | None = None
-
-    @property
-    def least_velocity(self) -> float:
-        """Least velocity allowed (m/s): zero without reversal."""
-        return -self.speed if self.reversal else 0.0

@@ -121,6 +121,21 @@ class Task:
         """Return the task with master zero at the start of the return zone."""
         return self if self.cut.origin == "return" else self.with_cut(replace(self.cut, origin="return"))
 
+    def placed_at(self, place: float) -> Task:
+        """Return the task with mid sync zone at a slave coordinate of the machine (slave unit)."""
+        return self.with_machine(self.machine.placed_at(place))
+
+    def placed_midway(self) -> Task:
+        """Return the task with the sync zone in the middle of where the machine can have it.
+
+        Raises
+        ------
+        InputError
+            The sync zone fits nowhere.
+        """
+        least, greatest = self.machine.place_range(self.cut)
+        return self.placed_at(0.5 * (least + greatest))
+
     def with_machine(self, machine: Machine) -> Task:
         """Return the task on another machine."""
         return Task(machine, self.cut, self.limits)

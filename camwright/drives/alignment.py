@@ -28,8 +28,8 @@ def aligned(rebuilt: CamProfile, job: Job) -> tuple[CamProfile, tuple[str, ...]]
     (profile, notes)
         The cycle, and where it begins in the file if that is not at the file's first point.
     """
-    cut, machine = job.cut, job.machine
-    sync = machine.sync_profile(cut)
+    task, cut, machine = job.task, job.cut, job.machine
+    sync = task.sync
     in_zone = np.linspace(0.0, cut.sync_zone, _IN_ZONE)
     meant = sync(in_zone)
     zone = (cut.return_start + cut.return_zone) % cut.length
@@ -40,7 +40,7 @@ def aligned(rebuilt: CamProfile, job: Job) -> tuple[CamProfile, tuple[str, ...]]
         off = rebuilt(x, outside="repeat") - meant
         return np.asarray(0.5 * np.ptp(off, axis=1))
 
-    lever = float(np.abs(machine.tool_ratio(machine.sync_start(cut) + meant)).max())
+    lever = float(np.abs(machine.tool_ratio(task.slave_at_sync_start + meant)).max())
     notes: tuple[str, ...] = ()
     as_it_is = float(misfit(np.zeros(1))[0]) * lever
     if as_it_is > cut.sync_tolerance:
@@ -57,9 +57,7 @@ def aligned(rebuilt: CamProfile, job: Job) -> tuple[CamProfile, tuple[str, ...]]
             notes = (note,)
     x = (zone + in_zone) * (rebuilt.length / cut.length)
     off = rebuilt(x, outside="repeat") - meant
-    wanted = (
-        machine.pitch - sync.advance if cut.origin == "return" else machine.pitch - float(sync(0.5 * cut.sync_zone))
-    )
+    wanted = task.height if cut.origin == "return" else machine.pitch - float(sync(0.5 * cut.sync_zone))
     return rebuilt.shift(0.0, wanted - 0.5 * float(off.max() + off.min())), notes
 
 

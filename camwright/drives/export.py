@@ -156,7 +156,7 @@ def _in_slave_units(accuracy: Accuracy, profile: CamProfile, job: Job) -> Accura
         return accuracy
     y = job.task.slave_at_start + profile(np.linspace(profile.start, profile.end, 721))
     lever = float(np.abs(job.machine.tool_ratio(y)).max())
-    in_sync = abs(float(job.machine.sync_profile(job.cut)(0.0, 1)))
+    in_sync = abs(float(job.task.sync(0.0, 1)))
     return replace(accuracy, position=accuracy.position / lever, ratio=accuracy.ratio * in_sync)
 
 

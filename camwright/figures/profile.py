@@ -52,7 +52,8 @@ def profile_figure(comparison: Comparison) -> Figure:
     comparison
         Holds the job and the profiles; those of `camwright.figures.style.LINES` are drawn.
     """
-    cut, limits, machine = comparison.job.cut, comparison.job.limits, comparison.job.machine
+    task = comparison.job.task
+    cut, limits, machine = task.cut, task.limits, task.machine
     v = cut.line_speed
     figure = blank_figure(8.0)
     travel, ratio, acceleration, jerk = figure.subplots(4, 1, sharex=True)
@@ -61,12 +62,11 @@ def profile_figure(comparison: Comparison) -> Figure:
         shade_zones(axes, cut)
     for name, profile in shown.items():
         x, y = curve(profile, 0)
-        travel.plot(x * 1e3, _travel(x, y, comparison.job.task), **LINES[name])
+        travel.plot(x * 1e3, _travel(x, y, task), **LINES[name])
         for axes, order, factor in ((ratio, 1, 1.0), (acceleration, 2, v**2), (jerk, 3, v**3)):
             x, value = curve(profile, order)
             axes.plot(x * 1e3, value * factor, **LINES[name])
-    least = -limits.speed if machine.turns_back else limits.least_velocity
-    _limits(ratio, (least / v, limits.speed / v))
+    _limits(ratio, (task.least_ratio, task.greatest_ratio))
     _limits(acceleration, (-limits.acceleration, limits.acceleration))
     _limits(jerk, (-limits.jerk, limits.jerk))
     for name, profile in shown.items():

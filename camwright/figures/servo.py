@@ -104,7 +104,7 @@ def _meeting(axes: Axes, row: Measured, comparison: Comparison, run: ServoRun) -
     first = max(-_BEFORE * cut.sync_zone, -cut.return_zone)
     last = _AFTER * cut.sync_zone
     origin = float(row.profile(start, outside="repeat"))
-    there = machine.sync_start(cut)
+    there = comparison.job.task.slave_at_sync_start
 
     def tool(slave: FloatArray) -> FloatArray:
         return np.asarray(machine.tool(there + slave - origin) - machine.tool(there)) * 1e3

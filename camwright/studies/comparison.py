@@ -61,15 +61,12 @@ def law_names(task: Task) -> tuple[str, ...]:
     >>> "quintic" in law_names(job.task), "cycloid" in law_names(job.task)
     (False, True)
     """
-    machine, cut = task.machine, task.cut
-    if not machine.placed:
-        least, greatest = machine.place_range(cut)
-        machine = machine.placed_at(0.5 * (least + greatest))  # the names are the same at every place
-        task = task.with_machine(machine)
-    names = baseline_names(task)
+    if not task.machine.placed:
+        task = task.placed_midway()  # the names are the same at every place
+    cut, names = task.cut, baseline_names(task)
     if not task.straight:
         return names
-    mean = (machine.pitch - cut.sync_ratio * cut.sync_zone) / (cut.sync_ratio * cut.return_zone)
+    mean = (task.machine.pitch - cut.sync_ratio * cut.sync_zone) / (cut.sync_ratio * cut.return_zone)
     return (*names, QUINTIC) if _LEAST_MEAN_RATIO < mean < QUINTIC_RATIO else names
 
 

@@ -209,10 +209,9 @@ def _keeps_limits(motion: MotionMeasures, job: Job) -> bool:
     limits = job.limits
     if motion.peak_acceleration is None or motion.peak_jerk is None:
         return False
-    least = 0.0 if not (job.machine.turns_back or limits.reversal) else -limits.speed
     return (
         motion.peak_speed <= limits.speed * (1 + _BEYOND)
-        and motion.min_speed >= least - _BEYOND * limits.speed
+        and motion.min_speed >= job.task.least_velocity - _BEYOND * limits.speed
         and motion.peak_acceleration <= limits.acceleration * (1 + _BEYOND)
         and motion.peak_jerk <= limits.jerk * (1 + _BEYOND)
     )

@@ -89,10 +89,7 @@ def roomiest(task: Task) -> Task:
         The sync zone fits nowhere.
     """
     placement = place_sync(task, margin)
-    if placement is not None:
-        return placement.task
-    least, greatest = task.machine.place_range(task.cut)
-    return task.with_machine(task.machine.placed_at(0.5 * (least + greatest)))
+    return task.placed_midway() if placement is None else placement.task
 
 
 def max_line_speed(task: Task) -> float | None:

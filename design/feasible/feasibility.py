@@ -212,7 +212,7 @@ def binding_limit(task: Task, need: dict[str, float]) -> str:
         return "sync_zone"
     if not task.reverses and is_feasible(task.with_limits(replace(limits, reversal=True))):
         return "reversal"
-    share = {name: value / _have(task.machine, limits, name) for name, value in need.items()}
+    share = {name: value / _have(task, name) for name, value in need.items()}
     binding = min(share, key=lambda name: share[name])
     if math.isfinite(share[binding]):
         return binding
@@ -227,8 +227,8 @@ def stroke_of(machine: Machine) -> float:
     return math.inf if machine.guide is None else machine.guide[1] - machine.guide[0]
 
 
-def _have(machine: Machine, limits: Limits, name: str) -> float:
-    return stroke_of(machine) if name == "stroke" else float(getattr(limits, name))
+def _have(task: Task, name: str) -> float:
+    return stroke_of(task.machine) if name == "stroke" else float(getattr(task.limits, name))
 
 
 def with_limit(limits: Limits, name: str, value: float) -> Limits:

@@ -66,7 +66,7 @@ def worst_excess(profile: CamProfile, cut: Cut, limits: Limits) -> float:
     peaks = [max(-least.value, greatest.value) for least, greatest in (profile.extrema(2), profile.extrema(3))]
     return max(
         v * high.value / limits.speed - 1,
-        (limits.least_velocity - v * low.value) / limits.speed,
+        ((-limits.speed if limits.reversal else 0.0) - v * low.value) / limits.speed,
         v**2 * peaks[0] / limits.acceleration - 1,
         v**3 * peaks[1] / limits.jerk - 1,
     )

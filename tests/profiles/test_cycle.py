@@ -9,7 +9,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from camwright.profiles.cut import Cut
-from camwright.profiles.limits import Limits
 
 CUT = Cut(
     length=0.6, line_speed=1.5, sync_zone=0.2, shear_zone=0.04, shear_zone_at=0.16, sync_tolerance=1e-4, origin="return"
@@ -48,8 +47,3 @@ def test_zones_fill_the_cycle(length: float, share: float, origin: str) -> None:
 def test_a_cut_cannot_be_changed() -> None:
     with pytest.raises(FrozenInstanceError):
         CUT.length = 1.0  # type: ignore[misc]
-
-
-def test_least_velocity_depends_on_reversal() -> None:
-    assert Limits(3.0, 30.0, 3000.0).least_velocity == 0.0
-    assert Limits(3.0, 30.0, 3000.0, reversal=True).least_velocity == -3.0

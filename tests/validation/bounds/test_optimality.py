@@ -59,7 +59,7 @@ def keeps(profile: CamProfile, cut: Cut, limits: Limits) -> bool:
     peaks = [max(abs(extremum.value) for extremum in profile.extrema(order)) for order in (2, 3)]
     return (
         high.value * v <= limits.speed
-        and low.value * v >= limits.least_velocity
+        and low.value * v >= (-limits.speed if limits.reversal else 0.0)
         and peaks[0] * v**2 <= limits.acceleration
         and peaks[1] * v**3 <= limits.jerk
     )
