@@ -6,6 +6,7 @@ import json
 from dataclasses import asdict, replace
 from itertools import pairwise
 from pathlib import Path
+from typing import ClassVar
 
 import jsonschema
 import numpy as np
@@ -17,6 +18,7 @@ from camwright.jobs.job import BUNDLED_JOB, load_job
 from camwright.profiles.closed_forms.reach import greatest_reach
 from camwright.profiles.errors import InputError
 from camwright.profiles.limits import Limits
+from camwright.profiles.machines import RotaryKnife
 from camwright.profiles.task import Task
 from camwright.recipe import build
 from camwright.recipe.build import MadeRecipe, designed, make_recipe
@@ -189,3 +191,20 @@ def test_zones_lie_on_the_master_where_the_job_puts_them(name: str, sync: list, 
     zones = build.zones(job.cut)
     assert np.array(zones.sync) == pytest.approx(np.array(sync), abs=1e-15)
     assert np.array(zones.shear) == pytest.approx(np.array(shear), abs=1e-12)
+
+
+class Swinging(RotaryKnife):
+    """A knife that comes back, and has no guide."""
+
+    turns_back: ClassVar[bool] = True
+
+    @property
+    def pitch(self) -> float:
+        """Travel per cycle: none."""
+        return 0.0
+
+
+def test_a_slave_that_comes_back_without_a_guide_can_wait_at_rest(paper_design) -> None:
+    task = paper_design.job.task.with_machine(Swinging(0.4))
+    assert can_rest(task)
+    assert longest_cut(task).value is None
