@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import re
-import sys
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache, lru_cache
-from typing import TYPE_CHECKING, cast
+from importlib.resources import files
 
 from camwright.profiles.errors import InputError
-
-if TYPE_CHECKING:
-    import pint
 
 
 @dataclass(frozen=True)
@@ -60,30 +56,6 @@ KINDS: dict[str, Kind] = {
     "torque": Kind("a torque", {"[mass]": 1, "[length]": 2, "[time]": -2}, "12 N m", "N m", 1e-9, 1e12),
 }
 """The kinds of quantities by name."""
-
-_DEFINITIONS = """
-kilo- = 1e3 = k-
-centi- = 1e-2 = c-
-milli- = 1e-3 = m-
-micro- = 1e-6 = µ- = μ- = u-
-meter = [length] = m = metre
-second = [time] = s = sec
-radian = [angle] = rad
-kilogram = [mass] = kg
-gram = 0.001 * kilogram = g
-pound = 0.45359237 * kilogram = lb
-newton = kilogram * meter / second ** 2 = N
-newton_meter = newton * meter = Nm
-inch = 0.0254 * meter = in = inches
-foot = 0.3048 * meter = ft = feet
-minute = 60 * second = min
-hour = 3600 * second = h
-turn = 6.283185307179586476925286766559 * radian = _ = rev = revolution
-degree = turn / 360 = deg = °
-turn_per_minute = turn / minute = rpm
-"""
-# Angle is a dimension of its own, so that "120 1/s" is not taken for 120 rad/s; hertz is left out because it could mean
-# either turns or radians. Numbers are fractions: 600 mm is the float nearest to 0.6, whatever the order of the factors.
 
 _LONGEST = 100
 _TEXT = re.compile(r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?)\s*(.*)", re.DOTALL)
@@ -207,27 +179,19 @@ def _unit(text: str, place: str, wanted: Kind) -> tuple[Fraction, dict[str, int]
     plain = _SUPERSCRIPT.sub(lambda found: "^" + found.group().translate(_PLAIN), text)
     if _UNIT.fullmatch(plain) is None:
         raise InputError(f"{place}: {shown(text)} is not a unit; {hint}")
-    powers: dict[str, int] = {}
+    factor, dimension = Fraction(1), dict[str, int]()
     for sign, name, power in _FACTOR.findall(plain.removeprefix("1")):
-        known = _known_name(name)
+        known = _known_units().get(name)
         if known is None:
             raise InputError(
                 f"{place}: there is no unit {shown(name)}; {hint}; units are m, mm, cm, um, in, ft, s, ms, min, h, "
                 "rad, deg, rev, rpm, kg, g, lb, N, Nm"
             )
-        powers[known] = powers.get(known, 0) + (-1 if sign == "/" else 1) * int(power or 1)
-    factor, dimension = _size(tuple((name, power) for name, power in powers.items() if power))
-    return factor, dict(dimension)
-
-
-@lru_cache(maxsize=256)
-def _size(powers: tuple[tuple[str, int], ...]) -> tuple[Fraction, tuple[tuple[str, int], ...]]:
-    """Factor of a product of units to SI base units, and the powers of the base dimensions."""
-    registry = _registry()
-    units = registry.UnitsContainer(dict(powers))
-    factor = cast("Fraction | int", registry.get_base_units(units)[0])
-    dimension = cast("Mapping[str, Fraction | int]", registry.get_dimensionality(units))
-    return Fraction(factor), tuple((name, int(power)) for name, power in dimension.items())
+        exponent = (-1 if sign == "/" else 1) * int(power or 1)
+        factor *= Fraction(known[0]) ** exponent
+        for base, times in known[1].items():
+            dimension[base] = dimension.get(base, 0) + exponent * times
+    return factor, {base: times for base, times in dimension.items() if times}
 
 
 def _described(dimension: dict[str, int]) -> str:
@@ -243,29 +207,12 @@ def _described(dimension: dict[str, int]) -> str:
 
 
 @cache
-def _known_name(name: str) -> str | None:
-    """Look a unit up in the registry: its full name, or nothing if there is no such unit."""
-    registry = _registry()
-    import pint
+def _known_units() -> dict[str, tuple[str, dict[str, int]]]:
+    """Read every name of a unit, its factor to SI base units as text, and the powers of the base dimensions.
 
-    try:
-        return str(registry.get_name(name))
-    except (pint.UndefinedUnitError, pint.DefinitionSyntaxError):
-        return None
-
-
-@cache
-def _registry() -> pint.UnitRegistry[Fraction]:
-    """Make the one registry when the first quantity is read.
-
-    pint imports dask where it is installed, which takes longer than all the rest of it, for arrays of quantities; there are none here.
+    ``units.json`` is what pint makes of our definitions (``tests/house/unit_table.py``), so that no command loads pint.
     """
-    hidden = "dask" not in sys.modules
-    if hidden:
-        sys.modules["dask"] = None  # type: ignore[assignment]  # the import system takes this for a module that is not there
-    try:
-        import pint
-    finally:
-        if hidden:
-            del sys.modules["dask"]
-    return pint.UnitRegistry(_DEFINITIONS.strip().splitlines(), non_int_type=Fraction)
+    known: dict[str, tuple[str, dict[str, int]]] = json.loads(
+        (files("camwright.house") / "units.json").read_text(encoding="utf-8")
+    )
+    return known

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+import subprocess
+import sys
 import time
 from fractions import Fraction
 
 import pytest
+import unit_table
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -157,3 +160,24 @@ def test_shown_values_are_one_short_printable_line() -> None:
     for value in ("a\nb", "\x1b[0m", "x" * 500, ["y" * 500], 10**5000, "ü"):
         assert shown(value).isprintable()
         assert len(shown(value)) <= 60
+
+
+def test_the_units_are_those_that_pint_makes_of_the_definitions() -> None:
+    assert unit_table.FILE.read_text(encoding="utf-8") == unit_table.written()
+
+
+def test_no_command_loads_pint() -> None:
+    code = (
+        "import sys; from camwright.house.units import quantity; quantity('600 mm', 'length'); "
+        "sys.exit(any(name in sys.modules for name in ('pint', 'dask')))"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("text", "value"), [("5 kgram", 5.0), ("5 kilog", 5.0), ("5 g", 0.005), ("2 lb", 0.90718474), ("3 mg", 3e-6)]
+)
+def test_masses_under_all_their_names(text: str, value: float) -> None:
+    """An unusual name of the kilogram once made pint define it by itself, and every mass after it crashed."""
+    assert quantity(text, "mass") == value
+    assert quantity("1 kg", "mass") == 1.0
