@@ -57,6 +57,11 @@ def test_check_reads_it_and_says_what_it_is_like(capsys: pytest.CaptureFixture[s
     assert load_job(JOB).machine == PendulumShear(0.8, 12.0, 20.0)
 
 
+def test_its_keys_have_their_meaning(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["keys", "machine.arm"]) == 0
+    assert "length of the arm" in " ".join(capsys.readouterr().out.split())
+
+
 def test_its_table_stands_in_the_schema() -> None:
     table = job_schema()["$defs"]["PendulumShearTable"]
     assert table["description"] == PendulumShear.summary

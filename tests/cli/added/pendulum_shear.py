@@ -28,8 +28,10 @@ class PendulumShear(Machine):
     turns_back: ClassVar[bool] = True
     constant_inertia: ClassVar[bool] = True
 
-    arm: Annotated[float, Quantity("length", example="800 mm", shown=True)]
-    arm_inertia: Annotated[float, Quantity("inertia", zero=True)] = 0.0
+    arm: Annotated[float, Quantity("length", example="800 mm", shown=True, description="length of the arm")]
+    arm_inertia: Annotated[
+        float, Quantity("inertia", zero=True, description="inertia of arm, gear and motor at the arm")
+    ] = 0.0
     gear_ratio: Annotated[float, GEAR_RATIO] = 1.0
 
     @property

@@ -30,6 +30,7 @@ def test_every_field_says_what_it_is(machine: type[Machine]) -> None:
     found = fields_of(machine)
     assert len({each.key for each in found}) == len(found)
     for each in found:
+        assert each.about.description
         if isinstance(each.about, Choice):
             assert each.default in each.about.words
         elif isinstance(each.about, Whole):
