@@ -33,6 +33,8 @@ napoleon_google_docstring = False
 default_role = "code"
 
 html_theme = "furo"
+html_static_path = ["_static"]
+html_css_files = ["camwright.css"]
 html_title = f"camwright {release}"
 html_copy_source = False
 html_show_sphinx = False
