@@ -11,7 +11,7 @@ from typing import Any
 import typer
 from typer.main import get_command
 
-from camwright.cli.main import COMMANDS
+from camwright.cli.commands import COMMANDS
 from camwright.jobs.keys import JobKey, job_keys
 
 HERE = Path(__file__).parent
@@ -59,13 +59,15 @@ def _commands() -> Iterator[str]:
     yield "# Commands"
     yield ""
     yield "Made from the command line. `camwright COMMAND --help` prints the same."
-    for name, does in COMMANDS.items():
+    for name, command in COMMANDS.items():
         application = typer.Typer()
         application.command(name)(import_module(f"camwright.cli.{name}").run)
         yield ""
         yield f"## `camwright {name}`"
         yield ""
-        yield does
+        yield command.does
+        yield ""
+        yield f"    {command.example}"
         yield ""
         yield "| argument or option | meaning |"
         yield "|---|---|"
@@ -85,7 +87,7 @@ def _named(parameter: Any) -> str:
 
 def _text(parameter: Any) -> str:
     """Write what an option means, in one line."""
-    return " ".join((parameter.help or "").split()).replace("|", "\\|")
+    return " ".join((parameter.help or "").split()).replace("\\[", "[").replace("|", "\\|")
 
 
 if __name__ == "__main__":

@@ -3,24 +3,42 @@
 from __future__ import annotations
 
 import math
+import sys
+from pathlib import Path
+from typing import Annotated
 
+import typer
 from rich.console import RenderableType
 from rich.text import Text
 
 from camwright.answers.check import check_answer
-from camwright.cli.options import GivenJob, Json, Quiet
+from camwright.cli.options import Json, Quiet
 from camwright.cli.views.numbers import millimetres, number
 from camwright.house.output import Voice
-from camwright.jobs.job import Job, load_job
+from camwright.jobs.job import MOST_BYTES, Job, load_job, parse_job
 from camwright.jobs.machine_words import machine_words
+from camwright.profiles.errors import InputError
+
+_Checked = Annotated[Path, typer.Argument(metavar="JOB", help="Job file (TOML); - reads standard input.")]
 
 
-def run(job: GivenJob, as_json: Json = False, quiet: Quiet = False) -> int:
+def run(job: _Checked, as_json: Json = False, quiet: Quiet = False) -> int:
     """Read a job file and say whether it has faults."""
-    asked = load_job(job)
+    asked = parse_job(_typed(), "standard input") if str(job) == "-" else load_job(job)
 
     Voice(as_json, quiet).answer(lambda: check_answer(asked), lambda: _view(asked))
     return 0
+
+
+def _typed() -> str:
+    """Read a job from standard input."""
+    data = sys.stdin.buffer.read(MOST_BYTES + 1)
+    if len(data) > MOST_BYTES:
+        raise InputError(f"standard input: larger than {MOST_BYTES} bytes, the most that a job file may have")
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise InputError(f"standard input: not UTF-8 text (byte {error.start})") from error
 
 
 def _view(job: Job) -> RenderableType:

@@ -38,7 +38,9 @@ def run(
     ],
     out: Annotated[
         Path | None,
-        typer.Option("--out", metavar="FILE", help="Write the [servo] table of a job file here; no file if left out."),
+        typer.Option(
+            "--out", metavar="FILE", help=r"Write the \[servo] table of a job file here; no file if left out."
+        ),
     ] = None,
     velocity_feedforward: Annotated[
         float | None,

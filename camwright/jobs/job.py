@@ -32,7 +32,8 @@ from camwright.profiles.task import Task
 BUNDLED_JOB = Path(__file__).parent / "paper-600.toml"
 """The paper's job, read when no job file is named."""
 
-_MOST_BYTES = 1 << 20
+MOST_BYTES = 1 << 20
+"""The most bytes that a job file may have."""
 
 
 @dataclass(frozen=True)
@@ -119,7 +120,7 @@ def load_job(path: str | Path | None = None) -> Job:
     ('paper-600', 0.6, 3.3333333333333335)
     """
     file = BUNDLED_JOB if path is None else Path(path)
-    return parse_job(read_text(file, "job file", _MOST_BYTES), str(file))
+    return parse_job(read_text(file, "job file", MOST_BYTES), str(file))
 
 
 def parse_job(text: str, place: str) -> Job:

@@ -78,16 +78,17 @@ _OWN = re.compile(r"(?m)^[-+0-9., \t]{0,80}[/#(*<!-]{0,4} ?camwright \S{1,40}: c
 
 
 def target_of(name: str) -> Target:
-    """Look up a target by its name.
+    """Look up a target by its name, in any case.
 
     Raises
     ------
     InputError
         There is none.
     """
-    if name not in TARGETS:
+    found = TARGETS.get(name.lower())
+    if found is None:
         raise InputError(f"there is no target {name[:40]!r}; the targets are {', '.join(TARGETS)}")
-    return TARGETS[name]
+    return found
 
 
 def read_table(target: Target, text: str, place: str) -> CamTable:

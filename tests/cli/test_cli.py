@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import math
 import os
@@ -16,7 +17,8 @@ from typing import Any
 
 import pytest
 
-from camwright.cli.main import COMMANDS, main
+from camwright.cli.commands import COMMANDS
+from camwright.cli.main import main
 from camwright.jobs.job import BUNDLED_JOB
 from camwright.profiles.errors import InfeasibleError, SolverError
 from camwright.profiles.returns import BASELINES
@@ -426,11 +428,11 @@ def test_an_encoding_without_the_letters_is_no_obstacle() -> None:
 @pytest.mark.parametrize("name", COMMANDS)
 def test_the_table_of_commands_says_what_each_module_does(name: str) -> None:
     command = import_module(f"camwright.cli.{name}").run
-    assert (command.__doc__ or "").splitlines()[0] == COMMANDS[name]
+    assert (command.__doc__ or "").splitlines()[0] == COMMANDS[name].does
 
 
 def test_a_module_of_the_command_line_is_a_command() -> None:
-    others = {"__init__", "main", "options"}
+    others = {"__init__", "commands", "main", "options"}
     assert {file.stem for file in Path(import_module("camwright.cli").__path__[0]).glob("*.py")} == {*COMMANDS, *others}
 
 
@@ -455,3 +457,40 @@ def test_progress_is_shown_on_a_terminal(monkeypatch: pytest.MonkeyPatch, capsys
     assert strict(shown.out)
     assert seen == ["asked"]
     assert "finding minimum cut lengths" in shown.err
+
+
+def test_help_groups_commands_by_task_and_swallows_nothing(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["--help"]) == 0
+    told = capsys.readouterr().out
+    assert all(command.task in told for command in COMMANDS.values())
+    assert main(["identify", "--help"]) == 0
+    told = " ".join(capsys.readouterr().out.split())
+    assert "Write the [servo] table" in told
+    assert "Example: camwright identify trace.csv" in told
+
+
+@pytest.mark.parametrize(
+    ("typed", "word", "completed"),
+    [
+        ("camwright li", 1, {"limits"}),
+        ("camwright limits --js", 2, {"--json"}),
+        ("camwright ex", 1, {"examples", "export"}),
+    ],
+)
+def test_a_shell_completes_commands_and_their_options(typed: str, word: int, completed: set[str]) -> None:
+    asked = {"COMP_WORDS": typed, "COMP_CWORD": str(word), "_CAMWRIGHT_COMPLETE": "complete_bash"}
+    done = subprocess.run(COMMAND, env=os.environ | asked, capture_output=True, text=True, check=False)
+    assert set(done.stdout.split()) == completed
+
+
+def test_check_reads_standard_input(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    for data, code, words in (
+        (PAPER.encode(), 0, "paper-600: cut 600 mm"),
+        (PAPER.replace('"600 mm"', "600").encode(), 2, "standard input: [cut] length = 600: a number without a unit"),
+        (b"\xff\xfe", 2, "standard input: not UTF-8 text (byte 0)"),
+        (b"#" * (1 << 20) + b"#", 2, "standard input: larger than 1048576 bytes"),
+    ):
+        monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(data)))
+        assert main(["check", "-"]) == code
+        captured = capsys.readouterr()
+        assert words in captured.out + captured.err

@@ -67,7 +67,7 @@ NUMBERS: dict[str, tuple[object, object, str, str]] = {
     "accuracy of the place": (place.RESOLUTION, 2e-3, "contract", "to 0.002 rad"),
     "standing": (motor._STANDING, 1e-9, "contract", "below 1e-9 of the greatest ratio"),
     "standing carriage": (screw._STANDING, 1e-9, "contract", "below 1e-9 of the greatest ratio"),
-    "size of a job file": (job_file._MOST_BYTES, 1_048_576, "contract", "A job file has at most 1 MiB"),
+    "size of a job file": (job_file.MOST_BYTES, 1_048_576, "contract", "A job file has at most 1 MiB"),
     "size of a design": (design_file.MOST_BYTES, 67_108_864, "contract", "a design, recipe or CSV file 64 MiB"),
     "size of a table": (text.LARGEST_FILE, 4_000_000, "contract", "a table of a drive 4 000 000 bytes"),
     "rows of a CSV": (cam_csv._FEWEST_ROWS, 4, "contract", "4 rows or more"),

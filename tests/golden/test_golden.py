@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from camwright.cli.main import COMMANDS
+from camwright.cli.commands import COMMANDS
 
 HERE = Path(__file__).parent
 

@@ -13,7 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from camwright.cli.main import COMMANDS, main
+from camwright.cli.commands import COMMANDS
+from camwright.cli.main import main
 from camwright.jobs.keys import job_keys
 
 ROOT = Path(__file__).parents[2]
