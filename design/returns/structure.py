@@ -262,7 +262,7 @@ def tidy(motion: ScaledMotion, problem: ScaledProblem) -> ScaledMotion:
     p = motion.degree
     lengths, a = _without_vanished(lengths, a, p)
     if p == 1:
-        lengths, a = _without_false_corners(lengths, a)
+        lengths, a = without_false_corners(lengths, a)
     for _ in range(3):  # each pass takes out what the one before left, down to rounding
         rise = p * np.abs(np.diff(a).reshape(len(lengths), p) @ subdivision(p - 1, SPLIT).T).max(axis=1)
         lengths = np.maximum(lengths, rise / (problem.greatest_jerk * (1 - 1e-10)))
@@ -274,7 +274,8 @@ def tidy(motion: ScaledMotion, problem: ScaledProblem) -> ScaledMotion:
     return ScaledMotion(lengths, a, motion.objective)
 
 
-def _without_false_corners(lengths: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray]:
+def without_false_corners(lengths: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Drop nodes of a broken line that lie on the chord of their neighbours."""
     x, level = [0.0], [float(a[0])]
     position = np.cumsum(lengths)
     scale = NO_CORNER * float(np.abs(a).max())

@@ -1,42 +1,45 @@
 """The programme of returns whose torque counts: as the objective, or within what the motor gives at its speed.
 
-The pieces, limits and boundary values are those of `camwright.design.returns.transcription`; torque and power are evaluated at
-Gauss-Lobatto points of
-every interval through the machine's own formulas. It is not convex where the inertia changes.
+Time and slave are scaled: the return takes the time 1, the slave's travel is counted in the task's scale from the place where the return
+starts. The acceleration is a broken line over a mesh that is a parameter, so that it can be refined without a new programme. The return
+may be made of phases of unknown length (forwards, at rest, backwards), in each of which the sign of the friction is known. Torque and power
+are evaluated at Gauss-Lobatto points of every interval through the machine's own formulas. It is not convex where the inertia changes or
+the length of a rest is unknown.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 import casadi as ca
 import numpy as np
 
 from camwright.design.returns.ipopt import QUIET
-from camwright.design.returns.problem import ReturnProblem
-from camwright.design.returns.scaling import ScaledProblem
-from camwright.design.returns.transcription import ScaledMotion
-from camwright.profiles.cut import Cut
-from camwright.profiles.machines import Machine
-from camwright.profiles.motor import MotorCurve
-from camwright.profiles.objective import MOTION_OBJECTIVES, CommandObjective
-from camwright.profiles.polynomial.profile import CamProfile, FloatArray
+from camwright.design.torque.task import Pattern, TorqueTask
+from camwright.design.torque.zone import Zone
+from camwright.profiles.objective import MOTION_OBJECTIVES
+from camwright.profiles.polynomial.profile import FloatArray
 
 # NumPy's functions on CasADi's symbols are meant: a machine is written once, for numbers and symbols alike.
 ca.GlobalOptions.setNumpyMode(1)
 
-Aim = CommandObjective | Literal["load"]
-"""What is minimised; the load is the greatest share of the motor's torque at its speed that is used."""
-
-INTERVALS = 80
-# A peak, and the energy, also pay this share of the mean square, so that of all motions with that peak the smoothest is taken.
-ROUNDING = 1e-4
+# A peak, and the energy, also pay this share of the mean square, so that of all motions with nearly that value the smoothest is taken.
+ROUNDING = {"peak_torque": 3e-5, "load": 3e-5, "energy": 1e-4}
+# A first look pays this much: far quicker, and near enough.
+FIRST_ROUNDING = {"peak_torque": 1e-2, "load": 1e-2, "energy": 1e-3}
 DRAWN_IN = 3e-8
 """Share by which limits are drawn in here: the solver answers this programme to about 1e-8, the contract says 1e-9."""
+JERK_DRAWN_IN = 3e-7
+"""The same for the jerk, which short phases see magnified."""
 CURVE_DRAWN_IN = 2e-3
 """The same for the motor's torque, which is looked at in Gauss-Lobatto points only."""
+SHORTEST_PHASE = 1e-5
+"""Least length of a phase with motion, as a share of the return."""
+
+PARAMETERS = 4
+"""Parameters besides the mesh: units of torque and power, what a peak pays, and what the mean square."""
 
 LOBATTO = (
     0.5 + 0.5 * np.array([-1.0, -math.sqrt(0.2), math.sqrt(0.2), 1.0]),
@@ -44,40 +47,31 @@ LOBATTO = (
 )
 """Gauss-Lobatto points on the unit interval, and their weights: exact to degree 5, and at the nodes, where a peak may stand."""
 
-_WIDTHS: FloatArray = np.full(INTERVALS, 1.0 / INTERVALS)
-_SHARES: FloatArray = np.tile(1.0 / INTERVALS * LOBATTO[1], INTERVALS)
-"""Lengths of the intervals, and the shares of their Gauss-Lobatto points in a mean."""
-
-_OPTIONS: dict[str, Any] = QUIET | {"ipopt.tol": 1e-8, "ipopt.max_iter": 500, "ipopt.mu_strategy": "adaptive"}
+_OPTIONS: dict[str, Any] = QUIET | {"ipopt.tol": 1e-8, "ipopt.max_iter": 300, "ipopt.mu_strategy": "adaptive", "ipopt.bound_relax_factor": 1e-10}
 
 
 @dataclass(frozen=True, eq=False)
-class TorqueTask:
-    """What a programme is made for.
+class Guess:
+    """A motion to start from, at the nodes of a mesh.
 
     Parameters
     ----------
-    machine, cut
-        The machine and its cycle.
-    problem
-        The return as numbers over the master; its own objective does not count.
-    scale
-        Slave travel that is 1 in the scaled problem (slave unit).
-    start
-        Slave coordinate at the start of the return (slave unit).
-    aim
-        What is minimised.
-    curve
-        What the motor can give; None where that is no limit.
+    mesh
+        Lengths of the intervals as shares of their phase, one array for each phase with motion.
+    lengths
+        Lengths of all phases, their sum 1.
+    acceleration, velocity, position
+        Scaled, at the nodes of the mesh, phases with motion one after the other, neighbours sharing a node.
+    ends
+        Slave coordinates of the sync zone's start and end, for a programme that places it.
     """
 
-    machine: Machine
-    cut: Cut
-    problem: ReturnProblem
-    scale: float
-    start: float
-    aim: Aim
-    curve: MotorCurve | None
+    mesh: tuple[FloatArray, ...]
+    lengths: FloatArray
+    acceleration: FloatArray
+    velocity: FloatArray
+    position: FloatArray
+    ends: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,19 +80,20 @@ class TorqueAnswer:
 
     Parameters
     ----------
-    motion
-        The scaled motion.
+    guess
+        The motion, to start from again.
     value
-        Its objective, as `TorqueProgramme.value` has it.
+        Its objective at the slave, over the return, or over the cycle where the zone is placed: torque or force, mean power, the load as a
+        share; over the scaled return for motions.
     residual
         Largest KKT residual (scaled).
     success
-        Whether the solver converged.
+        Whether the solver converged to numbers.
     iterations
         Its iterations.
     """
 
-    motion: ScaledMotion
+    guess: Guess
     value: float
     residual: float
     success: bool
@@ -106,154 +101,273 @@ class TorqueAnswer:
 
 
 class TorqueProgramme:
-    """The programme of one task: accelerations at nodes, piecewise linear between, and the node states."""
+    """The programme of one task and pattern on a mesh of a size: accelerations at nodes, linear between, and the node states."""
 
-    def __init__(self, task: TorqueTask) -> None:
-        n = INTERVALS
-        self._task = task
-        h = 1.0 / n
-        self._drawn = len(LOBATTO[0]) * n if task.aim == "energy" else 0
-        x = ca.MX.sym("x", 3 * (n + 1) + 1 + self._drawn)
-        a, v, q, t, drawn = ca.vertsplit(x, list(np.cumsum([0, n + 1, n + 1, n + 1, 1, self._drawn])))
-        rise, jerk = a[1:] - a[:-1], (a[1:] - a[:-1]) / h
+    def __init__(self, task: TorqueTask, pattern: Pattern, counts: tuple[int, ...], zone: Zone | None = None) -> None:
+        """Build the programme.
+
+        Parameters
+        ----------
+        task
+            What it is for.
+        pattern
+            The phases of the return.
+        counts
+            Numbers of intervals of the phases with motion.
+        zone
+            The sync zone, if the programme is to place it.
+        """
+        self._task, self._pattern, self._counts, self._zone = task, pattern, counts, zone
+        n = sum(counts)
+        drawn_in_zone = zone.points + 2 if zone is not None and task.aim == "energy" else 0
+        drawn_count = len(LOBATTO[0]) * n if task.aim == "energy" else 0
+        self._sizes = [n + 1, n + 1, n + 1, len(pattern), 1, drawn_count, 0 if zone is None else 2, drawn_in_zone]
+        x = ca.MX.sym("x", sum(self._sizes))
+        a, v, q, lengths, t, drawn, ends, zone_drawn = ca.vertsplit(x, [0, *np.cumsum(self._sizes).tolist()])
+        p = ca.MX.sym("p", n + PARAMETERS)
+        units, paid, rounding = p[n : n + 2], p[n + 2], p[n + 3]
+        moving = [k for k, phase in enumerate(pattern) if phase != "rest"]
+        owner = np.repeat(moving, counts)
+        h = p[:n] * ca.vec(lengths[owner.tolist()])
+        rise = a[1:] - a[:-1]
         equations = [
             v[:-1] + h * (a[:-1] + a[1:]) / 2 - v[1:],
             q[:-1] + h * v[:-1] + h * h * (a[:-1] / 3 + a[1:] / 6) - q[1:],
+            ca.sum1(lengths) - 1.0,
         ]
+        sign = np.array([{"back": -1.0}.get(pattern[k], 1.0) for k in owner])
         between = v[:-1] + h * a[:-1] / 2
+        start = task.start if zone is None else ends[1]
         interval = self._interval().map(n)
-        torque, power, available = (
-            ca.vec(part) for part in interval(a[:-1].T, rise.T, v[:-1].T, q[:-1].T, ca.DM(np.arange(n) * h).T)
-        )
-        self._measure = ca.Function("measure", [x], [torque, power, available])
-        units = ca.MX.sym("u", 2)  # of the torque or motion, and of the power
-        shares = ca.DM(_SHARES)
-        mean_square = ca.dot(shares, (torque / units[0]) ** 2)
+        rows = (a[:-1].T, rise.T, v[:-1].T, q[:-1].T, h.T, ca.DM(sign).T, ca.repmat(start, 1, n))
+        torque, power, available = (ca.vec(part) for part in interval(*rows))
+        weights = ca.vec(ca.DM(LOBATTO[1]) @ h.T)
+        self._measure = ca.Function("measure", [x, p], [torque, power, available, weights, h])
+        mean_square = ca.dot(weights, (torque / units[0]) ** 2)
+        sharpest = task.problem.greatest_jerk * task.problem.length**3 / task.scale
+        by_phase = (1.0 - JERK_DRAWN_IN) * h / p[:n]
+        jerk = by_phase - rise / p[:n] / sharpest, by_phase + rise / p[:n] / sharpest
         peaks: list[Any] = []
         match task.aim:
             case "rms_torque":
                 cost = mean_square
             case "energy":
                 peaks = [drawn - power / units[1]]  # what is drawn is the power or, as its bound says, nothing
-                cost = ca.dot(shares, drawn) + ROUNDING * mean_square
+                cost = ca.dot(weights, drawn) + rounding * mean_square
             case "rms_acceleration":
-                cost = h * ca.sum1(a[:-1] ** 2 + a[:-1] * a[1:] + a[1:] ** 2) / 3 / units[0] ** 2
+                cost = ca.dot(h, a[:-1] ** 2 + a[:-1] * a[1:] + a[1:] ** 2) / 3 / units[0] ** 2
             case "rms_jerk":
-                cost = h * ca.sumsqr(jerk / units[0])
+                cost = ca.sum1(rise**2 / h) / units[0] ** 2
             case _:
                 values = {
                     "peak_torque": torque / units[0],
                     "load": torque / available,
                     "peak_acceleration": a / units[0],
-                    "peak_jerk": jerk / units[0],
+                    "peak_jerk": rise / h / units[0],
                 }[task.aim]
                 peaks = [t - values, t + values]
-                cost = t + (ROUNDING * mean_square if task.aim in ("peak_torque", "load") else 0.0)
+                cost = paid * t + (rounding * mean_square if task.aim in ROUNDING else 0.0)
         if task.curve is not None and task.aim != "load":
             allowed, strongest = available * (1 - CURVE_DRAWN_IN), task.curve.points[0][1] * task.machine.motor_ratio
             peaks += [(allowed - torque) / strongest, (allowed + torque) / strongest]
-        self._counts = (2 * n, sum(part.numel() for part in peaks), n, n)
-        nlp = {"x": x, "p": units, "f": cost, "g": ca.vertcat(*equations, *peaks, between, jerk)}
+        if zone is not None:
+            joined = zone.join(ends[0], ends[1], task)
+            equations += [joined.closure, *(state - met for state, met in zip((a[0], v[0], a[-1], v[-1]), joined.states, strict=True))]
+            equations += [q[0], q[-1] - joined.travel]
+            peaks += [1.0 - joined.shares]
+            match task.aim:
+                case "rms_torque":
+                    cost += ca.dot(joined.weights, (joined.torque / units[0]) ** 2)
+                case "peak_torque":
+                    peaks += [t - joined.torque / units[0], t + joined.torque / units[0]]
+                case "energy":
+                    peaks += [zone_drawn - joined.power / units[1]]
+                    cost += ca.dot(joined.weights, zone_drawn)
+                case "peak_acceleration" | "peak_jerk":
+                    peak = joined.accelerations if task.aim == "peak_acceleration" else joined.jerks
+                    peaks += [t - peak / units[0], t + peak / units[0]]
+            self._joined = ca.Function("joined", [x], [joined.torque, joined.power, joined.weights, joined.travel])
+        self._rows = (sum(part.numel() for part in equations), sum(part.numel() for part in (*peaks, *jerk)), n)
+        nlp = {"x": x, "p": p, "f": cost, "g": ca.vertcat(*equations, *peaks, *jerk, between)}
         self._solver = ca.nlpsol("camwright_torque", "ipopt", nlp, _OPTIONS)
 
     def _interval(self) -> Any:
         """Make the function of one interval: torque or force and power at the slave, and what the motor gives, at its Gauss-Lobatto points.
 
-        It takes the acceleration at the interval's start and its rise, ratio and position at the start, and where the interval begins.
+        It takes the acceleration at the interval's start and its rise, ratio and position at the start, the interval's length, the
+        direction of the motion, and the slave coordinate at the start of the return.
         """
-        task, machine, h = self._task, self._task.machine, 1.0 / INTERVALS
-        drift = task.problem.start_ratio * task.problem.length / task.scale
-        per_time = task.cut.line_speed * task.scale / task.problem.length
-        a, rise, v, q, x = (ca.SX.sym(name) for name in ("a", "r", "v", "q", "x"))
+        task, machine = self._task, self._task.machine
+        a, rise, v, q, h, sign, start = (ca.SX.sym(name) for name in ("a", "r", "v", "q", "h", "d", "s"))
         s = ca.DM(LOBATTO[0])
-        pace = v + h * s * (a + rise * s / 2)
-        y = task.start + task.scale * (q + h * s * (v + h * s * (a / 2 + rise * s / 6)) + drift * (x + s * h))
-        velocity = per_time * (pace + drift)
-        acceleration = per_time * task.cut.line_speed / task.problem.length * (a + rise * s)
-        force = machine.inertia(y) * acceleration + machine.inertia_slope(y) * velocity**2 / 2
-        # a slave that does not turn back has friction against it all the time
-        force += machine.friction * (ca.tanh(velocity / (0.01 * task.cut.line_speed)) if machine.turns_back else 1.0)
+        y = start + task.scale * (q + h * s * (v + h * s * (a / 2 + rise * s / 6)))
+        velocity = task.scale / task.duration * (v + h * s * (a + rise * s / 2))
+        acceleration = task.scale / task.duration**2 * (a + rise * s)
+        force = machine.inertia(y) * acceleration + machine.inertia_slope(y) * velocity**2 / 2 + machine.friction * sign
         available: Any = ca.DM.inf(len(LOBATTO[0]))
         if task.curve is not None:
             speeds, torques = (ca.DM(list(column)) for column in zip(*task.curve.points, strict=True))
             speed = ca.vertsplit(ca.fabs(velocity) * machine.motor_ratio)
             available = ca.vertcat(*[ca.pw_lin(each, speeds, torques) for each in speed]) * machine.motor_ratio
-        return ca.Function("interval", [a, rise, v, q, x], [force, force * velocity, available])
+        return ca.Function("interval", [a, rise, v, q, h, sign, start], [force, force * velocity, available])
 
-    def _state(self, guess: CamProfile, bound: float) -> FloatArray:
-        x = np.clip(np.concatenate([[0.0], np.cumsum(_WIDTHS)]), guess.start, guess.end)
-        return np.concatenate([guess(x, 2), guess(x, 1), guess(x), [bound], np.zeros(self._drawn)])
+    def _state(self, guess: Guess) -> FloatArray:
+        ends = np.array(guess.ends if self._zone is not None and guess.ends is not None else [])
+        parts = (guess.acceleration, guess.velocity, guess.position, guess.lengths, [0.0], np.zeros(self._sizes[5]))
+        return np.concatenate([*parts, ends, np.zeros(self._sizes[7])])
 
-    def value(self, guess: CamProfile) -> float:
-        """Objective of a scaled profile: at the slave for torques and power, over the scaled master for motions; the load as a share."""
-        return self._value(self._state(guess, 0.0))
+    def value(self, guess: Guess) -> float:
+        """Objective of a motion, as `TorqueAnswer.value` has it."""
+        return self._value(self._state(guess), np.concatenate([*guess.mesh, np.ones(PARAMETERS)]))
 
-    def _value(self, state: FloatArray) -> float:
-        torque, power, available = (np.asarray(part).ravel() for part in self._measure(state))
-        n = INTERVALS
-        a = state[: n + 1]
-        jerk = np.diff(a) / _WIDTHS
+    def _value(self, state: FloatArray, parameters: FloatArray) -> float:
+        torque, power, available, weights, h = (np.asarray(part).ravel() for part in self._measure(state, parameters))
+        if self._zone is not None:
+            more = [np.asarray(part).ravel() for part in self._joined(state)]
+            torque, power, weights = (np.append(one, other) for one, other in zip((torque, power, weights), more, strict=False))
+        a = state[: self._sizes[0]]
         match self._task.aim:
             case "rms_torque":
-                return math.sqrt(float(_SHARES @ torque**2))
+                return math.sqrt(float(weights @ torque**2) / float(weights.sum()) if self._zone else float(weights @ torque**2))
             case "peak_torque":
                 return float(np.abs(torque).max())
             case "energy":
-                return float(_SHARES @ np.maximum(power, 0.0))
+                return float(weights @ np.maximum(power, 0.0))
             case "load":
                 return float(np.abs(torque / available).max())
             case "peak_acceleration":
                 return float(np.abs(a).max())
             case "rms_acceleration":
-                return math.sqrt(float(_WIDTHS @ (a[:-1] ** 2 + a[:-1] * a[1:] + a[1:] ** 2)) / 3)
+                return math.sqrt(float(h @ (a[:-1] ** 2 + a[:-1] * a[1:] + a[1:] ** 2)) / 3)
             case "peak_jerk":
-                return float(np.abs(jerk).max())
+                return float(np.abs(np.diff(a) / h).max())
             case "rms_jerk":
-                return math.sqrt(float(_WIDTHS @ jerk**2))
+                return math.sqrt(float((np.diff(a) ** 2 / h).sum()))
 
-    def solve(self, problem: ScaledProblem, guess: CamProfile) -> TorqueAnswer:
-        """Solve from a guess."""
-        n = INTERVALS
-        start = self._state(guess, 1.5)
-        torque, power, _ = (np.asarray(part).ravel() for part in self._measure(start))
+    def solve(
+        self, guess: Guess, *, rough: bool = False, floor: float = 0.0, ceiling: float | None = None, hold: bool = False
+    ) -> TorqueAnswer:
+        """Solve from a guess.
+
+        Parameters
+        ----------
+        guess
+            The motion to start from.
+        rough
+            Whether this is a first look.
+        floor
+            Peak below which nothing is gained (N or N·m).
+        ceiling
+            Peak under which the least mean square of the torque is looked for, instead of the least peak (N or N·m).
+        hold
+            Whether the sync zone stays where the guess has it.
+        """
+        mesh = np.concatenate(guess.mesh)
+        start, parameters = self._state(guess), np.append(mesh, np.ones(PARAMETERS))
+        torque, power, _, _, _ = (np.asarray(part).ravel() for part in self._measure(start, parameters))
+        value = self._value(start, parameters)
         motion = self._task.aim in MOTION_OBJECTIVES
-        unit = self._value(start) if motion else float(np.sqrt(np.mean(torque**2)))
+        unit = value if motion else float(np.sqrt(np.mean(torque**2)))
         units = [max(unit, 1e-300), max(float(np.abs(power).max()), 1e-300)]
-        if self._drawn:
-            start[-self._drawn :] = np.maximum(power / units[1], 0.0) + 0.1
-        if self._task.aim == "load":
-            start[3 * (n + 1)] = 1.1 * self._value(start)
-        factor = 1.0 - DRAWN_IN
-        low, high = problem.least_ratio * factor, problem.greatest_ratio * factor
-        slope, jerk = problem.greatest_slope * factor, problem.greatest_jerk * factor
-        place = problem.drift * np.concatenate([[0.0], np.cumsum(_WIDTHS)])
-        lower = [np.full(n + 1, -slope), np.full(n + 1, low), problem.least_position - place, np.zeros(1 + self._drawn)]
-        upper = [np.full(n + 1, slope), np.full(n + 1, high), problem.greatest_position - place]
-        upper.append(np.full(1 + self._drawn, np.inf))
-        ends = ((problem.start_slope, problem.end_slope), (0.0, problem.end_ratio), (0.0, problem.height))
-        for part, (first, last) in enumerate(ends):
-            lower[part][0] = upper[part][0] = first
-            lower[part][-1] = upper[part][-1] = last
-        equal, peaks, between, steps = self._counts
+        parameters[-PARAMETERS:] = [*units, *self._payment(rough, ceiling)]
+        a, v, q, lengths, bound, drawn, ends, zone_drawn = self._slices()
+        if self._task.aim == "energy":
+            start[drawn] = np.maximum(power / units[1], 0.0) + 0.1
+            start[zone_drawn] = 0.1
+        start[bound] = 1.1 * value if self._task.aim == "load" else 1.1 * value / units[0]
+        lower, upper = self._bounds()
+        if hold:
+            lower[ends] = upper[ends] = guess.ends
+        lower[bound] = floor / units[0]
+        if ceiling is not None:
+            upper[bound] = ceiling / (1.0 if self._task.aim == "load" else units[0])
+            start[bound] = upper[bound]
+        equal, above, between = self._rows
+        low, high = self._paces()
         answer = self._solver(
             x0=start,
-            p=units,
-            lbx=np.concatenate(lower),
-            ubx=np.concatenate(upper),
-            lbg=[0.0] * (equal + peaks) + [low] * between + [-jerk] * steps,
-            ubg=[0.0] * equal + [np.inf] * peaks + [high] * between + [jerk] * steps,
+            p=parameters,
+            lbx=lower,
+            ubx=upper,
+            lbg=np.concatenate([np.zeros(equal + above), low]),
+            ubg=np.concatenate([np.zeros(equal), np.full(above, np.inf), high]),
         )
         statistics = self._solver.stats()
         flat: FloatArray = np.asarray(answer["x"], dtype=np.float64).ravel()
         history = statistics.get("iterations", {})
-        residual = max(
-            (float(history[name][-1]) for name in ("inf_pr", "inf_du") if history.get(name)), default=math.nan
+        residual = max((float(history[name][-1]) for name in ("inf_pr", "inf_du") if history.get(name)), default=math.inf)
+        found = Guess(
+            guess.mesh,
+            flat[lengths],
+            flat[a],
+            flat[v],
+            flat[q],
+            None if self._zone is None else (float(flat[ends][0]), float(flat[ends][1])),
         )
-        value = self._value(flat)
+        finite = bool(np.isfinite(flat).all()) and math.isfinite(residual)
+        value = self._value(flat, parameters) if finite else math.inf
         return TorqueAnswer(
-            ScaledMotion(_WIDTHS, flat[: n + 1], value),
-            value,
-            residual,
-            bool(statistics["success"]),
-            int(statistics["iter_count"]),
+            found, value, residual, bool(statistics["success"]) and math.isfinite(value), int(statistics["iter_count"])
         )
+
+    def _payment(self, rough: bool, ceiling: float | None) -> tuple[float, float]:
+        """What a peak pays, and the mean square of the torque."""
+        if ceiling is not None:
+            return 0.0, 1.0
+        return 1.0, (FIRST_ROUNDING if rough else ROUNDING).get(self._task.aim, 0.0)
+
+    def _slices(self) -> list[slice]:
+        edges = np.cumsum([0, *self._sizes])
+        return [slice(int(one), int(other)) for one, other in zip(edges[:-1], edges[1:], strict=True)]
+
+    def _paces(self) -> tuple[FloatArray, FloatArray]:
+        """Limits of the velocity in each interval, by its phase; beside a rest it is what the ends of the interval make it."""
+        problem, unit = self._task.problem, self._task.problem.length / self._task.scale
+        low, high = problem.least_ratio * unit, problem.greatest_ratio * unit
+        of = {"any": (low, high), "forth": (max(low, 0.0), high), "back": (low, min(high, 0.0))}
+        moving = np.array([of[phase] for phase in self._pattern if phase != "rest"])
+        aside = DRAWN_IN * np.maximum(1.0, np.abs(moving))
+        lower, upper = np.repeat(moving + aside * [1.0, -1.0], self._counts, axis=0).T
+        joints = np.cumsum(self._counts)[:-1]
+        for beside in (joints - 1, joints):
+            lower[beside] = np.where(lower[beside] > 0, -DRAWN_IN, lower[beside])
+            upper[beside] = np.where(upper[beside] < 0, DRAWN_IN, upper[beside])
+        return lower, upper
+
+    def _bounds(self) -> tuple[FloatArray, FloatArray]:
+        task, problem = self._task, self._task.problem
+        length, scale, count = problem.length, task.scale, sum(self._sizes)
+        lower, upper = np.full(count, -np.inf), np.full(count, np.inf)
+        a, v, q, lengths, _, drawn, ends, zone_drawn = self._slices()
+        slope = problem.greatest_slope * length**2 / scale * (1 - DRAWN_IN)
+        lower[a], upper[a] = -slope, slope
+        low, high = self._paces()
+        lower[v] = np.maximum(np.append(low, low[-1]), np.append(low[0], low))
+        upper[v] = np.minimum(np.append(high, high[-1]), np.append(high[0], high))
+        lower[q] = problem.least_position / scale + DRAWN_IN
+        upper[q] = problem.greatest_position / scale - DRAWN_IN
+        lower[drawn], lower[zone_drawn] = 0.0, 0.0
+        lower[lengths] = [0.0 if phase == "rest" else SHORTEST_PHASE for phase in self._pattern]
+        if len(self._pattern) == 1:
+            lower[lengths] = upper[lengths] = 1.0
+        node = 0
+        counts = iter(self._counts)
+        for k, phase in enumerate(self._pattern):
+            if phase != "rest":
+                node += next(counts)
+            else:
+                lower[a.start + node] = upper[a.start + node] = 0.0
+            if k < len(self._pattern) - 1:
+                lower[v.start + node] = upper[v.start + node] = 0.0
+        if self._zone is not None:
+            lower[ends], upper[ends] = self._zone.range
+            return lower, upper
+        ratio = length / scale
+        for part, first, last in (
+            (a, problem.start_slope * length * ratio, problem.end_slope * length * ratio),
+            (v, problem.start_ratio * ratio, problem.end_ratio * ratio),
+            (q, 0.0, problem.height / scale),
+        ):
+            lower[part.start] = upper[part.start] = first
+            lower[part.stop - 1] = upper[part.stop - 1] = last
+        return lower, upper

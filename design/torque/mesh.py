@@ -1,0 +1,68 @@
+"""Meshes of torque programmes: where a motion changes, the mesh is fine."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from camwright.design.torque.programme import Guess
+from camwright.design.torque.task import Pattern
+from camwright.profiles.polynomial.profile import FloatArray
+
+# Shares of a mesh that go by time, by way and by the change of the acceleration.
+BY_TIME, BY_WAY, BY_CHANGE = 0.4, 0.2, 0.4
+# Shortest interval, as a share of the phase over the number of intervals: a jump of the acceleration takes a few of these.
+SHORTEST = 1e-5
+
+
+def spread(nodes: FloatArray, density: FloatArray, count: int) -> FloatArray:
+    """Lengths of intervals that share a density evenly.
+
+    Parameters
+    ----------
+    nodes, density
+        A mesh from 0 to 1 and the density, not negative, on each of its intervals.
+    count
+        Number of intervals wanted.
+    """
+    total = np.concatenate([[0.0], np.cumsum(density * np.diff(nodes))])
+    lengths = np.diff(np.interp(np.linspace(0.0, 1.0, count + 1), total / total[-1], nodes))
+    lengths = np.maximum(lengths, SHORTEST / count)
+    return np.asarray(lengths / lengths.sum())
+
+
+def density(nodes: FloatArray, way: FloatArray, acceleration: FloatArray) -> FloatArray:
+    """Density of a mesh for a motion given at the nodes of another."""
+    step = np.diff(nodes)
+    found = np.full(len(step), BY_TIME)
+    for part, share in ((way, BY_WAY), (acceleration, BY_CHANGE)):
+        change = np.abs(np.diff(part))
+        found += share * change / max(float(change.sum()), 1e-300) / step
+    padded = np.concatenate([found[:1], found, found[-1:]])
+    return np.asarray(0.25 * padded[:-2] + 0.5 * padded[1:-1] + 0.25 * padded[2:])
+
+
+def remesh(guess: Guess, pattern: Pattern, counts: tuple[int, ...]) -> Guess:
+    """Put a motion on a mesh of its own with other numbers of intervals; between nodes it stays what it is."""
+    meshes, parts, node = [], [], 0
+    moving = [length for phase, length in zip(pattern, guess.lengths, strict=True) if phase != "rest"]
+    for mesh, length, count in zip(guess.mesh, moving, counts, strict=True):
+        rows = slice(node, node + len(mesh) + 1)
+        a, v, q = guess.acceleration[rows], guess.velocity[rows], guess.position[rows]
+        nodes = np.concatenate([[0.0], np.cumsum(mesh)])
+        nodes[-1] = 1.0
+        wanted = spread(nodes, density(nodes, q, a), count)
+        at = np.concatenate([[0.0], np.cumsum(wanted)])
+        at[-1] = 1.0
+        i = np.clip(np.searchsorted(nodes, at, side="right") - 1, 0, len(mesh) - 1)
+        d, jerk = (at - nodes[i]) * length, np.diff(a) / (mesh * length)
+        here = (
+            a[i] + jerk[i] * d,
+            v[i] + d * (a[i] + jerk[i] * d / 2),
+            q[i] + d * (v[i] + d * (a[i] / 2 + jerk[i] * d / 6)),
+        )
+        first = 0 if node == 0 else 1
+        meshes.append(wanted)
+        parts.append([part[first:] for part in here])
+        node += len(mesh)
+    a, v, q = (np.concatenate([part[k] for part in parts]) for k in range(3))
+    return Guess(tuple(meshes), guess.lengths, a, v, q, guess.ends)

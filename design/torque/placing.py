@@ -1,0 +1,124 @@
+"""Where the sync zone should lie, by the objective itself: a scan over all places, then the place as one more unknown."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import casadi as ca
+import numpy as np
+
+from camwright.design.place import Placement
+from camwright.design.returns.problem import return_problem
+from camwright.design.torque.guesses import ANYHOW, from_path
+from camwright.design.torque.mesh import remesh
+from camwright.design.torque.path_starts import path_starts
+from camwright.design.torque.programme import Guess, TorqueAnswer, TorqueProgramme
+from camwright.design.torque.task import Aim, TorqueTask
+from camwright.design.torque.zone import Zone
+from camwright.profiles.cut import Cut
+from camwright.profiles.limits import Limits
+from camwright.profiles.machines import Machine
+from camwright.profiles.polynomial.profile import FloatArray
+from camwright.profiles.task import Task
+
+PLACES = 24
+"""Places looked at first, evenly over the range that leaves room for the sync zone."""
+MARGIN = 0.01
+"""Share of that range kept free at both ends: at a dead centre the crank would need infinite speed."""
+COARSE, FINE = 40, 120
+"""Intervals of the scan, and of the search about its best places."""
+APART = 0.02
+"""Places that differ by less are one (rad)."""
+NEAR = 0.05
+"""Valleys within this share of the best on the scan are gone down."""
+PATHS = 2
+"""Returns along the path that are started from at each place."""
+HALVINGS = 60
+
+
+def place_by_objective(machine: Machine, cut: Cut, limits: Limits, aim: Aim) -> Placement | None:
+    """Place the sync zone where the objective of the whole cycle is least; None where no place has a motion on the scan's mesh.
+
+    The limits' motor counts for nothing here.
+
+    Raises
+    ------
+    InputError
+        The sync zone fits nowhere.
+    """
+    least, greatest = machine.place_range(cut)
+    room = MARGIN * (greatest - least)
+    places = np.linspace(least + room, greatest - room, PLACES)
+    tasks = [Task(machine.placed_at(float(place)), cut, limits) for place in places]
+    starts = np.array([each.slave_at_sync_start for each in tasks])
+    ends = np.array([each.slave_at_sync_end for each in tasks])
+    task = TorqueTask(tasks[PLACES // 2], return_problem(tasks[PLACES // 2], "peak_acceleration"), aim)
+    zone = Zone((np.array([starts[0], ends[0]]), np.array([starts[-1], ends[-1]])))
+    able = _able(zone, task, starts, ends)
+    programme = TorqueProgramme(task, ANYHOW, (COARSE,), zone)
+    answers: dict[int, TorqueAnswer] = {}
+    for k in np.nonzero(able)[0].tolist():
+        before = answers.get(k - 1)
+        found = _at(programme, task, (float(starts[k]), float(ends[k])), before)
+        if found is not None:
+            answers[k] = found
+    valleys = [
+        k
+        for k, answer in answers.items()
+        if all(answer.value <= answers[other].value for other in (k - 1, k + 1) if other in answers)
+    ]
+    best = min((answers[k].value for k in valleys), default=np.inf)
+    found_valleys: list[TorqueAnswer] = []
+    for k in sorted(valleys, key=lambda k: answers[k].value):
+        if answers[k].value > best * (1 + NEAR):
+            break
+        answer = answers[k]
+        for count in (COARSE, FINE):
+            guess = remesh(answer.guess, ANYHOW, (count,))
+            finer = TorqueProgramme(task, ANYHOW, (count,), zone).solve(guess, rough=count == COARSE)
+            if not finer.success:
+                break
+            answer = finer
+        found_valleys.append(answer)
+    if not found_valleys:
+        return None
+    deepest = min(found_valleys, key=lambda answer: answer.value)
+    at = _middle(machine, deepest)
+    apart = {round(_middle(machine, answer) / APART) for answer in found_valleys}
+    apart |= {round(float(places[k]) / APART) for k in valleys if answers[k].value > best * (1 + NEAR)}
+    return Placement(machine.placed_at(at), deepest.value, len(apart))
+
+
+def _middle(machine: Machine, answer: TorqueAnswer) -> float:
+    """Slave coordinate at which the tool is at mid sync zone."""
+    assert answer.guess.ends is not None  # noqa: S101 - a placing programme's answer has them
+    low, high = answer.guess.ends
+    middle = 0.5 * (float(machine.tool(low)) + float(machine.tool(high)))
+    for _ in range(HALVINGS):
+        at = 0.5 * (low + high)
+        low, high = (at, high) if float(machine.tool(at)) < middle else (low, at)
+    return 0.5 * (low + high)
+
+
+def _able(zone: Zone, task: TorqueTask, starts: FloatArray, ends: FloatArray) -> FloatArray:
+    """Tell at which places the sync zone itself keeps the limits."""
+    one, other = ca.SX.sym("s"), ca.SX.sym("e")
+    shares = zone.join(one, other, task).shares
+    greatest = ca.Function("greatest", [one, other], [ca.mmax(shares)]).map(len(starts))
+    return np.asarray(greatest(starts[None, :], ends[None, :])).ravel() <= 1.0
+
+
+def _at(
+    programme: TorqueProgramme, task: TorqueTask, ends: tuple[float, float], before: TorqueAnswer | None
+) -> TorqueAnswer | None:
+    """Best answer with the zone at one place, from returns along the path and from the neighbour's answer."""
+    machine = task.machine
+    pace = task.cut.sync_ratio * task.cut.line_speed
+    speeds = pace / float(machine.tool_ratio(ends[1])), pace / float(machine.tool_ratio(ends[0]))
+    way = ends[1], ends[0] + machine.pitch
+    family = path_starts(machine.inertia, machine.friction, way, speeds, task.duration, task.aim)
+    guesses = [replace(from_path(family, k, task, COARSE), ends=ends) for k in family.valleys()[:PATHS]]
+    if before is not None:
+        guesses.append(replace(before.guess, ends=ends))
+    answers = [programme.solve(guess, rough=True, hold=True) for guess in guesses]
+    return min((answer for answer in answers if answer.success), key=lambda answer: answer.value, default=None)

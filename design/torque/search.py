@@ -1,0 +1,189 @@
+"""The search for the return of least torque or energy: starts that differ in kind, the mesh refined, the best kept."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from camwright.design.returns.scaling import scale_problem
+from camwright.design.returns.solver import ALLOWED_EXCESS, excess, solve_return
+from camwright.design.torque.finish import finish
+from camwright.design.torque.guesses import ANYHOW, family_of, from_path, from_profile, resting, turning
+from camwright.design.torque.mesh import remesh
+from camwright.design.torque.programme import Guess, TorqueAnswer, TorqueProgramme
+from camwright.design.torque.task import Pattern, TorqueTask
+from camwright.profiles.errors import SolverError
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.returns import quintic_between
+
+FIRST = 60
+"""Intervals of the first look, all phases together."""
+LADDER = (120, 200, 300)
+"""Intervals of the meshes that follow, until the objective settles."""
+SETTLED = 1e-4
+"""Share of the objective by which a finer mesh must still gain for another to be tried."""
+AGREEMENT = 1e-2
+"""Starts whose objectives differ by less than this share on the first mesh have found the same optimum: the mesh's own error is as large."""
+NEAR = 0.05
+"""Answers within this share of the best on the first mesh are taken further, one of each value."""
+MOST_PATHS = 4
+"""Returns along the path that are started from."""
+MOST_TAKEN = 3
+"""Answers that are taken further."""
+AT_FLOOR = 1e-2
+"""A peak within this share of its floor on a mesh is held to be the floor on a finer one."""
+SAME = 1e-7
+"""Peaks that differ by less than this share are the same; the last found is the smoothest."""
+
+
+@dataclass(frozen=True, eq=False)
+class TorqueSolution:
+    """Best of several starts.
+
+    Parameters
+    ----------
+    back
+        The return over ``[0, length]`` from slave zero.
+    value
+        Its objective at the slave: root mean square or peak (N or N·m), or mean power drawn (W), over the return.
+    spread
+        Greatest objective over least, less one, of the starts that converged, on the first mesh.
+    starts, agreeing
+        How many starts converged, and how many of them to the best objective.
+    residual
+        Largest KKT residual of the best (scaled).
+    iterations
+        Iterations of IPOPT, all starts together.
+    """
+
+    back: CamProfile
+    value: float
+    spread: float
+    starts: int
+    agreeing: int
+    residual: float
+    iterations: int
+
+
+def solve_torque(
+    task: TorqueTask,
+    keeps: Callable[[CamProfile], bool] | None = None,
+    starts: Sequence[CamProfile] = (),
+    floor: float = 0.0,
+) -> TorqueSolution:
+    """Find the return of least torque or energy, of least load, or the least of another objective within the motor's curve.
+
+    Parameters
+    ----------
+    task
+        What is asked.
+    keeps
+        What a return must fulfil besides its limits.
+    starts
+        Returns to start from, beside those of every search.
+    floor
+        Peak that the sync zone has anyhow, at the slave: no lower one is looked for, but the least mean square under it.
+
+    Raises
+    ------
+    SolverError
+        No start converged to a motion that keeps the limits.
+    """
+    first: list[tuple[TorqueAnswer, Pattern]] = []
+    for pattern, guess in _guesses(task, starts):
+        first.append((_programme(task, pattern, guess).solve(guess, rough=True, floor=floor), pattern))
+    iterations = sum(answer.iterations for answer, _ in first)
+    first = sorted((entry for entry in first if entry[0].success), key=lambda entry: entry[0].value)
+    accepted = keeps or (lambda _: True)
+    found: list[tuple[float, CamProfile, float]] = []
+    for answer, pattern in _distinct(first):
+        for each in _refined(task, pattern, answer, floor):
+            iterations += each.iterations
+            back = finish(each.guess, pattern, task)
+            if each.success and _keeps_limits(back, task) and accepted(back):
+                found.append((max(each.value, floor), back, each.residual))
+    found += [entry for entry in _given(task, starts) if accepted(entry[1])]
+    if not found:
+        raise SolverError(
+            f"IPOPT found no return of least {task.aim} from any start, although the limits can be kept; minimise peak_acceleration or "
+            f"rms_acceleration instead"
+        )
+    best = min(entry[0] for entry in found)
+    value, back, residual = [entry for entry in found if entry[0] <= best * (1 + SAME)][-1]
+    values = [answer.value for answer, _ in first] or [best]
+    agreeing = sum(each <= values[0] * (1 + AGREEMENT) for each in values)
+    spread = values[-1] / values[0] - 1.0 if values[0] > 0 else 0.0
+    return TorqueSolution(back, value, spread, len(first), agreeing, residual, iterations)
+
+
+def _refined(task: TorqueTask, pattern: Pattern, answer: TorqueAnswer, floor: float) -> Iterator[TorqueAnswer]:
+    """Give an answer, and those on finer meshes until they settle; at the floor of a peak, those of least mean square under it."""
+    yield answer
+    value, ceiling = answer.value, None
+    for count in LADDER:
+        parts = len(answer.guess.mesh)
+        guess = remesh(answer.guess, pattern, (count // parts,) * parts)
+        if answer.value <= floor * (1 + AT_FLOOR):
+            ceiling = floor
+        finer = _programme(task, pattern, guess).solve(guess, floor=floor, ceiling=ceiling)
+        yield finer
+        if not finer.success or (count > LADDER[0] and finer.value > value * (1 - SETTLED)):
+            return
+        answer, value = finer, finer.value
+
+
+def _programme(task: TorqueTask, pattern: Pattern, guess: Guess) -> TorqueProgramme:
+    return TorqueProgramme(task, pattern, tuple(len(mesh) for mesh in guess.mesh))
+
+
+def _distinct(answers: list[tuple[TorqueAnswer, Pattern]]) -> list[tuple[TorqueAnswer, Pattern]]:
+    """Best answers of each value, if not far above the best."""
+    kept: list[tuple[TorqueAnswer, Pattern]] = []
+    for entry in answers:
+        value = entry[0].value
+        if len(kept) == MOST_TAKEN or value > answers[0][0].value * (1 + NEAR):
+            break
+        if not kept or value > kept[-1][0].value * (1 + SETTLED):
+            kept.append(entry)
+    return kept
+
+
+def _given(task: TorqueTask, starts: Sequence[CamProfile]) -> list[tuple[float, CamProfile, float]]:
+    """Returns started from, as answers: what is found is at least as good as the best of them."""
+    kept = []
+    for back in starts:
+        if _keeps_limits(back, task):
+            guess = from_profile(back, task, LADDER[-1])
+            kept.append((_programme(task, ANYHOW, guess).value(guess), back, math.inf))
+    return kept
+
+
+def _keeps_limits(back: CamProfile, task: TorqueTask) -> bool:
+    """Tell whether a return keeps its limits and meets its ends, exactly."""
+    problem, scale = task.problem, task.signed_scale
+    unit = back.add_line(-problem.start_ratio).scale(master=1.0 / problem.length, slave=1.0 / scale)
+    unit = CamProfile(np.append(unit.breaks[:-1], 1.0), unit.coefficients.copy())
+    return excess(unit, scale_problem(problem, scale)) <= ALLOWED_EXCESS
+
+
+def _guesses(task: TorqueTask, starts: Sequence[CamProfile]) -> Iterator[tuple[Pattern, Guess]]:
+    """Guesses of every kind that the task has."""
+    problem = task.problem
+    profiles = [quintic_between(task.task.sync, problem.length, problem.height), *starts]
+    if not starts:
+        profiles.append(solve_return(replace(problem, objective="rms_acceleration"))[0])
+    rubs = task.machine.friction > 0
+    if not (rubs and task.may_turn):
+        for profile in profiles:
+            yield ANYHOW, from_profile(profile, task, FIRST)
+        family = family_of(task)
+        if family is not None:
+            for k in family.valleys()[:MOST_PATHS]:
+                yield ANYHOW, from_path(family, k, task, FIRST)
+    if rubs:
+        yield from resting(task, FIRST // 2)
+        if task.may_turn:
+            yield from turning(task, FIRST // 3)

@@ -1,0 +1,81 @@
+"""What a torque programme is made for, and the forms that its motions may have."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+from camwright.design.returns.problem import ReturnProblem
+from camwright.design.returns.scaling import motion_scale
+from camwright.profiles.cut import Cut
+from camwright.profiles.machines import Machine
+from camwright.profiles.motor import MotorCurve
+from camwright.profiles.objective import CommandObjective
+from camwright.profiles.task import Task
+
+Aim = CommandObjective | Literal["load"]
+"""What is minimised; the load is the greatest share of the motor's torque at its speed that is used."""
+
+Phase = Literal["any", "forth", "rest", "back"]
+"""What a stretch of the return is known to be: nothing, forwards, at rest, backwards. At rest friction asks for no torque."""
+
+Pattern = tuple[Phase, ...]
+"""The phases of a return in turn; how long each takes is for the programme to find."""
+
+
+@dataclass(frozen=True, eq=False)
+class TorqueTask:
+    """What a programme is made for.
+
+    Parameters
+    ----------
+    task
+        The machine, its cut and its limits. Where the sync zone lies counts unless the programme is to find it.
+    problem
+        The return as numbers over the master; its own objective does not count.
+    aim
+        What is minimised.
+    curve
+        What the motor can give; None where that is no limit.
+    """
+
+    task: Task
+    problem: ReturnProblem
+    aim: Aim
+    curve: MotorCurve | None = None
+
+    @cached_property
+    def signed_scale(self) -> float:
+        """Slave travel that is 1 in the scaled problem, signed as `camwright.design.returns.scaling.motion_scale` has it."""
+        return motion_scale(self.problem)
+
+    @property
+    def scale(self) -> float:
+        """Slave travel that is 1 in the programme (slave unit), positive."""
+        return abs(self.signed_scale)
+
+    @property
+    def duration(self) -> float:
+        """Time of the return (s)."""
+        return self.problem.length / self.cut.line_speed
+
+    @property
+    def machine(self) -> Machine:
+        """The machine."""
+        return self.task.machine
+
+    @property
+    def cut(self) -> Cut:
+        """Its cycle."""
+        return self.task.cut
+
+    @cached_property
+    def start(self) -> float:
+        """Slave coordinate at the start of the return (slave unit)."""
+        return self.task.slave_at_sync_end
+
+    @property
+    def may_turn(self) -> bool:
+        """Whether the slave may run backwards in the return."""
+        return self.problem.least_ratio < 0.0
