@@ -180,7 +180,7 @@ def main() -> int:
     print("measure,value")
     for name, value in figures.items():
         print(f"{name},{value}")
-    return 0 if excess <= ALLOWED_EXCESS and not ends["SolverError"] and not ends["optimal_on_grid"] else 1
+    return 0 if excess <= ALLOWED_EXCESS and not ends["SolverError"] and not ends["best_found"] else 1
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ import numpy as np
 
 from camwright.design.feasible.feasibility import is_feasible
 from camwright.design.feasible.refusal import infeasible, require_feasible
+from camwright.design.place import Placement
 from camwright.design.place_cost import place_for
 from camwright.design.returns.curve_limits import motor_limits, motor_speed_limits
 from camwright.design.returns.ipopt import SolveStatus
@@ -19,7 +20,10 @@ from camwright.design.returns.solver import (
     solve_return,
 )
 from camwright.design.servo_aware.axis_motion import AxisMotion
-from camwright.design.torque.torque_return import solve_torque
+from camwright.design.torque.least_speed import drawn_power, least_speed
+from camwright.design.torque.placing import place_by_objective
+from camwright.design.torque.search import solve_torque, zone_peak
+from camwright.design.torque.task import TorqueTask
 from camwright.design.torque.within_curve import keeps_curve, least_load, solve_within_curve
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
@@ -118,8 +122,7 @@ def solve(task: Task, objective: CommandObjective, *, suggest: bool = True) -> S
     Examples
     --------
     >>> from camwright.profiles.cut import Cut
-    >>> from camwright.profiles.limits import Limits
-    >>> from camwright.profiles.machines import RotaryKnife
+    >>>     >>> from camwright.profiles.machines import RotaryKnife
     >>> knife = RotaryKnife(circumference=0.4)
     >>> cut = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4)
     >>> result = solve(Task(knife, cut, Limits(200 / 60, 30.0, 3000.0)), "peak_acceleration")
@@ -136,7 +139,7 @@ def solve(task: Task, objective: CommandObjective, *, suggest: bool = True) -> S
     require_moving(machine, objective)
     decisive = motion_objective(machine, objective)
     if decisive is None:
-        return _solve_torque(task, objective, valleys=1)
+        return _solve_torque(task, objective)
     problem = return_problem(task, decisive)
     back, status, iterations = solve_return(problem)
     if OBJECTIVES[decisive].form == "peak" and not _unique(problem):
@@ -189,7 +192,7 @@ def _solve_for_motor(task: Task, objective: CommandObjective, suggest: bool) -> 
             agreed = Agreement(within.starts, within.agreeing, within.spread, within.residual, 1)
             found.append(
                 Solution(
-                    machine, profile, within.back, SolveStatus.ON_GRID, objective, value, within.iterations, agreed
+                    machine, profile, within.back, SolveStatus.BEST_FOUND, objective, value, within.iterations, agreed
                 )
             )
     if not found:
@@ -230,33 +233,47 @@ def require_moving(machine: Machine, objective: ObjectiveName) -> None:
 def motion_objective(machine: Machine, objective: CommandObjective) -> MotionObjective | None:
     """Objective of the motion alone that has the same minimiser, if there is one.
 
-    With constant inertia ``I`` and friction ``F`` that never changes its sign the mean square of the force is ``I² a_rms² + F²`` (the mean
-    acceleration of a cycle is zero); without friction its peak is ``I a_max``.
+    With constant inertia ``I`` and no friction the force is ``I a``. With friction it matters how long the slave stands: that costs none.
     """
     if of_motion(objective) == objective:
         return of_motion(objective)
     if not machine.constant_inertia or objective == "energy":
         return None
-    if objective == "rms_torque" and not (machine.turns_back and machine.friction):
-        return "rms_acceleration"
-    return "peak_acceleration" if objective == "peak_torque" and not machine.friction else None
+    if machine.friction:
+        return None
+    return "rms_acceleration" if objective == "rms_torque" else "peak_acceleration"
 
 
-def _solve_torque(task: Task, objective: CommandObjective, valleys: int) -> Solution:
-
-    problem = return_problem(task, "peak_acceleration")
-    found = solve_torque(task, problem, objective)
-    agreement = Agreement(found.starts, found.agreeing, found.spread, found.residual, valleys)
+def _solve_torque(task: Task, objective: CommandObjective) -> Solution:
+    """Solve an objective of the motor that no objective of the motion stands for."""
+    machine, problem = task.machine, return_problem(task, "peak_acceleration")
+    given: list[CamProfile] = []
+    if machine.constant_inertia and objective == "energy" and not machine.friction:
+        back, iterations = least_speed(problem)
+        if task.straight:
+            power, profile = drawn_power(back, task), assemble(back, task)
+            return Solution(machine, profile, back, SolveStatus.OPTIMAL, objective, power, iterations)
+        given.append(back)
+    elif machine.constant_inertia and objective == "rms_torque":  # the optimum of a slave that never stands
+        given.append(solve_return(replace(problem, objective="rms_acceleration"))[0])
+    floor = zone_peak(task) if objective == "peak_torque" else 0.0
+    found = solve_torque(TorqueTask(task, problem, objective), starts=given, floor=floor)
+    agreement = Agreement(found.starts, found.agreeing, found.spread, found.residual, 1)
     profile = assemble(found.back, task)
     return Solution(
-        task.machine, profile, found.back, SolveStatus.ON_GRID, objective, found.value, found.iterations, agreement
+        machine, profile, found.back, SolveStatus.BEST_FOUND, objective, found.value, found.iterations, agreement
     )
 
 
 def _solve_free_place(task: Task, objective: CommandObjective, suggest: bool) -> Solution:
-    """Choose the place of the sync zone first, by the objective of the motion or by the mean square of the torque."""
-    placement = place_for(task, objective)
-    solution = solve(placement.task, objective, suggest=suggest)
+    """Choose the place of the sync zone first, by the objective of the whole cycle: a closed form's, or the programme's own."""
+    placement: Placement | None = None
+    if OBJECTIVES[objective].form != "peak" or OBJECTIVES[objective].of == "motor":
+        require_moving(task.machine, objective)
+        plain = motor_speed_limits(task.machine, task.limits)
+        placement = place_by_objective(task.with_limits(plain), objective, task.limits.motor)
+    placed = placement or place_for(task, objective)
+    solution = solve(placed.task.with_limits(task.limits), objective, suggest=suggest)
     if solution.agreement is None:
-        return replace(solution, agreement=Agreement(1, 1, 0.0, 0.0, placement.valleys))
-    return replace(solution, agreement=replace(solution.agreement, valleys=placement.valleys))
+        return replace(solution, agreement=Agreement(1, 1, 0.0, 0.0, placed.valleys))
+    return replace(solution, agreement=replace(solution.agreement, valleys=placed.valleys))

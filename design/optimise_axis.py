@@ -117,7 +117,7 @@ def solve_axis(
 
         raise _infeasible(loosest, settles if suggest else None)
     motion = min(motions, key=lambda each: each.value)
-    status = blind.status if blind is not None and not motion.programmes else SolveStatus.ON_GRID
+    status = blind.status if blind is not None and not motion.programmes else SolveStatus.BEST_FOUND
     return _solution(motion, status, task.with_machine(placed), objective, order)
 
 

@@ -47,14 +47,14 @@ class SolveStatus(Enum):
     """How a design ended, with advice."""
 
     OPTIMAL = "optimal"
-    ON_GRID = "optimal_on_grid"
+    BEST_FOUND = "best_found"
 
     @property
     def advice(self) -> str:
         """What the reader of a result should know or do."""
         return {
             SolveStatus.OPTIMAL: "optimal, its pieces polished to the solver's accuracy",
-            SolveStatus.ON_GRID: "optimal on a fine grid; the pieces could not be polished, so look at the stated gap",
+            SolveStatus.BEST_FOUND: "the best that was found, not proved to be the best there is: look at the stated gap and at the starts",
         }[self]
 
 

@@ -172,7 +172,7 @@ def _first_as_good(
             f"IPOPT ({iterations} iterations) found no return that keeps the limits on any grid, although the job is not known to be "
             f"infeasible; loosen the limit that is nearest to binding by 1 % and report this job"
         )
-    return safe, SolveStatus.OPTIMAL if _extreme_is_optimal(problem) else SolveStatus.ON_GRID, iterations
+    return safe, SolveStatus.OPTIMAL if _extreme_is_optimal(problem) else SolveStatus.BEST_FOUND, iterations
 
 
 def _polished(problem: ScaledProblem, grid: ScaledMotion, thorough: bool) -> tuple[ScaledMotion | None, float, int]:

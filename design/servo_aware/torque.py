@@ -11,7 +11,7 @@ import numpy as np
 from camwright.design.returns.ipopt import QUIET
 from camwright.design.servo_aware.command_basis import CommandBasis
 from camwright.design.servo_aware.convex import Rows, sparse
-from camwright.design.torque.programme import LOBATTO, ROUNDING
+from camwright.design.torque.programme import LOBATTO
 from camwright.profiles.errors import SolverError
 from camwright.profiles.objective import MotorObjective
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
@@ -21,6 +21,8 @@ from camwright.profiles.task import Task
 SMOOTH = 0.01
 # A force below this share of inertia times line speed squared over the cut length is rounding.
 STANDING = 1e-6
+# A peak, and the energy, also pay this share of the mean square, so that of all motions with that peak the smoothest is taken.
+ROUNDING = 1e-4
 _OPTIONS: dict[str, Any] = QUIET | {
     "ipopt.tol": 1e-8,
     "ipopt.constr_viol_tol": 1e-8,

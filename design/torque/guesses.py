@@ -44,7 +44,7 @@ def from_path(family: PathStarts, k: int, task: TorqueTask, count: int) -> Guess
 
 
 def family_of(task: TorqueTask) -> PathStarts | None:
-    """Returns along the path; None where the slave must turn to get to its end."""
+    """Make returns along the path; None where the slave must turn to get to its end."""
     problem, v = task.problem, task.cut.line_speed
     if problem.height <= 0 or min(problem.start_ratio, problem.end_ratio) <= 0:
         return None
@@ -68,7 +68,10 @@ def turning(task: TorqueTask, count: int) -> Iterator[tuple[Pattern, Guess]]:
     for share in (0.05, 0.15, 0.3):
         beyond = problem.start_ratio * problem.length * share / 3
         before = problem.end_ratio * problem.length * share / 3
-        beyond, before = min(beyond, 0.9 * problem.greatest_position), min(before, 0.9 * (problem.height - problem.least_position))
+        beyond, before = (
+            min(beyond, 0.9 * problem.greatest_position),
+            min(before, 0.9 * (problem.height - problem.least_position)),
+        )
         out = _cubic(share, problem.start_ratio * problem.length, 0.0, beyond)
         again = _cubic(share, 0.0, problem.end_ratio * problem.length, before)
         for pattern, rest in zip(TURNING, (0.0, 0.1), strict=True):

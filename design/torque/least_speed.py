@@ -9,14 +9,22 @@ acceleration is taken.
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Literal
+
+import numpy as np
 
 from camwright.design.returns.possible import is_possible
 from camwright.design.returns.problem import ReturnProblem
 from camwright.design.returns.scaling import resolved
 from camwright.design.returns.solver import solve_return
 from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.task import Task
+
+_Ratio = Literal["least_ratio", "greatest_ratio"]
 
 HALVINGS = 60
+# Places of a return at which its speed is looked at, besides its breaks.
+LOOKS = 4001
 EASED = 2e-5
 """Share of the change of speed that is given away for a smoother motion."""
 
@@ -42,13 +50,28 @@ def least_speed(problem: ReturnProblem) -> tuple[CamProfile, int]:
     return back, iterations
 
 
-def _nearest(problem: ReturnProblem, name: str, none: float) -> float:
+def drawn_power(back: CamProfile, task: Task) -> float:
+    """Mean power that a return draws at the slave, where the inertia is constant and nothing rubs (W): the rises of the kinetic energy."""
+    turns = np.unique(np.concatenate([back.breaks, [extremum.at for extremum in back.extrema(1)]]))
+    x = np.unique(np.concatenate([turns, np.linspace(back.start, back.end, LOOKS)]))
+    speed = task.cut.line_speed * back(x, 1)
+    energy = 0.5 * float(task.machine.inertia(task.slave_at_sync_end)) * speed**2
+    return float(np.maximum(np.diff(energy), 0.0).sum()) / (back.length / task.cut.line_speed)
+
+
+def _nearest(problem: ReturnProblem, name: _Ratio, none: float) -> float:
     """Limit of the ratio nearest to one that leaves no motion with which there still is one."""
     far, near = float(getattr(problem, name)), none
     for _ in range(HALVINGS):
         middle = 0.5 * (far + near)
-        if is_possible(resolved(replace(problem, **{name: middle}))):
+        if is_possible(resolved(_within(problem, name, middle))):
             far = middle
         else:
             near = middle
     return far
+
+
+def _within(problem: ReturnProblem, name: _Ratio, limit: float) -> ReturnProblem:
+    if name == "least_ratio":
+        return replace(problem, least_ratio=limit)
+    return replace(problem, greatest_ratio=limit)

@@ -49,7 +49,7 @@ class PathStarts:
     marks: FloatArray
 
     def valleys(self) -> list[int]:
-        """Returns none of whose neighbours in the family costs less, the best first."""
+        """Find the returns none of whose neighbours in the family costs less, the best first."""
         index = {tuple(pair): k for k, pair in enumerate(np.searchsorted(MARKS, self.marks).tolist())}
         found = []
         for (i, j), k in index.items():
@@ -69,7 +69,12 @@ class PathStarts:
 
 
 def path_starts(
-    inertia: Callable[[Any], Any], friction: float, ends: tuple[float, float], speeds: tuple[float, float], time: float, aim: str
+    inertia: Callable[[Any], Any],
+    friction: float,
+    ends: tuple[float, float],
+    speeds: tuple[float, float],
+    time: float,
+    aim: str,
 ) -> PathStarts:
     """Make the family.
 
@@ -91,7 +96,10 @@ def path_starts(
     y = np.linspace(*ends, PLACES)
     mass = np.asarray(inertia(y)) + 0.0 * y
     share, step = np.linspace(0.0, 1.0, PLACES), float(y[1] - y[0])
-    first, second = (part[np.less_equal(*np.meshgrid(MARKS, MARKS, indexing="ij"))] for part in np.meshgrid(MARKS, MARKS, indexing="ij"))
+    first, second = (
+        part[np.less_equal(*np.meshgrid(MARKS, MARKS, indexing="ij"))]
+        for part in np.meshgrid(MARKS, MARKS, indexing="ij")
+    )
     energies = 0.5 * mass[0] * speeds[0] ** 2, 0.5 * mass[-1] * speeds[1] ** 2
     out, back = np.minimum(share / first[:, None], 1.0), np.minimum((1.0 - share) / (1.0 - second[:, None]), 1.0)
     mean = 0.5 * float(mass.mean()) * ((y[-1] - y[0]) / time) ** 2
@@ -99,7 +107,9 @@ def path_starts(
     def along(level: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Kinetic energy, speed and times of the intervals."""
         top = level[:, None]
-        energy = np.where(share <= first[:, None], energies[0] + (top - energies[0]) * out, energies[1] + (top - energies[1]) * back)
+        energy = np.where(
+            share <= first[:, None], energies[0] + (top - energies[0]) * out, energies[1] + (top - energies[1]) * back
+        )
         speed = np.sqrt(2.0 * np.maximum(energy, 1e-300) / mass)
         return energy, speed, 2.0 * step / (speed[:, 1:] + speed[:, :-1])
 
@@ -109,6 +119,9 @@ def path_starts(
         slow = along(mean * np.exp(middle))[2].sum(axis=1) > time
         low, high = np.where(slow, middle, low), np.where(slow, high, middle)
     energy, speed, times = along(mean * np.exp(high))
+    # a ramp to nothing and back ends in finite time: the slave stands there for the rest
+    slowest = np.argmin(speed[:, 1:] + speed[:, :-1], axis=1)
+    times[np.arange(len(times)), slowest] += np.maximum(time - times.sum(axis=1), 0.0)
     torque = np.diff(energy, axis=1) / step + friction
     if aim == "rms_torque":
         costs = np.sqrt((torque**2 * times).sum(axis=1) / time)

@@ -6,18 +6,18 @@ from dataclasses import replace
 
 import casadi as ca
 import numpy as np
+from numpy.typing import NDArray
 
 from camwright.design.place import Placement
 from camwright.design.returns.problem import return_problem
 from camwright.design.torque.guesses import ANYHOW, from_path
 from camwright.design.torque.mesh import remesh
 from camwright.design.torque.path_starts import path_starts
-from camwright.design.torque.programme import Guess, TorqueAnswer, TorqueProgramme
+from camwright.design.torque.programme import TorqueAnswer, TorqueProgramme
 from camwright.design.torque.task import Aim, TorqueTask
 from camwright.design.torque.zone import Zone
-from camwright.profiles.cut import Cut
-from camwright.profiles.limits import Limits
 from camwright.profiles.machines import Machine
+from camwright.profiles.motor import MotorCurve
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.profiles.task import Task
 
@@ -36,30 +36,37 @@ PATHS = 2
 HALVINGS = 60
 
 
-def place_by_objective(machine: Machine, cut: Cut, limits: Limits, aim: Aim) -> Placement | None:
+def place_by_objective(task: Task, aim: Aim, curve: MotorCurve | None = None) -> Placement | None:
     """Place the sync zone where the objective of the whole cycle is least; None where no place has a motion on the scan's mesh.
 
-    The limits' motor counts for nothing here.
+    Parameters
+    ----------
+    task
+        The machine, its cut and the slave's limits; their motor counts for nothing here.
+    aim
+        What is minimised.
+    curve
+        What the motor can give, in the sync zone too; None where that is no limit.
 
     Raises
     ------
     InputError
         The sync zone fits nowhere.
     """
-    least, greatest = machine.place_range(cut)
+    least, greatest = task.machine.place_range(task.cut)
     room = MARGIN * (greatest - least)
     places = np.linspace(least + room, greatest - room, PLACES)
-    tasks = [Task(machine.placed_at(float(place)), cut, limits) for place in places]
+    tasks = [task.placed_at(float(place)) for place in places]
     starts = np.array([each.slave_at_sync_start for each in tasks])
     ends = np.array([each.slave_at_sync_end for each in tasks])
-    task = TorqueTask(tasks[PLACES // 2], return_problem(tasks[PLACES // 2], "peak_acceleration"), aim)
+    middle = TorqueTask(tasks[PLACES // 2], return_problem(tasks[PLACES // 2], "peak_acceleration"), aim, curve)
     zone = Zone((np.array([starts[0], ends[0]]), np.array([starts[-1], ends[-1]])))
-    able = _able(zone, task, starts, ends)
-    programme = TorqueProgramme(task, ANYHOW, (COARSE,), zone)
+    able = _able(zone, middle, starts, ends)
+    programme = TorqueProgramme(middle, ANYHOW, (COARSE,), zone)
     answers: dict[int, TorqueAnswer] = {}
     for k in np.nonzero(able)[0].tolist():
         before = answers.get(k - 1)
-        found = _at(programme, task, (float(starts[k]), float(ends[k])), before)
+        found = _at(programme, middle, (float(starts[k]), float(ends[k])), before)
         if found is not None:
             answers[k] = found
     valleys = [
@@ -75,7 +82,7 @@ def place_by_objective(machine: Machine, cut: Cut, limits: Limits, aim: Aim) -> 
         answer = answers[k]
         for count in (COARSE, FINE):
             guess = remesh(answer.guess, ANYHOW, (count,))
-            finer = TorqueProgramme(task, ANYHOW, (count,), zone).solve(guess, rough=count == COARSE)
+            finer = TorqueProgramme(middle, ANYHOW, (count,), zone).solve(guess, rough=count == COARSE)
             if not finer.success:
                 break
             answer = finer
@@ -83,10 +90,10 @@ def place_by_objective(machine: Machine, cut: Cut, limits: Limits, aim: Aim) -> 
     if not found_valleys:
         return None
     deepest = min(found_valleys, key=lambda answer: answer.value)
-    at = _middle(machine, deepest)
-    apart = {round(_middle(machine, answer) / APART) for answer in found_valleys}
+    at = _middle(task.machine, deepest)
+    apart = {round(_middle(task.machine, answer) / APART) for answer in found_valleys}
     apart |= {round(float(places[k]) / APART) for k in valleys if answers[k].value > best * (1 + NEAR)}
-    return Placement(machine.placed_at(at), deepest.value, len(apart))
+    return Placement(task.placed_at(at), deepest.value, len(apart))
 
 
 def _middle(machine: Machine, answer: TorqueAnswer) -> float:
@@ -100,7 +107,7 @@ def _middle(machine: Machine, answer: TorqueAnswer) -> float:
     return 0.5 * (low + high)
 
 
-def _able(zone: Zone, task: TorqueTask, starts: FloatArray, ends: FloatArray) -> FloatArray:
+def _able(zone: Zone, task: TorqueTask, starts: FloatArray, ends: FloatArray) -> NDArray[np.bool_]:
     """Tell at which places the sync zone itself keeps the limits."""
     one, other = ca.SX.sym("s"), ca.SX.sym("e")
     shares = zone.join(one, other, task).shares

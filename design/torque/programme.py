@@ -9,6 +9,7 @@ the length of a rest is unknown.
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 from typing import Any
@@ -47,7 +48,12 @@ LOBATTO = (
 )
 """Gauss-Lobatto points on the unit interval, and their weights: exact to degree 5, and at the nodes, where a peak may stand."""
 
-_OPTIONS: dict[str, Any] = QUIET | {"ipopt.tol": 1e-8, "ipopt.max_iter": 300, "ipopt.mu_strategy": "adaptive", "ipopt.bound_relax_factor": 1e-10}
+_OPTIONS: dict[str, Any] = QUIET | {
+    "ipopt.tol": 1e-8,
+    "ipopt.max_iter": 300,
+    "ipopt.mu_strategy": "adaptive",
+    "ipopt.bound_relax_factor": 1e-10,
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,7 +128,10 @@ class TorqueProgramme:
         drawn_in_zone = zone.points + 2 if zone is not None and task.aim == "energy" else 0
         drawn_count = len(LOBATTO[0]) * n if task.aim == "energy" else 0
         self._sizes = [n + 1, n + 1, n + 1, len(pattern), 1, drawn_count, 0 if zone is None else 2, drawn_in_zone]
-        x = ca.MX.sym("x", sum(self._sizes))
+        pace = 1.0 / task.crossing
+        self._units = np.repeat([pace**2, pace, *np.ones(len(self._sizes) - 2)], self._sizes)
+        unknowns = ca.MX.sym("x", sum(self._sizes))
+        x = unknowns * ca.DM(self._units)
         a, v, q, lengths, t, drawn, ends, zone_drawn = ca.vertsplit(x, [0, *np.cumsum(self._sizes).tolist()])
         p = ca.MX.sym("p", n + PARAMETERS)
         units, paid, rounding = p[n : n + 2], p[n + 2], p[n + 3]
@@ -131,7 +140,7 @@ class TorqueProgramme:
         h = p[:n] * ca.vec(lengths[owner.tolist()])
         rise = a[1:] - a[:-1]
         equations = [
-            v[:-1] + h * (a[:-1] + a[1:]) / 2 - v[1:],
+            (v[:-1] + h * (a[:-1] + a[1:]) / 2 - v[1:]) / pace,
             q[:-1] + h * v[:-1] + h * h * (a[:-1] / 3 + a[1:] / 6) - q[1:],
             ca.sum1(lengths) - 1.0,
         ]
@@ -142,7 +151,7 @@ class TorqueProgramme:
         rows = (a[:-1].T, rise.T, v[:-1].T, q[:-1].T, h.T, ca.DM(sign).T, ca.repmat(start, 1, n))
         torque, power, available = (ca.vec(part) for part in interval(*rows))
         weights = ca.vec(ca.DM(LOBATTO[1]) @ h.T)
-        self._measure = ca.Function("measure", [x, p], [torque, power, available, weights, h])
+        self._measure = ca.Function("measure", [unknowns, p], [torque, power, available, weights, h])
         mean_square = ca.dot(weights, (torque / units[0]) ** 2)
         sharpest = task.problem.greatest_jerk * task.problem.length**3 / task.scale
         by_phase = (1.0 - JERK_DRAWN_IN) * h / p[:n]
@@ -167,12 +176,20 @@ class TorqueProgramme:
                 }[task.aim]
                 peaks = [t - values, t + values]
                 cost = paid * t + (rounding * mean_square if task.aim in ROUNDING else 0.0)
-        if task.curve is not None and task.aim != "load":
-            allowed, strongest = available * (1 - CURVE_DRAWN_IN), task.curve.points[0][1] * task.machine.motor_ratio
+        strongest = 1.0 if task.curve is None else task.curve.points[0][1] * task.machine.motor_ratio
+        limited = task.curve is not None and task.aim != "load"
+        if limited:
+            allowed = available * (1 - CURVE_DRAWN_IN)
             peaks += [(allowed - torque) / strongest, (allowed + torque) / strongest]
         if zone is not None:
             joined = zone.join(ends[0], ends[1], task)
-            equations += [joined.closure, *(state - met for state, met in zip((a[0], v[0], a[-1], v[-1]), joined.states, strict=True))]
+            if limited:
+                allowed = _available(task, joined.velocity, zone.points + 2) * (1 - CURVE_DRAWN_IN)
+                peaks += [(allowed - joined.torque) / strongest, (allowed + joined.torque) / strongest]
+            equations += [
+                joined.closure,
+                *(state - met for state, met in zip((a[0], v[0], a[-1], v[-1]), joined.states, strict=True)),
+            ]
             equations += [q[0], q[-1] - joined.travel]
             peaks += [1.0 - joined.shares]
             match task.aim:
@@ -186,9 +203,11 @@ class TorqueProgramme:
                 case "peak_acceleration" | "peak_jerk":
                     peak = joined.accelerations if task.aim == "peak_acceleration" else joined.jerks
                     peaks += [t - peak / units[0], t + peak / units[0]]
-            self._joined = ca.Function("joined", [x], [joined.torque, joined.power, joined.weights, joined.travel])
-        self._rows = (sum(part.numel() for part in equations), sum(part.numel() for part in (*peaks, *jerk)), n)
-        nlp = {"x": x, "p": p, "f": cost, "g": ca.vertcat(*equations, *peaks, *jerk, between)}
+            self._joined = ca.Function(
+                "joined", [unknowns], [joined.torque, joined.power, joined.weights, joined.travel]
+            )
+        self._rows = (sum(part.numel() for part in equations), sum(part.numel() for part in (*peaks, *jerk)))
+        nlp = {"x": unknowns, "p": p, "f": cost, "g": ca.vertcat(*equations, *peaks, *jerk, between)}
         self._solver = ca.nlpsol("camwright_torque", "ipopt", nlp, _OPTIONS)
 
     def _interval(self) -> Any:
@@ -204,11 +223,7 @@ class TorqueProgramme:
         velocity = task.scale / task.duration * (v + h * s * (a + rise * s / 2))
         acceleration = task.scale / task.duration**2 * (a + rise * s)
         force = machine.inertia(y) * acceleration + machine.inertia_slope(y) * velocity**2 / 2 + machine.friction * sign
-        available: Any = ca.DM.inf(len(LOBATTO[0]))
-        if task.curve is not None:
-            speeds, torques = (ca.DM(list(column)) for column in zip(*task.curve.points, strict=True))
-            speed = ca.vertsplit(ca.fabs(velocity) * machine.motor_ratio)
-            available = ca.vertcat(*[ca.pw_lin(each, speeds, torques) for each in speed]) * machine.motor_ratio
+        available = _available(task, velocity, len(LOBATTO[0]))
         return ca.Function("interval", [a, rise, v, q, h, sign, start], [force, force * velocity, available])
 
     def _state(self, guess: Guess) -> FloatArray:
@@ -221,14 +236,20 @@ class TorqueProgramme:
         return self._value(self._state(guess), np.concatenate([*guess.mesh, np.ones(PARAMETERS)]))
 
     def _value(self, state: FloatArray, parameters: FloatArray) -> float:
-        torque, power, available, weights, h = (np.asarray(part).ravel() for part in self._measure(state, parameters))
+        torque, power, available, weights, h = (
+            np.asarray(part).ravel() for part in self._measure(state / self._units, parameters)
+        )
         if self._zone is not None:
-            more = [np.asarray(part).ravel() for part in self._joined(state)]
-            torque, power, weights = (np.append(one, other) for one, other in zip((torque, power, weights), more, strict=False))
+            more = [np.asarray(part).ravel() for part in self._joined(state / self._units)]
+            torque, power, weights = (
+                np.append(one, other) for one, other in zip((torque, power, weights), more, strict=False)
+            )
         a = state[: self._sizes[0]]
         match self._task.aim:
             case "rms_torque":
-                return math.sqrt(float(weights @ torque**2) / float(weights.sum()) if self._zone else float(weights @ torque**2))
+                return math.sqrt(
+                    float(weights @ torque**2) / float(weights.sum()) if self._zone else float(weights @ torque**2)
+                )
             case "peak_torque":
                 return float(np.abs(torque).max())
             case "energy":
@@ -264,7 +285,7 @@ class TorqueProgramme:
         """
         mesh = np.concatenate(guess.mesh)
         start, parameters = self._state(guess), np.append(mesh, np.ones(PARAMETERS))
-        torque, power, _, _, _ = (np.asarray(part).ravel() for part in self._measure(start, parameters))
+        torque, power, _, _, _ = (np.asarray(part).ravel() for part in self._measure(start / self._units, parameters))
         value = self._value(start, parameters)
         motion = self._task.aim in MOTION_OBJECTIVES
         unit = value if motion else float(np.sqrt(np.mean(torque**2)))
@@ -282,20 +303,22 @@ class TorqueProgramme:
         if ceiling is not None:
             upper[bound] = ceiling / (1.0 if self._task.aim == "load" else units[0])
             start[bound] = upper[bound]
-        equal, above, between = self._rows
+        equal, above = self._rows
         low, high = self._paces()
         answer = self._solver(
-            x0=start,
+            x0=start / self._units,
             p=parameters,
-            lbx=lower,
-            ubx=upper,
+            lbx=lower / self._units,
+            ubx=upper / self._units,
             lbg=np.concatenate([np.zeros(equal + above), low]),
             ubg=np.concatenate([np.zeros(equal), np.full(above, np.inf), high]),
         )
         statistics = self._solver.stats()
-        flat: FloatArray = np.asarray(answer["x"], dtype=np.float64).ravel()
+        flat: FloatArray = np.asarray(answer["x"], dtype=np.float64).ravel() * self._units
         history = statistics.get("iterations", {})
-        residual = max((float(history[name][-1]) for name in ("inf_pr", "inf_du") if history.get(name)), default=math.inf)
+        residual = max(
+            (float(history[name][-1]) for name in ("inf_pr", "inf_du") if history.get(name)), default=math.inf
+        )
         found = Guess(
             guess.mesh,
             flat[lengths],
@@ -311,14 +334,14 @@ class TorqueProgramme:
         )
 
     def _payment(self, rough: bool, ceiling: float | None) -> tuple[float, float]:
-        """What a peak pays, and the mean square of the torque."""
+        """Give what a peak pays, and the mean square of the torque."""
         if ceiling is not None:
             return 0.0, 1.0
         return 1.0, (FIRST_ROUNDING if rough else ROUNDING).get(self._task.aim, 0.0)
 
     def _slices(self) -> list[slice]:
         edges = np.cumsum([0, *self._sizes])
-        return [slice(int(one), int(other)) for one, other in zip(edges[:-1], edges[1:], strict=True)]
+        return [slice(int(one), int(other)) for one, other in itertools.pairwise(edges)]
 
     def _paces(self) -> tuple[FloatArray, FloatArray]:
         """Limits of the velocity in each interval, by its phase; beside a rest it is what the ends of the interval make it."""
@@ -371,3 +394,12 @@ class TorqueProgramme:
             lower[part.start] = upper[part.start] = first
             lower[part.stop - 1] = upper[part.stop - 1] = last
         return lower, upper
+
+
+def _available(task: TorqueTask, velocity: Any, count: int) -> Any:
+    """Give what the motor gives at the slave's velocities, in symbols."""
+    if task.curve is None:
+        return ca.DM.inf(count)
+    speeds, torques = (ca.DM(list(column)) for column in zip(*task.curve.points, strict=True))
+    motor = ca.vertsplit(ca.fabs(velocity) * task.machine.motor_ratio)
+    return ca.vertcat(*[ca.pw_lin(each, speeds, torques) for each in motor]) * task.machine.motor_ratio

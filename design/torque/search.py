@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
@@ -18,15 +17,18 @@ from camwright.design.torque.task import Pattern, TorqueTask
 from camwright.profiles.errors import SolverError
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import quintic_between
+from camwright.profiles.task import Task
 
 FIRST = 60
 """Intervals of the first look, all phases together."""
-LADDER = (120, 200, 300)
-"""Intervals of the meshes that follow, until the objective settles."""
+SECOND = 120
+"""Intervals of the second look, at the best of the first."""
+LADDER = (200, 300)
+"""Intervals of the meshes on which the best of these is taken further, until the objective settles."""
 SETTLED = 1e-4
 """Share of the objective by which a finer mesh must still gain for another to be tried."""
 AGREEMENT = 1e-2
-"""Starts whose objectives differ by less than this share on the first mesh have found the same optimum: the mesh's own error is as large."""
+"""Starts whose objectives differ by less than this share on the first mesh have found the same optimum; its own error is as large."""
 NEAR = 0.05
 """Answers within this share of the best on the first mesh are taken further, one of each value."""
 MOST_PATHS = 4
@@ -35,6 +37,8 @@ MOST_TAKEN = 3
 """Answers that are taken further."""
 AT_FLOOR = 1e-2
 """A peak within this share of its floor on a mesh is held to be the floor on a finer one."""
+ZONE_PLACES = 1001
+"""Places of the sync zone at which its torque is looked at."""
 SAME = 1e-7
 """Peaks that differ by less than this share are the same; the last found is the smoothest."""
 
@@ -99,12 +103,30 @@ def solve_torque(
     first = sorted((entry for entry in first if entry[0].success), key=lambda entry: entry[0].value)
     accepted = keeps or (lambda _: True)
     found: list[tuple[float, CamProfile, float]] = []
+
+    def keep(answer: TorqueAnswer, pattern: Pattern) -> None:
+        back = finish(answer.guess, pattern, task)
+        if _keeps_limits(back, task) and accepted(back):
+            found.append((max(answer.value, floor), back, answer.residual))
+
+    second: list[tuple[TorqueAnswer, Pattern]] = []
     for answer, pattern in _distinct(first):
-        for each in _refined(task, pattern, answer, floor):
-            iterations += each.iterations
-            back = finish(each.guess, pattern, task)
-            if each.success and _keeps_limits(back, task) and accepted(back):
-                found.append((max(each.value, floor), back, each.residual))
+        finer = _finer(task, pattern, answer, SECOND, floor)
+        iterations += finer.iterations
+        second.append((finer if finer.success else answer, pattern))
+        keep(*second[-1])
+    if second:
+        answer, pattern = min(second, key=lambda entry: entry[0].value)
+        for count in LADDER:
+            finer = _finer(task, pattern, answer, count, floor)
+            iterations += finer.iterations
+            if not finer.success:
+                break
+            keep(finer, pattern)
+            settled = finer.value > answer.value * (1 - SETTLED)
+            answer = finer
+            if settled:
+                break
     found += [entry for entry in _given(task, starts) if accepted(entry[1])]
     if not found:
         raise SolverError(
@@ -119,20 +141,24 @@ def solve_torque(
     return TorqueSolution(back, value, spread, len(first), agreeing, residual, iterations)
 
 
-def _refined(task: TorqueTask, pattern: Pattern, answer: TorqueAnswer, floor: float) -> Iterator[TorqueAnswer]:
-    """Give an answer, and those on finer meshes until they settle; at the floor of a peak, those of least mean square under it."""
-    yield answer
-    value, ceiling = answer.value, None
-    for count in LADDER:
-        parts = len(answer.guess.mesh)
-        guess = remesh(answer.guess, pattern, (count // parts,) * parts)
-        if answer.value <= floor * (1 + AT_FLOOR):
-            ceiling = floor
-        finer = _programme(task, pattern, guess).solve(guess, floor=floor, ceiling=ceiling)
-        yield finer
-        if not finer.success or (count > LADDER[0] and finer.value > value * (1 - SETTLED)):
-            return
-        answer, value = finer, finer.value
+def zone_peak(task: Task) -> float:
+    """Greatest magnitude of the torque or force that the sync zone asks for, at the slave."""
+    x = np.linspace(task.sync.start, task.sync.end, ZONE_PLACES)
+    v, machine, y = task.cut.line_speed, task.machine, task.slave_at_sync_start + task.sync(x)
+    inertial = machine.inertia(y) * task.sync(x, 2) + machine.inertia_slope(y) * task.sync(x, 1) ** 2 / 2
+    return float(np.abs(v**2 * inertial + machine.friction).max())
+
+
+def _finer(task: TorqueTask, pattern: Pattern, answer: TorqueAnswer, count: int, floor: float) -> TorqueAnswer:
+    """Solve again on a finer mesh; near the floor of a peak, for the least mean square under it."""
+    parts = len(answer.guess.mesh)
+    guess = remesh(answer.guess, pattern, (count // parts,) * parts)
+    programme = _programme(task, pattern, guess)
+    if answer.value <= floor * (1 + AT_FLOOR):
+        under = programme.solve(guess, ceiling=floor)
+        if under.success:
+            return under
+    return programme.solve(guess, floor=floor)
 
 
 def _programme(task: TorqueTask, pattern: Pattern, guess: Guess) -> TorqueProgramme:
@@ -152,12 +178,12 @@ def _distinct(answers: list[tuple[TorqueAnswer, Pattern]]) -> list[tuple[TorqueA
 
 
 def _given(task: TorqueTask, starts: Sequence[CamProfile]) -> list[tuple[float, CamProfile, float]]:
-    """Returns started from, as answers: what is found is at least as good as the best of them."""
+    """Give the returns started from, as answers: what is found is at least as good as the best of them."""
     kept = []
     for back in starts:
         if _keeps_limits(back, task):
             guess = from_profile(back, task, LADDER[-1])
-            kept.append((_programme(task, ANYHOW, guess).value(guess), back, math.inf))
+            kept.append((_programme(task, ANYHOW, guess).value(guess), back, 0.0))
     return kept
 
 

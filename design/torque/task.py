@@ -17,6 +17,9 @@ from camwright.profiles.task import Task
 Aim = CommandObjective | Literal["load"]
 """What is minimised; the load is the greatest share of the motor's torque at its speed that is used."""
 
+SHORTEST_CROSSING = 1e-3
+"""Least share of a return that counts as its crossing."""
+
 Phase = Literal["any", "forth", "rest", "back"]
 """What a stretch of the return is known to be: nothing, forwards, at rest, backwards. At rest friction asks for no torque."""
 
@@ -53,7 +56,13 @@ class TorqueTask:
     @property
     def scale(self) -> float:
         """Slave travel that is 1 in the programme (slave unit), positive."""
-        return abs(self.signed_scale)
+        return abs(self.problem.height) or abs(self.signed_scale)
+
+    @property
+    def crossing(self) -> float:
+        """Share of the return in which the slave would be across at the speed it has in sync, at most 1: the time in which things happen."""
+        at_once = max(self.problem.start_ratio, self.problem.end_ratio) * self.problem.length
+        return min(1.0, max(self.scale / at_once, SHORTEST_CROSSING)) if at_once > 0 else 1.0
 
     @property
     def duration(self) -> float:

@@ -10,8 +10,9 @@ import numpy as np
 from camwright.design.feasible.feasibility import is_feasible
 from camwright.design.returns.curve_limits import motor_speed_limits
 from camwright.design.returns.problem import return_problem
-from camwright.design.torque.programme import CURVE_DRAWN_IN, Aim
-from camwright.design.torque.torque_return import TorqueSolution, solve_torque
+from camwright.design.torque.programme import CURVE_DRAWN_IN
+from camwright.design.torque.search import TorqueSolution, solve_torque
+from camwright.design.torque.task import Aim, TorqueTask
 from camwright.profiles.errors import SolverError
 from camwright.profiles.motor import MotorCurve
 from camwright.profiles.polynomial.profile import CamProfile
@@ -57,7 +58,9 @@ def least_load(task: Task) -> TorqueSolution | None:
     if curve is None or not is_feasible(task.with_limits(plain)):
         return None
     try:
-        found = solve_torque(task, return_problem(task.with_limits(plain), "peak_acceleration"), "load", curve)
+        found = solve_torque(
+            TorqueTask(task, return_problem(task.with_limits(plain), "peak_acceleration"), "load", curve)
+        )
     except SolverError:
         return None
     return replace(found, value=load(assemble(found.back, task), task, curve) / (1 - 2 * CURVE_DRAWN_IN))
@@ -74,6 +77,6 @@ def solve_within_curve(task: Task, aim: Aim, starts: Sequence[CamProfile]) -> To
 
     problem = return_problem(task.with_limits(plain), "peak_acceleration")
     try:
-        return solve_torque(task, problem, aim, curve, keeps, starts)
+        return solve_torque(TorqueTask(task, problem, aim, curve), keeps, starts)
     except SolverError:
         return None

@@ -24,7 +24,7 @@ class Joined:
         Acceleration and velocity at the start of the return, and at its end.
     travel
         Travel of the return.
-    torque, power
+    torque, power, velocity
         Of the zone at its points, at the slave.
     weights
         Of these points in a mean over time, the return counting as 1.
@@ -39,6 +39,7 @@ class Joined:
     travel: Any
     torque: Any
     power: Any
+    velocity: Any
     weights: Any
     shares: Any
     accelerations: Any
@@ -91,6 +92,7 @@ class Zone:
                 (machine.pitch - (other - one)) / scale,
                 torque,
                 torque * velocity,
+                velocity,
                 weights,
                 shares,
                 slopes * length * unit,

@@ -18,7 +18,8 @@ from camwright.cli.main import INTERRUPTED
 from camwright.design import place
 from camwright.design.returns import transcription
 from camwright.design.servo_aware import axis_response
-from camwright.design.torque import programme as torque_programme
+from camwright.design.torque import placing
+from camwright.design.torque import search as torque_search
 from camwright.drives.options import parse_units
 from camwright.figures import style
 from camwright.house.output import BROKEN_PIPE
@@ -62,7 +63,9 @@ NUMBERS: dict[str, tuple[object, object, str, str]] = {
     "cut length to a tolerance": (minimum_length._LENGTH_RESOLUTION, 3e-6, "contract", "to 3e-6 of the pitch, the sync zone to 1e-5"),
     "sync zone to a tolerance": (minimum_length._ZONE_RESOLUTION, 1e-5, "contract", "to 3e-6 of the pitch, the sync zone to 1e-5"),
     "sync zones tried": (minimum_length._FINE, 64, "contract", "narrower than a 64th of the room"),
-    "intervals of a torque": (torque_programme.INTERVALS, 80, "contract", "80 intervals, from three starts"),
+    "meshes of a torque": ((torque_search.FIRST, *torque_search.LADDER), (60, 200, 300), "contract", "60 intervals, the best on up to 300"),
+    "settled torque": (torque_search.SETTLED, 1e-4, "contract", "gains less than 1e-4"),
+    "places of a torque": (placing.PLACES, 24, "contract", "24 places of the sync zone for all other objectives"),
     "places of the sync zone": (place.PLACES, 9, "contract", "9 places of the sync zone"),
     "accuracy of the place": (place.RESOLUTION, 2e-3, "contract", "to 0.002 rad"),
     "standing": (motor._STANDING, 1e-9, "contract", "below 1e-9 of the greatest ratio"),

@@ -1,0 +1,211 @@
+"""Least torque and energy: against convex optima, closed forms, and motions that anybody can write."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from camwright.design.optimise import solve
+from camwright.design.returns.problem import return_problem
+from camwright.design.returns.solver import objective_value, solve_return
+from camwright.design.torque.finish import finish
+from camwright.design.torque.guesses import ANYHOW, RESTING, from_profile, resting
+from camwright.design.torque.mesh import remesh, spread
+from camwright.design.torque.path_starts import path_starts
+from camwright.design.torque.placing import place_by_objective
+from camwright.design.torque.programme import TorqueProgramme
+from camwright.design.torque.search import solve_torque, zone_peak
+from camwright.design.torque.task import TorqueTask
+from camwright.profiles.cut import Cut
+from camwright.profiles.limits import Limits
+from camwright.profiles.machines import CrankSlider, LinearCarriage, RotaryKnife
+from camwright.profiles.objective import CommandObjective
+from camwright.profiles.returns import assemble, quintic_between
+from camwright.profiles.task import Task
+from camwright.validation.motor import measure_motor
+from camwright.validation.report import validate
+from camwright.profiles.servo import Servo
+
+CUT = Cut(2.1, 1.1, 0.13, 0.02, 0.05, 1e-4)
+KNIFE = RotaryKnife(circumference=0.52, drum_inertia=0.02, drum_friction=9.0, gear_ratio=3.0)
+LIMITS = Limits(4.4, 60.0, 6000.0)
+SHEAR = Cut(0.9, 0.5, 0.15, 0.04, 0.08, 2e-4)
+CRANK = CrankSlider(
+    crank=0.15, rod=0.6, crank_inertia=0.6, carriage_mass=60.0, gear_ratio=10.0, sync_at=math.radians(98)
+)
+TURNS = Limits(31.4, 400.0, 20_000.0)
+
+
+def _torque_task(task: Task, aim: CommandObjective) -> TorqueTask:
+    return TorqueTask(task, return_problem(task, "peak_acceleration"), aim)
+
+
+def test_without_a_carriage_the_least_rms_torque_is_the_least_rms_acceleration() -> None:
+    wheel = replace(CRANK, carriage_mass=0.0)
+    task = Task(wheel, SHEAR, TURNS)
+    best, _, _ = solve_return(return_problem(task, "rms_acceleration"))
+    expected = 0.6 * objective_value(best, "rms_acceleration") * SHEAR.line_speed**2
+    found = solve_torque(_torque_task(task, "rms_torque"))
+    assert expected * (1 - 1e-9) <= found.value <= expected * (1 + 3e-4)
+
+
+@pytest.mark.parametrize("length", [0.6, 0.9, 3.0])
+def test_a_crank_is_never_worse_than_coasting_round_or_creeping(length: float) -> None:
+    task = Task(CRANK, replace(SHEAR, length=length), TURNS)
+    problem = _torque_task(task, "rms_torque")
+    family = path_starts(
+        CRANK.inertia,
+        0.0,
+        (problem.start, problem.start + task.height),
+        (problem.problem.start_ratio * 0.5, problem.problem.end_ratio * 0.5),
+        problem.duration,
+        "rms_torque",
+    )
+    found = solve_torque(problem)
+    assert found.value < 1.2 * float(family.costs.min())  # the family knows no limits and no ramps
+    solution = solve(task, "rms_torque")
+    report = validate(solution.profile, task, Servo(150.0, 0.7, 45.0, 0.001, 1.0))
+    assert all(
+        check.passed
+        for check in report.checks
+        if check.name in ("speed", "acceleration", "jerk", "reversal", "closure")
+    )
+
+
+def test_a_knife_that_rubs_stands_where_standing_pays() -> None:
+    """The slave stops in one time and starts in another: of least squares both, as cubics over their ways."""
+    solution = solve(Task(KNIFE, CUT, LIMITS), "rms_torque")
+    motor = measure_motor(solution.profile, Task(KNIFE, CUT, LIMITS))
+    inertia, friction, v = KNIFE.inertia(0.0), KNIFE.friction, 1.1
+    time, height = CUT.return_zone / v, 0.52 - 0.13
+
+    def turn(t: np.ndarray, way: np.ndarray) -> np.ndarray:
+        return 4 * v**2 / t - 12 * v * way / t**2 + 12 * way**2 / t**3
+
+    out, back, way = np.meshgrid(
+        np.linspace(0.02, 0.6, 59), np.linspace(0.02, 0.6, 59), np.linspace(0.02, 0.37, 71), indexing="ij"
+    )
+    one_way = (way >= v * out / 3) & (height - way >= v * back / 3)  # else the cubic runs backwards
+    square = inertia**2 * (turn(out, way) + turn(back, height - way)) + friction**2 * (out + back)
+    twin = (
+        np.sqrt((square[one_way].min() + friction**2 * CUT.sync_zone / v) / (time + CUT.sync_zone / v))
+        / KNIFE.motor_ratio
+    )
+    assert motor.rms_torque is not None
+    assert float(twin) * 0.99 < motor.rms_torque < float(twin) * 1.03  # the twin keeps no limits, on a grid
+    standing = solution.profile(np.linspace(0.0, CUT.length, 4001), 1) < 1e-9
+    assert standing.mean() > 0.5
+
+
+def test_a_frictionless_carriage_draws_least_by_going_back_as_slowly_as_time_allows() -> None:
+    carriage = LinearCarriage(stroke=2.0, mass=280.0)
+    cut = Cut(12.0, 1.5, 1.0, 0.1, 0.5, 1e-3)
+    task = Task(carriage, cut, Limits(8.0, 50.0, 1e5))
+    solution = solve(task, "energy")
+    motor = measure_motor(solution.profile, task)
+    back = 1.0 / (cut.return_zone / cut.line_speed)  # with no limit of the acceleration it would go back all the time
+    assert solution.status.value == "optimal"
+    assert motor.energy is not None
+    assert 140.0 * (1.5**2 + back**2) < motor.energy < 140.0 * (1.5**2 + back**2) * 1.01
+    assert solution.minimised * cut.return_zone / cut.line_speed == pytest.approx(motor.energy, rel=1e-4)
+
+
+@pytest.mark.parametrize("length", [0.4, 0.9])
+def test_a_frictionless_knife_draws_what_its_change_of_speed_asks(length: float) -> None:
+    knife = replace(KNIFE, drum_friction=0.0)
+    task = Task(knife, replace(CUT, length=length, line_speed=1.0), Limits(4.4, 1e4, 1e8))
+    energy = measure_motor(solve(task, "energy").profile, task).energy
+    mean = 0.39 / (length - 0.13)  # without limits the speed jumps to what the return needs
+    inertia = knife.inertia(0.0)
+    assert energy == pytest.approx(0.5 * inertia * abs(mean**2 - 1.0), rel=1e-2)
+
+
+def test_energy_of_a_knife_that_rubs_is_at_least_what_the_friction_takes() -> None:
+    task = Task(KNIFE, CUT, LIMITS)
+    energy = measure_motor(solve(task, "energy").profile, task).energy
+    assert energy == pytest.approx(KNIFE.friction * 0.52, rel=1e-4)
+
+
+@pytest.mark.parametrize("aim", ["rms_torque", "peak_torque", "energy"])
+def test_no_long_cut_ends_in_what_is_no_number(aim: CommandObjective) -> None:
+    task = Task(CRANK, replace(SHEAR, length=12.0), TURNS)
+    solution = solve(task, aim)
+    assert math.isfinite(solution.minimised)
+    assert np.isfinite(solution.profile.coefficients).all()
+
+
+def test_where_the_zone_is_the_peak_the_smoothest_of_all_is_taken() -> None:
+    task = Task(CRANK, replace(SHEAR, length=3.0), TURNS)
+    solution = solve(task, "peak_torque")
+    assert solution.minimised == pytest.approx(zone_peak(task), rel=1e-4)
+    smooth = measure_motor(solve(task, "rms_torque").profile, task).rms_torque
+    rms = measure_motor(solution.profile, task).rms_torque
+    assert smooth is not None and rms is not None
+    assert rms < 1.02 * smooth
+
+
+def test_answers_meet_their_ends_and_stand_still_at_rest() -> None:
+    task = _torque_task(Task(KNIFE, CUT, LIMITS), "rms_torque")
+    pattern, guess = next(iter(resting(task, 20)))
+    assert pattern == RESTING
+    answer = TorqueProgramme(task, pattern, (20, 20)).solve(guess)
+    assert answer.success
+    back = finish(answer.guess, pattern, task)
+    ends = [
+        (back(0.0), 0.0),
+        (back(back.end), 0.39),
+        (back(0.0, 1), 1.0),
+        (back(back.end, 1), 1.0),
+        (back(back.end, 2), 0.0),
+    ]
+    assert all(float(found) == pytest.approx(value, abs=1e-10) for found, value in ends)
+    assert float(back(0.5 * (answer.guess.lengths[0] + 1 - answer.guess.lengths[2]) * back.end, 1)) == 0.0
+
+
+def test_a_finer_mesh_is_the_same_motion() -> None:
+    task = _torque_task(Task(CRANK, SHEAR, TURNS), "rms_torque")
+    back = quintic_between(task.task.sync, SHEAR.return_zone, task.problem.height)
+    guess = from_profile(back, task, 40)
+    finer = remesh(guess, ANYHOW, (90,))
+    x = np.concatenate([[0.0], np.cumsum(finer.mesh[0])])
+    assert sum(finer.mesh[0]) == pytest.approx(1.0)
+    assert finer.position == pytest.approx(back(x * back.end) / task.scale, abs=2e-3)
+
+
+def test_a_mesh_shares_its_density_evenly() -> None:
+    lengths = spread(np.array([0.0, 0.5, 1.0]), np.array([1.0, 3.0]), 8)
+    assert lengths == pytest.approx([0.25, 0.25, *[1 / 12] * 6])
+
+
+@pytest.mark.parametrize("time", [0.2, 1.0, 9.0])
+def test_returns_along_the_path_take_their_time(time: float) -> None:
+    family = path_starts(CRANK.inertia, 0.0, (2.0, 7.5), (3.0, 3.5), time, "rms_torque")
+    assert family.times.sum(axis=1) == pytest.approx(time, rel=1e-6)
+    k = family.valleys()[0]
+    _, speed, y = family.states(k, np.array([0.0, time * (1 - 1e-9)]))
+    assert speed == pytest.approx([3.0, 3.5], rel=1e-2)
+    assert y == pytest.approx([2.0, 7.5], rel=1e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("aim", ["rms_torque", "peak_torque"])
+def test_no_place_on_the_crank_is_better(aim: CommandObjective) -> None:
+    free = replace(CRANK, sync_at=math.nan)
+    placed = place_by_objective(Task(free, SHEAR, TURNS), aim)
+    assert placed is not None
+    best = measure_motor(solve(placed.task, aim).profile, placed.task)
+    for degrees in (60, 75, 90, 105, 120, 135):
+        task = Task(replace(CRANK, sync_at=math.radians(degrees)), SHEAR, TURNS)
+        other = measure_motor(solve(task, aim).profile, task)
+        assert getattr(best, aim) <= getattr(other, aim) * (1 + 1e-4)
+
+
+def test_the_place_may_be_anything_where_the_return_asks_nothing_of_it() -> None:
+    free = replace(CRANK, sync_at=math.nan)
+    task = Task(free, replace(SHEAR, length=0.9), TURNS)
+    solution = solve(task, "rms_torque")
+    assert solution.machine.placed
+    assert assemble(solution.back, task.with_machine(solution.machine)).length == 0.9
