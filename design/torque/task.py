@@ -60,7 +60,7 @@ class TorqueTask:
 
     @property
     def crossing(self) -> float:
-        """Share of the return in which the slave would be across at the speed it has in sync, at most 1: the time in which things happen."""
+        """Share of the return in which the slave would be across at its speed in sync, at most 1: the time in which things happen."""
         at_once = max(self.problem.start_ratio, self.problem.end_ratio) * self.problem.length
         return min(1.0, max(self.scale / at_once, SHORTEST_CROSSING)) if at_once > 0 else 1.0
 

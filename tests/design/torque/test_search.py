@@ -24,10 +24,10 @@ from camwright.profiles.limits import Limits
 from camwright.profiles.machines import CrankSlider, LinearCarriage, RotaryKnife
 from camwright.profiles.objective import CommandObjective
 from camwright.profiles.returns import assemble, quintic_between
+from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
 from camwright.validation.motor import measure_motor
 from camwright.validation.report import validate
-from camwright.profiles.servo import Servo
 
 CUT = Cut(2.1, 1.1, 0.13, 0.02, 0.05, 1e-4)
 KNIFE = RotaryKnife(circumference=0.52, drum_inertia=0.02, drum_friction=9.0, gear_ratio=3.0)
@@ -143,7 +143,8 @@ def test_where_the_zone_is_the_peak_the_smoothest_of_all_is_taken() -> None:
     assert solution.minimised == pytest.approx(zone_peak(task), rel=1e-4)
     smooth = measure_motor(solve(task, "rms_torque").profile, task).rms_torque
     rms = measure_motor(solution.profile, task).rms_torque
-    assert smooth is not None and rms is not None
+    assert smooth is not None
+    assert rms is not None
     assert rms < 1.02 * smooth
 
 
