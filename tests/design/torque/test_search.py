@@ -27,7 +27,7 @@ from camwright.profiles.returns import assemble, quintic_between
 from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
 from camwright.validation.motor import measure_motor
-from camwright.validation.report import validate
+from camwright.validation.report import judge
 
 CUT = Cut(2.1, 1.1, 0.13, 0.02, 0.05, 1e-4)
 KNIFE = RotaryKnife(circumference=0.52, drum_inertia=0.02, drum_friction=9.0, gear_ratio=3.0)
@@ -67,7 +67,7 @@ def test_a_crank_is_never_worse_than_coasting_round_or_creeping(length: float) -
     found = solve_torque(problem)
     assert found.value < 1.2 * float(family.costs.min())  # the family knows no limits and no ramps
     solution = solve(task, "rms_torque")
-    report = validate(solution.profile, task, Servo(150.0, 0.7, 45.0, 0.001, 1.0))
+    report = judge(solution.profile, task, Servo(150.0, 0.7, 45.0, 0.001, 1.0))
     assert all(
         check.passed
         for check in report.checks
