@@ -154,6 +154,13 @@ def place_of(change: Change, root: Path) -> Path:
     return found.pop()
 
 
+def put(file: Path, text: str) -> None:
+    """Write a module and drop what was compiled of it: a change in the same second and of the same size would not be seen."""
+    file.write_text(text, encoding="utf-8")
+    for compiled in (file.parent / "__pycache__").glob(f"{file.stem}.*.pyc"):
+        compiled.unlink()
+
+
 def copied(target: Path) -> None:
     """Copy what the tests need, with links as they are."""
     for name in COPIED:
@@ -167,7 +174,7 @@ def copied(target: Path) -> None:
 
 def tested(root: Path) -> tuple[int, str]:
     """Run the tests of the contract until one fails, the quickest first; pytest's exit code, and the test."""
-    environment = os.environ | {"PYTHONPATH": str(root), "PYTHONDONTWRITEBYTECODE": "1"}
+    environment = os.environ | {"PYTHONPATH": str(root)}
     command = [
         sys.executable,
         "-m",
@@ -206,9 +213,9 @@ def main() -> int:
             begun = time.perf_counter()
             file = place_of(change, root)
             text = file.read_text(encoding="utf-8")
-            file.write_text(text.replace(change.before, change.after), encoding="utf-8")
+            put(file, text.replace(change.before, change.after))
             code, test = tested(root)
-            file.write_text(text, encoding="utf-8")
+            put(file, text)
             if code not in (0, 1):
                 raise RuntimeError(f"{change.promise}: the tests do not run (pytest ends with {code})")
             rows.append((change.promise, file.relative_to(root.resolve()).as_posix(), change.before.strip(), change.after.strip(),

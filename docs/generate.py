@@ -1,7 +1,11 @@
-"""Writes the pages that are made from the code: ``python docs/generate.py``. A test says when they are no longer what the code says."""
+"""Writes the pages and the schemas that are made from the code: ``python docs/generate.py``.
+
+A test says when they are no longer what the code says.
+"""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from importlib import import_module
 from itertools import groupby
@@ -13,13 +17,18 @@ from typer.main import get_command
 
 from camwright.cli.commands import COMMANDS
 from camwright.jobs.keys import JobKey, job_keys
+from camwright.jobs.structure import job_schema
+from camwright.stored.design_file import design_schema
 
 HERE = Path(__file__).parent
+SCHEMAS = HERE.parent / "camwright" / "schemas"
 
 
 def pages() -> dict[Path, str]:
-    """Make every generated page."""
+    """Make every generated page, and the schemas of job files and of design.json."""
     return {
+        SCHEMAS / "job.schema.json": json.dumps(job_schema(), indent=2) + "\n",
+        SCHEMAS / "design.schema.json": json.dumps(design_schema(), indent=2) + "\n",
         HERE / "reference" / "keys.md": "\n".join(_keys()) + "\n",
         HERE / "reference" / "commands.md": "\n".join(_commands()) + "\n",
     }
