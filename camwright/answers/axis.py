@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict
 from typing import Any
 
 from camwright.jobs.job import Job
 from camwright.profiles.servo import mean_lag
-from camwright.studies.axis_lengths import AxisLengths
 from camwright.studies.axis_study import AxisStudy, Robustness
 from camwright.validation.servo.lead import LengthError
 
@@ -47,17 +45,4 @@ def lead_answer(job: Job, errors: Sequence[LengthError]) -> dict[str, Any]:
         "length_error_mm": {share: error.offset * 1e3 for share, error in shares.items()},
         "length_error_with_lead_mm": {share: error.offset_with_lead * 1e3 for share, error in shares.items()},
         "length_variation_mm": {share: error.variation * 1e3 for share, error in shares.items()},
-    }
-
-
-def axis_lengths_answer(lengths: AxisLengths | None) -> dict[str, Any]:
-    """Minimum cut lengths with the axis in sync, in mm; null for machines that the published equations are not about."""
-    names = ("linear_return", "poly_3_4_5", "in_sync", "shaped")
-    if lengths is None:
-        none = dict.fromkeys(names)
-        return {"axis_minimum_cut_length_mm": none, "axis_minimum_cut_length_axis_limits_mm": dict.fromkeys(names[2:])}
-    values = {name: None if value is None else value * 1e3 for name, value in asdict(lengths).items()}
-    return {
-        "axis_minimum_cut_length_mm": {name: values[name] for name in names},
-        "axis_minimum_cut_length_axis_limits_mm": {name: values[f"{name}_axis_limits"] for name in names[2:]},
     }

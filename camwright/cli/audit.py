@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.console import Group, RenderableType
-from rich.table import Table
-from rich.text import Text
 
 from camwright.cli.options import Json, NoFigures, Out, Quiet, output_directory
 from camwright.cli.views.checks import checks_view
 from camwright.cli.views.files import files_view
+from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.drives.audit import MEASURES, Audit, audit, audit_answer
-from camwright.figures import audit_figures
+from camwright.figures.audit import audit_figures
 from camwright.house.files import staged
 from camwright.house.output import Voice
 from camwright.jobs.job import load_job
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
 
 
 def run(
@@ -52,7 +53,7 @@ def run(
 
 def _view(result: Audit, file: Path, files: list[Path]) -> RenderableType:
     """Show the cam beside the optimum of the same job, and its checks."""
-    table = Table(title=f"{file}: {result.target.title}, {result.table.points} points", title_justify="left")
+    table = new_table(title=f"{file}: {result.target.title}, {result.table.points} points", title_justify="left")
     for name in ("", "this cam", "optimum", "saving"):
         table.add_column(name, justify="left" if not name else "right")
     unit = result.job.machine.slave_unit
@@ -72,10 +73,10 @@ def _view(result: Audit, file: Path, files: list[Path]) -> RenderableType:
     for title, name in (("following error", "peak_following_error"), ("shear-zone error", "shear_zone_error")):
         values = ["unstable" if servo is None else f"{1e3 * getattr(servo, name):.4g}" for servo in servos]
         table.add_row(f"{title} of the servo (mm)", *values, "")
-    notes = [Text(f"Note: {note}") for note in result.notes]
+    notes = [new_text(f"Note: {note}") for note in result.notes]
     if any(result.is_sampled(measure) for measure in MEASURES):
         time = result.job.servo.sample_time * 1e3
         notes.insert(
-            0, Text(f"* unbounded; by differences of the positions at the sample time of {time:g} ms, for both")
+            0, new_text(f"* unbounded; by differences of the positions at the sample time of {time:g} ms, for both")
         )
-    return Group(table, checks_view(result.judgement.checks), *notes, files_view(files))
+    return stacked(table, checks_view(result.judgement.checks), *notes, files_view(files))

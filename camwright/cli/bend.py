@@ -7,12 +7,9 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
-from rich.console import Group, RenderableType
-from rich.table import Table
-from rich.text import Text
 
 from camwright.bender.answer import BentDrawing, answer, calibration_answer
 from camwright.bender.bend_list import csv_text
@@ -24,10 +21,15 @@ from camwright.bender.program_file import bend_outlines
 from camwright.bender.sending import send
 from camwright.bender.sheet import write_sheet
 from camwright.cli.options import Json, Quiet
+from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.house.files import staged, write_files
 from camwright.house.output import Voice
 from camwright.house.progress import Step
 from camwright.profiles.errors import InputError, MissingExtraError
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
 
 _MOST_FIGURES = 20
 _MOST_ROWS = 40
@@ -160,7 +162,7 @@ def _calibrate(measurements: Path, bender: BenderJob, out: Path | None, voice: V
 
 def _drawing_view(result: BentDrawing, files: Sequence[Path]) -> RenderableType:
     """Show the programs of a drawing, their checks, warnings and files."""
-    table = Table(title=f"Programs of {result.drawing.name}", title_justify="left")
+    table = new_table(title=f"Programs of {result.drawing.name}", title_justify="left")
     table.add_column("program")
     for name in (
         "bends\n",
@@ -187,12 +189,12 @@ def _drawing_view(result: BentDrawing, files: Sequence[Path]) -> RenderableType:
             f"{cycle:.2f}",
             f"{paper:.2f}",
             f"{100 * (1 - cycle / paper):.1f}",
-            Text("passed", "green") if passed else Text("FAILED", "bold red"),
+            new_text("passed", "green") if passed else new_text("FAILED", "bold red"),
         )
     more = len(result.outlines) - _MOST_ROWS
-    notes = [Text(f"{more} more programs are not shown")] if more > 0 else []
+    notes = [new_text(f"{more} more programs are not shown")] if more > 0 else []
     notes += [
-        Text(
+        new_text(
             f"{outline.program.name}: {check.name} {check.value:.3g} {check.unit}, allowed {check.limit:.3g}",
             "bold red",
         )
@@ -200,14 +202,14 @@ def _drawing_view(result: BentDrawing, files: Sequence[Path]) -> RenderableType:
         for check in outline.checks
         if not check.passed
     ]
-    notes += [Text(f"warning: {text}", "yellow") for text in result.warnings]
-    notes += [Text(f"wrote {file}") for file in files]
-    return Group(table, *notes)
+    notes += [new_text(f"warning: {text}", "yellow") for text in result.warnings]
+    notes += [new_text(f"wrote {file}") for file in files]
+    return stacked(table, *notes)
 
 
 def _calibration_view(result: Calibration, files: Sequence[Path]) -> RenderableType:
     """Show the test bends with their residuals, and the files."""
-    table = Table(title=f"Test bends of {result.springback.name}", title_justify="left")
+    table = new_table(title=f"Test bends of {result.springback.name}", title_justify="left")
     for name in ("row", "radius\nmm", "mould angle\n°", "measured\n°", "by the table\n°", "residual\n°"):
         table.add_column(name, justify="right")
     for bend, residual in zip(result.bends[:_MOST_ROWS], result.residuals, strict=False):
@@ -220,6 +222,6 @@ def _calibration_view(result: Calibration, files: Sequence[Path]) -> RenderableT
             f"{residual:+.3f}",
         )
     more = len(result.bends) - _MOST_ROWS
-    notes = [Text(f"{more} more test bends are in the residuals' file")] if more > 0 else []
-    notes += [Text(f"warning: {text}", "yellow") for text in result.springback.warnings()]
-    return Group(table, *notes, *(Text(f"wrote {file}") for file in files))
+    notes = [new_text(f"{more} more test bends are in the residuals' file")] if more > 0 else []
+    notes += [new_text(f"warning: {text}", "yellow") for text in result.springback.warnings()]
+    return stacked(table, *notes, *(new_text(f"wrote {file}") for file in files))

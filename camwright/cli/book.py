@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import contextlib
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.console import Group, RenderableType
-from rich.table import Table
-from rich.text import Text
 
 from camwright.book.cluster import cluster_crew
 from camwright.book.display import progress
@@ -18,8 +15,12 @@ from camwright.book.run import BookAnswer, make_book
 from camwright.book.workers import default_jobs, local_crew
 from camwright.cli.options import GivenJob, Json, Quiet
 from camwright.cli.views.files import files_view
+from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.house.output import Voice, complain
 from camwright.jobs.job import load_job
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
 
 
 def run(
@@ -68,11 +69,11 @@ def run(
 
 def _view(answer: BookAnswer) -> RenderableType:
     """Show how many combinations ended how, and where the book is."""
-    table = Table(title=f"{answer.book.name}: a book of {answer.counts.designs} designs", title_justify="left")
+    table = new_table(title=f"{answer.book.name}: a book of {answer.counts.designs} designs", title_justify="left")
     for name in ("passed", "a check failed", "infeasible", "solver failed"):
         table.add_column(name, justify="right")
     counts = answer.counts
     table.add_row(*map(str, (counts.passed, counts.check_failed, counts.infeasible, counts.failed)))
     made = counts.designs - answer.resumed
     speed = f"{made} made at {answer.rate:.3g} a second, {answer.resumed} done before"
-    return Group(table, Text(f"{speed}; peak memory {answer.peak_rss / 2**20:.0f} MB"), files_view(answer.files))
+    return stacked(table, new_text(f"{speed}; peak memory {answer.peak_rss / 2**20:.0f} MB"), files_view(answer.files))

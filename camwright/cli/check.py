@@ -5,19 +5,21 @@ from __future__ import annotations
 import math
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.console import RenderableType
-from rich.text import Text
 
 from camwright.answers.check import check_answer
 from camwright.cli.options import Json, Quiet
 from camwright.cli.views.numbers import millimetres, number
+from camwright.cli.views.parts import new_text
 from camwright.house.output import Voice
 from camwright.jobs.job import MOST_BYTES, Job, load_job, parse_job
 from camwright.jobs.machine_words import machine_words
 from camwright.profiles.errors import InputError
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
 
 _Checked = Annotated[Path, typer.Argument(metavar="JOB", help="Job file (TOML); - reads standard input.")]
 
@@ -45,7 +47,7 @@ def _view(job: Job) -> RenderableType:
     """Show what a job file says."""
     cut, limits, unit = job.cut, job.limits, job.machine.slave_unit
     speed = f"{number(limits.speed * 60)} m/min" if unit == "m" else f"{number(limits.speed * 30 / math.pi)} rpm"
-    return Text(
+    return new_text(
         f"{job.name}: cut {millimetres(cut.length)} mm at {number(cut.line_speed * 60)} m/min, "
         f"{machine_words(job.machine)}, sync zone {millimetres(cut.sync_zone)} mm, "
         f"shear zone {millimetres(cut.shear_zone)} mm; at most {speed}, "

@@ -7,14 +7,15 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Group
 
-from camwright.answers.studies import compare_answer
+from camwright.answers.compare import compare_answer
 from camwright.cli.options import GivenJob, Json, NoFigures, Out, Quiet, final_paths, output_directory
 from camwright.cli.views.files import files_view
+from camwright.cli.views.parts import stacked
 from camwright.cli.views.profiles import profiles_view
 from camwright.cli.views.tradeoff import tradeoff_view
-from camwright.figures import comparison_figure, tradeoff_figures
+from camwright.figures.comparison import comparison_figure
+from camwright.figures.tradeoff import tradeoff_figures
 from camwright.house.files import staged
 from camwright.house.output import Voice
 from camwright.jobs.job import Job, load_job
@@ -72,7 +73,7 @@ def run(
                 comparison_figure(result, aside)
                 files = final_paths(aside, directory)
 
-    voice.answer(lambda: compare_answer(result, files), lambda: Group(profiles_view(result), files_view(files)))
+    voice.answer(lambda: compare_answer(result, files), lambda: stacked(profiles_view(result), files_view(files)))
     return 0
 
 
@@ -103,5 +104,5 @@ def compare_objectives(asked: Job, directory: Path, *, figures: bool, voice: Voi
             with staged(directory) as aside:
                 files = [directory / file.name for file in sorted(tradeoff_figures(result, aside))]
 
-    voice.answer(lambda: tradeoff_answer(result, files), lambda: Group(tradeoff_view(result), files_view(files)))
+    voice.answer(lambda: tradeoff_answer(result, files), lambda: stacked(tradeoff_view(result), files_view(files)))
     return 0

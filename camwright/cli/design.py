@@ -5,20 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from rich.console import Group, RenderableType
-from rich.text import Text
-
+from camwright.answers.design import design_answer
 from camwright.answers.objective import objective_unit
-from camwright.answers.studies import design_answer
 from camwright.cli.options import JobOrPaper, Json, NoFigures, Out, Quiet, final_paths, output_directory
 from camwright.cli.views.checks import checks_view
 from camwright.cli.views.files import files_view
 from camwright.cli.views.lead import lead_view
 from camwright.cli.views.lengths import lengths_view
 from camwright.cli.views.numbers import millimetres, number
+from camwright.cli.views.parts import new_text, stacked
 from camwright.cli.views.profiles import profiles_view
-from camwright.figures import design_figures
+from camwright.figures.design import design_figures
 from camwright.house.files import staged
 from camwright.house.output import Voice
 from camwright.jobs.job import load_job
@@ -26,6 +25,9 @@ from camwright.stored.design_file import design_text
 from camwright.stored.profile_files import cam_text
 from camwright.studies.comparison import law_names
 from camwright.studies.design import STEPS, Design, optimise
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
 
 
 def run(
@@ -57,8 +59,8 @@ def run(
 def _view(design: Design, files: Sequence[Path]) -> RenderableType:
     """Show a design: objective, comparison, checks, minimum cut lengths, files."""
     lengths = [] if design.lengths is None else [lengths_view(design.lengths)]
-    return Group(
-        Text("\n".join(_head(design))),
+    return stacked(
+        new_text("\n".join(_head(design))),
         profiles_view(design.comparison),
         checks_view(design.report.checks),
         *_axis(design),
@@ -116,7 +118,7 @@ def _axis(design: Design) -> list[RenderableType]:
         lines.append(
             f"over the ranges of the servo: sync error at most {designed}{_um(robust.worst)} µm in {robust.draws} random servos"
         )
-    return [Text("\n".join(lines))] if lines else []
+    return [new_text("\n".join(lines))] if lines else []
 
 
 def _um(length: float) -> str:

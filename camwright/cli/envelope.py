@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from rich.console import Group, RenderableType
-from rich.table import Table
 
 from camwright.cli.options import GivenJob, Json, NoFigures, Out, Quiet, final_paths, output_directory
 from camwright.cli.views.files import files_view
+from camwright.cli.views.parts import new_table, stacked
 from camwright.figures.envelope import envelope_figure
 from camwright.house.files import staged
 from camwright.house.output import Voice
 from camwright.jobs.job import load_job
 from camwright.studies.envelope import EnvelopeAnswer, envelope_answer, per_minute
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
 
 
 def run(
@@ -44,13 +46,13 @@ def run(
     def data() -> dict[str, Any]:
         return {**answer.to_dict(), "files": [str(file) for file in files]}
 
-    voice.answer(data, lambda: Group(_view(answer), files_view(files)))
+    voice.answer(data, lambda: stacked(_view(answer), files_view(files)))
     return 0
 
 
 def _view(answer: EnvelopeAnswer) -> RenderableType:
     """Show the highest line speed at each cut length."""
-    table = Table(title="Highest line speed (m/min)", title_justify="left")
+    table = new_table(title="Highest line speed (m/min)", title_justify="left")
     for name in ("cut length\nmm", "optimised", "quintic", "linear", "binds"):
         table.add_column(name, justify="left" if name == "binds" else "right")
     for row in answer.envelope.rows:

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.console import RenderableType
-from rich.table import Table
 
 from camwright.cli.options import Json, Quiet
 from camwright.cli.views.files import files_view
+from camwright.cli.views.parts import new_table
 from camwright.house.files import write_files
 from camwright.house.output import Voice
 from camwright.jobs.examples import Example, example, examples
 from camwright.profiles.errors import InputError
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
 
 
 def run(
@@ -43,7 +45,9 @@ def run(
 
 def _view(found: list[Example]) -> RenderableType:
     """Show the examples."""
-    table = Table(title="Example jobs: camwright examples NAME writes one here", title_justify="left", show_lines=True)
+    table = new_table(
+        title="Example jobs: camwright examples NAME writes one here", title_justify="left", show_lines=True
+    )
     for column in ("name", "machine", "about"):
         table.add_column(column, overflow="fold")
     for each in found:

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.console import Group, RenderableType
-from rich.table import Table
-from rich.text import Text
 
 from camwright.cli.options import Json, Quiet
+from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.drives.export import Exported, export_answer, export_possible, export_report
 from camwright.drives.options import parse_targets, parse_units
 from camwright.drives.withheld import copy_aside, older_tables, remove
@@ -24,6 +22,9 @@ from camwright.profiles.tables.knots import Accuracy
 from camwright.profiles.tables.target import Header
 from camwright.profiles.tables.targets import target_of
 from camwright.stored.design_file import MOST_BYTES, StoredDesign, parse_design
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
 
 
 def run(
@@ -97,7 +98,7 @@ def _view(
     directory: Path,
 ) -> RenderableType:
     """Show each table as its drive runs it, what was refused, and what was set aside."""
-    table = Table(title="Tables as the drives run them", title_justify="left")
+    table = new_table(title="Tables as the drives run them", title_justify="left")
     for name in ("target", "points", "position\num", "ratio\n1e-6", "acceleration\n%", "judgement", "files"):
         table.add_column(name, justify="left" if name in ("target", "judgement", "files") else "right")
     for result in results:
@@ -113,9 +114,9 @@ def _view(
             "\n".join(result.files) or "not released",
         )
     note = "No table was tested on a controller. Check the integrity of the data after every import."
-    notes = [Text(f"{name} cannot take this cam: {'; '.join(faults)}") for name, faults in refused.items()]
+    notes = [new_text(f"{name} cannot take this cam: {'; '.join(faults)}") for name, faults in refused.items()]
     notes += [
-        Text(f"{name}: the new table is withheld; the older {old} is now {new}", "yellow")
+        new_text(f"{name}: the new table is withheld; the older {old} is now {new}", "yellow")
         for name, names in older.items()
         for old, new in names.items()
     ]
@@ -124,10 +125,10 @@ def _view(
         if rough is not None and rough > (result.deviation.acceleration or 0.0):
             points = result.dense.table.points if result.dense else 0
             notes.append(
-                Text(
+                new_text(
                     f"{result.target.name} rounds to float32: {points} points would be off by {rough * 100:.3g} % of the acceleration"
                 )
             )
     if any(not result.accurate for result in results):
-        notes.insert(0, Text("* the nearest that this target can come; the error asked for is exceeded somewhere"))
-    return Group(table, *notes, Text(f"in {directory}"), Text(note))
+        notes.insert(0, new_text("* the nearest that this target can come; the error asked for is exceeded somewhere"))
+    return stacked(table, *notes, new_text(f"in {directory}"), new_text(note))

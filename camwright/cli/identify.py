@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.console import Group, RenderableType
-from rich.table import Table
-from rich.text import Text
 
 from camwright.cli.options import Json, Quiet
 from camwright.cli.views.files import files_view
+from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.house.files import write_files
 from camwright.house.output import Voice
 from camwright.profiles.errors import InputError
@@ -29,6 +27,9 @@ from camwright.studies.identification import (
     servo_text,
 )
 from camwright.validation.identify.identification import Identified
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
 
 
 def run(
@@ -71,7 +72,7 @@ def run(
 def _view(path: Path, trace: Trace, found: Identified, files: Sequence[Path]) -> RenderableType:
     """Show the servo, how well it is known, and how well it fits."""
     scale, unit = residual_unit(trace)
-    table = Table(title=f"Servo of {one_line(path.name)}", title_justify="left")
+    table = new_table(title=f"Servo of {one_line(path.name)}", title_justify="left")
     for heading in ("parameter", "value", "unit", "95 % confidence"):
         table.add_column(heading, justify="right" if heading == "value" else "left")
     for name, (_, symbol, factor, written) in PARAMETERS.items():
@@ -81,4 +82,4 @@ def _view(path: Path, trace: Trace, found: Identified, files: Sequence[Path]) ->
         words = name.replace("_", " ")
         table.add_row(words if symbol == words else f"{words} {symbol}", rounded(value, spread), written, note)
     ending = f"fit {found.fit:.6f}, residual {found.residual * scale:.3g} {unit} rms over {found.rows} rows"
-    return Group(table, Text(ending), *([files_view(files)] if files else []))
+    return stacked(table, new_text(ending), *([files_view(files)] if files else []))

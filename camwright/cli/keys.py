@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import asdict
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.console import RenderableType
-from rich.table import Table
-from rich.text import Text
 
 from camwright.cli.options import Json, Quiet
+from camwright.cli.views.parts import new_table, new_text
 from camwright.house.output import Voice
 from camwright.jobs.keys import JobKey, find_keys, job_keys
 from camwright.profiles.errors import InputError
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
 
 
 def run(
@@ -35,7 +36,7 @@ def run(
 
 def _view(keys: tuple[JobKey, ...]) -> RenderableType:
     """Show keys as a table."""
-    table = Table(show_lines=True)
+    table = new_table(show_lines=True)
     for column in ("key", "takes", "default", "meaning", "used in"):
         table.add_column(column, overflow="fold")
     for key in keys:
@@ -43,6 +44,10 @@ def _view(keys: tuple[JobKey, ...]) -> RenderableType:
         default = "required" if key.required else key.default or "none"
         of = f"\n{key.machine}" if key.machine else ""
         table.add_row(
-            Text(place + of), Text(f"{key.takes}, e.g. {key.example}"), Text(default), key.meaning, key.used_in
+            new_text(place + of),
+            new_text(f"{key.takes}, e.g. {key.example}"),
+            new_text(default),
+            key.meaning,
+            key.used_in,
         )
     return table

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from rich.console import Group, RenderableType
-from rich.table import Table
+from typing import TYPE_CHECKING
 
-from camwright.answers.studies import limits_answer
+from camwright.answers.limits import limits_answer
 from camwright.cli.options import GivenJob, Json, Quiet
-from camwright.cli.views.lengths import axis_lengths_view, lengths_view
+from camwright.cli.views.lengths import lengths_view
 from camwright.cli.views.numbers import millimetres, number
+from camwright.cli.views.parts import new_table, stacked
 from camwright.design.feasible.extremes import Extremes, extremes
 from camwright.house.output import Voice
 from camwright.jobs.job import Job, load_job
 from camwright.studies.axis_lengths import AxisLengths, axis_lengths
 from camwright.studies.cut_lengths import CutLengths, cut_lengths
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
 
 
 def run(job: GivenJob, as_json: Json = False, quiet: Quiet = False) -> int:
@@ -36,7 +39,7 @@ def _view(job: Job, far: Extremes, lengths: CutLengths | None, axis: AxisLengths
     """Show how fast and how short a job can be done, and what binds."""
     speed = f"{number(far.max_line_speed * 60)} m/min" if far.max_line_speed else "none works"
     length = f"{millimetres(far.min_cut_length)} mm" if far.min_cut_length else "none works"
-    table = Table(title="How fast, how short", title_justify="left")
+    table = new_table(title="How fast, how short", title_justify="left")
     for name in ("", "", "binds"):
         table.add_column(name)
     table.add_row(
@@ -51,5 +54,26 @@ def _view(job: Job, far: Extremes, lengths: CutLengths | None, axis: AxisLengths
     if lengths is not None:
         views.append(lengths_view(lengths))
     if axis is not None:
-        views.append(axis_lengths_view(axis))
-    return Group(*views)
+        views.append(_axis_view(axis))
+    return stacked(*views)
+
+
+def _axis_view(lengths: AxisLengths) -> RenderableType:
+    """Show how short a piece can be cut with the axis within the tolerance, the sync zone chosen best each time."""
+    table = new_table(title="Minimum cut length with the axis in sync", title_justify="left")
+    table.add_column("by")
+    table.add_column("limits of the command\nmm", justify="right")
+    table.add_column("of the axis too\nmm", justify="right")
+    for name, value, strict in (
+        ("linear return (limit of speed alone)", lengths.linear_return, ""),
+        ("polynomial 3-4-5", lengths.poly_3_4_5, ""),
+        ("servo-aware, command in sync", lengths.in_sync, _hundredths(lengths.in_sync_axis_limits)),
+        ("servo-aware, command shaped", lengths.shaped, _hundredths(lengths.shaped_axis_limits)),
+    ):
+        table.add_row(name, _hundredths(value), strict)
+    return table
+
+
+def _hundredths(length: float | None) -> str:
+    """Write a length in millimetres with two decimals."""
+    return "none" if length is None else f"{length * 1e3:.2f}"

@@ -5,13 +5,12 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from rich.console import RenderableType
-from rich.text import Text
 
 from camwright.cli.options import Json, Quiet
+from camwright.cli.views.parts import new_text
 from camwright.house.files import write_files
 from camwright.house.output import Voice
 from camwright.jobs.examples import Example, example, examples
@@ -20,6 +19,10 @@ from camwright.jobs.keys import JobKey, job_keys
 from camwright.jobs.template import job_template, values_of
 from camwright.profiles.errors import InputError
 from camwright.profiles.machines import MACHINES
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
 
 _OPTIONS = {
     "name": "name",
@@ -163,7 +166,7 @@ def _answer(file: Path, base: Example, values: dict[str, Any]) -> dict[str, Any]
 
 def _view(file: Path) -> RenderableType:
     """Say what was written, and what comes next."""
-    return Text(
+    return new_text(
         f"wrote {file}\n"
         f"Next: camwright check {file}    reads it again after you edited it\n"
         f"      camwright design {file}   designs it\n"

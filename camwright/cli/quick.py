@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from rich.console import Group, RenderableType
-from rich.table import Table
 
 from camwright.cli.options import Json, Quiet
 from camwright.cli.views.files import files_view
+from camwright.cli.views.parts import new_table, stacked
 from camwright.house.files import write_files
 from camwright.house.output import Voice
 from camwright.studies.quick import QuickAnswer, quick_answer, quick_cam_text, read_cross_cut
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
 
 
 def run(
@@ -43,14 +45,14 @@ def run(
         return answer.to_dict() if file is None else {**answer.to_dict(), "files": [str(file)]}
 
     Voice(as_json, quiet).answer(
-        data, lambda: _view(answer) if file is None else Group(_view(answer), files_view([file]))
+        data, lambda: _view(answer) if file is None else stacked(_view(answer), files_view([file]))
     )
     return 0
 
 
 def _view(answer: QuickAnswer) -> RenderableType:
     """Show what the cam is like."""
-    table = Table(title="Cross-cutter, quintic cam", title_justify="left", show_header=False)
+    table = new_table(title="Cross-cutter, quintic cam", title_justify="left", show_header=False)
     for row in answer.rows():
         table.add_row(*row)
     return table

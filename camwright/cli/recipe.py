@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
-from rich.console import Group, RenderableType
-from rich.table import Table
-from rich.text import Text
 
 from camwright.cli.options import Json, Quiet
+from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.house.files import read_text, require_replaceable
 from camwright.house.output import Voice
 from camwright.house.progress import Step
@@ -23,6 +21,10 @@ from camwright.recipe.manifest import sha256
 from camwright.recipe.model import Recipe
 from camwright.recipe.write import WRITE_STEPS, is_recipe, recipe_files, require_extra, write_folder
 from camwright.stored.design_file import MOST_BYTES, StoredDesign, parse_design
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
 
 _LONGEST_NOTE = 2000
 
@@ -111,29 +113,31 @@ def _compare(before: Path, after: Path, voice: Voice) -> int:
 
 
 def _recipe_view(recipe: Recipe, answer: dict[str, Any], out: Path) -> RenderableType:
-    table = Table(title=f"{out}", title_justify="left")
+    table = new_table(title=f"{out}", title_justify="left")
     table.add_column("file")
     table.add_column("SHA-256")
     for file in answer["files"]:
-        table.add_row(Text(file["path"]), file["sha256"])
+        table.add_row(new_text(file["path"]), file["sha256"])
     state = "released" if recipe.released else "NOT RELEASED: a check failed"
-    notes = [Text(f"{refusal.target} cannot take this cam: {'; '.join(refusal.reasons)}") for refusal in recipe.refused]
-    return Group(Text(f"{recipe.name}: {state}"), table, *notes)
+    notes = [
+        new_text(f"{refusal.target} cannot take this cam: {'; '.join(refusal.reasons)}") for refusal in recipe.refused
+    ]
+    return stacked(new_text(f"{recipe.name}: {state}"), table, *notes)
 
 
 def _compare_view(before: Path, after: Path, changes: list[Change]) -> RenderableType:
     if not changes:
-        return Text(f"nothing changes from {before} to {after}")
-    table = Table(title="What changes on the machine", title_justify="left")
+        return new_text(f"nothing changes from {before} to {after}")
+    table = new_table(title="What changes on the machine", title_justify="left")
     for heading in ("", "what", "unit"):
         table.add_column(heading)
-    table.add_column(Text(str(before)), justify="right")
-    table.add_column(Text(str(after)), justify="right")
+    table.add_column(new_text(str(before)), justify="right")
+    table.add_column(new_text(str(after)), justify="right")
     last = ""
     for change in changes:
-        values = [Text(_short(value)) for value in (change.before, change.after)]
+        values = [new_text(_short(value)) for value in (change.before, change.after)]
         table.add_row(
-            change.group if change.group != last else "", Text(change.name.replace("_", " ")), change.unit, *values
+            change.group if change.group != last else "", new_text(change.name.replace("_", " ")), change.unit, *values
         )
         last = change.group
     return table

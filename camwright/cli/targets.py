@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import json
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import typer
-from rich.console import RenderableType
-from rich.table import Table
 
 from camwright.cli.options import Json, Quiet
+from camwright.cli.views.parts import new_table
 from camwright.drives.export import targets_answer
 from camwright.house.output import Voice
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
 
 
 def run(as_json: Json = False, quiet: Quiet = False) -> int:
@@ -26,7 +28,7 @@ def run(as_json: Json = False, quiet: Quiet = False) -> int:
 
 def _view(answer: list[dict[str, Any]]) -> RenderableType:
     """Show the targets."""
-    table = Table(title="Targets; none was tested on a controller", title_justify="left", show_lines=True)
+    table = new_table(title="Targets; none was tested on a controller", title_justify="left", show_lines=True)
     for name in ("name", "what", "interpolation", "points", "numbers", "evidence"):
         table.add_column(name, justify="right" if name == "points" else "left")
     for entry in answer:

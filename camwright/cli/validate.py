@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.console import Group, RenderableType
-from rich.text import Text
 
-from camwright.answers.studies import validate_answer
+from camwright.answers.validate import validate_answer
 from camwright.cli.options import Json, JudgedBy, Quiet
 from camwright.cli.views.checks import checks_view
 from camwright.cli.views.lead import lead_view
+from camwright.cli.views.parts import new_text, stacked
 from camwright.house.output import Voice
 from camwright.jobs.job import Job, load_job
 from camwright.stored.judge import validate
 from camwright.validation.report import ValidationReport
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
 
 
 def run(
@@ -40,4 +42,4 @@ def _view(job: Job, file: Path, report: ValidationReport) -> RenderableType:
     """Show the checks on a file and the verdict."""
     failed = [check.name for check in report.checks if not check.passed]
     verdict = f"{len(failed)} checks failed: {', '.join(failed)}" if failed else "every check passed"
-    return Group(checks_view(report.checks), lead_view(job, report.length_errors), Text(f"{file}: {verdict}"))
+    return stacked(checks_view(report.checks), lead_view(job, report.length_errors), new_text(f"{file}: {verdict}"))

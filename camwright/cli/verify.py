@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.console import RenderableType
-from rich.table import Table
-from rich.text import Text
 
 from camwright.cli.options import Json, Quiet
+from camwright.cli.views.parts import new_table, new_text
 from camwright.house.output import Voice
 from camwright.recipe.verify import Fault, verify, verify_answer
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
 
 
 def run(
@@ -31,10 +32,10 @@ def run(
 
 def _view(directory: Path, faults: list[Fault]) -> RenderableType:
     if not faults:
-        return Text(f"{directory}: as it was written; its tables are the motion that it promises")
-    table = Table(title=Text(f"{directory}: NOT as it was written"), title_justify="left")
+        return new_text(f"{directory}: as it was written; its tables are the motion that it promises")
+    table = new_table(title=new_text(f"{directory}: NOT as it was written"), title_justify="left")
     table.add_column("file")
     table.add_column("what is wrong")
     for fault in faults:
-        table.add_row(Text(fault.file), Text(fault.what))
+        table.add_row(new_text(fault.file), new_text(fault.what))
     return table

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from camwright.answers.studies import validate_answer
+from camwright.answers.validate import validate_answer
 from camwright.drives.alignment import aligned
 from camwright.drives.options import parse_units
 from camwright.house.progress import Step, ignore

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from camwright.drives.audit import MEASURES, Audit
 from camwright.figures.marks import blank_figure, line_mark, patch_mark
+from camwright.figures.saving import written
 from camwright.figures.style import (
     LIMIT,
     LINES,
@@ -35,6 +37,11 @@ _FARTHEST = 100.0
 
 _LEAST_AXIS = 10.0
 """Least reach of the axis of savings (%)."""
+
+
+def audit_figures(audit: Audit, directory: Path) -> list[Path]:
+    """Write the figure of an audit: ``audit.svg`` and ``audit.png`` in an existing directory."""
+    return written(lambda: audit_figure(audit), directory, "audit")
 
 
 def audit_figure(audit: Audit) -> Figure:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from camwright.figures.marks import blank_figure, line_mark, patch_mark
+from camwright.figures.saving import written
 from camwright.figures.style import (
     LIMIT,
     LINES,
@@ -28,6 +30,11 @@ _BEYOND = 1e-9
 
 _FAR = 4.0
 """A limit is drawn as a line if it is at most this many times the longest bar, else named in words."""
+
+
+def comparison_figure(comparison: Comparison, directory: Path) -> list[Path]:
+    """Write the bars of a comparison: ``comparison.svg`` and ``comparison.png`` in an existing directory."""
+    return written(lambda: bars_figure(comparison), directory, "comparison")
 
 
 def bars_figure(comparison: Comparison) -> Figure:

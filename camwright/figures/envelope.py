@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camwright.design.feasible.envelope import Envelope
-from camwright.figures.files import written
 from camwright.figures.marks import blank_figure, patch_mark
+from camwright.figures.saving import written
 from camwright.figures.style import LINES, WIDTH
 from camwright.studies.envelope import EnvelopeAnswer
 

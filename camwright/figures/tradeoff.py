@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from camwright.figures.labels import label_points
 from camwright.figures.marks import blank_figure, line_mark
+from camwright.figures.saving import written
 from camwright.figures.style import (
     LINES,
     SYNC_COLOUR,
@@ -40,6 +42,11 @@ _STYLES: dict[str, dict[str, Any]] = {
     "baseline": {"marker": "s", "color": "#8c8c8c", "markersize": 6.5, "label": "baseline"},
     "beyond": {"marker": "x", "color": "#555555", "label": "baseline that breaks a limit"},
 }
+
+
+def tradeoff_figures(result: TradeOff, directory: Path) -> list[Path]:
+    """Write the figure of a trade-off: ``tradeoff.svg`` and ``tradeoff.png`` in an existing directory."""
+    return written(lambda: tradeoff_figure(result), directory, "tradeoff")
 
 
 def tradeoff_figure(result: TradeOff) -> Figure:

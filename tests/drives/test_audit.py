@@ -14,7 +14,7 @@ from camwright import load_job
 from camwright.cli.main import main
 from camwright.drives.audit import Audit, audit, audit_answer
 from camwright.drives.export import export
-from camwright.figures import audit_figures
+from camwright.figures.audit import audit_figures
 from camwright.jobs.job import Job
 from camwright.profiles.cut import Origin
 from camwright.profiles.errors import InputError

@@ -10,8 +10,8 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from camwright.figures import comparison_figure, design_figures
-from camwright.figures.comparison import bars_figure
+from camwright.figures.comparison import bars_figure, comparison_figure
+from camwright.figures.design import design_figures
 from camwright.figures.profile import profile_figure
 from camwright.figures.servo import AXES, servo_figure
 from camwright.figures.style import (

@@ -3,28 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-
-from rich.console import RenderableType
-from rich.table import Table
-from rich.text import Text
+from typing import TYPE_CHECKING
 
 from camwright.cli.views.numbers import millimetres, number
+from camwright.cli.views.parts import new_table, new_text
 from camwright.validation.check import Check
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
 
 
 def checks_view(checks: Sequence[Check]) -> RenderableType:
     """Show checks with values, limits and the master position of the worst value."""
-    table = Table(title="Checks", title_justify="left")
+    table = new_table(title="Checks", title_justify="left")
     for name in ("check", "", "value", "limit", "unit", "at", "source"):
         table.add_column(name, justify="right" if name in ("value", "limit", "at") else "left")
     for check in checks:
         table.add_row(
             check.name,
-            Text("passed", "green") if check.passed else Text("FAILED", "bold red"),
+            new_text("passed", "green") if check.passed else new_text("FAILED", "bold red"),
             number(check.value, "none"),
             number(check.limit, ""),
             check.unit,
             "" if check.at is None else f"{millimetres(check.at)} mm",
-            Text(check.source),
+            new_text(check.source),
         )
     return table

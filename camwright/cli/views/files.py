@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from rich.console import RenderableType
-from rich.text import Text
+from camwright.cli.views.parts import new_text
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
 
 
 def files_view(files: Sequence[Path]) -> RenderableType:
     """Show the files that were written, one a line."""
-    return Text("\n".join(f"wrote {file}" for file in files))
+    return new_text("\n".join(f"wrote {file}" for file in files))

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
-from rich.console import RenderableType
-from rich.table import Table
-
+from camwright.cli.views.parts import new_table
 from camwright.jobs.job import Job
 from camwright.profiles.servo import mean_lag
 from camwright.validation.servo.lead import LengthError
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
 
 
 def lead_view(job: Job, errors: Sequence[LengthError]) -> RenderableType:
     """Show the lead time that makes up for the mean lag, and where the cut falls at shares of the line speed."""
     servo = job.servo
-    table = Table(
+    table = new_table(
         title=f"Where the cut falls; mean lag {mean_lag(servo) * 1e3:.4g} ms, lead time set {servo.lead_time * 1e3:.4g} ms",
         title_justify="left",
     )

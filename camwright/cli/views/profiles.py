@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from rich.console import Group, RenderableType
-from rich.table import Table
-from rich.text import Text
+from typing import TYPE_CHECKING
 
 from camwright.cli.views.numbers import millimetres, number
+from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.studies.comparison import Comparison
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
 
 
 def profiles_view(comparison: Comparison) -> RenderableType:
     """Show profiles side by side, the least peak acceleration first."""
-    table = Table(title="Profiles, by peak acceleration", title_justify="left")
+    table = new_table(title="Profiles, by peak acceleration", title_justify="left")
     table.add_column("profile")
     unit = comparison.job.machine.slave_unit
     moved = comparison["optimised"].motor.rms_torque is not None
@@ -44,4 +46,4 @@ def profiles_view(comparison: Comparison) -> RenderableType:
             millimetres(servo.shear_zone_error),
             style="bold" if row.name == "optimised" else "",
         )
-    return table if comparison.screw is None else Group(table, Text(comparison.screw.sentence))
+    return table if comparison.screw is None else stacked(table, new_text(comparison.screw.sentence))

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from rich.console import Group, RenderableType
-from rich.table import Table
-from rich.text import Text
+from typing import TYPE_CHECKING
 
+from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.studies.tradeoff import TradeOff, words
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
 
 
 def tradeoff_view(result: TradeOff) -> RenderableType:
     """Show all profiles, each measure with its multiple of the best."""
-    table = Table(title=f"Objectives and laws, by {words(result.sorted_by)}; × the best", title_justify="left")
+    table = new_table(title=f"Objectives and laws, by {words(result.sorted_by)}; × the best", title_justify="left")
     table.add_column("least …, or law")
     for name in result.measures:
         unit = result.unit(name).replace("^2", "²").replace("^3", "³")
@@ -24,9 +26,9 @@ def tradeoff_view(result: TradeOff) -> RenderableType:
     for failure in result.failures:
         table.add_row(words(failure.name), "failed", *[""] * (len(result.measures) - 1), style="bold")
     broken = any(not row.within_limits for row in result.rows)
-    notes = [Text("† breaks a limit of the job; not counted as the best")] if broken else []
-    notes += [Text(f"least {words(failure.name)}, failed: {failure.reason}") for failure in result.failures]
-    return Group(table, *notes)
+    notes = [new_text("† breaks a limit of the job; not counted as the best")] if broken else []
+    notes += [new_text(f"least {words(failure.name)}, failed: {failure.reason}") for failure in result.failures]
+    return stacked(table, *notes)
 
 
 def _cell(value: float | None, cost: float | None) -> str:

@@ -1,0 +1,19 @@
+"""The object that ``camwright compare --json`` prints."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from camwright.answers.measures import profiles_answer
+from camwright.studies.comparison import Comparison
+
+
+def compare_answer(comparison: Comparison, files: Sequence[Path]) -> dict[str, Any]:
+    """Answer of ``camwright compare``: the profiles sorted by peak acceleration."""
+    return {
+        "job": comparison.job.name,
+        "profiles": profiles_answer(comparison),
+        "files": [str(file) for file in files],
+    }

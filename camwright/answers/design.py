@@ -1,0 +1,37 @@
+"""The object that ``camwright design --json`` prints."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from camwright.answers.axis import (
+    axis_answer,
+    lead_answer,
+    robust_answer,
+)
+from camwright.answers.measures import checks_answer, lengths_answer, profiles_answer
+from camwright.answers.objective import agreement_answer, objective_answer
+from camwright.studies.design import Design
+
+
+def design_answer(design: Design, files: Sequence[Path]) -> dict[str, Any]:
+    """Answer of ``camwright design``."""
+    return {
+        "job": design.job.name,
+        "status": design.solution.status.value,
+        "objective": objective_answer(design),
+        "lower_bound_method": design.bound.method,
+        "starts": agreement_answer(design),
+        "pieces": design.profile.pieces,
+        "profiles": profiles_answer(design.comparison),
+        "checks": checks_answer(design.report.checks),
+        "passed": design.passed,
+        "minimum_cut_length_mm": lengths_answer(design.lengths),
+        "servo_aware": axis_answer(design.axis),
+        "robust": robust_answer(design.robust),
+        **lead_answer(design.job, design.report.length_errors),
+        "tangential_mismatch": design.report.tangential_mismatch,
+        "files": [str(file) for file in files],
+    }

@@ -1,0 +1,43 @@
+"""The object that ``camwright limits --json`` prints."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any
+
+from camwright.answers.measures import lengths_answer, millimetres
+from camwright.design.feasible.extremes import Extremes
+from camwright.jobs.job import Job
+from camwright.studies.axis_lengths import AxisLengths
+from camwright.studies.cut_lengths import CutLengths
+
+
+def limits_answer(job: Job, far: Extremes, lengths: CutLengths | None, axis: AxisLengths | None) -> dict[str, Any]:
+    """Answer of ``camwright limits``; null where nothing works, or where the published equations are not about the machine."""
+    return {
+        "job": job.name,
+        "max_line_speed_m_per_min": None if far.max_line_speed is None else far.max_line_speed * 60,
+        "min_cut_length_mm": millimetres(far.min_cut_length),
+        "binding": {"line_speed": far.line_speed_binding, "cut_length": far.cut_length_binding},
+        "minimum_cut_length_mm": lengths_answer(lengths),
+        "physical_bound_binding": lengths.binding if lengths else None,
+        "eq10_with_settling_mm": millimetres(lengths.eq10_settling) if lengths else None,
+        "transition_length_mm": {
+            "crossing": millimetres(lengths.crossing) if lengths else None,
+            "settling": millimetres(lengths.settling) if lengths else None,
+        },
+        **axis_lengths_answer(axis),
+    }
+
+
+def axis_lengths_answer(lengths: AxisLengths | None) -> dict[str, Any]:
+    """Minimum cut lengths with the axis in sync, in mm; null for machines that the published equations are not about."""
+    names = ("linear_return", "poly_3_4_5", "in_sync", "shaped")
+    if lengths is None:
+        none = dict.fromkeys(names)
+        return {"axis_minimum_cut_length_mm": none, "axis_minimum_cut_length_axis_limits_mm": dict.fromkeys(names[2:])}
+    values = {name: None if value is None else value * 1e3 for name, value in asdict(lengths).items()}
+    return {
+        "axis_minimum_cut_length_mm": {name: values[name] for name in names},
+        "axis_minimum_cut_length_axis_limits_mm": {name: values[f"{name}_axis_limits"] for name in names[2:]},
+    }

@@ -1,0 +1,56 @@
+"""The figures of a design."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from camwright.figures.axis import AXES as SHOWN_AXES
+from camwright.figures.axis import axis_figure
+from camwright.figures.comparison import comparison_figure
+from camwright.figures.crank import crank_figure
+from camwright.figures.profile import profile_figure
+from camwright.figures.saving import written
+from camwright.figures.servo import AXES, servo_figure
+from camwright.studies.axis_study import robust_band
+from camwright.studies.design import Design
+from camwright.validation.servo.simulation import simulate
+
+
+def design_figures(design: Design, directory: Path) -> list[Path]:
+    """Write the figures of a design, each as SVG and PNG.
+
+    They are ``profile``, ``servo`` and ``comparison``; for a tool that turns back also ``crank``, for a servo-aware design ``axis``.
+
+    Parameters
+    ----------
+    design
+        What is drawn.
+    directory
+        An existing directory.
+
+    Returns
+    -------
+    list
+        The files.
+    """
+    job, comparison = design.job, design.comparison
+    runs = {name: simulate(comparison[name].profile, job.cut, job.servo) for name in AXES}
+    return [
+        *written(lambda: profile_figure(comparison), directory, "profile"),
+        *written(lambda: servo_figure(comparison, runs), directory, "servo"),
+        *comparison_figure(comparison, directory),
+        *(
+            written(lambda: crank_figure(comparison), directory, "crank")
+            if job.machine.dead_centres is not None
+            else []
+        ),
+        *(_axis_figures(design, directory) if design.axis is not None else []),
+    ]
+
+
+def _axis_figures(design: Design, directory: Path) -> list[Path]:
+    """Write the figure of a servo-aware design's axis."""
+    job, names = design.job, {row.name for row in design.comparison.rows}
+    runs = {name: simulate(design.comparison[name].profile, job.cut, job.servo) for name in SHOWN_AXES if name in names}
+    band = robust_band(job, design.profile)
+    return written(lambda: axis_figure(design, runs, band), directory, "axis")
