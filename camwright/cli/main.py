@@ -12,7 +12,6 @@ from importlib import import_module
 from typing import Annotated, cast
 
 import typer
-from rich.markup import escape
 
 from camwright.answers.error import error_answer
 from camwright.cli.commands import COMMANDS
@@ -42,7 +41,7 @@ def _application(arguments: Sequence[str]) -> typer.Typer:
     application.callback(invoke_without_command=True)(_root)
     for name, command in COMMANDS.items():
         application.command(
-            name, help=command.does, epilog=f"Example: {escape(command.example)}", rich_help_panel=command.task
+            name, help=command.does, epilog=f"Example: {_escaped(command.example)}", rich_help_panel=command.task
         )(_command(name) if name == called else _uncalled)
     return application
 
@@ -51,6 +50,11 @@ def _called(arguments: Sequence[str]) -> Sequence[str]:
     """Take the words of a call: those of the command line, or those that a shell asks to complete."""
     asked = os.environ.get("_TYPER_COMPLETE_ARGS") or os.environ.get("COMP_WORDS")
     return asked.split()[1:] if asked and os.environ.get("_CAMWRIGHT_COMPLETE") else arguments
+
+
+def _escaped(text: str) -> str:
+    """Write a text so that its brackets are no markup; rich's own function would load rich for every command."""
+    return text.replace("[", r"\[")
 
 
 def _command(name: str) -> Callable[..., int]:
