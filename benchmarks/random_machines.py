@@ -62,6 +62,11 @@ class RandomJob:
     limits: Limits
     objective: CommandObjective
 
+    @property
+    def task(self) -> Task:
+        """Machine, cut and limits together."""
+        return Task(self.machine, self.cut, self.limits)
+
 
 @dataclass(frozen=True)
 class End:
