@@ -106,6 +106,20 @@ class TorqueAnswer:
     iterations: int
 
 
+@dataclass(frozen=True, eq=False)
+class _Layout:
+    """How the unknowns of a programme lie.
+
+    Phases of the return, intervals of those with motion, the sync zone if it is to be placed, numbers of unknowns by kind, their units.
+    """
+
+    pattern: Pattern
+    counts: tuple[int, ...]
+    zone: Zone | None
+    sizes: list[int]
+    units: FloatArray
+
+
 class TorqueProgramme:
     """The programme of one task and pattern on a mesh of a size: accelerations at nodes, linear between, and the node states."""
 
@@ -123,16 +137,17 @@ class TorqueProgramme:
         zone
             The sync zone, if the programme is to place it.
         """
-        self._task, self._pattern, self._counts, self._zone = task, pattern, counts, zone
+        self._task = task
         n = sum(counts)
         drawn_in_zone = zone.points + 2 if zone is not None and task.aim == "energy" else 0
         drawn_count = len(LOBATTO[0]) * n if task.aim == "energy" else 0
-        self._sizes = [n + 1, n + 1, n + 1, len(pattern), 1, drawn_count, 0 if zone is None else 2, drawn_in_zone]
+        sizes = [n + 1, n + 1, n + 1, len(pattern), 1, drawn_count, 0 if zone is None else 2, drawn_in_zone]
         pace = 1.0 / task.crossing
-        self._units = np.repeat([pace**2, pace, *np.ones(len(self._sizes) - 2)], self._sizes)
-        unknowns = ca.MX.sym("x", sum(self._sizes))
-        x = unknowns * ca.DM(self._units)
-        a, v, q, lengths, t, drawn, ends, zone_drawn = ca.vertsplit(x, [0, *np.cumsum(self._sizes).tolist()])
+        scales = np.repeat([pace**2, pace, *np.ones(len(sizes) - 2)], sizes)
+        self._layout = _Layout(pattern, counts, zone, sizes, scales)
+        unknowns = ca.MX.sym("x", sum(sizes))
+        x = unknowns * ca.DM(scales)
+        a, v, q, lengths, t, drawn, ends, zone_drawn = ca.vertsplit(x, [0, *np.cumsum(sizes).tolist()])
         p = ca.MX.sym("p", n + PARAMETERS)
         units, paid, rounding = p[n : n + 2], p[n + 2], p[n + 3]
         moving = [k for k, phase in enumerate(pattern) if phase != "rest"]
@@ -227,9 +242,16 @@ class TorqueProgramme:
         return ca.Function("interval", [a, rise, v, q, h, sign, start], [force, force * velocity, available])
 
     def _state(self, guess: Guess) -> FloatArray:
-        ends = np.array(guess.ends if self._zone is not None and guess.ends is not None else [])
-        parts = (guess.acceleration, guess.velocity, guess.position, guess.lengths, [0.0], np.zeros(self._sizes[5]))
-        return np.concatenate([*parts, ends, np.zeros(self._sizes[7])])
+        ends = np.array(guess.ends if self._layout.zone is not None and guess.ends is not None else [])
+        parts = (
+            guess.acceleration,
+            guess.velocity,
+            guess.position,
+            guess.lengths,
+            [0.0],
+            np.zeros(self._layout.sizes[5]),
+        )
+        return np.concatenate([*parts, ends, np.zeros(self._layout.sizes[7])])
 
     def value(self, guess: Guess) -> float:
         """Objective of a motion, as `TorqueAnswer.value` has it."""
@@ -237,18 +259,20 @@ class TorqueProgramme:
 
     def _value(self, state: FloatArray, parameters: FloatArray) -> float:
         torque, power, available, weights, h = (
-            np.asarray(part).ravel() for part in self._measure(state / self._units, parameters)
+            np.asarray(part).ravel() for part in self._measure(state / self._layout.units, parameters)
         )
-        if self._zone is not None:
-            more = [np.asarray(part).ravel() for part in self._joined(state / self._units)]
+        if self._layout.zone is not None:
+            more = [np.asarray(part).ravel() for part in self._joined(state / self._layout.units)]
             torque, power, weights = (
                 np.append(one, other) for one, other in zip((torque, power, weights), more, strict=False)
             )
-        a = state[: self._sizes[0]]
+        a = state[: self._layout.sizes[0]]
         match self._task.aim:
             case "rms_torque":
                 return math.sqrt(
-                    float(weights @ torque**2) / float(weights.sum()) if self._zone else float(weights @ torque**2)
+                    float(weights @ torque**2) / float(weights.sum())
+                    if self._layout.zone
+                    else float(weights @ torque**2)
                 )
             case "peak_torque":
                 return float(np.abs(torque).max())
@@ -285,7 +309,9 @@ class TorqueProgramme:
         """
         mesh = np.concatenate(guess.mesh)
         start, parameters = self._state(guess), np.append(mesh, np.ones(PARAMETERS))
-        torque, power, _, _, _ = (np.asarray(part).ravel() for part in self._measure(start / self._units, parameters))
+        torque, power, _, _, _ = (
+            np.asarray(part).ravel() for part in self._measure(start / self._layout.units, parameters)
+        )
         value = self._value(start, parameters)
         motion = self._task.aim in MOTION_OBJECTIVES
         unit = value if motion else float(np.sqrt(np.mean(torque**2)))
@@ -306,15 +332,15 @@ class TorqueProgramme:
         equal, above = self._rows
         low, high = self._paces()
         answer = self._solver(
-            x0=start / self._units,
+            x0=start / self._layout.units,
             p=parameters,
-            lbx=lower / self._units,
-            ubx=upper / self._units,
+            lbx=lower / self._layout.units,
+            ubx=upper / self._layout.units,
             lbg=np.concatenate([np.zeros(equal + above), low]),
             ubg=np.concatenate([np.zeros(equal), np.full(above, np.inf), high]),
         )
         statistics = self._solver.stats()
-        flat: FloatArray = np.asarray(answer["x"], dtype=np.float64).ravel() * self._units
+        flat: FloatArray = np.asarray(answer["x"], dtype=np.float64).ravel() * self._layout.units
         history = statistics.get("iterations", {})
         residual = max(
             (float(history[name][-1]) for name in ("inf_pr", "inf_du") if history.get(name)), default=math.inf
@@ -325,7 +351,7 @@ class TorqueProgramme:
             flat[a],
             flat[v],
             flat[q],
-            None if self._zone is None else (float(flat[ends][0]), float(flat[ends][1])),
+            None if self._layout.zone is None else (float(flat[ends][0]), float(flat[ends][1])),
         )
         finite = bool(np.isfinite(flat).all()) and math.isfinite(residual)
         value = self._value(flat, parameters) if finite else math.inf
@@ -340,7 +366,7 @@ class TorqueProgramme:
         return 1.0, (FIRST_ROUNDING if rough else ROUNDING).get(self._task.aim, 0.0)
 
     def _slices(self) -> list[slice]:
-        edges = np.cumsum([0, *self._sizes])
+        edges = np.cumsum([0, *self._layout.sizes])
         return [slice(int(one), int(other)) for one, other in itertools.pairwise(edges)]
 
     def _paces(self) -> tuple[FloatArray, FloatArray]:
@@ -348,10 +374,10 @@ class TorqueProgramme:
         problem, unit = self._task.problem, self._task.problem.length / self._task.scale
         low, high = problem.least_ratio * unit, problem.greatest_ratio * unit
         of = {"any": (low, high), "forth": (max(low, 0.0), high), "back": (low, min(high, 0.0))}
-        moving = np.array([of[phase] for phase in self._pattern if phase != "rest"])
+        moving = np.array([of[phase] for phase in self._layout.pattern if phase != "rest"])
         aside = DRAWN_IN * np.maximum(1.0, np.abs(moving))
-        lower, upper = np.repeat(moving + aside * [1.0, -1.0], self._counts, axis=0).T
-        joints = np.cumsum(self._counts)[:-1]
+        lower, upper = np.repeat(moving + aside * [1.0, -1.0], self._layout.counts, axis=0).T
+        joints = np.cumsum(self._layout.counts)[:-1]
         for beside in (joints - 1, joints):
             lower[beside] = np.where(lower[beside] > 0, -DRAWN_IN, lower[beside])
             upper[beside] = np.where(upper[beside] < 0, DRAWN_IN, upper[beside])
@@ -359,7 +385,7 @@ class TorqueProgramme:
 
     def _bounds(self) -> tuple[FloatArray, FloatArray]:
         task, problem = self._task, self._task.problem
-        length, scale, count = problem.length, task.scale, sum(self._sizes)
+        length, scale, count = problem.length, task.scale, sum(self._layout.sizes)
         lower, upper = np.full(count, -np.inf), np.full(count, np.inf)
         a, v, q, lengths, _, drawn, ends, zone_drawn = self._slices()
         slope = problem.greatest_slope * length**2 / scale * (1 - DRAWN_IN)
@@ -370,20 +396,20 @@ class TorqueProgramme:
         lower[q] = problem.least_position / scale + DRAWN_IN
         upper[q] = problem.greatest_position / scale - DRAWN_IN
         lower[drawn], lower[zone_drawn] = 0.0, 0.0
-        lower[lengths] = [0.0 if phase == "rest" else SHORTEST_PHASE for phase in self._pattern]
-        if len(self._pattern) == 1:
+        lower[lengths] = [0.0 if phase == "rest" else SHORTEST_PHASE for phase in self._layout.pattern]
+        if len(self._layout.pattern) == 1:
             lower[lengths] = upper[lengths] = 1.0
         node = 0
-        counts = iter(self._counts)
-        for k, phase in enumerate(self._pattern):
+        counts = iter(self._layout.counts)
+        for k, phase in enumerate(self._layout.pattern):
             if phase != "rest":
                 node += next(counts)
             else:
                 lower[a.start + node] = upper[a.start + node] = 0.0
-            if k < len(self._pattern) - 1:
+            if k < len(self._layout.pattern) - 1:
                 lower[v.start + node] = upper[v.start + node] = 0.0
-        if self._zone is not None:
-            lower[ends], upper[ends] = self._zone.range
+        if self._layout.zone is not None:
+            lower[ends], upper[ends] = self._layout.zone.range
             return lower, upper
         ratio = length / scale
         for part, first, last in (
