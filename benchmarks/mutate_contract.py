@@ -1,6 +1,6 @@
 """Changes each promised number of the code in turn and shows that a test of ``tests/contract`` fails.
 
-    python benchmarks/mutate_contract.py [--only WORDS]
+    python benchmarks/mutate_contract.py [--only WORDS] [--jobs N]
 
 Each change is made in a copy of the checkout. A change that no test notices survives; there must be none. The table goes to
 ``benchmarks/results/mutate_contract.csv``. ``tests/house/test_mutations.py`` checks that every number of the contract is changed
@@ -18,13 +18,19 @@ import subprocess
 import sys
 import tempfile
 import time
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
+from queue import Queue
 
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "benchmarks" / "results" / "mutate_contract.csv"
 FLOORS = ("camwright", "design", "profiles", "validation")
 COPIED = (*FLOORS, "tests/contract", "tests/conftest.py", "docs", "examples", "pyproject.toml")
+
+
+Row = tuple[str, str, str, str, str, str]
+"""Promise, file, text before, text after, outcome, and the first test that noticed."""
 
 
 @dataclass(frozen=True)
@@ -191,6 +197,34 @@ def tested(root: Path) -> tuple[int, str]:
     return done.returncode, failed[1] if failed else ""
 
 
+def made(change: Change, root: Path) -> Row:
+    """Make a change in a copy, run the tests, and take it back.
+
+    Raises
+    ------
+    RuntimeError
+        The tests do not run.
+    """
+    begun = time.perf_counter()
+    file = place_of(change, root)
+    text = file.read_text(encoding="utf-8")
+    put(file, text.replace(change.before, change.after))
+    code, test = tested(root)
+    put(file, text)
+    if code not in (0, 1):
+        raise RuntimeError(f"{change.promise}: the tests do not run (pytest ends with {code})")
+    outcome = "noticed" if code else "survived"
+    print(f"{outcome:9} {change.promise} ({time.perf_counter() - begun:.1f} s) {test}", flush=True)
+    return (
+        change.promise,
+        file.relative_to(root.resolve()).as_posix(),
+        change.before.strip(),
+        change.after.strip(),
+        outcome,
+        test,
+    )
+
+
 def main() -> int:
     """Make all changes, or those of which the promise has some words; 1 if one survives.
 
@@ -201,30 +235,33 @@ def main() -> int:
     """
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--only", default="", metavar="WORDS", help="make these changes only, and write no table")
-    only = parser.parse_args().only
-    changes = [change for change in CHANGES if only in change.promise]
-    rows = []
+    parser.add_argument(
+        "--jobs", type=int, default=2, metavar="N", help="copies in which changes are made side by side"
+    )
+    options = parser.parse_args()
+    changes = [change for change in CHANGES if options.only in change.promise]
     with tempfile.TemporaryDirectory(prefix="contract-") as folder:
-        root = Path(folder)
-        copied(root)
-        if tested(root)[0] != 0:
-            raise RuntimeError("tests/contract fails before anything is changed")
-        for change in changes:
-            begun = time.perf_counter()
-            file = place_of(change, root)
-            text = file.read_text(encoding="utf-8")
-            put(file, text.replace(change.before, change.after))
-            code, test = tested(root)
-            put(file, text)
-            if code not in (0, 1):
-                raise RuntimeError(f"{change.promise}: the tests do not run (pytest ends with {code})")
-            rows.append((change.promise, file.relative_to(root.resolve()).as_posix(), change.before.strip(), change.after.strip(),
-                         "noticed" if code else "survived", test))  # fmt: skip
-            print(f"{rows[-1][4]:9} {change.promise} ({time.perf_counter() - begun:.1f} s) {test}", flush=True)
-    with RESULTS.open("w", newline="", encoding="utf-8") as out:
-        csv.writer(out, lineterminator="\n").writerows(
-            [("promise", "file", "before", "after", "outcome", "first test"), *rows]
-        )
+        free: Queue[Path] = Queue()
+        for number in range(options.jobs):
+            root = Path(folder, str(number))
+            copied(root)
+            if tested(root)[0] != 0:
+                raise RuntimeError("tests/contract fails before anything is changed")
+            free.put(root)
+
+        def in_a_free_copy(change: Change) -> Row:
+            root = free.get()
+            try:
+                return made(change, root)
+            finally:
+                free.put(root)
+
+        with ThreadPoolExecutor(options.jobs) as pool:
+            rows = list(pool.map(in_a_free_copy, changes))
+    if not options.only:
+        with RESULTS.open("w", newline="", encoding="utf-8") as out:
+            head = ("promise", "file", "before", "after", "outcome", "first test")
+            csv.writer(out, lineterminator="\n").writerows([head, *rows])
     survivors = [row[0] for row in rows if row[4] == "survived"]
     print(f"{len(survivors)} of {len(rows)} survive{': ' if survivors else ''}{', '.join(survivors)}")
     return 1 if survivors else 0

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import re
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -127,6 +128,7 @@ CONTROLLERS: dict[str, tuple[int, int | None, str]] = {
 """Fewest and most points of each target, ``None`` where no limit is documented, and its numbers."""
 
 
+@cache
 def document(name: str) -> str:
     """Text of a document, on one line, so that a promise may run over the end of one."""
     return " ".join((DOCS / f"{name}.md").read_text(encoding="utf-8").split())

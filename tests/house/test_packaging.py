@@ -17,6 +17,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 LINKED = ("design", "examples", "profiles", "validation")
+PAPERS = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "CITATION.cff", "LICENSE", "pyproject.toml")
 NOT_COPIED = shutil.ignore_patterns(".venv", ".git", "out", "dist", ".*_cache", ".hypothesis", "__pycache__")
 WITHOUT_INDEX = ("--no-deps", "--no-index", "--no-build-isolation", "--disable-pip-version-check", "--quiet")
 
@@ -148,6 +149,7 @@ def test_the_source_archive_builds_the_same_wheel(
     with tarfile.open(archive) as opened:
         opened.extractall(tmp_path / "unpacked", filter="data")
     (unpacked,) = (tmp_path / "unpacked").iterdir()
+    assert {path.name for path in unpacked.iterdir()} >= {"camwright", *LINKED, "tests", "benchmarks", "docs", *PAPERS}
     assert sha256(built("wheel", unpacked, tmp_path / "again")) == sha256(wheel)
 
 
