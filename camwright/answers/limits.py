@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
+from camwright.studies.limits import MachineLimits
 from camwright.answers.measures import lengths_answer, millimetres
 from camwright.design.feasible.extremes import Extremes
 from camwright.jobs.job import Job
@@ -12,10 +13,11 @@ from camwright.studies.axis_lengths import AxisLengths
 from camwright.studies.cut_lengths import CutLengths
 
 
-def limits_answer(job: Job, far: Extremes, lengths: CutLengths | None, axis: AxisLengths | None) -> dict[str, Any]:
+def limits_answer(found: MachineLimits) -> dict[str, Any]:
     """Answer of ``camwright limits``; null where nothing works, or where the published equations are not about the machine."""
+    far, lengths = found.far, found.lengths
     return {
-        "job": job.name,
+        "job": found.job.name,
         "max_line_speed_m_per_min": None if far.max_line_speed is None else far.max_line_speed * 60,
         "min_cut_length_mm": millimetres(far.min_cut_length),
         "binding": {"line_speed": far.line_speed_binding, "cut_length": far.cut_length_binding},
@@ -26,7 +28,7 @@ def limits_answer(job: Job, far: Extremes, lengths: CutLengths | None, axis: Axi
             "crossing": millimetres(lengths.crossing) if lengths else None,
             "settling": millimetres(lengths.settling) if lengths else None,
         },
-        **axis_lengths_answer(axis),
+        **axis_lengths_answer(found.axis),
     }
 
 

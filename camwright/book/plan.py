@@ -11,7 +11,6 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import Any
 
-from camwright.book.job_text import job_text
 from camwright.book.ranges import (
     Range,
     decimal,
@@ -22,6 +21,7 @@ from camwright.drives.options import parse_targets
 from camwright.house.provenance import provenance
 from camwright.house.units import shown
 from camwright.jobs.job import Job, parse_job, read_job
+from camwright.jobs.toml_text import toml_text
 from camwright.profiles.errors import InputError
 from camwright.profiles.objective import OBJECTIVES
 
@@ -149,7 +149,7 @@ class Book:
             },
             "objective": {**data.get("objective", {}), "minimise": of.objective},
         }
-        return read_job(own, job_text(own), self.name)  # what is written is read back as it was
+        return read_job(own, toml_text(own), self.name)  # what is written is read back as it was
 
     def parameters(self) -> dict[str, Any]:
         """Name what makes two books the same, as it is told and stored."""
@@ -234,7 +234,7 @@ def _objective_faults(job: Job, name: str) -> tuple[str, ...]:
     if name not in OBJECTIVES:
         return (f"--objective {shown(name)}: there is no such objective; the objectives are {', '.join(OBJECTIVES)}",)
     data = _data(job.text)
-    text = job_text({**data, "objective": {**data.get("objective", {}), "minimise": name}})
+    text = toml_text({**data, "objective": {**data.get("objective", {}), "minimise": name}})
     try:
         parse_job(text, f"--objective {name}")
     except InputError as error:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -20,7 +19,6 @@ from camwright.house.files import staged
 from camwright.house.output import Voice
 from camwright.jobs.job import Job, load_job
 from camwright.profiles.errors import InputError
-from camwright.studies.axis_study import solve_job
 from camwright.studies.comparison import compare, law_names, require_laws, with_screw
 from camwright.studies.screw import require_screw
 from camwright.studies.tradeoff import step_count, trade_off, tradeoff_answer
@@ -61,8 +59,7 @@ def run(
     files: list[Path] = []
     with voice.progress(len(names) + 3 + screw) as step:
         step("solving")
-        solution = solve_job(asked)
-        result = compare(replace(asked, machine=solution.machine), solution.profile, names, step)
+        result = compare(asked, names=names, step=step)
         if screw:
             step("designing the carriage on a screw")
             result = with_screw(result)

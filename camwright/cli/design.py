@@ -21,8 +21,7 @@ from camwright.figures.design import design_figures
 from camwright.house.files import staged
 from camwright.house.output import Voice
 from camwright.jobs.job import load_job
-from camwright.stored.design_file import design_text
-from camwright.stored.profile_files import cam_text
+from camwright.stored.save import design_files
 from camwright.studies.comparison import law_names
 from camwright.studies.design import STEPS, Design, optimise
 
@@ -43,7 +42,7 @@ def run(
     voice = Voice(as_json, quiet)
     with voice.progress(STEPS + len(law_names(asked.task)) + 2) as step:
         result = optimise(asked, step)
-        texts = {"design.json": design_text(result), "cam.csv": cam_text(result)}
+        texts = design_files(result)
         step("writing files")
         with staged(directory) as aside:
             for name, text in texts.items():

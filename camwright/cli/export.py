@@ -9,18 +9,14 @@ import typer
 
 from camwright.cli.options import Json, Quiet
 from camwright.cli.views.parts import new_table, new_text, stacked
-from camwright.drives.export import Exported, export_answer, export_possible, export_report
+from camwright.drives.export import export_answer
 from camwright.drives.options import parse_targets, parse_units
-from camwright.drives.withheld import copy_aside, older_tables, remove
-from camwright.house.files import read_text, staged
-from camwright.house.json_text import to_json
+from camwright.drives.table_files import TableFiles, export
+from camwright.house.files import read_text
 from camwright.house.output import Voice
-from camwright.house.provenance import camwright_version
 from camwright.house.units import quantity
 from camwright.profiles.errors import InputError
 from camwright.profiles.tables.knots import Accuracy
-from camwright.profiles.tables.target import Header
-from camwright.profiles.tables.targets import target_of
 from camwright.stored.design_file import MOST_BYTES, StoredDesign, parse_design
 
 if TYPE_CHECKING:
@@ -51,33 +47,15 @@ def run(
     names = parse_targets(to)
     accuracy = Accuracy(position=quantity(max_error, "length"))
     stored = _design(design)
-    job = stored.job
-    wanted = None if units is None else parse_units(units, job.task)
+    wanted = None if units is None else parse_units(units, stored.job.task)
     directory = design.parent / "tables" if out is None else out
     voice = Voice(as_json, quiet)
     with voice.progress(len(names) + 1) as step:
-        results, refused = export_possible(
-            stored.profile, job, names, units=wanted, accuracy=accuracy, points=points, force=force, step=step
-        )
-        if refused and (to.strip() != "all" or not results):
-            raise InputError(*(f"{name}: {fault}" for name, faults in refused.items() for fault in faults))
-        step("writing files")
-        withheld = [result.target for result in results if not result.files]
-        withheld += [target_of(name) for name in refused]
-        older = older_tables(directory, withheld, Header(job.name, camwright_version()))
-        with staged(directory) as aside:
-            for result in results:
-                for name, text in result.files.items():
-                    (aside / name).write_bytes(text.encode())
-            copy_aside(directory, aside, older)
-            report = {**export_report(results, job, refused), "set_aside": older}
-            (aside / "report.json").write_bytes(to_json(report).encode())
-        remove(directory, older)
+        written = export(stored, to, directory, units=wanted, accuracy=accuracy, points=points, force=force, step=step)
     voice.answer(
-        lambda: {**export_answer(results), "set_aside": older},
-        lambda: _view(results, refused, older, directory),
+        lambda: {**export_answer(written.results), "set_aside": written.older}, lambda: _view(written, directory)
     )
-    return 0 if all(result.passed for result in results) else 1
+    return 0 if written.passed else 1
 
 
 def _design(path: Path) -> StoredDesign:
@@ -91,17 +69,12 @@ def _design(path: Path) -> StoredDesign:
     return parse_design(text, str(path))
 
 
-def _view(
-    results: list[Exported],
-    refused: dict[str, tuple[str, ...]],
-    older: dict[str, dict[str, str]],
-    directory: Path,
-) -> RenderableType:
+def _view(written: TableFiles, directory: Path) -> RenderableType:
     """Show each table as its drive runs it, what was refused, and what was set aside."""
     table = new_table(title="Tables as the drives run them", title_justify="left")
     for name in ("target", "points", "position\num", "ratio\n1e-6", "acceleration\n%", "judgement", "files"):
         table.add_column(name, justify="left" if name in ("target", "judgement", "files") else "right")
-    for result in results:
+    for result in written.results:
         off = result.deviation
         failed = [check.name for check in result.judgement.checks if not check.passed]
         table.add_row(
@@ -114,13 +87,13 @@ def _view(
             "\n".join(result.files) or "not released",
         )
     note = "No table was tested on a controller. Check the integrity of the data after every import."
-    notes = [new_text(f"{name} cannot take this cam: {'; '.join(faults)}") for name, faults in refused.items()]
+    notes = [new_text(f"{name} cannot take this cam: {'; '.join(faults)}") for name, faults in written.refused.items()]
     notes += [
         new_text(f"{name}: the new table is withheld; the older {old} is now {new}", "yellow")
-        for name, names in older.items()
+        for name, names in written.older.items()
         for old, new in names.items()
     ]
-    for result in results:
+    for result in written.results:
         rough = result.dense.deviation.acceleration if result.dense else None
         if rough is not None and rough > (result.deviation.acceleration or 0.0):
             points = result.dense.table.points if result.dense else 0
@@ -129,6 +102,6 @@ def _view(
                     f"{result.target.name} rounds to float32: {points} points would be off by {rough * 100:.3g} % of the acceleration"
                 )
             )
-    if any(not result.accurate for result in results):
+    if any(not result.accurate for result in written.results):
         notes.insert(0, new_text("* the nearest that this target can come; the error asked for is exceeded somewhere"))
     return stacked(table, *notes, new_text(f"in {directory}"), new_text(note))

@@ -9,11 +9,9 @@ from camwright.cli.options import GivenJob, Json, Quiet
 from camwright.cli.views.lengths import lengths_view
 from camwright.cli.views.numbers import millimetres, number
 from camwright.cli.views.parts import new_table, stacked
-from camwright.design.feasible.extremes import Extremes, extremes
 from camwright.house.output import Voice
-from camwright.jobs.job import Job, load_job
-from camwright.studies.axis_lengths import AxisLengths, axis_lengths
-from camwright.studies.cut_lengths import CutLengths, cut_lengths
+from camwright.jobs.job import load_job
+from camwright.studies.limits import LIMITS_STEPS, MachineLimits, limits
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -23,20 +21,16 @@ def run(job: GivenJob, as_json: Json = False, quiet: Quiet = False) -> int:
     """Say how fast and how short the machine of a job can cut, and which limit binds."""
     asked = load_job(job)
     voice = Voice(as_json, quiet)
-    with voice.progress(3) as step:
-        step("finding the highest line speed and the shortest cut")
-        far = extremes(asked.task)
-        step("finding minimum cut lengths")
-        lengths = cut_lengths(asked)
-        step("finding minimum cut lengths with the axis in sync")
-        axis = axis_lengths(asked)
+    with voice.progress(LIMITS_STEPS) as step:
+        found = limits(asked, step)
 
-    voice.answer(lambda: limits_answer(asked, far, lengths, axis), lambda: _view(asked, far, lengths, axis))
+    voice.answer(lambda: limits_answer(found), lambda: _view(found))
     return 0
 
 
-def _view(job: Job, far: Extremes, lengths: CutLengths | None, axis: AxisLengths | None) -> RenderableType:
+def _view(found: MachineLimits) -> RenderableType:
     """Show how fast and how short a job can be done, and what binds."""
+    job, far, lengths, axis = found.job, found.far, found.lengths, found.axis
     speed = f"{number(far.max_line_speed * 60)} m/min" if far.max_line_speed else "none works"
     length = f"{millimetres(far.min_cut_length)} mm" if far.min_cut_length else "none works"
     table = new_table(title="How fast, how short", title_justify="left")

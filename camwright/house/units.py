@@ -58,6 +58,7 @@ KINDS: dict[str, Kind] = {
 """The kinds of quantities by name."""
 
 _LONGEST = 100
+_FEW = 12
 _TEXT = re.compile(r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?)\s*(.*)", re.DOTALL)
 _NAME_AND_POWER = r"([^\W\d_]{1,24}|°)(?:\s*(?:\*\*|\^)\s*([+-]?[1-9]))?"
 _FACTOR = re.compile(r"([*/·]?)\s*" + _NAME_AND_POWER)
@@ -123,6 +124,36 @@ def exact_quantity(
     if isinstance(text, int | float) and not isinstance(text, bool):
         raise InputError(f'{shown(text)}: a number without a unit; write e.g. "{_repeated(text, wanted)}"')
     raise InputError(f'{shown(text)}: not {wanted.name} with a unit; write e.g. "{wanted.example}"')
+
+
+def quantity_text(value: float, kind: str, example: str | None = None) -> str:
+    """Write an SI value so that `quantity` reads it back bit by bit.
+
+    It has the unit of the example where few digits do in that unit, else the SI unit of its kind.
+
+    Parameters
+    ----------
+    value
+        The value, finite.
+    kind
+        Name of its kind, a key of `KINDS`.
+    example
+        A quantity of the unit to write; the example of the kind if not given.
+
+    Examples
+    --------
+    >>> quantity_text(0.6, "length"), quantity_text(80 / 60, "speed"), quantity_text(0.1 + 0.2, "length")
+    ('600 mm', '80 m/min', '0.30000000000000004 m')
+    """
+    unit = (example or KINDS[kind].example).split(" ", 1)[1]
+    text = f"{float(Fraction(value) / exact_quantity(f'1 {unit}', kind)):.{_FEW}g} {unit}"
+    same = _TEXT.fullmatch(text) is not None and float(_sized(text, unit, kind)) == value
+    return text if same else f"{value!r} {KINDS[kind].unit}"
+
+
+def _sized(text: str, unit: str, kind: str) -> Fraction:
+    """Value of a number and a unit, whatever its size and sign."""
+    return Fraction(text.removesuffix(unit).strip()) * exact_quantity(f"1 {unit}", kind)
 
 
 @lru_cache(maxsize=1024)

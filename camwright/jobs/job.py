@@ -1,10 +1,12 @@
-"""`Job`: what a job file asks for, in SI numbers; reading it."""
+"""`Job`: what a job file asks for, in SI numbers; reading it, and writing it anew."""
 
 from __future__ import annotations
 
 import hashlib
 import tomllib
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -14,15 +16,18 @@ from camwright.jobs.fields import Known
 from camwright.jobs.machine_checks import moved_by_nothing, sync_zone_of
 from camwright.jobs.machine_tables import machine_of
 from camwright.jobs.servo_checks import tolerance_of
+from camwright.jobs.si_keys import with_units
 from camwright.jobs.structure import (
     Command,
     JobFile,
     read_structure,
 )
+from camwright.jobs.tables import cut_table, limits_table, machine_table, servo_table
+from camwright.jobs.toml_text import toml_text
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
 from camwright.profiles.limits import Limits
-from camwright.profiles.machines import Machine
+from camwright.profiles.machines import MACHINES, Machine
 from camwright.profiles.motor import MotorCurve
 from camwright.profiles.objective import ObjectiveName
 from camwright.profiles.servo import Servo
@@ -69,16 +74,23 @@ class Job:
         What is made least, a key of `camwright.profiles.objective.OBJECTIVES`; ``"sync_error"`` only of servo-aware designs.
     servo_aware
         Whether the axis, not only its command, keeps the sync tolerance in the shear zone.
-    command
-        What a servo-aware design may do to the command in the sync zone.
     servo_tolerance
         Ranges of the servo's parameters, nothing where the job file gives none.
     output
         How the cam is written.
-    text
-        The job file's text, from which the job can be read again.
-    sha256
-        SHA-256 of the text in UTF-8, in hexadecimal.
+    source
+        The file that it was read from, nothing where there is none; two jobs of the same numbers are equal whatever their files.
+
+    Examples
+    --------
+    The text follows the numbers:
+
+    >>> job = load_job()
+    >>> shorter = replace(job, cut=replace(job.cut, length=0.5))
+    >>> 'length = "500 mm"' in shorter.text, parse_job(shorter.text, "") == shorter
+    (True, True)
+    >>> shorter.sha256 == job.sha256
+    False
     """
 
     name: str
@@ -88,16 +100,140 @@ class Job:
     servo: Servo
     objective: ObjectiveName
     servo_aware: bool
-    command: Command
     servo_tolerance: ServoTolerance | None
     output: Output
-    text: str
-    sha256: str
+    source: Source | None = field(default=None, compare=False, repr=False)
+
+    @staticmethod
+    def of(
+        name: str,
+        machine: Mapping[str, Any] | Machine,
+        cut: Mapping[str, Any] | Cut,
+        limits: Mapping[str, Any] | Limits,
+        servo: Mapping[str, Any] | Servo,
+        objective: Mapping[str, Any] | ObjectiveName = "peak_acceleration",
+        output: Mapping[str, Any] | None = None,
+    ) -> Job:
+        """Make a job without a job file, checked as one from a file is.
+
+        Parameters
+        ----------
+        name
+            What the job is called.
+        machine, cut, limits, servo
+            Each one a table with the keys of a job file, or the object itself. A quantity is a text with a unit, or a number in SI
+            units under a key that ends with the unit: ``length_m``, ``line_speed_m_per_s``, ``bandwidth_rad_per_s``, ``mass_kg``.
+        objective, output
+            Tables with the keys of a job file, as far as they differ from the defaults; the name of the objective will do.
+
+        Raises
+        ------
+        InputError
+            It has faults: all of them are told, each with its place.
+
+        Examples
+        --------
+        >>> from camwright import Job, Servo, optimise
+        >>> job = Job.of(
+        ...     name="short",
+        ...     machine={"kind": "rotary_knife", "circumference": "400 mm"},
+        ...     cut={"length_m": 0.5, "line_speed": "80 m/min", "sync_zone": "160 mm", "shear_zone": "40 mm"},
+        ...     limits={"speed": "200 m/min", "acceleration_m_per_s2": 50.0, "jerk_m_per_s3": 5000.0},
+        ...     servo=Servo(bandwidth=120.0, damping=0.7, position_gain=35.0, sample_time=0.004, velocity_feedforward=1.0),
+        ... )
+        >>> job.cut.length, round(optimise(job).objective, 3)
+        (0.5, 7.083)
+        """
+        turning = _turns(machine)
+        data: dict[str, Any] = {
+            "name": name,
+            "machine": machine_table(machine) if isinstance(machine, Machine) else machine,
+            "cut": cut_table(cut) if isinstance(cut, Cut) else cut,
+            "limits": limits_table(limits, turning=turning) if isinstance(limits, Limits) else limits,
+            "servo": servo_table(servo, None) if isinstance(servo, Servo) else servo,
+            "objective": {"minimise": objective} if isinstance(objective, str) else objective,
+            "output": dict(output or {}),
+        }
+        if isinstance(cut, Cut):
+            data["output"].setdefault("origin", cut.origin)
+            if cut.shaped and isinstance(data["objective"], Mapping):
+                data["objective"] = {"servo_aware": True, "command": "shaped", **data["objective"]}
+        faults: list[str] = []
+        data = with_units(data, "", faults)
+        if faults:
+            raise InputError(*(f"{name}: {fault}" for fault in faults))
+        return read_job(data, None, name)
+
+    @property
+    def command(self) -> Command:
+        """What a servo-aware design may do to the command in the sync zone."""
+        return "shaped" if self.cut.shaped else "in_sync"
+
+    @cached_property
+    def text(self) -> str:
+        """The job as the text of a job file, from which the same numbers are read again, bit by bit.
+
+        It is that of the file that the job was read from, comments and all, as long as the numbers are the file's; else it is written
+        from the numbers. A place of the sync zone that the file leaves free is no other number, wherever the design put it.
+        """
+        return self.source.text if self.source is not None and self.source.says(self) else toml_text(self._tables())
+
+    @cached_property
+    def sha256(self) -> str:
+        """SHA-256 of the text in UTF-8, in hexadecimal."""
+        return hashlib.sha256(self.text.encode()).hexdigest()
+
+    def _tables(self) -> dict[str, Any]:
+        """Write the job as the data of a job file, with every key that it can have."""
+        objective: dict[str, Any] = {"minimise": self.objective}
+        if self.servo_aware or self.cut.shaped:
+            objective |= {"servo_aware": self.servo_aware, "command": self.command}
+        return {
+            "name": self.name,
+            "machine": machine_table(self.machine),
+            "cut": cut_table(self.cut),
+            "limits": limits_table(self.limits, turning=self.machine.slave_unit == "rad"),
+            "servo": servo_table(self.servo, self.servo_tolerance),
+            "objective": objective,
+            "output": {"origin": self.cut.origin, "points": self.output.points},
+        }
 
     @property
     def task(self) -> Task:
         """The job's machine, cut and limits."""
         return Task(self.machine, self.cut, self.limits)
+
+
+@dataclass(frozen=True)
+class Source:
+    """The text of a job file, and the job that it says.
+
+    Parameters
+    ----------
+    text
+        The text.
+    job
+        The job, without a source of its own.
+    """
+
+    text: str
+    job: Job
+
+    def says(self, job: Job) -> bool:
+        """Whether a job has the numbers of the text; one whose sync zone is placed has those of a text that leaves its place free."""
+        own, machine = self.job.machine, job.machine
+        if own.placed or type(own) is not type(machine):
+            return job == self.job
+        # a place that is free is not a number, which equals nothing: both are put at the same one
+        return replace(job, machine=machine.placed_at(0.0)) == replace(self.job, machine=own.placed_at(0.0))
+
+
+def _turns(machine: Mapping[str, Any] | Machine) -> bool:
+    """Whether the slave of a machine, or of a machine's table, turns."""
+    if isinstance(machine, Machine):
+        return machine.slave_unit == "rad"
+    known = MACHINES.get(str(machine.get("kind")))
+    return known is not None and known.slave_unit == "rad"
 
 
 def load_job(path: str | Path | None = None) -> Job:
@@ -148,8 +284,8 @@ def parse_job(text: str, place: str) -> Job:
     return read_job(data, text, place)
 
 
-def read_job(data: dict[str, Any], text: str, place: str) -> Job:
-    """Read a job from what the text of its job file holds; as `parse_job`.
+def read_job(data: dict[str, Any], text: str | None, place: str) -> Job:
+    """Read a job from what the text of its job file holds, or would hold where there is none; as `parse_job`.
 
     Raises
     ------
@@ -164,10 +300,11 @@ def read_job(data: dict[str, Any], text: str, place: str) -> Job:
         faults += moved_by_nothing(machine, file.objective.minimise, with_curve=file.limits.motor is not None)
     if file is None or machine is None or zone is None or faults:
         raise InputError(*(f"{place}: {fault}" for fault in faults))
-    return _job(file, known, machine, zone, text)
+    job = _job(file, known, machine, zone)
+    return job if text is None else replace(job, source=Source(text, job))
 
 
-def _job(file: JobFile, known: Known, machine: Machine, zone: float, text: str) -> Job:
+def _job(file: JobFile, known: Known, machine: Machine, zone: float) -> Job:
     """Make the job of a file without faults; fill in what it leaves out."""
     cut, objective = file.cut, file.objective
     servo = Servo(**file.servo.model_dump(exclude={"tolerance"}))
@@ -196,9 +333,6 @@ def _job(file: JobFile, known: Known, machine: Machine, zone: float, text: str) 
         servo=servo,
         objective=objective.minimise,
         servo_aware=objective.servo_aware,
-        command=objective.command or "in_sync",
         servo_tolerance=None if file.servo.tolerance is None else tolerance_of(known, servo),
         output=Output(file.output.points),
-        text=text,
-        sha256=hashlib.sha256(text.encode()).hexdigest(),
     )

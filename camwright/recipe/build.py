@@ -23,7 +23,7 @@ from camwright.recipe.model import (
     RECIPE_VERSION,
     JobRecord,
     Language,
-    ObjectiveReached,
+    Objective,
     Origin,
     Points,
     Profile,
@@ -143,14 +143,14 @@ def _path(name: str) -> str:
     return f"{TABLES}/{name}"
 
 
-def _objective(job: Job, profile: CamProfile, report: ValidationReport) -> ObjectiveReached:
+def _objective(job: Job, profile: CamProfile, report: ValidationReport) -> Objective:
     """Give the value of the job's objective for a cam, whoever made it."""
     objective = OBJECTIVES[job.objective]
     if objective.of == "axis":
         value = sync_error(profile, job)
     else:
         value = getattr(report.motor if objective.of == "motor" else report.motion, objective.name)
-    return ObjectiveReached(objective.name, value, objective.unit(job.machine.slave_unit))
+    return Objective(objective.name, value, objective.unit(job.machine.slave_unit))
 
 
 def zones(cut: Cut) -> Zones:

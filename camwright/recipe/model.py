@@ -48,7 +48,7 @@ class JobRecord:
 
 
 @dataclass(frozen=True, config=_STRICT)
-class ObjectiveReached:
+class Objective:
     """What was minimised, and its value at the job's line speed."""
 
     name: str
@@ -306,7 +306,7 @@ class Recipe:
     slave_unit: Literal["m", "rad"]
     slave_start: float
     pitch: float
-    objective: ObjectiveReached
+    objective: Objective
     profile: Profile
     zones: Zones
     checks: tuple[RecipeCheck, ...]

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
-from camwright.house.files import replaced
+from camwright.house.files import replaced, require_replaceable
 from camwright.house.progress import Step, ignore
-from camwright.recipe.build import MadeRecipe
+from camwright.recipe.build import MadeRecipe, make_recipe
 from camwright.recipe.fonts import font_files, require
 from camwright.recipe.html import recipe_html
 from camwright.recipe.manifest import MANIFEST_FILE, manifest_text
+from camwright.recipe.model import Language, Recipe
 from camwright.recipe.pdf import recipe_pdf
 from camwright.recipe.recipe_file import RECIPE_FILE, recipe_text
 from camwright.recipe.xlsx import recipe_xlsx
+from camwright.stored.design_file import StoredDesign
+from camwright.studies.design import Design
 
 WRITE_STEPS = 2
 """Steps that `recipe_files` tells."""
@@ -40,15 +44,66 @@ def recipe_files(made: MadeRecipe, step: Step = ignore) -> dict[str, bytes]:
     step
         Told what begins now.
     """
-    recipe = made.recipe
-    files = {RECIPE_FILE: recipe_text(recipe).encode()}
+    content = made.recipe
+    files = {RECIPE_FILE: recipe_text(content).encode()}
     files |= {path: text.encode() for path, text in made.tables.items()}
     step("typesetting")
-    files["recipe.pdf"] = recipe_pdf(recipe)
-    files["recipe.html"] = recipe_html(recipe).encode()
+    files["recipe.pdf"] = recipe_pdf(content)
+    files["recipe.html"] = recipe_html(content).encode()
     step("writing the workbook")
-    files["recipe.xlsx"] = recipe_xlsx(recipe)
-    return {**files, MANIFEST_FILE: manifest_text(files, recipe.provenance).encode()}
+    files["recipe.xlsx"] = recipe_xlsx(content)
+    return {**files, MANIFEST_FILE: manifest_text(files, content.provenance).encode()}
+
+
+def recipe(
+    design: StoredDesign | Design,
+    directory: str | Path,
+    targets: Sequence[str] = ("csv",),
+    language: Language = "en",
+    note: str = "",
+) -> Recipe:
+    """Write all that one product needs on one machine into a folder: PDF, HTML, workbook, tables and a manifest.
+
+    Parameters
+    ----------
+    design
+        What `camwright.optimise` or `camwright.read_design` gives.
+    directory
+        The folder; a recipe that stands there already is replaced as a whole.
+    targets
+        Names of the targets that tables are written for.
+    language
+        Language of what people read: ``"en"``, ``"de"`` or ``"zh"``.
+    note
+        Any text that stands on the recipe.
+
+    Returns
+    -------
+    Recipe
+        What was written; `Recipe.released` says whether every check passed.
+
+    Raises
+    ------
+    MissingExtraError
+        The extra ``recipe`` is not installed.
+    InputError
+        An unknown target, one that cannot take the cam, or something else is in the way.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from camwright import load_job, optimise, recipe
+    >>> folder = Path(tempfile.mkdtemp()) / "paper-600"
+    >>> recipe(optimise(load_job()), folder, ["csv"], language="de").released
+    True
+    >>> sorted(file.name for file in folder.iterdir())
+    ['manifest.json', 'recipe.html', 'recipe.json', 'recipe.pdf', 'recipe.xlsx', 'tables']
+    """
+    require_extra()
+    require_replaceable(Path(directory), is_recipe)
+    made = make_recipe(StoredDesign(design.profile, design.job), targets, language, note)
+    write_folder(recipe_files(made), Path(directory))
+    return made.recipe
 
 
 def write_folder(files: dict[str, bytes], directory: Path) -> None:

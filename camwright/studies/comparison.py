@@ -18,6 +18,7 @@ from camwright.profiles.returns import (
     baseline_names,
 )
 from camwright.profiles.task import Task
+from camwright.studies.axis_study import solve_job
 from camwright.studies.measured import Measured, measured
 from camwright.studies.screw import ScrewCarriage, screw_carriage
 
@@ -92,15 +93,17 @@ def require_laws(names: Sequence[str], task: Task) -> None:
         raise InputError(*faults)
 
 
-def compare(job: Job, optimised: CamProfile, names: Sequence[str] | None = None, step: Step = ignore) -> Comparison:
+def compare(
+    job: Job, optimised: CamProfile | None = None, names: Sequence[str] | None = None, step: Step = ignore
+) -> Comparison:
     """Measure the optimised profile of a job and baselines.
 
     Parameters
     ----------
     job
-        The job, the place of its sync zone chosen.
+        The job; with an optimised cycle of its own the place of its sync zone is chosen.
     optimised
-        Its optimised cycle.
+        Its optimised cycle; the job is designed if it is not given.
     names
         Names of baselines, from `law_names`; all of them if not given.
     step
@@ -110,7 +113,21 @@ def compare(job: Job, optimised: CamProfile, names: Sequence[str] | None = None,
     ------
     InputError
         There is no such baseline.
+    InfeasibleError
+        No motion keeps the limits of the job.
+    SolverError
+        The solver failed.
+
+    Examples
+    --------
+    >>> from camwright import compare, load_job
+    >>> rows = compare(load_job(), names=["poly_3_4_5", "linear_return"]).rows
+    >>> [row.name for row in rows]                     # by peak acceleration; that of the linear return is unbounded
+    ['optimised', 'poly_3_4_5', 'linear_return']
     """
+    if optimised is None:
+        solution = solve_job(job)
+        job, optimised = replace(job, machine=solution.machine), solution.profile
     chosen = law_names(job.task) if names is None else names
     require_laws(chosen, job.task)
     profiles = {"optimised": optimised, **{name: law_profile(name, job.task) for name in chosen}}

@@ -1,4 +1,4 @@
-"""The text of a job file with some values replaced: written anew from its data, comments left out."""
+"""The text of a TOML file, written from its data."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from functools import lru_cache
 from typing import Any
 
 
-def job_text(data: dict[str, Any]) -> str:
-    """Write the data of a job file as TOML.
+def toml_text(data: dict[str, Any]) -> str:
+    """Write data as TOML: the same data, the same text.
 
     Parameters
     ----------
@@ -17,7 +17,7 @@ def job_text(data: dict[str, Any]) -> str:
 
     Examples
     --------
-    >>> print(job_text({"name": "a", "cut": {"length": "250 mm"}}), end="")
+    >>> print(toml_text({"name": "a", "cut": {"length": "250 mm"}}), end="")
     name = "a"
     <BLANKLINE>
     [cut]

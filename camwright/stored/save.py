@@ -1,0 +1,57 @@
+"""Saving a design: design.json and cam.csv, both or neither."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from camwright.house.files import staged
+from camwright.stored.design_file import design_text
+from camwright.stored.profile_files import cam_text
+from camwright.studies.design import Design
+
+
+def design_files(design: Design) -> dict[str, str]:
+    """Give the texts of a design's files by name.
+
+    Raises
+    ------
+    InputError
+        The job asks for fewer points than the profile has ends of pieces.
+    """
+    return {"design.json": design_text(design), "cam.csv": cam_text(design)}
+
+
+def save(design: Design, directory: str | Path) -> tuple[Path, ...]:
+    """Save a design as design.json, which `read_design` reads, and cam.csv.
+
+    Parameters
+    ----------
+    design
+        The design.
+    directory
+        Where the files shall stand; made if it is missing.
+
+    Returns
+    -------
+    tuple
+        The files.
+
+    Raises
+    ------
+    InputError
+        A file cannot be written; then none is.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from camwright import load_job, optimise, read_design, save
+    >>> result = optimise(load_job())
+    >>> files = save(result, tempfile.mkdtemp())
+    >>> [file.name for file in files], read_design(files[0]).job == result.job
+    (['design.json', 'cam.csv'], True)
+    """
+    texts = design_files(design)
+    with staged(Path(directory)) as aside:
+        for name, text in texts.items():
+            (aside / name).write_bytes(text.encode())
+    return tuple(Path(directory) / name for name in texts)

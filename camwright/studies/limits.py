@@ -1,0 +1,64 @@
+"""`MachineLimits`: how fast and how short the machine of a job can cut, and what binds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from camwright.design.feasible.extremes import Extremes, extremes
+from camwright.house.progress import Step, ignore
+from camwright.jobs.job import Job
+from camwright.studies.axis_lengths import AxisLengths, axis_lengths
+from camwright.studies.cut_lengths import CutLengths, cut_lengths
+
+LIMITS_STEPS = 3
+"""Steps that `limits` tells."""
+
+
+@dataclass(frozen=True, eq=False)
+class MachineLimits:
+    """How fast and how short a machine can cut.
+
+    Parameters
+    ----------
+    job
+        The job.
+    far
+        Highest line speed at the job's cut length and shortest cut at its line speed that the limits of the command allow, and which
+        limit binds there. The axis is not looked at.
+    lengths
+        Published minimum cut lengths, by which the axis settles; ``None`` for machines that the equations are not about.
+    axis
+        Minimum cut lengths with the axis in the sync tolerance; ``None`` for such machines.
+    """
+
+    job: Job
+    far: Extremes
+    lengths: CutLengths | None
+    axis: AxisLengths | None
+
+
+def limits(job: Job, step: Step = ignore) -> MachineLimits:
+    """Say how fast and how short the machine of a job can cut, and which limit binds.
+
+    Parameters
+    ----------
+    job
+        The job.
+    step
+        Told what begins now.
+
+    Examples
+    --------
+    >>> from camwright import limits, load_job
+    >>> found = limits(load_job())
+    >>> round(found.far.max_line_speed * 60, 1), found.far.line_speed_binding     # m/min
+    (138.2, 'jerk')
+    >>> round(found.lengths.eq10 * 1e3, 1)                                        # mm
+    232.4
+    """
+    step("finding the highest line speed and the shortest cut")
+    far = extremes(job.task)
+    step("finding minimum cut lengths")
+    lengths = cut_lengths(job)
+    step("finding minimum cut lengths with the axis in sync")
+    return MachineLimits(job, far, lengths, axis_lengths(job))
