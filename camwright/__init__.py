@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from camwright.profiles.returns import baseline
     from camwright.profiles.servo import Servo
     from camwright.profiles.task import Task
-    from camwright.recipe.write import recipe
+    from camwright.recipes.write import recipe
     from camwright.stored.design_file import read_design
     from camwright.stored.judge import validate
     from camwright.stored.save import save
@@ -61,7 +61,7 @@ _HOMES = {
     "load_job": "camwright.jobs.job",
     "optimise": "camwright.studies.design",
     "read_design": "camwright.stored.design_file",
-    "recipe": "camwright.recipe.write",
+    "recipe": "camwright.recipes.write",
     "save": "camwright.stored.save",
     "validate": "camwright.stored.judge",
 }

@@ -33,6 +33,13 @@ class Cut:
     shaped
         Whether the command is shaped so that the axis, not the command itself, is in sync in the shear zone. A profile's slave zero is
         then the machine in sync at master zero, where the command may be elsewhere.
+
+    Examples
+    --------
+    >>> from camwright import Cut
+    >>> cut = Cut(0.6, 80 / 60, sync_zone=0.2, shear_zone=0.04, shear_zone_at=0.16, sync_tolerance=1e-4)
+    >>> round(cut.return_zone, 9), round(cut.period, 9), round(cut.shear_start, 9)
+    (0.4, 0.45, 0.56)
     """
 
     length: float

@@ -11,6 +11,12 @@ class CamwrightError(Exception):
     """Base of every error that camwright raises on purpose.
 
     ``exit_code`` is what the command line ends with when the error reaches it.
+
+    Examples
+    --------
+    >>> from camwright import CamwrightError, InfeasibleError, InputError, MissingExtraError, SolverError
+    >>> [error.exit_code for error in (InputError, InfeasibleError, SolverError)], issubclass(MissingExtraError, CamwrightError)
+    ([2, 3, 4], True)
     """
 
     exit_code: int = 1
@@ -24,6 +30,15 @@ class InputError(CamwrightError):
     faults
         One message for each fault found, in the order in which they stand in the input. A message holds the quantity, its
         value and unit, the limit, the place, and the way out; where it is a `Message` it is kept, for the front door to word.
+
+    Examples
+    --------
+    >>> from camwright import InputError, Job
+    >>> try:
+    ...     Job.of("mine", {"kind": "rotary_knife", "circumference": 400}, {}, {}, {})
+    ... except InputError as error:
+    ...     print(error.faults[0])
+    mine: [machine] circumference = 400: a number without a unit; write e.g. "400 mm"
     """
 
     exit_code = 2
@@ -68,6 +83,17 @@ class InfeasibleError(CamwrightError):
         By how much the limit would have to be exceeded, in the unit named; None if no value of this limit alone would do.
     suggestions
         Single changes that work, each checked.
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> from camwright import InfeasibleError, load_job, optimise
+    >>> job = load_job()
+    >>> try:
+    ...     optimise(replace(job, limits=replace(job.limits, jerk=100.0)))
+    ... except InfeasibleError as error:
+    ...     print(error.binding, error.exit_code, [suggestion.change for suggestion in error.suggestions][:2])
+    jerk 3 ['line_speed', 'length']
     """
 
     exit_code = 3
@@ -84,7 +110,14 @@ class InfeasibleError(CamwrightError):
 
 
 class SolverError(CamwrightError):
-    """The solver is at fault: it ended without an answer although the problem has one."""
+    """The solver is at fault: it ended without an answer although the problem has one.
+
+    Examples
+    --------
+    >>> from camwright import SolverError
+    >>> SolverError.exit_code
+    4
+    """
 
     exit_code = 4
 
@@ -98,6 +131,12 @@ class MissingExtraError(InputError):
         What could not be imported.
     extra
         The extra of camwright that brings it.
+
+    Examples
+    --------
+    >>> from camwright import MissingExtraError
+    >>> print(MissingExtraError("typst", "recipe"))
+    typst is not installed. It comes with: pip install 'camwright[recipe]'
     """
 
     def __init__(self, library: str, extra: str) -> None:

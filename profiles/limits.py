@@ -23,6 +23,12 @@ class Limits:
         Whether the slave may run backwards.
     motor
         What the motor can give, if that is to be kept too.
+
+    Examples
+    --------
+    >>> from camwright import Limits
+    >>> Limits(speed=3.0, acceleration=30.0, jerk=3000.0, reversal=True).least_velocity
+    -3.0
     """
 
     speed: float

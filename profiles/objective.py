@@ -35,6 +35,12 @@ class Objective:
         Whose it is: of the motion of the slave, of the motor, or of the axis, which follows the command as its servo lets it.
     own_unit
         Its SI unit; nothing where that is the slave's unit over seconds to the order.
+
+    Examples
+    --------
+    >>> from camwright import Objective
+    >>> Objective("peak_acceleration", 2, "peak", "motion").unit("m")
+    'm/s^2'
     """
 
     name: ObjectiveName

@@ -55,6 +55,13 @@ def baseline(name: str, task: Task) -> CamProfile:
     ------
     InputError
         There is no such baseline for this machine.
+
+    Examples
+    --------
+    >>> from camwright import baseline, load_job
+    >>> job = load_job()
+    >>> round(baseline("poly_3_4_5", job.machine, job.cut).extrema(1)[0].value, 9)     # 1 - 15/8 of 1 - 0.2/0.4
+    0.0625
     """
     cut = task.cut
     if name not in baseline_names(task):

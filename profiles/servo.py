@@ -32,6 +32,12 @@ class Servo:
         bus (s).
     lead_time
         Time by which the controller predicts the master ahead (s).
+
+    Examples
+    --------
+    >>> from camwright import Servo
+    >>> Servo(120.0, 0.7, 35.0, 0.004, 1.0, dead_time=0.002, lead_time=0.0005).delay
+    0.0015
     """
 
     bandwidth: float

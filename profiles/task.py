@@ -23,6 +23,13 @@ class Task:
         The cycle on the master.
     limits
         What the slave may do, in its own unit.
+
+    Examples
+    --------
+    >>> from camwright import Cut, Limits, RotaryKnife, Task
+    >>> task = Task(RotaryKnife(0.4), Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4), Limits(200 / 60, 30.0, 3000.0))
+    >>> round(task.height, 9)                          # what the blade travels in the return
+    0.2
     """
 
     machine: Machine

@@ -15,11 +15,11 @@ from camwright.house.progress import Step
 from camwright.jobs.job import parse_job
 from camwright.profiles.errors import InputError
 from camwright.profiles.tables.targets import TARGETS, target_of
-from camwright.recipe.build import STEPS, designed, make_recipe
-from camwright.recipe.compare import Change, compare_answer, compare_recipes, read_recipe
-from camwright.recipe.manifest import sha256
-from camwright.recipe.model import Recipe
-from camwright.recipe.write import WRITE_STEPS, is_recipe, recipe_files, require_extra, write_folder
+from camwright.recipes.build import STEPS, designed, make_recipe
+from camwright.recipes.compare import Change, compare_answer, compare_recipes, read_recipe
+from camwright.recipes.manifest import sha256
+from camwright.recipes.model import Recipe
+from camwright.recipes.write import WRITE_STEPS, is_recipe, recipe_files, require_extra, write_folder
 from camwright.stored.design_file import MOST_BYTES, StoredDesign, parse_design
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ import typer
 
 from camwright.house.json_text import to_json
 from camwright.jobs.structure import job_schema
-from camwright.recipe.recipe_file import recipe_schema
+from camwright.recipes.recipe_file import recipe_schema
 from camwright.stored.design_file import design_schema
 
 

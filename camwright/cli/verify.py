@@ -10,7 +10,7 @@ import typer
 from camwright.cli.options import Json, Quiet
 from camwright.cli.views.parts import new_table, new_text
 from camwright.house.output import Voice
-from camwright.recipe.verify import Fault, verify, verify_answer
+from camwright.recipes.verify import Fault, verify, verify_answer
 
 if TYPE_CHECKING:
     from rich.console import RenderableType

@@ -134,6 +134,16 @@ def audit(path: Path, job: Job, target: str | None = None, units: str | None = N
     ------
     InputError
         The file is not read, or is no cam of this job.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from camwright import audit, export, load_job, optimise
+    >>> job = load_job()
+    >>> written = export(optimise(job), ["csv"], tempfile.mkdtemp())
+    >>> found = audit(written.files[0], job)
+    >>> found.judgement.passed, abs(found.saving("peak_acceleration")) < 1e-6     # the optimum itself leaves nothing to save
+    (True, True)
     """
     step("reading")
     text = read_text(path)

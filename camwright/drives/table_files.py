@@ -97,7 +97,7 @@ def export(
     >>> from camwright import export, load_job, optimise
     >>> written = export(optimise(load_job()), ["csv", "trio"], tempfile.mkdtemp())
     >>> written.passed, [file.name for file in written.files]
-    (True, ['paper_600.csv', 'paper_600.bas', 'report.json'])
+    (True, ['paper_600_cam.csv', 'paper_600_trio.bas', 'paper_600_trio.txt', 'report.json'])
     """
     asked = to if isinstance(to, str) else ",".join(to)
     names, job, place = parse_targets(asked), design.job, Path(directory)

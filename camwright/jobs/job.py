@@ -142,7 +142,7 @@ class Job:
         ...     servo=Servo(bandwidth=120.0, damping=0.7, position_gain=35.0, sample_time=0.004, velocity_feedforward=1.0),
         ... )
         >>> job.cut.length, round(optimise(job).objective, 3)
-        (0.5, 7.083)
+        (0.5, 6.212)
         """
         turning = _turns(machine)
         data: dict[str, Any] = {

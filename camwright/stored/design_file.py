@@ -69,6 +69,15 @@ def read_design(path: str | Path) -> StoredDesign:
     ------
     InputError
         The file cannot be read or is not a design.json.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from camwright import load_job, optimise, read_design, save
+    >>> result = optimise(load_job())
+    >>> stored = read_design(save(result, tempfile.mkdtemp())[0])
+    >>> bool(stored.profile(0.1) == result.profile(0.1)), stored.job == result.job
+    (True, True)
     """
     return parse_design(read_text(Path(path), "design file", MOST_BYTES), str(path))
 

@@ -52,9 +52,9 @@ def limits(job: Job, step: Step = ignore) -> MachineLimits:
     >>> from camwright import limits, load_job
     >>> found = limits(load_job())
     >>> round(found.far.max_line_speed * 60, 1), found.far.line_speed_binding     # m/min
-    (138.2, 'jerk')
+    (138.2, 'acceleration')
     >>> round(found.lengths.eq10 * 1e3, 1)                                        # mm
-    232.4
+    232.9
     """
     step("finding the highest line speed and the shortest cut")
     far = extremes(job.task)

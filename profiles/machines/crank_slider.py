@@ -50,6 +50,13 @@ class CrankSlider(Machine):
         Motor turns per crank turn.
     sync_at
         Crank angle at mid sync zone (rad); not a number while the design is free to choose it.
+
+    Examples
+    --------
+    >>> from camwright import CrankSlider
+    >>> crank = CrankSlider(crank=0.15, rod=0.6)
+    >>> crank.placed, round(crank.stroke, 9)           # the design places the sync zone
+    (False, 0.3)
     """
 
     kind: ClassVar[str] = "crank_slider"

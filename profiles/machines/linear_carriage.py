@@ -30,6 +30,12 @@ class LinearCarriage(Machine):
         Moved mass, with what the motor and the transmission add (kg).
     travel_per_turn
         Carriage travel per motor turn (m): lead of the screw, or circumference of the pinion over the gear ratio.
+
+    Examples
+    --------
+    >>> from camwright import LinearCarriage
+    >>> LinearCarriage(stroke=1.2, mass=40.0).pitch
+    0.0
     """
 
     kind: ClassVar[str] = "linear_carriage"

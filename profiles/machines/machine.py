@@ -24,6 +24,12 @@ class Machine(ABC):
     a profile's position plus the coordinate at its start (`camwright.profiles.returns.slave_at_start`) is a slave coordinate. Methods
     that take
     a slave coordinate are plain formulas: they accept floats, numpy arrays and symbols alike.
+
+    Examples
+    --------
+    >>> from camwright import CrankSlider, LinearCarriage, Machine, RotaryKnife
+    >>> [issubclass(machine, Machine) for machine in (RotaryKnife, LinearCarriage, CrankSlider)]
+    [True, True, True]
     """
 
     kind: ClassVar[str]

@@ -45,6 +45,12 @@ class RotaryKnife(Machine):
         Inertia of drum, gear and motor at the drum (kg·m²).
     drum_friction
         Friction torque at the drum (N·m).
+
+    Examples
+    --------
+    >>> from camwright import RotaryKnife
+    >>> RotaryKnife(circumference=0.8, blades=2).pitch
+    0.4
     """
 
     kind: ClassVar[str] = "rotary_knife"

@@ -451,7 +451,7 @@ def test_progress_is_shown_on_a_terminal(monkeypatch: pytest.MonkeyPatch, capsys
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.setenv("FORCE_COLOR", "1")
     seen: list[str] = []
-    monkeypatch.setattr("camwright.cli.limits.cut_lengths", lambda job: (seen.append("asked"), cut_lengths(job))[1])
+    monkeypatch.setattr("camwright.studies.limits.cut_lengths", lambda job: (seen.append("asked"), cut_lengths(job))[1])
     assert main(["limits", JOB, "--json"]) == 0
     shown = capsys.readouterr()
     assert strict(shown.out)

@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 
 from camwright import load_job
-from camwright.recipe.build import designed, make_recipe
-from camwright.recipe.manifest import manifest_text
-from camwright.recipe.recipe_file import canonical, parse_recipe
-from camwright.recipe.verify import verify
-from camwright.recipe.write import recipe_files, write_folder
+from camwright.recipes.build import designed, make_recipe
+from camwright.recipes.manifest import manifest_text
+from camwright.recipes.recipe_file import canonical, parse_recipe
+from camwright.recipes.verify import verify
+from camwright.recipes.write import recipe_files, write_folder
 
 
 @pytest.fixture(scope="module")

@@ -33,7 +33,7 @@ from camwright.profiles.tables import cam_csv, text, trace_csv
 from camwright.profiles.tables.knots import Accuracy
 from camwright.profiles.tables.targets import TARGETS
 from camwright.profiles.task import Task
-from camwright.recipe import verify
+from camwright.recipes import verify
 from camwright.stored import design_file, profile_files
 from camwright.studies import axis_lengths, screw
 from camwright.validation import motion, motor, rebuilt, report

@@ -113,7 +113,7 @@ def test_any_numbers_are_read_back_bit_by_bit(
 ) -> None:
     zone = share * min(length, 0.4)
     shear = inside * zone
-    cut = Cut(length, speed, zone, shear, late * (zone - shear), tolerance)
+    cut = Cut(length, speed, zone, shear, late * (zone - shear) if zone - shear > 1e-6 else 0.0, tolerance)
     job = replace(
         load_job(),
         cut=cut,

@@ -65,7 +65,7 @@ def test_stand_ins_are_what_they_stand_for_where_they_can() -> None:
 
 @pytest.mark.parametrize("language", ["en", "de", "zh"])
 def test_every_objective_has_a_word_in_every_language_of_the_recipe(language: str) -> None:
-    words = json.loads((HOME / "recipe" / "messages" / f"{language}.json").read_text(encoding="utf-8"))
+    words = json.loads((HOME / "recipes" / "messages" / f"{language}.json").read_text(encoding="utf-8"))
     assert all(f"word.{name}" in words for name in OBJECTIVES)
 
 

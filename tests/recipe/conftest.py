@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from camwright import load_job
-from camwright.recipe.build import MadeRecipe, designed, make_recipe
-from camwright.recipe.write import recipe_files, write_folder
+from camwright.recipes.build import MadeRecipe, designed, make_recipe
+from camwright.recipes.write import recipe_files, write_folder
 from camwright.stored.design_file import StoredDesign
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -14,9 +14,9 @@ import pytest
 
 from camwright.cli.main import main
 from camwright.profiles.tables.targets import TARGETS
-from camwright.recipe import fonts
-from camwright.recipe.compare import compare_recipes, position_difference, read_recipe
-from camwright.recipe.verify import verify
+from camwright.recipes import fonts
+from camwright.recipes.compare import compare_recipes, position_difference, read_recipe
+from camwright.recipes.verify import verify
 
 Say = Callable[..., tuple[int, str, str]]
 

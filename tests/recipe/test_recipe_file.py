@@ -20,15 +20,15 @@ from camwright.profiles.errors import InputError
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import RotaryKnife
 from camwright.profiles.task import Task
-from camwright.recipe import build
-from camwright.recipe.build import MadeRecipe, designed, make_recipe
-from camwright.recipe.recipe_file import (
+from camwright.recipes import build
+from camwright.recipes.build import MadeRecipe, designed, make_recipe
+from camwright.recipes.recipe_file import (
     parse_recipe,
     recipe_schema,
     recipe_text,
     stored_design,
 )
-from camwright.recipe.working_range import can_rest, longest_cut, stopping_distance
+from camwright.recipes.working_range import can_rest, longest_cut, stopping_distance
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 

@@ -8,11 +8,11 @@ from html.parser import HTMLParser
 
 import pytest
 
-from camwright.recipe.build import MadeRecipe
-from camwright.recipe.catalogue import LANGUAGES, catalogue
-from camwright.recipe.figure import figure_svg
-from camwright.recipe.html import recipe_html
-from camwright.recipe.model import Language
+from camwright.recipes.build import MadeRecipe
+from camwright.recipes.catalogue import LANGUAGES, catalogue
+from camwright.recipes.figure import figure_svg
+from camwright.recipes.html import recipe_html
+from camwright.recipes.model import Language
 
 VOID = {"meta", "link", "br", "hr", "img", "input"}
 

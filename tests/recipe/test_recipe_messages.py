@@ -13,12 +13,12 @@ from camwright.jobs.numbers import job_numbers
 from camwright.profiles.machines import MACHINES
 from camwright.profiles.machines.fields import fields_of
 from camwright.profiles.tables.targets import TARGETS
-from camwright.recipe.build import MadeRecipe
-from camwright.recipe.catalogue import LANGUAGES, catalogue
-from camwright.recipe.facts import PRODUCT, SERVO
-from camwright.recipe.fonts import has_glyph
-from camwright.recipe.model import Language
-from camwright.recipe.sheet import sheet
+from camwright.recipes.build import MadeRecipe
+from camwright.recipes.catalogue import LANGUAGES, catalogue
+from camwright.recipes.facts import PRODUCT, SERVO
+from camwright.recipes.fonts import has_glyph
+from camwright.recipes.model import Language
+from camwright.recipes.sheet import sheet
 
 ROOT = Path(__file__).parents[2]
 PLACEHOLDER = re.compile(r"\{(\w+)\}")
@@ -67,7 +67,7 @@ def test_chinese_is_written_in_chinese() -> None:
 
 
 def test_every_key_is_used_and_every_used_key_exists() -> None:
-    code = "\n".join(file.read_text(encoding="utf-8") for file in sorted((ROOT / "camwright/recipe").glob("*.py")))
+    code = "\n".join(file.read_text(encoding="utf-8") for file in sorted((ROOT / "camwright/recipes").glob("*.py")))
     literal = set(re.findall(r'words\(\s*"([\w.]+)"', code))
     assert literal <= set(catalogue("en").messages)
     machine_keys = {f"machine.{each.key}" for machine in MACHINES.values() for each in fields_of(machine)} | {

@@ -11,11 +11,11 @@ from camwright import Design, optimise
 from camwright.book.plan import plan_book
 from camwright.figures.profile import profile_figure
 from camwright.jobs.job import BUNDLED_JOB, parse_job
-from camwright.recipe.build import MadeRecipe, make_recipe
-from camwright.recipe.catalogue import catalogue
-from camwright.recipe.model import Language
-from camwright.recipe.sheet import sheet
-from camwright.recipe.xlsx import recipe_xlsx
+from camwright.recipes.build import MadeRecipe, make_recipe
+from camwright.recipes.catalogue import catalogue
+from camwright.recipes.model import Language
+from camwright.recipes.sheet import sheet
+from camwright.recipes.xlsx import recipe_xlsx
 from camwright.stored.design_file import StoredDesign
 from camwright.studies.envelope import envelope_answer
 from camwright.studies.tradeoff import trade_off, tradeoff_answer

@@ -13,11 +13,11 @@ import pytest
 
 from camwright.jobs.job import parse_job
 from camwright.profiles.errors import MissingExtraError
-from camwright.recipe import fonts
-from camwright.recipe.build import MadeRecipe, designed, make_recipe
-from camwright.recipe.catalogue import LANGUAGES, catalogue
-from camwright.recipe.model import Language
-from camwright.recipe.pdf import recipe_pdf
+from camwright.recipes import fonts
+from camwright.recipes.build import MadeRecipe, designed, make_recipe
+from camwright.recipes.catalogue import LANGUAGES, catalogue
+from camwright.recipes.model import Language
+from camwright.recipes.pdf import recipe_pdf
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 

@@ -11,16 +11,16 @@ from pathlib import Path
 import pytest
 
 from camwright.profiles.errors import InputError
-from camwright.recipe.build import MadeRecipe
-from camwright.recipe.manifest import manifest_text
-from camwright.recipe.recipe_file import canonical
-from camwright.recipe.verify import Fault, verify
-from camwright.recipe.write import recipe_files, write_folder
+from camwright.recipes.build import MadeRecipe
+from camwright.recipes.manifest import manifest_text
+from camwright.recipes.recipe_file import canonical
+from camwright.recipes.verify import Fault, verify
+from camwright.recipes.write import recipe_files, write_folder
 
 
 def rebuild(folder: Path) -> None:
     """Write the manifest anew, as someone would who wants a change to pass."""
-    from camwright.recipe.recipe_file import parse_recipe
+    from camwright.recipes.recipe_file import parse_recipe
 
     files = {
         file.relative_to(folder).as_posix(): file.read_bytes()
@@ -82,7 +82,7 @@ def test_each_of_200_single_byte_changes_is_found(folder: Path) -> None:
 
 
 def test_every_byte_of_the_manifest_counts(folder: Path) -> None:
-    from camwright.recipe.manifest import read_manifest
+    from camwright.recipes.manifest import read_manifest
 
     whole = (folder / "manifest.json").read_bytes()
     assert read_manifest(whole)[1] == []
@@ -149,7 +149,7 @@ def test_a_changed_point_is_told_by_its_value_although_all_checksums_fit(folder:
     digest_of = {"path": f"tables/{file.name}"}
 
     def stay(data: dict) -> None:
-        from camwright.recipe.manifest import sha256
+        from camwright.recipes.manifest import sha256
 
         for table in data["tables"]:
             for entry in table["files"]:

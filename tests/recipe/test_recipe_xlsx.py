@@ -9,10 +9,10 @@ from dataclasses import replace
 import openpyxl
 import pytest
 
-from camwright.recipe.build import MadeRecipe
-from camwright.recipe.catalogue import LANGUAGES
-from camwright.recipe.model import Language
-from camwright.recipe.xlsx import recipe_xlsx
+from camwright.recipes.build import MadeRecipe
+from camwright.recipes.catalogue import LANGUAGES
+from camwright.recipes.model import Language
+from camwright.recipes.xlsx import recipe_xlsx
 
 
 def read(data: bytes) -> openpyxl.Workbook:

@@ -18,8 +18,8 @@ from camwright.profiles.errors import InputError
 from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.servo import mean_lag
-from camwright.recipe.manifest import sha256
-from camwright.recipe.model import (
+from camwright.recipes.manifest import sha256
+from camwright.recipes.model import (
     RECIPE_VERSION,
     JobRecord,
     Language,
@@ -35,8 +35,8 @@ from camwright.recipe.model import (
     TableUnit,
     Zones,
 )
-from camwright.recipe.speeds import at_speeds
-from camwright.recipe.working_range import working_range
+from camwright.recipes.speeds import at_speeds
+from camwright.recipes.working_range import working_range
 from camwright.stored.design_file import StoredDesign
 from camwright.studies.axis_study import solve_job, sync_error
 from camwright.validation.check import Check

@@ -8,7 +8,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import get_args
 
-from camwright.recipe.model import Language
+from camwright.recipes.model import Language
 
 LANGUAGES: tuple[Language, ...] = get_args(Language)
 

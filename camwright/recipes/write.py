@@ -7,14 +7,14 @@ from pathlib import Path
 
 from camwright.house.files import replaced, require_replaceable
 from camwright.house.progress import Step, ignore
-from camwright.recipe.build import MadeRecipe, make_recipe
-from camwright.recipe.fonts import font_files, require
-from camwright.recipe.html import recipe_html
-from camwright.recipe.manifest import MANIFEST_FILE, manifest_text
-from camwright.recipe.model import Language, Recipe
-from camwright.recipe.pdf import recipe_pdf
-from camwright.recipe.recipe_file import RECIPE_FILE, recipe_text
-from camwright.recipe.xlsx import recipe_xlsx
+from camwright.recipes.build import MadeRecipe, make_recipe
+from camwright.recipes.fonts import font_files, require
+from camwright.recipes.html import recipe_html
+from camwright.recipes.manifest import MANIFEST_FILE, manifest_text
+from camwright.recipes.model import Language, Recipe
+from camwright.recipes.pdf import recipe_pdf
+from camwright.recipes.recipe_file import RECIPE_FILE, recipe_text
+from camwright.recipes.xlsx import recipe_xlsx
 from camwright.stored.design_file import StoredDesign
 from camwright.studies.design import Design
 

@@ -10,7 +10,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from camwright.profiles.errors import MissingExtraError
-from camwright.recipe.user_text import spelled
+from camwright.recipes.user_text import spelled
 
 EXTRA = "recipe"
 

@@ -8,11 +8,11 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from camwright.recipe.catalogue import catalogue
-from camwright.recipe.figure import figure_svg
-from camwright.recipe.fonts import font_files, printable, require
-from camwright.recipe.model import Recipe
-from camwright.recipe.sheet import sheet
+from camwright.recipes.catalogue import catalogue
+from camwright.recipes.figure import figure_svg
+from camwright.recipes.fonts import font_files, printable, require
+from camwright.recipes.model import Recipe
+from camwright.recipes.sheet import sheet
 
 _TEMPLATE = Path(__file__).parent / "templates" / "recipe.typ"
 

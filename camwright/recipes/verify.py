@@ -18,9 +18,9 @@ from camwright.profiles.tables.cam_table import CamTable, Unit, Units
 from camwright.profiles.tables.deviation import deviation
 from camwright.profiles.tables.targets import TARGETS, read_table
 from camwright.profiles.tables.text import decode
-from camwright.recipe.manifest import MANIFEST_FILE, read_manifest, sha256
-from camwright.recipe.model import Points, Recipe, RecipeTable
-from camwright.recipe.recipe_file import (
+from camwright.recipes.manifest import MANIFEST_FILE, read_manifest, sha256
+from camwright.recipes.model import Points, Recipe, RecipeTable
+from camwright.recipes.recipe_file import (
     RECIPE_FILE,
     parse_recipe,
     recipe_text,

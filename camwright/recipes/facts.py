@@ -9,9 +9,9 @@ from typing import Any
 from camwright.house.units import KINDS
 from camwright.profiles.machines import MACHINES
 from camwright.profiles.machines.fields import Choice, MachineField, Quantity, fields_of
-from camwright.recipe.catalogue import Catalogue
-from camwright.recipe.model import Recipe
-from camwright.recipe.quantities import with_unit
+from camwright.recipes.catalogue import Catalogue
+from camwright.recipes.model import Recipe
+from camwright.recipes.quantities import with_unit
 
 
 @dataclass(frozen=True)

@@ -7,13 +7,13 @@ import io
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from camwright.recipe.catalogue import Catalogue, catalogue
-from camwright.recipe.facts import GROUPS, Fact, fact_text
-from camwright.recipe.fonts import require
-from camwright.recipe.model import Recipe, RecipeCheck, RecipeTable
-from camwright.recipe.quantities import converted, unit_shown
-from camwright.recipe.sheet import objective_text, speed_columns
-from camwright.recipe.user_text import visible
+from camwright.recipes.catalogue import Catalogue, catalogue
+from camwright.recipes.facts import GROUPS, Fact, fact_text
+from camwright.recipes.fonts import require
+from camwright.recipes.model import Recipe, RecipeCheck, RecipeTable
+from camwright.recipes.quantities import converted, unit_shown
+from camwright.recipes.sheet import objective_text, speed_columns
+from camwright.recipes.user_text import visible
 
 if TYPE_CHECKING:
     from xlsxwriter import Workbook

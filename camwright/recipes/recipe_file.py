@@ -10,7 +10,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from camwright.house.provenance import SCHEMA_VERSION
 from camwright.profiles.errors import InputError
-from camwright.recipe.model import Recipe
+from camwright.recipes.model import Recipe
 from camwright.stored.design_file import StoredDesign, design_schema, parse_design
 
 RECIPE_FILE = "recipe.json"

@@ -10,9 +10,9 @@ from html import escape
 import numpy as np
 
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
-from camwright.recipe.catalogue import Catalogue
-from camwright.recipe.model import Recipe
-from camwright.recipe.quantities import (
+from camwright.recipes.catalogue import Catalogue
+from camwright.recipes.model import Recipe
+from camwright.recipes.quantities import (
     converted,
     number,
     shown,

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from camwright.recipe.catalogue import catalogue
-from camwright.recipe.figure import figure_svg
-from camwright.recipe.fonts import require
-from camwright.recipe.model import Recipe
-from camwright.recipe.sheet import sheet
+from camwright.recipes.catalogue import catalogue
+from camwright.recipes.figure import figure_svg
+from camwright.recipes.fonts import require
+from camwright.recipes.model import Recipe
+from camwright.recipes.sheet import sheet
 
 _TEMPLATES = Path(__file__).parent / "templates"
 

@@ -8,8 +8,8 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
-from camwright.recipe.model import Origin
-from camwright.recipe.recipe_file import canonical
+from camwright.recipes.model import Origin
+from camwright.recipes.recipe_file import canonical
 
 MANIFEST_FILE = "manifest.json"
 

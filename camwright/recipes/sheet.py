@@ -5,31 +5,31 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from camwright.recipe.blocks import (
+from camwright.recipes.blocks import (
     Block,
     length_text,
     table_block,
     text_block,
 )
-from camwright.recipe.catalogue import Catalogue
-from camwright.recipe.facts import GROUPS, fact_text
-from camwright.recipe.figure import figure_caption
-from camwright.recipe.instructions import before, imports, record
-from camwright.recipe.judgements import (
+from camwright.recipes.catalogue import Catalogue
+from camwright.recipes.facts import GROUPS, fact_text
+from camwright.recipes.figure import figure_caption
+from camwright.recipes.instructions import before, imports, record
+from camwright.recipes.judgements import (
     checks,
     files,
     reached,
     table_checks,
 )
-from camwright.recipe.model import Edge, Recipe
-from camwright.recipe.quantities import (
+from camwright.recipes.model import Edge, Recipe
+from camwright.recipes.quantities import (
     number,
     shown,
     unit_shown,
     with_unit,
 )
-from camwright.recipe.user_text import shortened, visible
-from camwright.recipe.working_range import LONGEST, NOT_FOUND
+from camwright.recipes.user_text import shortened, visible
+from camwright.recipes.working_range import LONGEST, NOT_FOUND
 
 
 def sheet(recipe: Recipe, words: Catalogue) -> dict[str, Any]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from camwright.jobs.job import Job
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.servo import spectral_radius
-from camwright.recipe.model import AtSpeed
+from camwright.recipes.model import AtSpeed
 from camwright.validation.motion import measure_motion
 from camwright.validation.motor import measure_motor
 from camwright.validation.report import ValidationReport

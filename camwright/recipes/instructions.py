@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from camwright.jobs.numbers import stored_machine
-from camwright.recipe.blocks import Block, fixed_text, text_block
-from camwright.recipe.catalogue import Catalogue
-from camwright.recipe.model import AtSpeed, Recipe, RecipeTable
-from camwright.recipe.quantities import (
+from camwright.recipes.blocks import Block, fixed_text, text_block
+from camwright.recipes.catalogue import Catalogue
+from camwright.recipes.model import AtSpeed, Recipe, RecipeTable
+from camwright.recipes.quantities import (
     number,
     shown,
     unit_shown,

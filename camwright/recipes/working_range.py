@@ -10,7 +10,7 @@ from camwright.design.returns.curve_limits import motor_limits
 from camwright.jobs.job import Job
 from camwright.profiles.limits import Limits
 from camwright.profiles.task import Task
-from camwright.recipe.model import Edge, WorkingRange
+from camwright.recipes.model import Edge, WorkingRange
 
 LONGEST = 4.0
 """Cut lengths up to this multiple of the job's are looked at where the slave cannot wait at rest."""

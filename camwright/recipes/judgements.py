@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from camwright.recipe.blocks import Block, table_block, text_block
-from camwright.recipe.catalogue import Catalogue
-from camwright.recipe.model import Recipe, RecipeCheck, RecipeTable
-from camwright.recipe.quantities import (
+from camwright.recipes.blocks import Block, table_block, text_block
+from camwright.recipes.catalogue import Catalogue
+from camwright.recipes.model import Recipe, RecipeCheck, RecipeTable
+from camwright.recipes.quantities import (
     number,
     shown,
     si_unit,
