@@ -33,12 +33,9 @@ class InputError(CamwrightError):
 
     Examples
     --------
-    >>> from camwright import InputError, Job
-    >>> try:
-    ...     Job.of("mine", {"kind": "rotary_knife", "circumference": 400}, {}, {}, {})
-    ... except InputError as error:
-    ...     print(error.faults[0])
-    mine: [machine] circumference = 400: a number without a unit; write e.g. "400 mm"
+    >>> from camwright import InputError
+    >>> InputError("length = 400: a number without a unit", "speed: missing").faults
+    ('length = 400: a number without a unit', 'speed: missing')
     """
 
     exit_code = 2

@@ -60,7 +60,7 @@ def baseline(name: str, task: Task) -> CamProfile:
     --------
     >>> from camwright import baseline, load_job
     >>> job = load_job()
-    >>> round(baseline("poly_3_4_5", job.machine, job.cut).extrema(1)[0].value, 9)     # 1 - 15/8 of 1 - 0.2/0.4
+    >>> round(baseline("poly_3_4_5", job.task).extrema(1)[0].value, 9)     # 1 - 15/8 of 1 - 0.2/0.4
     0.0625
     """
     cut = task.cut

@@ -147,7 +147,7 @@ class Job:
         turning = _turns(machine)
         data: dict[str, Any] = {
             "name": name,
-            "machine": machine_table(machine) if isinstance(machine, Machine) else machine,
+            "machine": machine if isinstance(machine, Mapping) else machine_table(machine),
             "cut": cut_table(cut) if isinstance(cut, Cut) else cut,
             "limits": limits_table(limits, turning=turning) if isinstance(limits, Limits) else limits,
             "servo": servo_table(servo, None) if isinstance(servo, Servo) else servo,
@@ -230,10 +230,10 @@ class Source:
 
 def _turns(machine: Mapping[str, Any] | Machine) -> bool:
     """Whether the slave of a machine, or of a machine's table, turns."""
-    if isinstance(machine, Machine):
-        return machine.slave_unit == "rad"
-    known = MACHINES.get(str(machine.get("kind")))
-    return known is not None and known.slave_unit == "rad"
+    if isinstance(machine, Mapping):
+        known = MACHINES.get(str(machine.get("kind")))
+        return known is not None and known.slave_unit == "rad"
+    return machine.slave_unit == "rad"
 
 
 def load_job(path: str | Path | None = None) -> Job:

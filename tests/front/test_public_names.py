@@ -105,7 +105,10 @@ def test_every_name_has_an_example_that_runs(name: str) -> None:
 
 
 def test_a_name_is_what_it_is_whatever_was_imported_before() -> None:
-    code = "import camwright.recipes.write, camwright; print([each for each in camwright.__all__ if not callable(getattr(camwright, each))])"
+    code = (
+        "import camwright.recipes.write, camwright\n"
+        "print([name for name in camwright.__all__ if not callable(getattr(camwright, name))])"
+    )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert run.stdout.strip() == "[]"
 

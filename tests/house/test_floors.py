@@ -76,12 +76,13 @@ def test_only_the_front_door_shows_things(folder: str) -> None:
 
 
 def _modules_that_must_not_know_machines() -> list[Path]:
-    """Give all modules of the four packages but the machines themselves."""
+    """Give all modules of the four packages but the machines themselves, and the one that gives them their public names."""
     found = []
     for folder in ("camwright", "profiles", "design", "validation"):
         for file in (ROOT / folder).rglob("*.py"):
             inside = file.relative_to(ROOT).parts
-            if inside[:2] != ("profiles", "machines") and "machines" not in inside[:-1]:
+            named = inside == ("camwright", "__init__.py")
+            if not named and inside[:2] != ("profiles", "machines") and "machines" not in inside[:-1]:
                 found.append(file)
     assert len(found) > 200
     return found
