@@ -27,8 +27,8 @@ class Limits:
     Examples
     --------
     >>> from camwright import Limits
-    >>> Limits(speed=3.0, acceleration=30.0, jerk=3000.0, reversal=True).least_velocity
-    -3.0
+    >>> Limits(speed=3.0, acceleration=30.0, jerk=3000.0).reversal
+    False
     """
 
     speed: float
