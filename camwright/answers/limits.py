@@ -5,12 +5,9 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
-from camwright.studies.limits import MachineLimits
 from camwright.answers.measures import lengths_answer, millimetres
-from camwright.design.feasible.extremes import Extremes
-from camwright.jobs.job import Job
 from camwright.studies.axis_lengths import AxisLengths
-from camwright.studies.cut_lengths import CutLengths
+from camwright.studies.limits import MachineLimits
 
 
 def limits_answer(found: MachineLimits) -> dict[str, Any]:

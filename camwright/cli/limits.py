@@ -11,6 +11,7 @@ from camwright.cli.views.numbers import millimetres, number
 from camwright.cli.views.parts import new_table, stacked
 from camwright.house.output import Voice
 from camwright.jobs.job import load_job
+from camwright.studies.axis_lengths import AxisLengths
 from camwright.studies.limits import LIMITS_STEPS, MachineLimits, limits
 
 if TYPE_CHECKING:
