@@ -1,4 +1,4 @@
-"""Linear and quadratic programmes with dense rows: HiGHS for the former, least squares and qpOASES for the latter, IPOPT behind them."""
+"""Linear and quadratic programmes with dense rows: HiGHS for the former, least squares for the latter, qpOASES behind them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from camwright.design.returns.ipopt import QUIET
 from camwright.design.servo_aware.least_distance import least_distance
 from camwright.profiles.errors import SolverError
 from camwright.profiles.polynomial.profile import FloatArray
@@ -39,20 +38,6 @@ _QPOASES: dict[str, Any] = {
     "sparse": False,
     "hessian_type": "posdef",
     "initialStatusBounds": "inactive",
-}
-_IPOPT: dict[str, Any] = {
-    "nlpsol": "ipopt",
-    "nlpsol_options": QUIET
-    | {
-        "error_on_fail": False,
-        "ipopt.mu_strategy": "adaptive",
-        "ipopt.tol": 1e-9,
-        "ipopt.constr_viol_tol": _TOLERANCE,
-        "ipopt.bound_relax_factor": 0.0,
-        "ipopt.max_iter": 300,
-        "ipopt.jac_d_constant": "yes",
-        "ipopt.hessian_constant": "yes",
-    },
 }
 # HiGHS' words for a programme without an answer.
 _INFEASIBLE, _UNBOUNDED = "Infeasible", "Unbounded"
@@ -114,15 +99,13 @@ class ConvexProgramme:
         matrix[np.abs(matrix) < _ROUNDING * np.abs(matrix).max(axis=1, keepdims=True)] = 0.0
         return Rows(matrix, *(np.concatenate(parts) for parts in (self._low, self._high, self._accepted)))
 
-    def solve(self, cost: FloatArray, square: FloatArray | None = None, *, sure: bool = True) -> FloatArray | None:
+    def solve(self, cost: FloatArray, square: FloatArray | None = None) -> FloatArray | None:
         """Minimise ``cost @ x``, plus ``x @ square @ x / 2``.
 
         Parameters
         ----------
         cost, square
             Shapes ``(n,)`` and ``(n, n)``.
-        sure
-            Whether IPOPT, a hundred times slower, is asked where qpOASES fails.
 
         Returns
         -------
@@ -135,7 +118,7 @@ class ConvexProgramme:
             Every solver ended without an answer.
         """
         rows = self.rows()
-        return _linear(rows, cost) if square is None else _quadratic(rows, cost, square, sure)
+        return _linear(rows, cost) if square is None else _quadratic(rows, cost, square)
 
 
 @dataclass(frozen=True, eq=False)
@@ -211,21 +194,19 @@ def _by_simplex(
     return None if answer is None else answer["x"], status
 
 
-def _quadratic(rows: Rows, cost: FloatArray, square: FloatArray, sure: bool) -> FloatArray | None:
-    """Solve a quadratic programme by least squares or by qpOASES, or by IPOPT where HiGHS finds that there is an answer."""
+def _quadratic(rows: Rows, cost: FloatArray, square: FloatArray) -> FloatArray | None:
+    """Solve a quadratic programme by least squares, or by qpOASES where rounding leaves these without an answer."""
     square = square + _STEADY * np.trace(square) / len(cost) * np.eye(len(cost))
     nearest = least_distance(square, cost, rows.matrix, rows.low, rows.high)
     if nearest is not None and rows.missed(nearest) <= 0.0:
         return nearest
-    quadratic, matrix = sparse(square), sparse(rows.matrix)
-    status = ""
-    for plugin, options in [("qpoases", _QPOASES), ("nlpsol", _IPOPT)][: 1 + sure]:
-        answer, status = _ask(plugin, options, cost, matrix, (rows.low, rows.high), (-np.inf, np.inf), quadratic)
-        if answer is not None and rows.missed(answer["x"]) <= 0.0:
-            return answer["x"]
-        if plugin == "qpoases" and _linear(rows, np.zeros(len(cost))) is None:
-            return None
-    raise SolverError(f"{'IPOPT' if sure else 'qpOASES'} ended a servo-aware design with {status!r}; report this job")
+    matrix = sparse(rows.matrix)
+    answer, status = _ask("qpoases", _QPOASES, cost, matrix, (rows.low, rows.high), (-np.inf, np.inf), sparse(square))
+    if answer is not None and rows.missed(answer["x"]) <= 0.0:
+        return answer["x"]
+    if _linear(rows, np.zeros(len(cost))) is None:
+        return None
+    raise SolverError(f"qpOASES ended a servo-aware design with {status!r}; report this job")
 
 
 def sparse(matrix: FloatArray) -> ca.DM:

@@ -193,7 +193,7 @@ class AxisProgramme:
         if OBJECTIVES[cost].of == "motor":
             return self._least_torque(programme, cast(MotorObjective, cost))
         if not peak:
-            return self._mean_square(programme, OBJECTIVES[cost].order, sure=not caps)
+            return self._mean_square(programme, OBJECTIVES[cost].order)
         unit = 1.0
         if cost != "sync_error":
             unit = bounds[OBJECTIVES[cost].order][1]
@@ -204,14 +204,14 @@ class AxisProgramme:
 
     def _least_torque(self, programme: ConvexProgramme, cost: MotorObjective) -> tuple[FloatArray, float] | None:
         """Least torque or energy, from the command of least mean square acceleration, and from the answer with fewer rows before."""
-        gentle = self._mean_square(programme, 2, sure=True)
+        gentle = self._mean_square(programme, 2)
         if gentle is None:
             return None
         start = gentle[0] if self._turned is None else self._turned
         self._turned = self.problem.torque.minimise(cost, programme.rows(), start)
         return self._turned, self.problem.torque.value(self._turned, cost)
 
-    def _mean_square(self, programme: ConvexProgramme, order: int, *, sure: bool) -> tuple[FloatArray, float] | None:
+    def _mean_square(self, programme: ConvexProgramme, order: int) -> tuple[FloatArray, float] | None:
         """Least mean square of a derivative: linear between the nodes (order 2) or constant on the intervals (order 3)."""
         matrix, constant = self.problem.basis.differences[order]
         widths = np.diff(self.problem.basis.nodes) / self.problem.basis.nodes[-1]
@@ -225,7 +225,7 @@ class AxisProgramme:
         matrix = matrix * self.problem.scale
         square, slope = matrix.T @ gram @ matrix, matrix.T @ gram @ constant
         size = float(np.trace(square)) / len(square)
-        answer = programme.solve(slope / size, square / size, sure=sure)
+        answer = programme.solve(slope / size, square / size)
         if answer is None:
             return None
         values = matrix @ answer + constant
