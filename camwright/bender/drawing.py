@@ -21,7 +21,7 @@ from camwright.bender.dxf_entities import (
 from camwright.bender.dxf_guard import MOST_ENTITIES, look_at
 from camwright.bender.job import UNITS
 from camwright.profiles.bender.outline import Outline
-from camwright.profiles.errors import InputError, MissingExtraError
+from camwright.profiles.errors import InputError
 
 _DEEPEST = 8
 _MOST_UNFOLDED = MOST_ENTITIES
@@ -135,10 +135,8 @@ def _pieces(
 
 
 def _open(path: Path) -> Any:
-    try:
-        import ezdxf
-    except ImportError as error:
-        raise MissingExtraError("ezdxf", "bend") from error
+    import ezdxf
+
     try:
         return ezdxf.readfile(path)  # type: ignore[attr-defined]
     except (ezdxf.DXFError, OSError, UnicodeError, ValueError, LookupError, TypeError, AttributeError) as error:  # type: ignore[attr-defined]

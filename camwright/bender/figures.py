@@ -37,13 +37,7 @@ _DRAWN, _BENT, _WORST, _START, _PAPER = "#b9c4d0", "#11304f", "#c1121f", "#2a9d3
 
 
 def draw(outline: BentOutline, directory: Path, name: str) -> None:
-    """Write both figures of an outline as SVG and PNG: ``<name>-proof`` and ``<name>-times``.
-
-    Raises
-    ------
-    MissingExtraError
-        The typesetting library, which draws them, is not installed.
-    """
+    """Write both figures of an outline as SVG and PNG: ``<name>-proof`` and ``<name>-times``."""
     write_pictures({f"{name}-proof": _proof(outline), f"{name}-times": _times(outline)}, directory)
 
 

@@ -7,7 +7,6 @@ imported. Lines stay lines; only what no printer shows is left out of them.
 from __future__ import annotations
 
 import base64
-import importlib.util
 import json
 import math
 import re
@@ -20,7 +19,6 @@ from typing import Any, Literal
 
 import numpy as np
 
-from camwright.profiles.errors import MissingExtraError
 from camwright.profiles.polynomial.profile import FloatArray
 
 _TEMPLATE = Path(__file__).parent / "templates" / "figure.typ"
@@ -240,27 +238,8 @@ def _unfolded(svg: str) -> str:
     return _EMBEDDED.sub(inner, svg)
 
 
-def require_typst() -> None:
-    """Make sure that pictures and sheets can be drawn.
-
-    Raises
-    ------
-    MissingExtraError
-        Typst is not installed.
-    """
-    if importlib.util.find_spec("typst") is None:
-        raise MissingExtraError("typst", "bend")
-
-
 def write_pictures(pictures: Mapping[str, Picture], directory: Path) -> None:
-    """Write pictures by name, each as SVG (text as outlines) and PNG.
-
-    Raises
-    ------
-    MissingExtraError
-        Typst is not installed.
-    """
-    require_typst()
+    """Write pictures by name, each as SVG (text as outlines) and PNG."""
     import typst
 
     with tempfile.TemporaryDirectory() as folder:

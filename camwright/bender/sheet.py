@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
 import shutil
 import tempfile
@@ -15,7 +14,6 @@ from camwright.bender.answer import BentDrawing
 from camwright.bender.bend_list import BendRow, bend_rows
 from camwright.bender.program_file import ROUNDING, BentOutline
 from camwright.house.provenance import camwright_version
-from camwright.profiles.errors import MissingExtraError
 
 _TEMPLATES = Path(__file__).parent / "templates"
 _MOST_ROWS = 150
@@ -109,15 +107,7 @@ def write_sheet(result: BentDrawing, directory: Path, figures: list[Path]) -> No
         Where the sheets go.
     figures
         Proof figures as SVG, one an outline; none leaves the figures out.
-
-    Raises
-    ------
-    MissingExtraError
-        The typesetting libraries are not installed.
     """
-    for library in ("typst", "jinja2"):
-        if importlib.util.find_spec(library) is None:
-            raise MissingExtraError(library, "bend")
     data = sheet_data(result)
     _write_pdf(data, directory / "sheet.pdf", figures)
     _write_html(data, directory / "sheet.html", figures)

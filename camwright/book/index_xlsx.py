@@ -4,29 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from datetime import datetime
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from camwright.book.plan import Book
 from camwright.book.rows import COLUMNS, LIMIT_COLUMNS, Cell
-from camwright.profiles.errors import MissingExtraError
 
 _NO_TIME = datetime(2000, 1, 1)
 # a workbook must state when it was made; this one says nothing, so that its bytes stay the same
 _WIDE = {"reason": 60, "failed_checks": 30, "folder": 44, "objective": 20, "name": 24, "value of": 80}
-
-
-def require_workbooks() -> None:
-    """Make sure that workbooks can be written.
-
-    Raises
-    ------
-    MissingExtraError
-        The library that writes them is not installed.
-    """
-    if find_spec("xlsxwriter") is None:
-        raise MissingExtraError("xlsxwriter", "recipe")
 
 
 def write_workbook(path: Path, book: Book, designs: Iterable[Sequence[Cell]], limits: Iterable[Sequence[Cell]]) -> None:

@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Any
 
 from camwright.book.folder import MANIFEST, BookFolder
-from camwright.book.index_xlsx import require_workbooks
 from camwright.book.journal import Journal, other_book
 from camwright.book.making import peak_rss
 from camwright.book.plan import Book
@@ -102,11 +101,8 @@ def make_book(book: Book, root: Path, crew: Crew, *, resume: bool = False, told:
     ------
     InputError
         The folder holds something else, or cannot be written; the workers are gone.
-    MissingExtraError
-        The library that writes workbooks is not installed.
     """
     begun = time.perf_counter()
-    require_workbooks()
     folder = BookFolder(root, book)
     files = tuple(root / name for name in (*INDEX, MANIFEST))
     if folder.manifest.exists():

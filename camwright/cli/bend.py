@@ -25,7 +25,7 @@ from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.house.files import staged, write_files
 from camwright.house.output import Voice
 from camwright.house.progress import Step
-from camwright.profiles.errors import InputError, MissingExtraError
+from camwright.profiles.errors import InputError
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -77,7 +77,7 @@ def run(
         result = _bent(drawing, bender, layer, place, reverse, step)
         names = _names(drawing.stem, len(result.outlines))
         programs = [directory / f"{name}.nc" for name in names]
-        result, files = _write(result, names, directory, figures=not no_figures, step=step)
+        files = _write(result, names, directory, figures=not no_figures, step=step)
     if port is not None and not result.passed:
         result = replace(result, notes=(*result.notes, f"nothing is sent to {port}: a check failed"))
     elif port is not None:
@@ -123,12 +123,9 @@ def _bent(
     return BentDrawing(drawing, hashlib.sha256(drawing.read_bytes()).hexdigest(), bender, bent, found.warnings)
 
 
-def _write(
-    result: BentDrawing, names: list[str], directory: Path, *, figures: bool, step: Step
-) -> tuple[BentDrawing, list[Path]]:
-    """Write programs, bend lists, figures and sheets, all or none; a missing library leaves figures or sheets out, noted."""
+def _write(result: BentDrawing, names: list[str], directory: Path, *, figures: bool, step: Step) -> list[Path]:
+    """Write programs, bend lists, figures and sheets, all or none."""
     step("writing files")
-    notes: tuple[str, ...] = ()
     with staged(directory) as aside:
         for name, outline in zip(names, result.outlines, strict=True):
             (aside / f"{name}.nc").write_bytes(outline.text.encode("ascii"))
@@ -136,17 +133,11 @@ def _write(
         if figures:
             step("drawing figures")
             shown = names[:_MOST_FIGURES]
-            missing = "no figures and no sheet"
-            try:
-                for name, outline in zip(shown, result.outlines, strict=False):
-                    draw(outline, aside, name)
-                step("typesetting the sheet")
-                missing = "no sheet"
-                write_sheet(result, aside, [aside / f"{name}-proof.svg" for name in shown])
-            except MissingExtraError as error:
-                notes = (f"{missing}: {error}",)
-        files = [directory / name for name in sorted(file.name for file in aside.iterdir())]
-    return replace(result, notes=result.notes + notes), files
+            for name, outline in zip(shown, result.outlines, strict=False):
+                draw(outline, aside, name)
+            step("typesetting the sheet")
+            write_sheet(result, aside, [aside / f"{name}-proof.svg" for name in shown])
+        return [directory / name for name in sorted(file.name for file in aside.iterdir())]
 
 
 def _calibrate(measurements: Path, bender: BenderJob, out: Path | None, voice: Voice) -> int:

@@ -19,7 +19,7 @@ from camwright.recipes.build import STEPS, designed, make_recipe
 from camwright.recipes.compare import Change, compare_answer, compare_recipes, read_recipe
 from camwright.recipes.manifest import sha256
 from camwright.recipes.model import Recipe
-from camwright.recipes.write import WRITE_STEPS, is_recipe, recipe_files, require_extra, write_folder
+from camwright.recipes.write import WRITE_STEPS, is_recipe, recipe_files, write_folder
 from camwright.stored.design_file import MOST_BYTES, StoredDesign, parse_design
 
 if TYPE_CHECKING:
@@ -67,7 +67,6 @@ def run(
 def _make(file: Path, targets: str, out: Path, language: Literal["en", "de", "zh"], note: str, voice: Voice) -> int:
     names = _targets(targets)
     text = _note(note)
-    require_extra()
     require_replaceable(out, is_recipe)
     with voice.progress(STEPS + len(names) + WRITE_STEPS) as step:
         design = _design(file, step)

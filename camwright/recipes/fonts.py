@@ -9,10 +9,7 @@ from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 
-from camwright.profiles.errors import MissingExtraError
 from camwright.recipes.user_text import spelled
-
-EXTRA = "recipe"
 
 _LATIN = ("matplotlib", "mpl-data/fonts/ttf", "DejaVuSans.ttf")
 _HAN = ("pylopdf_fonts_zh_cn", "", "NotoSansSC-Regular.otf")
@@ -20,28 +17,13 @@ _LONGEST_WORD = 24
 _LONG_WORD = re.compile(rf"[^\s\u2e80-\uffff]{{{_LONGEST_WORD + 1},}}")  # Chinese can be broken anywhere as it is
 _BREAK = "\u200b"  # where a line may end, without width
 
-_DISTRIBUTIONS = {"pylopdf_fonts_zh_cn": "pylopdf-fonts-zh-cn"}
-
-
-def require(*libraries: str) -> None:
-    """Refuse to go on without libraries of the extra.
-
-    Raises
-    ------
-    MissingExtraError
-        One is not installed.
-    """
-    for library in libraries:
-        if find_spec(library) is None:
-            raise MissingExtraError(_DISTRIBUTIONS.get(library, library), EXTRA)
-
 
 def font_files() -> tuple[Path, Path]:
     """Find DejaVu Sans and Noto Sans SC.
 
     Raises
     ------
-    MissingExtraError
+    ModuleNotFoundError
         The package that carries one is not installed.
     """
     latin, han = (_file(*place) for place in (_LATIN, _HAN))
@@ -49,11 +31,10 @@ def font_files() -> tuple[Path, Path]:
 
 
 def _file(package: str, folder: str, name: str) -> Path:
-    spec = find_spec(package)
-    file = Path(spec.origin).parent / folder / name if spec is not None and spec.origin else None
-    if file is None or not file.is_file():
-        raise MissingExtraError(f"the font {name} ({_DISTRIBUTIONS.get(package, package)})", EXTRA)
-    return file
+    spec = find_spec(package)  # without importing it: matplotlib is large
+    if spec is None or spec.origin is None:
+        raise ModuleNotFoundError(f"the package {package}, which carries the font {name}, is not installed")
+    return Path(spec.origin).parent / folder / name
 
 
 def printable(text: str) -> str:

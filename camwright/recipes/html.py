@@ -6,7 +6,6 @@ from pathlib import Path
 
 from camwright.recipes.catalogue import catalogue
 from camwright.recipes.figure import figure_svg
-from camwright.recipes.fonts import require
 from camwright.recipes.model import Recipe
 from camwright.recipes.sheet import sheet
 
@@ -14,14 +13,7 @@ _TEMPLATES = Path(__file__).parent / "templates"
 
 
 def recipe_html(recipe: Recipe) -> str:
-    """Write a recipe as a page; every text is escaped, and the page may load nothing.
-
-    Raises
-    ------
-    MissingExtraError
-        jinja2 is not installed.
-    """
-    require("jinja2")
+    """Write a recipe as a page; every text is escaped, and the page may load nothing."""
     import jinja2
 
     words = catalogue(recipe.language)

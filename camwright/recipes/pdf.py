@@ -10,7 +10,7 @@ from typing import Any
 
 from camwright.recipes.catalogue import catalogue
 from camwright.recipes.figure import figure_svg
-from camwright.recipes.fonts import font_files, printable, require
+from camwright.recipes.fonts import font_files, printable
 from camwright.recipes.model import Recipe
 from camwright.recipes.sheet import sheet
 
@@ -18,15 +18,7 @@ _TEMPLATE = Path(__file__).parent / "templates" / "recipe.typ"
 
 
 def recipe_pdf(recipe: Recipe) -> bytes:
-    """Typeset a recipe; the same recipe gives the same bytes.
-
-    Raises
-    ------
-    MissingExtraError
-        typst or a font is not installed.
-    """
-    require("typst")
-    fonts = font_files()
+    """Typeset a recipe; the same recipe gives the same bytes."""
     import typst
 
     words = catalogue(recipe.language)
@@ -40,7 +32,7 @@ def recipe_pdf(recipe: Recipe) -> bytes:
             typst.compile(
                 str(place / "recipe.typ"),
                 root=folder,
-                font_paths=[str(font.parent) for font in fonts],
+                font_paths=[str(font.parent) for font in font_files()],
                 ignore_system_fonts=True,
                 timestamp=0,
             )

@@ -8,7 +8,6 @@ from pathlib import Path
 from camwright.house.files import replaced, require_replaceable
 from camwright.house.progress import Step, ignore
 from camwright.recipes.build import MadeRecipe, make_recipe
-from camwright.recipes.fonts import font_files, require
 from camwright.recipes.html import recipe_html
 from camwright.recipes.manifest import MANIFEST_FILE, manifest_text
 from camwright.recipes.model import Language, Recipe
@@ -20,18 +19,6 @@ from camwright.studies.design import Design
 
 WRITE_STEPS = 2
 """Steps that `recipe_files` tells."""
-
-
-def require_extra() -> None:
-    """Refuse to begin without what the files of a recipe need.
-
-    Raises
-    ------
-    MissingExtraError
-        A library or a font of the extra ``recipe`` is not installed.
-    """
-    require("jinja2", "typst", "xlsxwriter")
-    font_files()
 
 
 def recipe_files(made: MadeRecipe, step: Step = ignore) -> dict[str, bytes]:
@@ -84,8 +71,6 @@ def recipe(
 
     Raises
     ------
-    MissingExtraError
-        The extra ``recipe`` is not installed.
     InputError
         An unknown target, one that cannot take the cam, or something else is in the way.
 
@@ -99,7 +84,6 @@ def recipe(
     >>> sorted(file.name for file in folder.iterdir())
     ['manifest.json', 'recipe.html', 'recipe.json', 'recipe.pdf', 'recipe.xlsx', 'tables']
     """
-    require_extra()
     require_replaceable(Path(directory), is_recipe)
     made = make_recipe(StoredDesign(design.profile, design.job), targets, language, note)
     write_folder(recipe_files(made), Path(directory))

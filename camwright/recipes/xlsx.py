@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 from camwright.recipes.catalogue import Catalogue, catalogue
 from camwright.recipes.facts import GROUPS, Fact, fact_text
-from camwright.recipes.fonts import require
 from camwright.recipes.model import Recipe, RecipeCheck, RecipeTable
 from camwright.recipes.quantities import converted, unit_shown
 from camwright.recipes.sheet import objective_text, speed_columns
@@ -37,13 +36,7 @@ def recipe_xlsx(recipe: Recipe) -> bytes:
     """Write a recipe as a workbook; the same recipe gives the same bytes.
 
     Every text is stored as a text, marked so that a spreadsheet does not take it for a formula when it is edited.
-
-    Raises
-    ------
-    MissingExtraError
-        xlsxwriter is not installed.
     """
-    require("xlsxwriter")
     import xlsxwriter
 
     words, file = catalogue(recipe.language), io.BytesIO()

@@ -1,12 +1,10 @@
 """``camwright bend`` from the command line: programs, JSON keys, exit codes, calibration, sheets, the serial line."""
 
-import importlib.util
 import json
 import math
 import os
 import re
 import select
-import sys
 import termios
 import threading
 import time
@@ -108,39 +106,6 @@ def test_same_input_same_bytes(drawing: Make, tmp_path: Path, capsys: pytest.Cap
         run(capsys, path, "--out", tmp_path / name)
     for file in (tmp_path / "a").iterdir():
         assert file.read_bytes() == (tmp_path / "b" / file.name).read_bytes(), file.name
-
-
-@pytest.mark.parametrize(("library", "missing"), [("typst", "no figures and no sheet"), ("jinja2", "no sheet")])
-def test_without_a_typesetting_library_there_is_no_sheet(
-    library: str,
-    missing: str,
-    drawing: Make,
-    tmp_path: Path,
-    capsys: pytest.CaptureFixture[str],
-    monkeypatch: pytest.MonkeyPatch,
-):
-    find = importlib.util.find_spec
-    monkeypatch.setattr("importlib.util.find_spec", lambda name: None if name == library else find(name))
-    path = drawing(lambda m, _: m.add_line((0, 0), (9, 0)))
-    code, answer, _ = run(capsys, path, "--out", tmp_path / "out")
-    assert code == 0
-    assert answer["bends"] == 0
-    assert any(
-        text.startswith(f"{missing}: {library} is not installed") and "camwright[bend]" in text
-        for text in answer["warnings"]
-    )
-    names = [Path(file).name for file in answer["files"]]
-    assert not [name for name in names if "sheet" in name]
-    assert ("drawing-proof.svg" in names) == (library == "jinja2")
-
-
-def test_without_the_drawing_library(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-):
-    monkeypatch.setitem(sys.modules, "ezdxf", None)
-    code, _, err = run(capsys, EXAMPLE, "--out", tmp_path / "out")
-    assert code == 2
-    assert "pip install 'camwright[bend]'" in err
 
 
 def test_names_are_escaped(drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]):

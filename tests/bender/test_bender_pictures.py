@@ -19,7 +19,6 @@ from camwright.bender.pictures import (
     ticks,
     write_pictures,
 )
-from camwright.profiles.errors import MissingExtraError
 
 
 @given(st.floats(-1e3, 1e3), st.floats(1e-3, 1e5), st.integers(3, 20))
@@ -100,10 +99,3 @@ def test_ten_thousand_segments_stay_a_vector(tmp_path: Path):
     few = re.search(r'<path d="M([\d.]+) ([\d.]+) ', (tmp_path / "few.svg").read_text(encoding="utf-8"))
     assert few is not None
     assert (float(few[1]), float(few[2])) == (0.0, 160.0)
-
-
-def test_pictures_need_typst(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("importlib.util.find_spec", lambda _: None)
-    with pytest.raises(MissingExtraError, match=r"typst is not installed.*camwright\[bend\]"):
-        write_pictures({"few": picture(11)}, tmp_path)
-    assert not list(tmp_path.iterdir())

@@ -29,7 +29,6 @@ from camwright.jobs.wording import words
 from camwright.profiles.errors import (
     InfeasibleError,
     InputError,
-    MissingExtraError,
     SolverError,
 )
 from camwright.stored.design_file import read_design
@@ -332,13 +331,6 @@ def test_names_are_escaped_and_no_cell_is_a_formula(tmp_path: Path) -> None:
     for name in ("index.csv", "limits.csv"):
         for row in rows(tmp_path / "book", name):
             assert not any(cell and cell[0] in "=+@" for cell in row.values())
-
-
-def test_without_the_library_for_workbooks_the_extra_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr("camwright.book.index_xlsx.find_spec", lambda _: None)
-    with pytest.raises(MissingExtraError, match=r"xlsxwriter is not installed.*camwright\[recipe\]"):
-        make_book(small_book(), tmp_path / "book", inline_crew())
-    assert not (tmp_path / "book").exists()
 
 
 def test_workers_of_another_version_are_refused(tmp_path: Path) -> None:

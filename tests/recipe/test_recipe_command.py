@@ -14,7 +14,6 @@ import pytest
 
 from camwright.cli.main import main
 from camwright.profiles.tables.targets import TARGETS
-from camwright.recipes import fonts
 from camwright.recipes.compare import compare_recipes, position_difference, read_recipe
 from camwright.recipes.verify import verify
 
@@ -182,18 +181,6 @@ def test_faults_end_with_2(
     assert code == 2
     assert said in complaint
     assert list(tmp_path.iterdir()) == []
-
-
-def test_a_missing_library_is_told_before_anything_is_designed(
-    say: Say, paper_job: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    found = fonts.find_spec
-    for library in ("jinja2", "typst", "xlsxwriter", "pylopdf_fonts_zh_cn"):
-        monkeypatch.setattr(fonts, "find_spec", lambda name, hidden=library: None if name == hidden else found(name))
-        code, _, complaint = say("recipe", paper_job, "--targets", "csv", "--out", tmp_path / "out")
-        assert code == 2
-        assert "pip install 'camwright[recipe]'" in complaint
-        assert library.replace("_", "-") in complaint
 
 
 def test_verify_tells_the_file_and_ends_with_1(say: Say, folder: Path) -> None:

@@ -12,8 +12,6 @@ import pypdf
 import pytest
 
 from camwright.jobs.job import parse_job
-from camwright.profiles.errors import MissingExtraError
-from camwright.recipes import fonts
 from camwright.recipes.build import MadeRecipe, designed, make_recipe
 from camwright.recipes.catalogue import LANGUAGES, catalogue
 from camwright.recipes.model import Language
@@ -142,14 +140,6 @@ def test_any_text_of_a_user_is_printed_with_glyphs_and_does_nothing(made: MadeRe
 def test_what_no_font_shows_is_spelled_out(made: MadeRecipe) -> None:
     text = read(recipe_pdf(replace(made.recipe, note="fox \U0001f98a end"))).pages[0].extract_text()
     assert "fox ⟨U+1F98A⟩ end" in text
-
-
-def test_a_missing_font_or_engine_is_told_with_the_way_out(made: MadeRecipe, monkeypatch: pytest.MonkeyPatch) -> None:
-    found = fonts.find_spec
-    for library, said in (("pylopdf_fonts_zh_cn", "pylopdf-fonts-zh-cn"), ("typst", "typst")):
-        monkeypatch.setattr(fonts, "find_spec", lambda name, hidden=library: None if name == hidden else found(name))
-        with pytest.raises(MissingExtraError, match=rf"{said}.* is not installed.*camwright\[recipe\]"):
-            recipe_pdf(replace(made.recipe, language="zh"))
 
 
 MOTOR = 'motor = [["0 rpm", "60 N m"], ["3000 rpm", "60 N m"], ["4000 rpm", "40 N m"]]'
