@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from camwright.house.files import read_text
+from camwright.house.toml_faults import toml_fault
 from camwright.house.units import quantity, shown
 from camwright.profiles.errors import InputError
 
@@ -22,8 +23,10 @@ def read_toml(path: Path, what: str) -> tuple[dict[str, Any], str]:
     text = read_text(path, what, _MOST_BYTES)
     try:
         return tomllib.loads(text), text
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
-        raise InputError(f"{path}: not TOML: {error or 'nested too deeply'}") from error
+    except RecursionError as error:
+        raise InputError(f"{path}: not TOML: nested too deeply") from error
+    except ValueError as error:  # TOMLDecodeError, and integers beyond Python's limit of digits
+        raise InputError(f"{path}: not TOML: {toml_fault(text, error)}") from error
 
 
 class TomlTable:

@@ -66,6 +66,8 @@ _UNIT = re.compile(
     rf"(?:1?\s*/\s*{_NAME_AND_POWER}|{_NAME_AND_POWER}(?:\s+{_NAME_AND_POWER})*)(?:\s*[*/·]\s*{_NAME_AND_POWER})*"
 )
 # A space multiplies, as in "12 N m", but only ahead of any "*" or "/": "m/s s" could be read in two ways.
+_COMMA = re.compile(r"([+-]?[0-9]*),([0-9]+)\s*([^0-9,.].*)", re.DOTALL)
+_HERTZ = ("Hz", "hertz", "kHz")
 _SUPERSCRIPT = re.compile("⁻?[¹²³]")
 _PLAIN = str.maketrans("⁻¹²³", "-123")
 
@@ -163,6 +165,9 @@ def _exact(text: str, kind: str, zero: bool, signed: bool, example: str) -> Frac
     hint = f'write e.g. "{example}"'
     if len(text) > _LONGEST:
         raise InputError(f"{shown(text)}: longer than {_LONGEST} characters; {hint}")
+    comma = _COMMA.fullmatch(text.strip())
+    if comma is not None:
+        raise InputError(f"{shown(text)}: a comma in the number; {_without_comma(*comma.groups())}")
     found = _TEXT.fullmatch(text.strip())
     if found is None:
         raise InputError(f"{shown(text)}: not {wanted.name}, a finite number and a unit; {hint}")
@@ -170,6 +175,11 @@ def _exact(text: str, kind: str, zero: bool, signed: bool, example: str) -> Frac
     if not unit:
         raise InputError(f'{shown(text)}: a number without a unit; write e.g. "{_repeated(number, wanted)}"')
     factor, dimension = _unit(unit, shown(text), wanted)
+    if kind == "gain" and unit in _HERTZ:
+        turns = f"{float(Fraction(number) * factor):.4g} 1/s"
+        raise InputError(
+            f'{shown(text)}: hertz counts turns, and a gain has none; write "{number} 1/s" or, if turns are meant, "{turns}"'
+        )
     if dimension != wanted.dimension:
         raise InputError(f"{shown(text)}: {_described(dimension)}, but {wanted.name} is expected; {hint}")
     exact = Fraction(number) * factor
@@ -197,6 +207,14 @@ def shown(value: object) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
+def _without_comma(whole: str, decimals: str, unit: str) -> str:
+    """Say how to write a number that has a comma: with a point, or without it where it may part thousands."""
+    point = f'"{whole or "0"}.{decimals} {unit}"'
+    if len(decimals) == 3 and whole.strip("+-0"):
+        return f'write {point} for a fraction, "{whole}{decimals} {unit}" for thousands'
+    return f"write {point}"
+
+
 def _repeated(number: object, kind: Kind) -> str:
     """Join the user's number and the unit of the kind's example; the example when the number cannot stand."""
     text = str(number) if not isinstance(number, int) or number.bit_length() < 50 else ""
@@ -216,7 +234,7 @@ def _unit(text: str, place: str, wanted: Kind) -> tuple[Fraction, dict[str, int]
         if known is None:
             raise InputError(
                 f"{place}: there is no unit {shown(name)}; {hint}; units are m, mm, cm, um, in, ft, s, ms, min, h, "
-                "rad, deg, rev, rpm, kg, g, lb, N, Nm"
+                "fpm, rad, deg, rev, rpm, Hz, kg, g, lb, N, Nm"
             )
         exponent = (-1 if sign == "/" else 1) * int(power or 1)
         factor *= Fraction(known[0]) ** exponent

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from camwright.house.files import read_text
+from camwright.house.toml_faults import toml_fault
 from camwright.jobs.checks import conflicts
 from camwright.jobs.fields import Known
 from camwright.jobs.machine_checks import moved_by_nothing, sync_zone_of
@@ -279,8 +280,7 @@ def parse_job(text: str, place: str) -> Job:
     except RecursionError as error:
         raise InputError(f"{place}: not a job file: its arrays or tables are nested too deeply") from error
     except ValueError as error:  # TOMLDecodeError, and integers beyond Python's limit of digits
-        end = f"at the end, line {text.rstrip().count(chr(10)) + 1}"
-        raise InputError(f"{place}: not TOML: {str(error).replace('at end of document', end)}") from error
+        raise InputError(f"{place}: not TOML: {toml_fault(text, error)}") from error
     return read_job(data, text, place)
 
 

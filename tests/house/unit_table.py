@@ -17,9 +17,9 @@ import pint
 
 FILE = Path(__file__).parents[2] / "camwright" / "house" / "units.json"
 
-# Angle is a dimension of its own, so that "120 1/s" is not taken for 120 rad/s; hertz is left out because it could mean
-# either turns or radians. The gram is the unit that is defined: pint would else take "kgram" for a new kilogram. Numbers
-# are fractions: 600 mm is the float nearest to 0.6, whatever the order of the factors.
+# Angle is a dimension of its own, so that "120 1/s" is not taken for 120 rad/s; hertz counts turns, as drives state a
+# bandwidth, so that a gain cannot be written in it. The gram is the unit that is defined: pint would else take "kgram"
+# for a new kilogram. Numbers are fractions: 600 mm is the float nearest to 0.6, whatever the order of the factors.
 DEFINITIONS = """
 kilo- = 1e3 = k-
 centi- = 1e-2 = c-
@@ -39,6 +39,8 @@ hour = 3600 * second = h
 turn = 6.283185307179586476925286766559 * radian = _ = rev = revolution
 degree = turn / 360 = deg = °
 turn_per_minute = turn / minute = rpm
+hertz = turn / second = Hz
+foot_per_minute = foot / minute = fpm
 """
 
 
