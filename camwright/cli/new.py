@@ -16,6 +16,7 @@ from camwright.house.output import Voice
 from camwright.jobs.examples import Example, example, examples
 from camwright.jobs.job import parse_job
 from camwright.jobs.keys import JobKey, job_keys
+from camwright.jobs.machine_tables import either_of
 from camwright.jobs.template import job_template, values_of
 from camwright.profiles.errors import InputError
 from camwright.profiles.machines import MACHINES
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 _OPTIONS = {
     "name": "name",
     "circumference": "machine.circumference",
+    "diameter": "machine.diameter",
     "stroke": "machine.stroke",
     "crank": "machine.crank",
     "rod": "machine.rod",
@@ -61,6 +63,7 @@ def run(
     ] = None,
     name: _Text = None,
     circumference: _Text = None,
+    diameter: _Text = None,
     stroke: _Text = None,
     crank: _Text = None,
     rod: _Text = None,
@@ -88,12 +91,17 @@ def run(
     given |= dict(_setting(text) for text in others or ())
     base = _base(machine, like)
     values = {**values_of(base.text), "name": f"my-{base.name}", **given}
+    for key, instead, _ in either_of(MACHINES[base.machine]):
+        if f"machine.{instead.key}" in given and f"machine.{key}" not in given:
+            del values[f"machine.{key}"]  # the example's
     known = {key.path: key for key in job_keys() if key.machine in ("", base.machine)}
     for place in given:
         if place not in known:
             raise InputError(f"a {base.machine} job has no key {place!r}; camwright keys lists them")
     if sys.stdin.isatty() and not as_json and not quiet:
-        values |= _asked([key for key in known.values() if key.required and key.path not in given], values)
+        values |= _asked(
+            [key for key in known.values() if key.required and key.path not in given and key.path in values], values
+        )
     text = job_template(values, f"A job of a {base.machine}, made from the example {base.name}.")
     parse_job(text, "the new job")  # refuses numbers that do not go together, with their places
     file = Path(f"{values['name']}.toml") if out is None else out

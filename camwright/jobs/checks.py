@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from camwright.jobs.fields import Known
-from camwright.jobs.machine_checks import machine_conflicts, sync_zone_of
+from camwright.jobs.machine_checks import machine_conflicts
 from camwright.jobs.machine_tables import machine_of
 from camwright.jobs.servo_checks import servo_conflicts
-from camwright.profiles.machines import Machine
 
 
 def conflicts(known: Known) -> list[str]:
@@ -25,7 +24,7 @@ def conflicts(known: Known) -> list[str]:
         One message for each conflict: quantity, value, limit, place, way out.
     """
     machine = machine_of(known)
-    return [*_zones(known, machine), *machine_conflicts(known, machine), *servo_conflicts(known)]
+    return [*_zones(known), *machine_conflicts(known, machine), *servo_conflicts(known)]
 
 
 def _mm(value: float) -> str:
@@ -33,9 +32,9 @@ def _mm(value: float) -> str:
     return f"{value * 1e3:.10g} mm"
 
 
-def _zones(known: Known, machine: Machine | None) -> Iterator[str]:
+def _zones(known: Known) -> Iterator[str]:
     """Check that the zones fit into what holds them."""
-    sync = sync_zone_of(known, machine)
+    sync = known.numbers.get("sync_zone")
     if sync is None:
         return
     numbers = known.numbers

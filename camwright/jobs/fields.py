@@ -32,6 +32,8 @@ class Known:
         Kind of the machine; nothing if the file names none that is known.
     numbers
         Numbers by key, in SI units; those of the machine by `machine_key`.
+    angles
+        By key what is written as an angle (rad) or a speed, acceleration or jerk of it, until the machine is known.
     choices
         Words of the machine by key, those that are known.
     spreads
@@ -42,6 +44,7 @@ class Known:
 
     kind: str | None = None
     numbers: dict[str, float] = field(default_factory=dict)
+    angles: dict[str, float] = field(default_factory=dict)
     choices: dict[str, str] = field(default_factory=dict)
     spreads: dict[str, Spread] = field(default_factory=dict)
     servo_aware: bool = False
@@ -80,15 +83,21 @@ def keep(value: float, info: ValidationInfo, key: str | None = None) -> float:
 
 
 def quantity_field(
-    kind: str, *, zero: bool = False, signed: bool = False, example: str | None = None, kept_as: str | None = None
+    kind: str,
+    *,
+    zero: bool = False,
+    signed: bool = False,
+    example: str | None = None,
+    kept_as: str | None = None,
+    times: float = 1.0,
 ) -> tuple[BeforeValidator, WithJsonSchema]:
     """Make the parts of a field that is written as a number with a unit; arguments as `camwright.house.units.quantity`.
 
-    ``kept_as`` is the key under which it is kept, the field's own if not given.
+    ``kept_as`` is the key under which it is kept, the field's own if not given; ``times`` what it is kept multiplied by.
     """
 
     def read(value: object, info: ValidationInfo) -> float:
-        return keep(_read(value, kind, zero=zero, signed=signed, example=example), info, kept_as)
+        return keep(times * _read(value, kind, zero=zero, signed=signed, example=example), info, kept_as)
 
     least = "of either sign" if signed else "zero or more" if zero else "greater than zero"
     return BeforeValidator(read), _schema(f"{KINDS[kind].name}, {least}", [example or KINDS[kind].example], signed)
@@ -100,13 +109,16 @@ def slave_field(straight: str, turning: str, example: str) -> tuple[BeforeValida
     Parameters
     ----------
     straight, turning
-        Kind where the slave is counted in metres, and where it is an angle.
+        Kind where the slave is counted in metres, and where it is an angle; a machine that knows its angle takes both.
     example
         What to write where it is an angle.
     """
 
-    def read(value: object, info: ValidationInfo) -> float:
+    def read(value: object, info: ValidationInfo) -> float | None:
         machine, turns = cast(Known, info.context).kind, cast(Known, info.context).turns
+        if not turns and _is(value, turning) and _by_angle(info):
+            _keep_angle(_read(value, turning), info)
+            return None
         wanted, other = (turning, straight) if turns else (straight, turning)
         shown_example = example if turns else KINDS[straight].example
         if machine is not None and _is(value, other):
@@ -119,34 +131,45 @@ def slave_field(straight: str, turning: str, example: str) -> tuple[BeforeValida
         return keep(_read(value, wanted, example=shown_example), info)
 
     turning_nouns = " or ".join(machine.noun for machine in MACHINES.values() if machine.slave_unit == "rad")
-    words = f"{KINDS[straight].name}, of a {turning_nouns} {KINDS[turning].name}, greater than zero"
+    words = f"{KINDS[straight].name}, of a {turning_nouns} {KINDS[turning].name}, of a {_knowing()} either, greater than zero"
     return BeforeValidator(read), _schema(words, [KINDS[straight].example, example], signed=False)
 
 
-def zone_field(kind: str, angle_key: str) -> tuple[BeforeValidator, WithJsonSchema]:
+def zone_field(kind: str, *, zero: bool = False) -> tuple[BeforeValidator, WithJsonSchema]:
     """Make the parts of a length that may be written as an angle for machines that know what length it is.
 
-    The angle is kept under a key of its own and the field is nothing: what length it is the machine says.
+    The angle is kept apart and the field is nothing: what length it is the machine says. ``zero`` is whether none is allowed.
     """
 
     def read(value: object, info: ValidationInfo) -> float | None:
-        if not _is(value, "angle"):
-            return keep(_read(value, kind), info)
-        named = cast(Known, info.context).machine
-        if named is not None and not named.zone_by_angle:
+        if not _is(value, "angle", zero=zero):
+            return keep(_read(value, kind, zero=zero), info)
+        if cast(Known, info.context).machine is not None and not _by_angle(info):
             raise refusal(
                 f'{shown(value)}: an angle, which only a {_knowing()} knows; write e.g. "{KINDS[kind].example}"'
             )
-        keep(_read(value, "angle"), info, angle_key)
+        _keep_angle(_read(value, "angle", zero=zero), info)
         return None
 
-    words = f"{KINDS[kind].name}, of a {_knowing()} also {KINDS['angle'].name}, greater than zero"
+    least = "zero or more" if zero else "greater than zero"
+    words = f"{KINDS[kind].name}, of a {_knowing()} also {KINDS['angle'].name}, {least}"
     return BeforeValidator(read), _schema(words, [KINDS[kind].example, "60 deg"], signed=False)
 
 
 def _knowing() -> str:
-    """Name the machines whose sync zone may be an angle."""
-    return " or ".join(kind for kind, machine in MACHINES.items() if machine.zone_by_angle)
+    """Name the machines that know lengths by an angle."""
+    return " or ".join(kind for kind, machine in MACHINES.items() if machine.by_angle)
+
+
+def _by_angle(info: ValidationInfo) -> bool:
+    """Whether the machine of the file knows lengths by an angle."""
+    machine = cast(Known, info.context).machine
+    return machine is not None and machine.by_angle
+
+
+def _keep_angle(value: float, info: ValidationInfo) -> None:
+    """Keep an angle under its key until the machine is known."""
+    cast(Known, info.context).angles[cast(str, info.field_name)] = value
 
 
 def number_field(
@@ -256,16 +279,16 @@ def _read(value: object, kind: str, *, zero: bool = False, signed: bool = False,
         raise refusal(str(error)) from error
 
 
-def _is(value: object, kind: str) -> bool:
+def _is(value: object, kind: str, *, zero: bool = False) -> bool:
     """Whether a value is a quantity of a kind, in range."""
-    return isinstance(value, str) and _text_is(value, kind)
+    return isinstance(value, str) and _text_is(value, kind, zero)
 
 
 @lru_cache(maxsize=256)
-def _text_is(text: str, kind: str) -> bool:
+def _text_is(text: str, kind: str, zero: bool) -> bool:
     """Whether a text is a quantity of a kind, in range; kept, like the quantities themselves."""
     try:
-        quantity(text, kind)
+        quantity(text, kind, zero=zero)
     except InputError:
         return False
     return True

@@ -14,7 +14,7 @@ from camwright.house.files import read_text
 from camwright.house.toml_faults import toml_fault
 from camwright.jobs.checks import conflicts
 from camwright.jobs.fields import Known
-from camwright.jobs.machine_checks import moved_by_nothing, sync_zone_of
+from camwright.jobs.machine_checks import moved_by_nothing
 from camwright.jobs.machine_tables import machine_of
 from camwright.jobs.servo_checks import tolerance_of
 from camwright.jobs.si_keys import with_units
@@ -295,20 +295,20 @@ def read_job(data: dict[str, Any], text: str | None, place: str) -> Job:
     file, known, faults = read_structure(data)
     faults += conflicts(known)
     machine = machine_of(known)
-    zone = sync_zone_of(known, machine)
     if file is not None and machine is not None:
         faults += moved_by_nothing(machine, file.objective.minimise, with_curve=file.limits.motor is not None)
-    if file is None or machine is None or zone is None or faults:
+    if file is None or machine is None or faults:
         raise InputError(*(f"{place}: {fault}" for fault in faults))
-    job = _job(file, known, machine, zone)
+    job = _job(file, known, machine)
     return job if text is None else replace(job, source=Source(text, job))
 
 
-def _job(file: JobFile, known: Known, machine: Machine, zone: float) -> Job:
+def _job(file: JobFile, known: Known, machine: Machine) -> Job:
     """Make the job of a file without faults; fill in what it leaves out."""
-    cut, objective = file.cut, file.objective
+    cut, objective, numbers = file.cut, file.objective, known.numbers
     servo = Servo(**file.servo.model_dump(exclude={"tolerance"}))
-    at = zone - cut.shear_zone if cut.shear_zone_at is None else cut.shear_zone_at
+    zone, shear = numbers["sync_zone"], numbers["shear_zone"]
+    at = numbers.get("shear_zone_at", zone - shear)
     return Job(
         name=file.name,
         machine=machine,
@@ -316,17 +316,17 @@ def _job(file: JobFile, known: Known, machine: Machine, zone: float) -> Job:
             length=cut.length,
             line_speed=cut.line_speed,
             sync_zone=zone,
-            shear_zone=cut.shear_zone,
-            shear_zone_at=min(at, zone - cut.shear_zone),
+            shear_zone=shear,
+            shear_zone_at=min(at, zone - shear),
             sync_tolerance=cut.sync_tolerance,
             origin=file.output.origin,
             sync_ratio=cut.sync_ratio,
             shaped=objective.servo_aware and objective.command == "shaped",
         ),
         limits=Limits(
-            file.limits.speed,
-            file.limits.acceleration,
-            file.limits.jerk,
+            numbers["speed"],
+            numbers["acceleration"],
+            numbers["jerk"],
             file.limits.reversal,
             None if file.limits.motor is None else MotorCurve(file.limits.motor),
         ),

@@ -6,6 +6,7 @@ import json
 from dataclasses import dataclass
 from typing import Any
 
+from camwright.jobs.machine_tables import either_of
 from camwright.jobs.meanings import MACHINE_KIND, MEANINGS
 from camwright.jobs.structure import job_schema
 from camwright.profiles.machines import MACHINES
@@ -76,7 +77,8 @@ def job_keys() -> tuple[JobKey, ...]:
             elif "oneOf" in entry and "discriminator" in entry:
                 for kind, reference in entry["discriminator"]["mapping"].items():
                     own = definitions[reference.rpartition("/")[2]]
-                    table_of(key, own["properties"], own.get("required", []), kind)
+                    first = own.get("oneOf", [{}])[0].get("required", [])  # what the others may be given in place of
+                    table_of(key, own["properties"], [*own.get("required", []), *first], kind)
             else:
                 keys.append(_key(name, key, machine, entry, key in required))
 
@@ -112,6 +114,9 @@ def _meaning(path: str, name: str, machine: str) -> tuple[str, str]:
         return MEANINGS[path]
     if name == "kind":
         return MACHINE_KIND
+    for key, instead, _ in either_of(MACHINES[machine]):
+        if instead.key == name:
+            return instead.description, _meaning(path, key, machine)[1]
     (field,) = (each for each in fields_of(MACHINES[machine]) if each.key == name)
     return field.about.description, "motor figures, torque objectives" if field.load else "every command"
 

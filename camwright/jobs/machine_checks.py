@@ -13,21 +13,12 @@ from camwright.profiles.machines.fields import Quantity, fields_of
 from camwright.profiles.objective import OBJECTIVES, ObjectiveName
 
 
-def sync_zone_of(known: Known, machine: Machine | None) -> float | None:
-    """Length of the sync zone on the master (m), also where it is written as an angle; nothing if it cannot be told."""
-    length, angle = known.numbers.get("sync_zone"), known.numbers.get("sync_angle")
-    ratio = known.numbers.get("sync_ratio")
-    if length is not None or angle is None or ratio is None or machine is None or not machine.zone_by_angle:
-        return length
-    return machine.zone_of_angle(angle, ratio)
-
-
 def machine_conflicts(known: Known, machine: Machine | None) -> list[str]:
     """Check the machine, its sync zone and the speed that it needs; nothing to check where the machine is not known."""
     own = [] if machine is None else [words(fault) for fault in machine.faults()]
     if own:
         return own
-    zone, ratio = sync_zone_of(known, machine), known.numbers.get("sync_ratio")
+    zone, ratio = known.numbers.get("sync_zone"), known.numbers.get("sync_ratio")
     line_speed, speed = known.numbers.get("line_speed"), known.numbers.get("speed")
     if ratio is None:
         return []
@@ -35,10 +26,10 @@ def machine_conflicts(known: Known, machine: Machine | None) -> list[str]:
     pace = None if known.turns else ratio  # at least; more where the tool does not move like its slave
     if machine is not None and zone is not None:
         cut = Cut(2.0 * zone, 1.0, zone, 0.0, 0.0, 1e-4, sync_ratio=ratio)
-        faults += [words(fault) for fault in machine.zone_faults(cut, known.numbers.get("sync_angle"))]
+        faults += [words(fault) for fault in machine.zone_faults(cut, known.angles.get("sync_zone"))]
         pace = pace if faults else machine.sync_pace(cut)
     if pace and line_speed and speed and pace * line_speed > speed * (1 + 1e-12):
-        faults.append(_slow(known, pace))
+        faults.append(_slow(known, pace, machine))
     return faults
 
 
@@ -58,15 +49,16 @@ def moved_by_nothing(machine: Machine, objective: ObjectiveName, *, with_curve: 
     return faults
 
 
-def _slow(known: Known, pace: float) -> str:
+def _slow(known: Known, pace: float, made: Machine | None) -> str:
     """Say that the slave may not run as fast as the sync zone needs."""
     limit, line_speed = known.numbers["speed"], known.numbers["line_speed"]
     line = f"[cut] line_speed = {line_speed * 60:.10g} m/min"
     way_out = f"run the line at {_down(limit / pace * 60)} m/min at most or raise the limit"
     machine = known.machine
     noun, place = ("slave", "") if machine is None else (machine.noun, machine.place_name)
-    if known.turns:
-        rpm = 30.0 / math.pi
+    by_angle = made is not None and made.slave_turn is not None and "speed" in known.angles
+    if known.turns or by_angle:
+        rpm = 60.0 / made.slave_turn if by_angle and made is not None and made.slave_turn else 30.0 / math.pi
         given = place and f"machine.{place}" in known.numbers
         where = f", at this {place}," if given else f", wherever it lies on the {noun}," if place else ""
         return (

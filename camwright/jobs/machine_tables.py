@@ -5,6 +5,7 @@ A machine's fields say what they are (`camwright.profiles.machines.fields`); its
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cache, reduce
 from operator import or_
 from typing import Annotated, Any, Literal
@@ -14,14 +15,18 @@ from pydantic import Field, create_model
 from camwright.house.units import KINDS
 from camwright.jobs.fields import Known, Table, machine_key, number_field, quantity_field, whole_field
 from camwright.profiles.machines import MACHINES, Machine
-from camwright.profiles.machines.fields import Choice, MachineField, Number, Quantity, Whole, fields_of
+from camwright.profiles.machines.fields import Choice, Instead, MachineField, Number, Quantity, Whole, fields_of
 
 
 @cache
 def table_of(machine: type[Machine]) -> type[Table]:
     """Make the table of a kind of machine: its keys with what they take, and their defaults."""
     kind = Annotated[Literal[machine.kind], Field(description="which machine", examples=[machine.kind])]  # type: ignore[name-defined]
-    keys: dict[str, Any] = {each.key: _key(each) for each in fields_of(machine)}
+    keys: dict[str, Any] = {}
+    for each in fields_of(machine):
+        keys[each.key] = _key(each)
+        if isinstance(each.about, Quantity) and each.about.instead is not None:
+            keys[each.about.instead.key] = _instead(each.about, each.about.instead, machine_key(each.key))
     return create_model(f"{machine.__name__}Table", __base__=Table, __doc__=machine.summary, kind=(kind, ...), **keys)
 
 
@@ -36,11 +41,12 @@ def _key(each: MachineField) -> tuple[Any, Any]:
     about, kept_as = each.about, machine_key(each.key)
     default: Any = ... if each.required else None if each.free else each.default
     if isinstance(about, Quantity):
+        default = None if about.instead is not None and each.required else default  # `either_faults` asks for either
         parts = quantity_field(
             about.kind, zero=about.zero, signed=about.signed, example=about.example or None, kept_as=kept_as
         )
         known = [] if default in (..., None) else [Field(json_schema_extra={"default": _written(about, default)})]
-        return Annotated[(float | None if each.free else float, *parts, *known)], default
+        return Annotated[(float | None if default is None else float, *parts, *known)], default
     if isinstance(about, Whole):
         whole = whole_field(about.least, about.greatest, about.example, kept_as=kept_as)
         extra: dict[str, Any] = {"minimum": about.least, "maximum": about.greatest}
@@ -53,6 +59,28 @@ def _key(each: MachineField) -> tuple[Any, Any]:
         shown = Field(description=about.description, examples=[about.example], json_schema_extra=extra)
         return Annotated[float, number, shown], default
     return Annotated[Literal[about.words], Field(description=about.description)], default
+
+
+def _instead(about: Quantity, instead: Instead, kept_as: str) -> tuple[Any, Any]:
+    """Make the key of a number that may be given in the place of another, under whose key it is kept."""
+    parts = quantity_field(about.kind, example=instead.example, kept_as=kept_as, times=instead.times)
+    return Annotated[(float | None, *parts)], None
+
+
+def either_of(machine: type[Machine]) -> Iterator[tuple[str, Instead, str]]:
+    """List the required numbers of a machine that another may stand for: key, the other, what to write."""
+    for each in fields_of(machine):
+        if isinstance(each.about, Quantity) and each.about.instead is not None and each.required:
+            yield each.key, each.about.instead, each.about.example or KINDS[each.about.kind].example
+
+
+def either_faults(machine: type[Machine], table: dict[str, Any]) -> Iterator[str]:
+    """Say of what is missing that either number will do, and of two that stand for the same that one is enough."""
+    for key, instead, example in either_of(machine):
+        if key not in table and instead.key not in table:
+            yield f'[machine] {key}: missing; add e.g. {key} = "{example}", or {instead.key} = "{instead.example}"'
+        elif key in table and instead.key in table:
+            yield f"[machine] {instead.key}: there is {key} too, which says the same; leave one of them out"
 
 
 def _written(about: Quantity, default: float) -> str:

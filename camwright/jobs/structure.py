@@ -11,6 +11,7 @@ from pydantic import BaseModel, Field, ValidationError, create_model
 from pydantic_core import ErrorDetails
 
 from camwright.house.units import shown
+from camwright.jobs.angles import settle_angles
 from camwright.jobs.fields import (
     Known,
     Spread,
@@ -24,7 +25,7 @@ from camwright.jobs.fields import (
     whole_field,
     zone_field,
 )
-from camwright.jobs.machine_tables import machine_tables, table_of
+from camwright.jobs.machine_tables import either_faults, either_of, machine_of, machine_tables, table_of
 from camwright.jobs.spread_fields import aware_only, number_spread, quantity_spread
 from camwright.profiles.machines import MACHINES, Machine
 from camwright.profiles.machines.fields import Choice, fields_of
@@ -57,11 +58,11 @@ class CutTable(Table):
 
     length: Annotated[float, *quantity_field("length")]
     line_speed: Annotated[float, *quantity_field("speed")]
-    sync_zone: Annotated[float | None, *zone_field("length", "sync_angle")]
-    shear_zone: Annotated[float, *quantity_field("length", zero=True), Field(json_schema_extra={"default": "0 mm"})] = (
-        0.0
-    )
-    shear_zone_at: Annotated[float | None, *quantity_field("length", zero=True)] = None
+    sync_zone: Annotated[float | None, *zone_field("length")]
+    shear_zone: Annotated[
+        float | None, *zone_field("length", zero=True), Field(json_schema_extra={"default": "0 mm"})
+    ] = 0.0
+    shear_zone_at: Annotated[float | None, *zone_field("length", zero=True)] = None
     sync_tolerance: Annotated[
         float, *quantity_field("length", example="0.1 mm"), Field(json_schema_extra={"default": "0.1 mm"})
     ] = 1e-4
@@ -76,9 +77,9 @@ class CutTable(Table):
 class LimitsTable(Table):
     """What the slave may do."""
 
-    speed: Annotated[float, *slave_field("speed", "angular rate", "300 rpm")]
-    acceleration: Annotated[float, *slave_field("acceleration", "angular acceleration", "2000 rad/s^2")]
-    jerk: Annotated[float, *slave_field("jerk", "angular jerk", "50000 rad/s^3")]
+    speed: Annotated[float | None, *slave_field("speed", "angular rate", "300 rpm")]
+    acceleration: Annotated[float | None, *slave_field("acceleration", "angular acceleration", "2000 rad/s^2")]
+    jerk: Annotated[float | None, *slave_field("jerk", "angular jerk", "50000 rad/s^3")]
     reversal: Annotated[bool, Field(description="whether the slave may run backwards")] = False
     motor: Annotated[tuple[tuple[float, float], ...] | None, *curve_field()] = None
 
@@ -194,6 +195,10 @@ def job_schema() -> dict[str, Any]:
             if {"type": "null"} in entry.get("anyOf", ()):
                 (only,) = (kind for kind in entry.pop("anyOf") if kind != {"type": "null"})
                 entry.update(only)
+    for machine in MACHINES.values():
+        definition = schema["$defs"][table_of(machine).__name__]
+        for key, instead, _ in either_of(machine):
+            definition["oneOf"] = [{"required": [key]}, {"required": [instead.key]}]
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
 
 
@@ -222,10 +227,15 @@ def read_structure(data: dict[str, Any]) -> tuple[JobFile | None, Known, list[st
     for name in JobFile.model_fields:
         if isinstance(data.get(name), dict):
             _fill_in(known, name, data[name], _model_at([name], known))
+    own = [] if known.machine is None or not isinstance(machine, dict) else list(either_faults(known.machine, machine))
+    file, faults = None, own
     try:
-        return job_model().model_validate(data, context=known), known, []
+        found = job_model().model_validate(data, context=known)
+        file = None if own else found
     except ValidationError as error:
-        return None, known, [_fault(entry, known) for entry in error.errors(include_url=False)]
+        faults = [*own, *(_fault(entry, known) for entry in error.errors(include_url=False))]
+    settle_angles(known, None if own else machine_of(known))
+    return file, known, faults
 
 
 def _choices(table: dict[str, Any], known: Known) -> dict[str, str]:

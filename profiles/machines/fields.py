@@ -31,6 +31,28 @@ class About:
 
 
 @dataclass(frozen=True)
+class Instead:
+    """Another number of the same kind that may be given in the place of one.
+
+    Parameters
+    ----------
+    key
+        Its key in the machine's table of a job file.
+    times
+        What it is multiplied by to give the number.
+    example
+        What to write.
+    description
+        What it is.
+    """
+
+    key: str
+    times: float
+    example: str
+    description: str
+
+
+@dataclass(frozen=True)
 class Quantity(About):
     """A number with a unit.
 
@@ -46,6 +68,8 @@ class Quantity(About):
         What to add where the machine gives the motor nothing to do; empty for the example.
     description
         What it is.
+    instead
+        What may be given in its place.
     """
 
     kind: str
@@ -54,6 +78,7 @@ class Quantity(About):
     example: str = ""
     usual: str = ""
     description: str = ""
+    instead: Instead | None = None
 
 
 @dataclass(frozen=True)

@@ -46,8 +46,8 @@ class Machine(ABC):
     """Whether `inertia` is the same everywhere, so that least torque is least acceleration."""
     place_name: ClassVar[str] = ""
     """Field that places the sync zone, the slave coordinate at its middle, and may be left to the design; empty where none does."""
-    zone_by_angle: ClassVar[bool] = False
-    """Whether the sync zone may be given as the angle by which the tool turns in it; see `zone_of_angle`."""
+    by_angle: ClassVar[bool] = False
+    """Whether zones and limits may be given by the angle by which the tool turns: `slave_turn`, `zone_of_angle`, `master_of_angle`."""
     own_baselines: ClassVar[tuple[str, ...]] = ()
     """Baselines that only this machine has, where its ratio changes in the sync zone."""
 
@@ -170,6 +170,26 @@ class Machine(ABC):
             The zone of this machine is no angle.
         """
         raise TypeError(f"the sync zone of a {self.kind} is no angle such as {angle!r} at {sync_ratio!r}")
+
+    def master_of_angle(self, angle: float, cut: Cut) -> float:
+        """Master travel from the start of the sync zone in which the tool turns by an angle (rad) from where it stands there (m).
+
+        Raises
+        ------
+        TypeError
+            Nothing of this machine turns by an angle.
+        """
+        raise TypeError(f"the tool of a {self.kind} does not turn by {angle!r} over {cut.sync_zone!r} m")
+
+    def angle_of_master(self, travel: float, cut: Cut) -> float:
+        """Angle by which the tool turns (rad) over master travel from the start of the sync zone (m): the inverse of `master_of_angle`.
+
+        Raises
+        ------
+        TypeError
+            Nothing of this machine turns by an angle.
+        """
+        raise TypeError(f"the tool of a {self.kind} turns by no angle over {travel!r} of {cut.sync_zone!r} m")
 
     def faults(self) -> tuple[Message, ...]:
         """Say what is wrong with the machine whatever it cuts."""

@@ -11,7 +11,7 @@ import numpy as np
 
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
-from camwright.profiles.machines.fields import GEAR_RATIO, Choice, Quantity, Whole
+from camwright.profiles.machines.fields import GEAR_RATIO, Choice, Instead, Quantity, Whole
 from camwright.profiles.machines.machine import Machine, SlaveUnit, straight_sync
 from camwright.profiles.message import Message, Value
 from camwright.profiles.polynomial.fitting import fit_profile
@@ -58,10 +58,19 @@ class RotaryKnife(Machine):
     summary: ClassVar[str] = "Blades on a drum that turns one way."
     slave_unit: ClassVar[SlaveUnit] = "m"
     constant_inertia: ClassVar[bool] = True
-    zone_by_angle: ClassVar[bool] = True
+    by_angle: ClassVar[bool] = True
 
     circumference: Annotated[
-        float, Quantity("length", example="400 mm", shown=True, description="circumference of the blade circle")
+        float,
+        Quantity(
+            "length",
+            example="400 mm",
+            shown=True,
+            description="circumference of the blade circle",
+            instead=Instead(
+                "diameter", math.pi, "127 mm", "diameter of the blade circle, in place of the circumference"
+            ),
+        ),
     ]
     blades: Annotated[int, Whole(1, 1000, 2, "blades, evenly spaced", shown=True)] = 1
     gear_ratio: Annotated[float, GEAR_RATIO] = 1.0
@@ -146,6 +155,28 @@ class RotaryKnife(Machine):
         """
         chord = angle if self.sync == "tangential" else 2 * math.sin(min(0.5 * angle, GREATEST_ANGLE))
         return self.radius * chord / sync_ratio
+
+    def master_of_angle(self, angle: float, cut: Cut) -> float:
+        """Master travel from the start of the sync zone in which the blade turns by an angle (m).
+
+        ``angle r / s`` in tangential sync; ``l_s / 2 + r sin(a + angle) / s`` in horizontal sync, from the angle ``a`` at its start, and
+        no further than where the blade moves across the material.
+        """
+        if self.sync == "tangential":
+            return self.radius * angle / cut.sync_ratio
+        half = 0.5 * cut.sync_ratio * cut.sync_zone
+        place = angle - math.asin(min(half / self.radius, 1.0))
+        return (half + self.radius * math.sin(max(-0.5 * math.pi, min(0.5 * math.pi, place)))) / cut.sync_ratio
+
+    def angle_of_master(self, travel: float, cut: Cut) -> float:
+        """Angle by which the blade turns over master travel from the start of the sync zone (rad): the inverse of `master_of_angle`."""
+        if self.sync == "tangential":
+            return cut.sync_ratio * travel / self.radius
+        half = 0.5 * cut.sync_ratio * cut.sync_zone
+        first, place = (
+            math.asin(max(-1.0, min(1.0, each / self.radius))) for each in (-half, cut.sync_ratio * travel - half)
+        )
+        return place - first
 
     def zone_faults(self, cut: Cut, angle: float | None = None) -> tuple[Message, ...]:
         """Say that more than one blade would be in sync at a time, or in horizontal sync one too far from the cut point."""

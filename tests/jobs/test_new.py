@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from camwright.cli import new
@@ -164,3 +165,10 @@ def test_lists_for_people_and_for_programs(capsys: pytest.CaptureFixture[str]) -
     assert {"paper-600", "flying-saw", "chasing-shear"} <= names
     paths = {each["path"] for each in json.loads(said(capsys, "keys", "--json")[1])["keys"]}
     assert {"cut.length", "servo.tolerance.damping", "machine.stroke"} <= paths
+
+
+def test_a_diameter_takes_the_place_of_the_examples_circumference(capsys: pytest.CaptureFixture[str]) -> None:
+    code, _, _ = said(capsys, "new", "--diameter", "150 mm", "--name", "by-diameter")
+    assert code == 0
+    made = load_job(Path("by-diameter.toml"))
+    assert made.machine.slave_turn == pytest.approx(np.pi * 0.15, rel=1e-15)

@@ -1,0 +1,49 @@
+"""What a job file writes as an angle by which the tool turns, as travel of the slave and the master."""
+
+from __future__ import annotations
+
+import math
+
+from camwright.jobs.fields import Known
+from camwright.profiles.cut import Cut
+from camwright.profiles.machines import Machine
+
+_LIMITS = ("speed", "acceleration", "jerk")
+
+
+def settle_angles(known: Known, machine: Machine | None) -> None:
+    """Turn the angles that are known into numbers in metres, as far as machine and zone are known.
+
+    A drum's speed, acceleration and jerk are those of the blade's edge by its radius, whatever the number of blades. An angle in the
+    sync zone is that by which the blade turns from the start of the zone, or to its end where the shear zone ends there.
+    """
+    if machine is None or not machine.by_angle or machine.slave_turn is None:
+        return
+    numbers, angles = known.numbers, known.angles
+    for key in _LIMITS:
+        if key in angles:
+            numbers[key] = angles[key] * machine.slave_turn / (2.0 * math.pi)
+    ratio = numbers.get("sync_ratio")
+    if ratio is None:
+        return
+    if "sync_zone" in angles:
+        numbers["sync_zone"] = machine.zone_of_angle(angles["sync_zone"], ratio)
+    zone = numbers.get("sync_zone")
+    if zone is not None:
+        _settle_shear_zone(known, machine, Cut(2.0 * zone, 1.0, zone, 0.0, 0.0, 1e-4, sync_ratio=ratio))
+
+
+def _settle_shear_zone(known: Known, machine: Machine, cut: Cut) -> None:
+    """Turn the angles of the shear zone and of its start into lengths on the master."""
+    numbers, angles = known.numbers, known.angles
+    if "shear_zone_at" in angles:
+        numbers["shear_zone_at"] = machine.master_of_angle(angles["shear_zone_at"], cut)
+    if "shear_zone" not in angles:
+        return
+    at = numbers.get("shear_zone_at")
+    if at is not None:
+        start = machine.angle_of_master(at, cut)
+        numbers["shear_zone"] = machine.master_of_angle(start + angles["shear_zone"], cut) - at
+    else:  # at the end of the sync zone
+        end = machine.angle_of_master(cut.sync_zone, cut)
+        numbers["shear_zone"] = cut.sync_zone - machine.master_of_angle(end - angles["shear_zone"], cut)
