@@ -274,6 +274,7 @@ def _solve_free_place(task: Task, objective: CommandObjective, suggest: bool) ->
         placement = place_by_objective(task.with_limits(plain), objective, task.limits.motor)
     placed = placement or place_for(task, objective)
     solution = solve(placed.task.with_limits(task.limits), objective, suggest=suggest)
+    solution = replace(solution, status=SolveStatus.BEST_FOUND)  # no bound knows all places
     if solution.agreement is None:
         return replace(solution, agreement=Agreement(1, 1, 0.0, 0.0, placed.valleys))
     return replace(solution, agreement=replace(solution.agreement, valleys=placed.valleys))

@@ -144,6 +144,19 @@ def _direction(one_way: CamProfile) -> FloatArray:
     return np.where(standing, 0.0, np.sign(middle))
 
 
+def work_drawn(torque: CamProfile, profile: CamProfile, machine: Machine) -> float:
+    """Energy drawn over a stretch of a cycle, nothing recovered (J).
+
+    Parameters
+    ----------
+    torque, profile
+        Torque at the motor (N·m) and slave over the same stretch of the master.
+    machine
+        The machine.
+    """
+    return _energies(torque, profile, machine)[0]
+
+
 def _energies(torque: CamProfile, profile: CamProfile, machine: Machine) -> tuple[float, float]:
     """Energy drawn and energy fed back in one cycle (J): the work over the slave's travel, split where it changes its sign."""
     parts = torque.split(torque.roots())

@@ -26,7 +26,7 @@ from camwright.studies.axis_study import axis_study, solve_job
 from camwright.studies.comparison import Comparison
 from camwright.studies.design import Design
 from camwright.studies.measured import Measured
-from camwright.validation.bounds.optimality import Bound
+from camwright.validation.bounds.bound import Bound
 from camwright.validation.report import judge
 
 _ONE_AT_A_TIME = threading.Lock()

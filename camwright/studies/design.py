@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, replace
 
 from camwright.design.optimise import Solution
+from camwright.design.returns.ipopt import SolveStatus
 from camwright.house.progress import Step, ignore
 from camwright.jobs.job import Job
 from camwright.profiles.objective import OBJECTIVES
@@ -13,8 +14,12 @@ from camwright.profiles.polynomial.profile import CamProfile
 from camwright.studies.axis_study import AxisStudy, Robustness, axis_study, robustness, solve_job
 from camwright.studies.comparison import Comparison, compare
 from camwright.studies.cut_lengths import CutLengths, cut_lengths
-from camwright.validation.bounds.optimality import Bound, lower_bound
+from camwright.validation.bounds.bound import Bound
+from camwright.validation.bounds.optimality import lower_bound
 from camwright.validation.report import ValidationReport, judge
+
+PROVED = 1e-3
+"""An objective within this share of its bound is proved to be optimal."""
 
 STEPS = 4
 """Steps that `optimise` tells beside the measuring of each profile."""
@@ -122,4 +127,8 @@ def optimise(job: Job, step: Step = ignore) -> Design:
     aware, robust = axis_study(placed, solution), robustness(placed, solution.profile, solution)
     comparison = compare(placed, solution.profile, step=step)
     step("finding minimum cut lengths")
-    return Design(placed, solution, bound, report, comparison, cut_lengths(placed), aware, robust)
+    design = Design(placed, solution, bound, report, comparison, cut_lengths(placed), aware, robust)
+    # a bound is that of the place which was chosen, so it proves nothing of other places
+    if job.machine.placed and design.gap is not None and design.gap <= PROVED:
+        return replace(design, solution=replace(solution, status=SolveStatus.OPTIMAL))
+    return design

@@ -23,6 +23,8 @@ from camwright.profiles.limits import Limits
 from camwright.profiles.objective import OBJECTIVES, ObjectiveName
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.task import Task
+from camwright.validation.bounds.bound import NONE, Bound
+from camwright.validation.bounds.motor_bound import motor_bound
 from camwright.validation.bounds.quadratic import multipliers
 
 INTERVALS = 140
@@ -38,15 +40,6 @@ SOFTEST = "closed form, softest motion"
 QUINTIC = "closed form, quintic"
 BRAKING = "closed form, braking within the stroke"
 DUAL = f"weak duality, multipliers by an interior point on {2 * INTERVALS} intervals"
-NONE = "none"
-
-
-@dataclass(frozen=True)
-class Bound:
-    """A lower bound of an objective over time (m/s², m/s³ or N·m at the motor), and how it was found; not a number with method "none"."""
-
-    value: float
-    method: str
 
 
 @dataclass(frozen=True)
@@ -84,10 +77,11 @@ def lower_bound(profile: CamProfile, task: Task, objective: ObjectiveName) -> Bo
     machine, cut = task.machine, task.cut
     if objective not in OBJECTIVES:
         raise InputError(f"there is no objective {objective!r}; the objectives are {', '.join(OBJECTIVES)}")
-    if not task.straight or objective in ("energy", "sync_error"):
+    if objective == "rms_torque" or objective == "peak_torque" or objective == "energy":
+        motion = lower_bound(profile, task, "peak_acceleration" if objective == "peak_torque" else "rms_acceleration")
+        return motor_bound(profile, task, objective, motion)
+    if not task.straight or objective == "sync_error":
         return Bound(math.nan, NONE)
-    if objective in ("rms_torque", "peak_torque"):
-        return _torque_bound(profile, task, objective)
     length, v = cut.return_zone, cut.line_speed
     ratio = float(task.sync(0.0, 1))
     height = machine.pitch - ratio * cut.length  # of the motion over the line that sync zone and return zone share
@@ -178,30 +172,6 @@ def _free_bound(profile: CamProfile, task: Task, objective: ObjectiveName, heigh
     back = profile.restrict(start, start + length).shift(-start, -float(profile(start)))
     scaled = back.add_line(-ratio).scale(master=1.0 / length, slave=1.0 / height).over(0.0, 1.0)
     return Bound(math.sqrt(max(0.0, _dual_bound(scaled, job))) * unit, DUAL)
-
-
-def _torque_bound(profile: CamProfile, task: Task, objective: ObjectiveName) -> Bound:
-    """Bound of a torque at the motor where the inertia ``I`` is constant, as it is where the slave's ratio in sync is.
-
-    The mean of ``ÿ sign(ẏ)`` over a closed cycle is zero, so the mean square of the force is ``I²`` times that of the acceleration, plus
-    ``F²`` times the share of the cycle in which the slave moves: at least the sync zone and the way back at the speed limit.
-    """
-    machine, cut = task.machine, task.cut
-    if not (machine.moves_something and machine.constant_inertia) or (
-        objective == "peak_torque" and machine.friction > 0
-    ):
-        return Bound(math.nan, NONE)
-    peak = objective == "peak_torque"
-    motion = lower_bound(profile, task, "peak_acceleration" if peak else "rms_acceleration")
-    inertial = float(machine.inertia(0.0)) * motion.value / machine.motor_ratio
-    if peak:
-        return Bound(inertial, motion.method)
-    way = abs(task.height)
-    moving = min(1.0, (cut.sync_zone + cut.line_speed * way / task.limits.speed) / cut.length)
-    friction = machine.friction / machine.motor_ratio
-    return Bound(
-        math.hypot(inertial * math.sqrt(cut.return_zone / cut.length), friction * math.sqrt(moving)), motion.method
-    )
 
 
 def _dual_bound(motion: CamProfile, job: _Return) -> float:

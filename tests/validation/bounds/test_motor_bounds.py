@@ -1,0 +1,156 @@
+"""Bounds of the motor's objectives: closed forms, other roads, and no motion that goes below."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from camwright.design.optimise import solve
+from camwright.profiles.cut import Cut
+from camwright.profiles.limits import Limits
+from camwright.profiles.machines import CrankSlider, LinearCarriage, RotaryKnife
+from camwright.profiles.machines.machine import Machine
+from camwright.profiles.objective import MotorObjective
+from camwright.profiles.returns import assemble, quintic_between
+from camwright.profiles.task import Task
+from camwright.validation.bounds import constant_inertia
+from camwright.validation.bounds.motor_bound import STANDING, ZONE
+from camwright.validation.bounds.optimality import lower_bound
+from camwright.validation.bounds.path_convex import least_square_in_time
+from camwright.validation.bounds.path_dual import (
+    least_drawn,
+    least_square,
+    no_motion_below,
+    square_tube,
+    standing_square,
+)
+from camwright.validation.bounds.path_task import PathTask
+from camwright.validation.motor import measure_motor
+
+CRANK = CrankSlider(
+    crank=0.15, rod=0.6, crank_inertia=0.6, carriage_mass=60.0, gear_ratio=10.0, sync_at=math.radians(98)
+)
+TURNS = Limits(31.4, 400.0, 20_000.0)
+SHEAR = Cut(0.9, 0.5, 0.15, 0.04, 0.08, 2e-4)
+KNIFE = RotaryKnife(circumference=0.52, drum_inertia=0.02, drum_friction=9.0, gear_ratio=3.0)
+KNIVES = Limits(4.4, 60.0, 6000.0)
+SHEET = Cut(2.1, 1.1, 0.13, 0.02, 0.05, 1e-4)
+SAW = LinearCarriage(stroke=2.0, mass=280.0)
+BARS = Cut(12.0, 1.5, 1.0, 0.1, 0.5, 1e-3)
+EVEN = PathTask(np.full(501, 2.0), 6.0, (3.0, 3.0), 1.0, 100.0)
+
+
+def test_in_a_short_time_the_bound_is_the_cubic_of_constant_inertia() -> None:
+    """Over the straight line the way is 6 - 3 from rest to rest: 12 h² / T³, times the inertia squared."""
+    assert least_square_in_time(EVEN) == pytest.approx(4.0 * 12 * 9.0, rel=3e-4)
+
+
+def test_a_long_time_costs_nothing_there() -> None:
+    assert least_square_in_time(replace(EVEN, time=5.0)) < 1e-3
+
+
+def test_a_speed_limit_raises_it() -> None:
+    fast = least_square_in_time(replace(EVEN, time=1.2, greatest=5.6))
+    assert fast > 1.05 * least_square_in_time(replace(EVEN, time=1.2))
+
+
+def test_standing_costs_two_stops_in_their_best_times() -> None:
+    way = np.linspace(0.01, 5.99, 4001)
+    stops = 4.0 * 4 / 9 * 27.0 * (1 / way + 1 / (6.0 - way))  # of each 4 v³ / 9 d, with the time 3 d / v
+    assert standing_square(EVEN) == pytest.approx(stops.min(), rel=1e-4)
+
+
+def test_where_time_is_to_be_wasted_the_value_function_sees_it() -> None:
+    """Slower over the straight line: 12 h² / T³ again, as long as the motion is slow nowhere."""
+    slow = replace(EVEN, time=2.4)
+    exact = 4.0 * 12 * (6.0 - 7.2) ** 2 / 2.4**3
+    assert 0.95 * exact < least_square(slow, 1.02 * exact) <= exact * (1 + 1e-9)
+    assert least_square_in_time(slow) < 0.01 * exact
+
+
+def test_a_tube_holds_the_motions_below_its_level_and_no_others() -> None:
+    tube = square_tube(EVEN, 400.0)
+    assert tube.low[0] == tube.high[0] == pytest.approx(9.0)
+    middle = len(tube.low) // 2
+    cost = standing_square(replace(EVEN, speeds=(3.0, 3.0)))
+    assert tube.low[middle] == 0.0
+    assert cost < 400.0
+
+
+def test_energy_of_a_slave_that_must_slow_down_is_what_it_takes_to_be_fast_again() -> None:
+    slow = replace(EVEN, time=3.0)  # at 2 m/s on the way, without limits of the acceleration
+    exact = 9.0 - 4.0
+    found = least_drawn(slow, 1.05 * exact)
+    assert 0.9 * exact < found <= exact * (1 + 1e-9)
+
+
+def test_a_peak_below_what_the_way_asks_is_proved_to_be_too_low() -> None:
+    """Slower over the straight line: two even torques, h = a T² / 4."""
+    slow = replace(EVEN, time=2.4)
+    exact = 2.0 * 4 * 1.2 / 2.4**2
+    assert no_motion_below(slow, 0.9 * exact)
+    assert not no_motion_below(slow, 1.01 * exact)
+
+
+def _checked(machine: Machine, cut: Cut, limits: Limits, objective: MotorObjective) -> tuple[float, float, str]:
+    task = Task(machine, cut, limits)
+    solution = solve(task, objective)
+    value = getattr(measure_motor(solution.profile, task), objective)
+    bound = lower_bound(solution.profile, task, objective)
+    quintic = assemble(quintic_between(task.sync, cut.return_zone, task.height), task)
+    anybody = getattr(measure_motor(quintic, task), objective)
+    assert bound.value <= value * (1 + 1e-9)
+    if quintic.extrema(1)[0].value >= 0 and quintic.extrema(1)[1].value <= task.greatest_ratio:
+        assert lower_bound(quintic, task, objective).value <= min(value, anybody) * (1 + 1e-9)
+    return float(value), bound.value, bound.method
+
+
+@pytest.mark.parametrize("objective", ["rms_torque", "energy"])
+@pytest.mark.parametrize("length", [0.5, 0.9, 3.0])
+def test_the_shear_is_within_a_few_per_cent_of_its_bound(objective: MotorObjective, length: float) -> None:
+    value, bound, _ = _checked(CRANK, replace(SHEAR, length=length), TURNS, objective)
+    assert bound > (0.8 if objective == "energy" else 0.94) * value
+
+
+def test_a_long_cut_of_the_shear_is_bounded_by_standing() -> None:
+    value, bound, method = _checked(CRANK, replace(SHEAR, length=12.0), TURNS, "rms_torque")
+    assert bound > 0.94 * value
+    assert method == STANDING
+
+
+def test_where_the_zone_is_the_peak_it_is_the_bound_and_named() -> None:
+    value, bound, method = _checked(CRANK, replace(SHEAR, length=3.0), TURNS, "peak_torque")
+    assert method == ZONE
+    assert value == pytest.approx(bound, rel=1e-3)
+
+
+@pytest.mark.parametrize("objective", ["rms_torque", "peak_torque", "energy"])
+@pytest.mark.parametrize("length", [0.3, 0.9, 2.1])
+def test_a_knife_that_rubs(objective: MotorObjective, length: float) -> None:
+    value, bound, _ = _checked(KNIFE, replace(SHEET, length=length), KNIVES, objective)
+    assert bound > 0.8 * value
+
+
+def test_a_carriage_that_goes_back_slowly_is_proved_to_be_best() -> None:
+    value, bound, _ = _checked(SAW, BARS, Limits(8.0, 3.0, 600.0), "energy")
+    assert bound == pytest.approx(value, rel=1e-4)
+
+
+def test_the_speed_that_every_return_must_have() -> None:
+    """Without limits of acceleration and jerk the slave moves at the mean speed of its return."""
+    task = Task(replace(KNIFE, drum_friction=0.0), SHEET, Limits(4.4, 1e9, 1e15))
+    assert constant_inertia.farthest_speed(task) == pytest.approx(0.39 / (1.97 / 1.1), rel=1e-3)
+
+
+def test_a_force_with_friction_is_that_of_uneven_accelerations() -> None:
+    """Triangle of the speed over the line: 1/a⁺ + 1/a⁻ = T² / 2h."""
+    knife = replace(KNIFE, drum_friction=2.0)
+    task = Task(knife, replace(SHEET, length=0.9), Limits(100.0, 1e9, 1e15))
+    force = constant_inertia.peak_with_friction(task)
+    inertia, friction = float(knife.inertia(0.0)), knife.friction
+    time, height = 0.77 / 1.1, 0.77 - 0.39
+    slow, fast = (force - friction) / inertia, (force + friction) / inertia
+    assert 1 / slow + 1 / fast == pytest.approx(time**2 / (2 * height), rel=1e-6)

@@ -1,0 +1,155 @@
+"""Lower bounds of the motor's objectives over a whole cycle: the sync zone as it is, the return by what no return can go below."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from camwright.profiles.objective import MotorObjective
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.task import Task
+from camwright.validation.bounds.bound import NONE, Bound
+from camwright.validation.bounds.constant_inertia import drawn, peak_with_friction, square_with_friction
+from camwright.validation.bounds.path_convex import least_square_in_time
+from camwright.validation.bounds.path_dual import (
+    least_drawn,
+    least_square,
+    no_motion_below,
+    standing_square,
+    turning_square,
+)
+from camwright.validation.bounds.path_task import PathTask
+from camwright.validation.motion import greatest_magnitude
+from camwright.validation.motor import motor_torque, work_drawn
+
+CONVEX = "convex programme over the path, by its dual"
+PATH = "value function over the path, by a cone programme"
+STANDING = "closed form, standing"
+FRICTION = "closed form, friction"
+SPEEDS = "closed form, change of speed"
+ZONE = "peak of the sync zone"
+BELOW = 0.985
+"""Share of the cost of standing still below which a value function is asked where standing is cheaper than what was found."""
+PLACES = 2001
+"""Places of the path at which the inertia is taken."""
+NEAR = 2e-3
+"""Share of the mean square below which nothing is left to be proved."""
+EDGE = 5e-3
+"""Share to which the greatest peak is found that is proved to be too low."""
+
+
+def motor_bound(profile: CamProfile, task: Task, objective: MotorObjective, motion: Bound) -> Bound:
+    """Lower bound of a motor's objective (N·m or J at the motor).
+
+    Parameters
+    ----------
+    profile
+        One cycle over ``[0, x_c]``: what its return needs tells which motions need not be looked at.
+    task
+        The job.
+    objective
+        The objective.
+    motion
+        Bound of the RMS acceleration over the return, or for the peak torque of the peak acceleration; none where none is known.
+    """
+    machine = task.machine
+    if not machine.moves_something:
+        return Bound(math.nan, NONE)
+    if machine.constant_inertia and task.straight:
+        return _constant(profile, task, objective, motion)
+    if machine.friction > 0 or task.height <= 0:
+        return Bound(math.nan, NONE)
+    return _along_path(profile, task, objective)
+
+
+def _constant(profile: CamProfile, task: Task, objective: MotorObjective, motion: Bound) -> Bound:
+    machine, cut = task.machine, task.cut
+    inertia, friction = float(machine.inertia(task.slave_at_sync_start)), machine.friction
+    if objective == "energy":
+        return Bound(drawn(task), SPEEDS if not friction else FRICTION)
+    if objective == "peak_torque":
+        if not friction:
+            return Bound(inertia * motion.value / machine.motor_ratio, motion.method)
+        zone = _zone_peak(profile, task)
+        back = 0.0 if task.reverses else peak_with_friction(task) / machine.motor_ratio
+        return Bound(zone, ZONE) if zone >= back else Bound(back, FRICTION)
+    time = cut.return_zone / cut.line_speed
+    square, method = inertia**2 * motion.value**2 * time, motion.method
+    if friction:
+        # the mean of ÿ sign(ẏ) over a return between equal speeds is zero: friction adds its square while the slave moves
+        least = square + friction**2 * min(abs(task.height) / task.limits.speed, time)
+        with_friction = least if task.reverses else square_with_friction(task, motion.value**2 * time)
+        square, method = max(least, with_friction), FRICTION
+    zone = (friction / machine.motor_ratio) ** 2 * cut.sync_zone / cut.line_speed
+    return Bound(math.sqrt((square / machine.motor_ratio**2 + zone) / cut.period), method)
+
+
+def _along_path(profile: CamProfile, task: Task, objective: MotorObjective) -> Bound:
+    """Bound where the inertia or the ratio in sync changes along the way, for a slave that goes one way and has no friction."""
+    machine, cut = task.machine, task.cut
+    v = cut.line_speed
+    q = task.slave_at_sync_end + np.linspace(0.0, task.height, PLACES)
+    inertia = np.asarray(machine.inertia(q)) + 0.0 * q
+    speeds = float(task.sync(task.sync.end, 1)) * v, float(task.sync(task.sync.start, 1)) * v
+    path = PathTask(inertia, task.height, speeds, cut.return_zone / v, task.limits.speed)
+    ratio, torque = machine.motor_ratio, motor_torque(profile, task)
+    if objective == "rms_torque":
+        return _square(path, torque, task)
+    if objective == "energy":
+        zone = _zone_energy(profile, torque, task)
+        found = work_drawn(torque, profile, machine) - zone
+        if task.reverses:
+            return Bound(zone + min(found, path.energies[1]) * (1 - 1e-9), SPEEDS)
+        return Bound(zone + least_drawn(path, found) if found > 0 else zone, PATH)
+    zone = _zone_peak(profile, task)
+    greatest = greatest_magnitude(torque, 0).value
+    if greatest <= zone * (1 + EDGE):
+        return Bound(zone, ZONE)
+    room = path.greatest * path.time
+    turning = max(path.energies) / room / ratio if task.reverses else math.inf
+    back = min(_least_peak(path, zone * ratio, greatest * ratio) / ratio, turning)
+    return Bound(zone, ZONE) if zone >= back else Bound(back, PATH)
+
+
+def _square(path: PathTask, torque: CamProfile, task: Task) -> Bound:
+    """Bound of the RMS torque of a cycle: that of its zone, and the better of what a value function says at two levels."""
+    cut, ratio = task.cut, task.machine.motor_ratio
+    whole = torque.mean_square(0) * cut.period
+    zone = sum(torque.restrict(*part).mean_square(0) * (part[1] - part[0]) for part in cut.sync_parts) / cut.line_speed
+    level = max(whole - zone, 1e-300) * ratio**2
+    if task.reverses:
+        around = task.machine.inertia(np.linspace(0.0, task.machine.pitch, PLACES))
+        level = min(level, turning_square(path, np.asarray(around)))
+    found, method = min(least_square_in_time(path), level), CONVEX
+    if found < level * (1 - NEAR):
+        standing = standing_square(path)
+        below = level if standing > level else BELOW**2 * standing
+        seen = least_square(path, below)
+        if seen > found:
+            found, method = seen, STANDING if below < level and seen > 0.999 * below else PATH
+    return Bound(math.sqrt((max(found, 0.0) / ratio**2 + zone) / cut.period), method)
+
+
+def _least_peak(path: PathTask, low: float, high: float) -> float:
+    """Greatest peak that is proved to be too low, by halving between one of the zone and that of a motion; the zone's if none is."""
+    best = low
+    while high - low > EDGE * high:
+        middle = 0.5 * (low + high)
+        if no_motion_below(path, middle):
+            best = low = middle
+        else:
+            high = middle
+    return best
+
+
+def _zone_peak(profile: CamProfile, task: Task) -> float:
+    """Greatest torque of the sync zone at the motor (N·m)."""
+    torque = motor_torque(profile, task)
+    return max(greatest_magnitude(torque.restrict(*part), 0).value for part in task.cut.sync_parts)
+
+
+def _zone_energy(profile: CamProfile, torque: CamProfile, task: Task) -> float:
+    """Energy drawn in the sync zone (J)."""
+    parts = task.cut.sync_parts
+    return sum(work_drawn(torque.restrict(*part), profile.restrict(*part), task.machine) for part in parts)

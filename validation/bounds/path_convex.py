@@ -1,0 +1,120 @@
+"""Lower bound of the squared torque where the time is short: the path's convex programme, by its dual function.
+
+With ``s`` and ``z`` of `camwright.validation.bounds.path_dual` the integral of the squared torque over time is ``16/9 ∫ z_s² ds`` and the
+time is ``∫ (I/2) z^(-2/3) ds``, both convex. So for any price ``μ >= 0`` of the time and any function ``p(s)`` ::
+
+    p(0) z(0) - p(S) z(S) - μ T + ∫ [ min over z of (p' z + μ (I/2) z^(-2/3)) - 9/64 p² ] ds
+
+is no greater than the integral of any motion that takes the time ``T`` or less: standing, turning slowly or not. Newton's method makes it
+as great as can be with ``p`` a broken line on a grid; of ``p²`` the integral is exact, of the minimum it is Gauss-Legendre's with three
+points an interval.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.linalg import solveh_banded
+
+from camwright.profiles.polynomial.profile import FloatArray
+from camwright.validation.bounds.path_task import PathTask
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(3)
+_SHARES = 0.5 * _WEIGHTS
+
+INTERVALS = 250
+STEPS = 60
+HALVINGS = 50
+# Powers of e of the prices looked at, times that of a typical motion; and typical motions, as multiples of the straight line.
+LEAST, GREATEST = -18.0, 14.0
+FACTORS = (0.5, 1.0, 2.0, 5.0)
+ENOUGH = 1e-10
+# Least slope of p that counts, relative to its scale: below it z is at its top.
+FLAT = 1e-12
+
+
+def least_square_in_time(task: PathTask) -> float:
+    """Lower bound of the integral of the squared torque over time, (N·m)² s, of every motion that takes no longer than the task's time."""
+    return _Dual(task).best()
+
+
+class _Dual:
+    """The dual function on a grid."""
+
+    def __init__(self, task: PathTask) -> None:
+        nodes = np.linspace(0.0, task.stretched[-1], INTERVALS + 1)
+        self._time = task.time
+        self._h = float(nodes[1])
+        points = nodes[:-1] + self._h * (0.5 + 0.5 * _NODES[:, None])
+        self._half = 0.5 * np.interp(points, task.stretched, task.inertia)
+        self._top = np.interp(points, task.stretched, task.top) ** 0.75
+        self._ends = tuple(energy**0.75 for energy in task.energies)
+
+    def best(self) -> float:
+        """Greatest value over the price of time."""
+        line = self._ends[0] + (self._ends[1] - self._ends[0]) * (np.arange(INTERVALS) + 0.5) / INTERVALS
+        typical = float(line.mean())
+        unit = typical ** (8 / 3) / float(self._half.mean()) / (self._h * INTERVALS) ** 2
+        p, greatest = np.zeros(INTERVALS + 1), 0.0
+        low, high = LEAST, GREATEST
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low + high)
+            price = unit * float(np.exp(middle))
+            starts = [p, *(self._start(line * factor, price) for factor in FACTORS)]
+            p, value, time = self._climb(max(starts, key=lambda start: self._value(start, price)), price)
+            greatest = max(greatest, value)
+            low, high = (middle, high) if time > self._time else (low, middle)
+        return greatest
+
+    def _start(self, z: FloatArray, price: float) -> FloatArray:
+        """``p`` whose inner minimum is at a given ``z``, its mean such that the ends balance."""
+        slope = 2.0 / 3.0 * price * self._half[1] * np.minimum(z, self._top[1]) ** (-5 / 3)
+        p = np.concatenate([[0.0], np.cumsum(slope * self._h)])
+        wanted = (self._ends[0] - self._ends[1]) / (9 / 32 * self._h * INTERVALS)
+        return np.asarray(p - 0.5 * (p[:-1] + p[1:]).mean() + wanted)
+
+    def _parts(self, p: FloatArray, price: float) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Give means over each interval: ``z`` of the inner minimum, its value, its second derivative over the slope, and the time."""
+        slope = np.diff(p) / self._h
+        steep = np.maximum(slope, FLAT * price)
+        z = (2.0 / 3.0 * price * self._half / steep) ** 0.6
+        at_top = (z >= self._top) | (slope <= 0)
+        z = np.where(at_top, self._top, z)
+        pace = self._half * z ** (-2 / 3)
+        curve = np.where(at_top, 0.0, -0.6 * z / steep)
+        return _SHARES @ z, _SHARES @ (slope * z + price * pace), _SHARES @ curve, _SHARES @ pace
+
+    def _value(self, p: FloatArray, price: float) -> float:
+        _, value, _, _ = self._parts(p, price)
+        square = self._h * float((p[:-1] ** 2 + p[:-1] * p[1:] + p[1:] ** 2).sum()) / 3
+        ends = float(p[0]) * self._ends[0] - float(p[-1]) * self._ends[1]
+        return float(ends + self._h * float(value.sum()) - 9 / 64 * square - price * self._time)
+
+    def _climb(self, p: FloatArray, price: float) -> tuple[FloatArray, float, float]:
+        """Newton's method for one price: ``p``, the value, and the time that the motion takes which the price asks for."""
+        h, value = self._h, self._value(p, price)
+        for _ in range(STEPS):
+            z, _, curve, _ = self._parts(p, price)
+            rise = np.zeros(len(p))
+            rise[0], rise[-1] = self._ends[0], -self._ends[1]
+            rise[:-1] -= z
+            rise[1:] += z
+            rise[:-1] -= 9 / 64 * h * (2 * p[:-1] + p[1:]) / 3
+            rise[1:] -= 9 / 64 * h * (2 * p[1:] + p[:-1]) / 3
+            main, beside = np.zeros(len(p)), np.zeros(len(p))
+            for part in (slice(None, -1), slice(1, None)):
+                main[part] += 9 / 64 * h * 2 / 3 - curve / h
+            beside[1:] = 9 / 64 * h / 3 + curve / h
+            step = solveh_banded(np.stack([beside, main]), rise)
+            gain, share = float(rise @ step), 1.0
+            while share > 1e-10:
+                new = self._value(p + share * step, price)
+                if new >= value + 1e-4 * share * gain:
+                    break
+                share *= 0.5
+            else:
+                break
+            p, value = p + share * step, new
+            if gain < ENOUGH * max(abs(value), 1e-300):
+                break
+        *_, pace = self._parts(p, price)
+        return p, value, h * float(pace.sum())

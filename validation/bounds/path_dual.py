@@ -1,0 +1,259 @@
+"""Lower bounds of torque and energy over the path, where the inertia depends on the place: a value function that sees the time.
+
+A slave that never turns goes from ``q_0`` to ``q_1`` with the kinetic energy ``E(q) = I u² / 2``; its torque is ``dE/dq``. With
+``s = ∫ √(2/I) dq`` and ``z = E^(3/4)`` the integral of the squared torque over time is ``16/9 ∫ (dz/ds)² ds``: so what it costs to come by
+a kinetic energy somewhere is a closed form, and all motions that cost less than a level stay in a *tube* about the straight line. In the
+tube any function ``φ(s, z)`` and any ``λ`` with ``φ_s + λ (I/2) z^(-2/3) >= 9/64 φ_z²`` bound the integral of every motion that takes
+the time ``T`` from below by ``φ(start) - φ(end) - λ T``. The best such spline is a cone programme. Where it breaks its inequality between
+the points at which it was asked for, the bound is lowered by what that can cost at most. The lesser of level and bound holds for all
+motions. Energy and peak have tubes and inequalities of their own.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import clarabel
+import numpy as np
+from scipy.interpolate import BSpline
+from scipy.sparse import csc_array
+
+from camwright.profiles.polynomial.profile import FloatArray
+from camwright.validation.bounds.path_task import PathTask
+
+KNOTS = (16, 8)
+"""Pieces of the spline along the path, and across it."""
+ASKED = (60, 24)
+"""Places at which the inequality is asked for."""
+LOOKED = (240, 90)
+"""Places at which it is looked at afterwards."""
+ROUNDS, MORE = 2, 300
+"""How often the places where it is broken most are added, and how many of them."""
+SMALL = 1e-3
+"""What broken inequalities may cost, as a share of the bound."""
+REGULAR = 1e-9
+"""Weight that keeps what no place asks for from running away."""
+
+
+@dataclass(frozen=True, eq=False)
+class Tube:
+    """Where motions below a level stay: kinetic energies at the places of the path (J)."""
+
+    low: FloatArray
+    high: FloatArray
+
+
+def square_tube(task: PathTask, level: float) -> Tube:
+    """Tube of the motions whose integral of the squared torque over time is below a level."""
+    s = task.stretched
+    ends = [energy**0.75 for energy in task.energies]
+    whole = s[-1]
+    line = ends[0] + (ends[1] - ends[0]) * s / whole
+    spare = max(9.0 / 16.0 * level - (ends[1] - ends[0]) ** 2 / whole, 0.0)
+    half = np.sqrt(spare * s * (whole - s) / whole)
+    return Tube(np.maximum(line - half, 0.0) ** (4 / 3), np.minimum((line + half) ** (4 / 3), task.top))
+
+
+def standing_square(task: PathTask) -> float:
+    """Least integral of the squared torque of a motion that stands somewhere."""
+    s = task.stretched[1:-1]
+    first, last = (energy**1.5 for energy in task.energies)
+    return 16.0 / 9.0 * float((first / s + last / (task.stretched[-1] - s)).min())
+
+
+def turning_square(task: PathTask, inertia: FloatArray) -> float:
+    """Least integral of the squared torque of a motion that turns, or stands beyond the ends of its path.
+
+    Parameters
+    ----------
+    task
+        The motion.
+    inertia
+        Least inertia of all places: where a motion may go beyond its path it may have this.
+    """
+    # it comes to rest from the first speed and sets out to the last, in no more room than its greatest speed covers
+    room = task.greatest * task.time * math.sqrt(2.0 / float(np.min(inertia)))
+    first, last = (energy**1.5 for energy in task.energies)
+    return float(16.0 / 9.0 * (first + last) / room)
+
+
+def drawn_tube(task: PathTask, level: float) -> Tube:
+    """Tube of the motions that draw less energy than a level."""
+    first, last = task.energies
+    count = len(task.inertia)
+    return Tube(np.full(count, max(last - level, 0.0)), np.minimum(np.full(count, first + level), task.top))
+
+
+def peak_tube(task: PathTask, level: float) -> Tube:
+    """Tube of the motions whose torque is nowhere above a level."""
+    first, last = task.energies
+    q = np.linspace(0.0, task.way, len(task.inertia))
+    low = np.maximum(first - level * q, last - level * (task.way - q))
+    high = np.minimum(first + level * q, last + level * (task.way - q))
+    return Tube(np.maximum(low, 0.0), np.minimum(high, task.top))
+
+
+def least_square(task: PathTask, level: float) -> float:
+    """Lower bound of the integral of the squared torque over time of every motion: at most the level, (N·m)² s."""
+    return min(level, _bound(task, square_tube(task, level), "square", level))
+
+
+def least_drawn(task: PathTask, level: float) -> float:
+    """Lower bound of the energy drawn by every motion: at most the level (J)."""
+    return min(level, _bound(task, drawn_tube(task, level), "drawn", level))
+
+
+def no_motion_below(task: PathTask, level: float) -> bool:
+    """Tell whether it is proved that every motion has a torque above a level somewhere."""
+    tube = peak_tube(task, level)
+    if bool((tube.low > tube.high * (1 + 1e-12)).any()):
+        return True
+    return _bound(task, tube, "peak", level) > 0.0
+
+
+def _bound(task: PathTask, tube: Tube, kind: str, level: float) -> float:
+    """Best bound of a spline in a tube, less what it is broken by; for a peak positive where the level is proved to be too low."""
+    spline = _Spline(task, tube)
+    x, y = spline.places(*ASKED)
+    far_x, far_y = spline.places(*LOOKED)
+    ends = spline.ends()
+    unit = task.time if kind == "peak" else level
+    for _ in range(ROUNDS):
+        weights = _best(spline, x, y, kind, level)
+        if weights is None:
+            return -math.inf
+        broken = _broken(spline, far_x, far_y, weights, kind, level)
+        # a motion passes each place once, at the worst energy at most
+        worst_there = np.maximum(broken.reshape(LOOKED[1], LOOKED[0]).max(axis=0), 0.0)
+        cost = float(np.trapezoid(worst_there, far_x[: LOOKED[0]])) * spline.whole
+        value = float(ends @ weights) - cost
+        if cost <= SMALL * unit:
+            break
+        worst = np.argsort(broken)[-MORE:]
+        x, y = np.append(x, far_x[worst]), np.append(y, far_y[worst])
+    return value
+
+
+class _Spline:
+    """Values and derivatives of a tensor spline over ``s`` and a power of the kinetic energy, and of ``λ``, at places of a tube."""
+
+    def __init__(self, task: PathTask, tube: Tube) -> None:
+        self._task, self._tube = task, tube
+        self._s = task.stretched
+        self.whole = float(self._s[-1])
+        self._range = float(tube.low.min()) ** _POWER, float(tube.high.max()) ** _POWER
+        self._knots = tuple(
+            np.concatenate([np.zeros(3), np.linspace(0.0, 1.0, count + 1), np.ones(3)]) for count in KNOTS
+        )
+
+    def places(self, along: int, across: int) -> tuple[FloatArray, FloatArray]:
+        """Places in the tube: shares of the path, and kinetic energies."""
+        grid = np.meshgrid(0.5 - 0.5 * np.cos(np.pi * np.linspace(0, 1, along)), np.linspace(0.0, 1.0, across))
+        x, share = (part.ravel() for part in grid)
+        low, high = (np.interp(x * self.whole, self._s, part) ** _POWER for part in (self._tube.low, self._tube.high))
+        floor = (1e-6 * max(self._task.energies)) ** _POWER
+        return x, np.maximum(low + share * (high - low), floor) ** (1 / _POWER)
+
+    def inertia(self, x: FloatArray) -> FloatArray:
+        """Inertia at shares of the path."""
+        return np.interp(x * self.whole, self._s, self._task.inertia)
+
+    def rows(self, x: FloatArray, energy: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Give derivatives over ``s`` and over the kinetic energy, a row for each place; the column of ``λ`` is zero."""
+        bottom, top = self._range
+        y = np.clip((energy**_POWER - bottom) / (top - bottom), 0.0, 1.0)
+        dy = _POWER * energy ** (_POWER - 1) / (top - bottom)
+        along, across = _values(self._knots[0], x, 0), _values(self._knots[1], y, 0)
+        by_s = _products(_values(self._knots[0], x, 1), across) / self.whole
+        by_energy = _products(along, _values(self._knots[1], y, 1)) * dy[:, None]
+        none = np.zeros((len(x), 1))
+        return np.hstack([by_s, none]), np.hstack([by_energy, none])
+
+    def ends(self) -> FloatArray:
+        """Give what the bound is made of: the spline at the start less that at the end, less ``λ`` times the time."""
+        bottom, top = self._range
+        energy = np.array(self._task.energies)
+        y = np.clip((energy**_POWER - bottom) / (top - bottom), 0.0, 1.0)
+        both = _products(_values(self._knots[0], np.array([0.0, 1.0]), 0), _values(self._knots[1], y, 0))
+        return np.append(both[0] - both[1], -self._task.time)
+
+    @property
+    def stands(self) -> bool:
+        """Whether the tube holds standstill somewhere: then time may pass for nothing, and ``λ`` must not be negative."""
+        return bool((self._tube.low[1:-1] <= 0.0).any())
+
+
+_POWER = 0.5
+"""Power of the kinetic energy across the tube: the speed."""
+
+
+def _values(knots: FloatArray, x: FloatArray, order: int) -> FloatArray:
+    basis = BSpline(knots, np.eye(len(knots) - 4), 3)
+    return np.asarray(basis(x, nu=order))
+
+
+def _products(along: FloatArray, across: FloatArray) -> FloatArray:
+    return np.asarray(np.einsum("ij,ik->ijk", along, across).reshape(len(along), -1))
+
+
+def _parts(spline: _Spline, x: FloatArray, energy: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Linear part ``φ_s + λ (I/2) E^(-1/2)`` and ``φ_E``, a row for each place."""
+    by_s, by_energy = spline.rows(x, energy)
+    by_s[:, -1] = spline.inertia(x) / 2 / np.sqrt(energy)
+    return by_s, by_energy
+
+
+def _broken(
+    spline: _Spline, x: FloatArray, energy: FloatArray, weights: FloatArray, kind: str, level: float
+) -> FloatArray:
+    """By how much the inequality is broken at places, per stretched length."""
+    linear, slope = (part @ weights for part in _parts(spline, x, energy))
+    if kind == "square":  # φ_z² 9/64 with φ_z = φ_E 4/3 z^(1/3)
+        return np.asarray(0.25 * slope**2 * np.sqrt(energy) - linear)
+    root = np.sqrt(spline.inertia(x) / 2)
+    if kind == "peak":
+        return np.asarray(level * root * np.abs(slope) - linear)
+    # a unit of energy that φ_E leaves beyond its range costs at most that share of what can be drawn or given back
+    beyond = np.maximum(np.maximum(slope, -1.0 - slope), 0.0)
+    return np.asarray(np.maximum(-linear, 0.0) + 4.0 * level / spline.whole * beyond)
+
+
+def _best(spline: _Spline, x: FloatArray, energy: FloatArray, kind: str, level: float) -> FloatArray | None:
+    """Solve the cone programme on given places; None where the solver does not end."""
+    linear, slope = _parts(spline, x, energy)
+    count, size = len(x), linear.shape[1]
+    # the spline in units of the level, over time where the level is a torque
+    unit = np.full(size, level)
+    unit[-1] = level / spline.ends()[-1] * -1.0
+    linear, slope = linear * unit, slope * unit
+    goal = -(spline.ends() * unit) / level
+    if kind == "square":
+        scale = level / spline.whole
+        rows = np.empty((3 * count, size))
+        rows[0::3] = rows[1::3] = -0.5 * linear / scale
+        rows[2::3] = -0.5 * slope * (energy**0.25)[:, None] / math.sqrt(scale)
+        right = np.tile([0.5, -0.5, 0.0], count)
+        cones = [clarabel.SecondOrderConeT(3)] * count
+    elif kind == "drawn":
+        scale = level / spline.whole
+        rows = np.vstack([-linear / scale, slope, -slope])
+        right = np.concatenate([np.zeros(2 * count), np.ones(count)])
+        cones = [clarabel.NonnegativeConeT(3 * count)]
+    else:
+        push = level * np.sqrt(spline.inertia(x) / 2)[:, None] * slope
+        rows = np.vstack([push - linear, -push - linear]) / (level / spline.whole)
+        bounded = np.vstack([np.eye(size), -np.eye(size)])
+        rows = np.vstack([rows, bounded])
+        right = np.concatenate([np.zeros(2 * count), np.ones(2 * size)])
+        cones = [clarabel.NonnegativeConeT(2 * count + 2 * size)]
+    if spline.stands:
+        rows = np.vstack([rows, np.append(np.zeros(size - 1), -1.0)])
+        right = np.append(right, 0.0)
+        cones = [*cones, clarabel.NonnegativeConeT(1)]
+    settings = clarabel.DefaultSettings()
+    settings.verbose = False
+    regular = csc_array(REGULAR * np.eye(size))
+    answer = clarabel.DefaultSolver(regular, goal, csc_array(rows), right, cones, settings).solve()
+    weights = np.asarray(answer.x) * unit
+    return weights if np.isfinite(weights).all() else None
