@@ -11,18 +11,16 @@ from typing import TypeVar
 import numpy as np
 
 from camwright.bender.springback_file import EXAMPLE, find_table, load_springback
-from camwright.bender.toml_table import TomlTable, read_toml
+from camwright.bender.structure import BenderFile, limits_of
 from camwright.design.bender.moves import BenderDrive
-from camwright.profiles.bender.division import (
-    DivisionRule,
-    EqualSides,
-    EqualSteps,
-    FewestBends,
-)
+from camwright.house.files import read_text
+from camwright.house.setting_fields import Settings
+from camwright.house.settings import read_settings
+from camwright.house.toml_file import MOST_BYTES, toml_data
+from camwright.profiles.bender.division import DivisionRule
 from camwright.profiles.bender.nc_code import Flavour, Numbering
-from camwright.profiles.bender.springback import Interpolation, Springback
+from camwright.profiles.bender.springback import Springback
 from camwright.profiles.errors import InputError
-from camwright.profiles.limits import Limits
 from camwright.profiles.servo import Servo
 from camwright.validation.bender.collision import MouldEnvelope
 
@@ -112,57 +110,58 @@ def load_bender(path: Path | None = None) -> BenderJob:
         All faults of the file, each with its place.
     """
     place = BUNDLED_BENDER if path is None else path
-    data, text = read_toml(place, "bender job")
-    faults: list[str] = []
-    file = TomlTable(data, str(place), faults)
-    name = file.text("name")
-    rule = file.table("rule")
-    thickness, height = rule.quantity("thickness", "length"), rule.quantity("height", "length")
-    hardness, least_radius = rule.text("hardness"), rule.quantity("least_radius", "length")
-    divide = _division(file.table("arcs"))
-    back = file.table("springback")
-    table = back.text("table")
-    interpolation: Interpolation = back.option("interpolation", ("linear", "cubic"), "linear")
-    mould, feed = file.table("mould"), file.table("feed")
-    greatest, least_turn = mould.quantity("greatest_angle", "angle"), mould.quantity("least_turn", "angle")
-    finger, play = mould.quantity("finger_radius", "length"), mould.quantity("play", "angle", zero=True)
-    shape = np.array(mould.rows("envelope", ("length", "length"))).reshape(-1, 2)
-    mould_limits, mould_window = _limits(mould, "angular "), mould.quantity("window", "angle")
-    least_step = feed.quantity("least_step", "length")
-    feed_limits, feed_window = _limits(feed, ""), feed.quantity("window", "length")
-    servo = _servo(file.table("servo"))
-    drawing = file.table("drawing")
-    gap, flattening = drawing.quantity("gap", "length"), drawing.quantity("flattening", "length")
-    units = drawing.option("units", ("none", *UNITS), "none")
-    program = file.table("program")
-    flavour: Flavour = program.option("flavour", ("fagor", "iso"), "fagor")
-    first, last = program.integer("first_line", 4, 99_999_999, 10), program.integer("last_line", 4, 99_999_999, 9999)
-    for part in (rule, back, mould, feed, drawing, program, file):
-        part.close()
-    shown = f"{place}: "
-    envelope = _made(lambda: MouldEnvelope(shape[:, 0], shape[:, 1], thickness), shown + "[mould] envelope: ", faults)
-    numbering = _made(lambda: Numbering(first, last), shown + "[program]: ", faults)
-    springback = None
-    if table and hardness:
-        where = find_table(table, place.parent)
-        springback = _made(lambda: load_springback(where, thickness, hardness, interpolation), "", faults)
+    text = read_text(place, "bender job", MOST_BYTES)
+    known = Settings()
+    file, faults = read_settings(BenderFile, toml_data(text, str(place), "bender job"), known)
+    faults = [f"{place}: {fault}" for fault in faults]
+    greatest = known.numbers.get("mould.greatest_angle", 0.0)
     if not greatest < np.pi:
         faults.append(
-            f"{place} [mould] greatest_angle: {np.degrees(greatest):g}°; the mould turns by less than 180° to a side"
+            f"{place}: [mould] greatest_angle = {np.degrees(greatest):g}°: the mould turns by less than 180° to a side"
         )
+    if file is None:
+        raise InputError(*faults)
+    rule, mould, feed, drawing, program = file.rule, file.mould, file.feed, file.drawing, file.program
+    shape = np.array(mould.envelope).reshape(-1, 2)
+    envelope = _made(
+        lambda: MouldEnvelope(shape[:, 0], shape[:, 1], rule.thickness), f"{place}: [mould] envelope: ", faults
+    )
+    numbering = _made(lambda: Numbering(program.first_line, program.last_line), f"{place}: [program]: ", faults)
+    where = find_table(file.springback.table, place.parent)
+    springback = _made(
+        lambda: load_springback(where, rule.thickness, rule.hardness, file.springback.interpolation), "", faults
+    )
     if faults or envelope is None or numbering is None or springback is None:
         raise InputError(*faults)
     warnings = springback.warnings()
-    if table == EXAMPLE:
+    if file.springback.table == EXAMPLE:
         warnings += (
             f"{springback.name}: this springback table is an example, not measured on your rule; calibrate one",
         )
-    drive = BenderDrive(feed_limits, mould_limits, finger, play)
     return BenderJob(
-        name, thickness, height, least_radius, hardness, divide, springback, greatest, least_turn, least_step, drive,
-        envelope, servo, feed_window, mould_window, gap, flattening, None if units == "none" else units, flavour,
-        numbering, warnings, hashlib.sha256(text.encode()).hexdigest(),
-    )  # fmt: skip
+        name=file.name,
+        thickness=rule.thickness,
+        height=rule.height,
+        least_radius=rule.least_radius,
+        hardness=rule.hardness,
+        divide=file.arcs.division,
+        springback=springback,
+        greatest_angle=mould.greatest_angle,
+        least_turn=mould.least_turn,
+        least_step=feed.least_step,
+        drive=BenderDrive(limits_of(feed), limits_of(mould), mould.finger_radius, mould.play),
+        envelope=envelope,
+        servo=Servo(**file.servo.model_dump()),
+        feed_window=feed.window,
+        mould_window=mould.window,
+        gap=drawing.gap,
+        flattening=drawing.flattening,
+        units=None if drawing.units == "none" else drawing.units,
+        flavour=program.flavour,
+        numbering=numbering,
+        warnings=warnings,
+        sha256=hashlib.sha256(text.encode()).hexdigest(),
+    )
 
 
 def _made(make: Callable[[], Made], place: str, faults: list[str]) -> Made | None:
@@ -172,29 +171,3 @@ def _made(make: Callable[[], Made], place: str, faults: list[str]) -> Made | Non
     except InputError as error:
         faults += [place + fault for fault in error.faults]
         return None
-
-
-def _division(table: TomlTable) -> DivisionRule:
-    rule = table.option("rule", ("chord_error", "sides", "step"))
-    if rule == "sides":
-        divide: DivisionRule = EqualSides(table.integer("sides", 3, 100_000, 25))
-    elif rule == "step":
-        divide = EqualSteps(table.quantity("step", "length"))
-    else:
-        divide = FewestBends(table.quantity("chord_error", "length"))
-    table.close()
-    return divide
-
-
-def _limits(table: TomlTable, prefix: str) -> Limits:
-    speed = table.quantity("speed", "angular rate" if prefix else "speed")
-    acceleration = table.quantity("acceleration", f"{prefix}acceleration")
-    return Limits(speed, acceleration, table.quantity("jerk", f"{prefix}jerk"), reversal=True)
-
-
-def _servo(table: TomlTable) -> Servo:
-    bandwidth, damping = table.quantity("bandwidth", "angular rate"), table.number("damping", 0.0, 100.0, above=True)
-    gain, sample = table.quantity("position_gain", "gain"), table.quantity("sample_time", "time")
-    ahead = table.number("velocity_feedforward", 0.0, 1.0)
-    table.close()
-    return Servo(bandwidth, damping, gain, sample, ahead)

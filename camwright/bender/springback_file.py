@@ -7,8 +7,12 @@ from pathlib import Path
 
 import numpy as np
 
-from camwright.bender.toml_table import TomlTable, read_toml
-from camwright.profiles.bender.springback import PAPER_STEP, Interpolation, Springback
+from camwright.bender.structure import SpringbackFile
+from camwright.house.files import read_text
+from camwright.house.setting_fields import Settings
+from camwright.house.settings import read_settings
+from camwright.house.toml_file import MOST_BYTES, toml_data
+from camwright.profiles.bender.springback import Interpolation, Springback
 from camwright.profiles.errors import InputError
 
 BUNDLED = Path(__file__).parent / "tables"
@@ -43,28 +47,23 @@ def load_springback(path: Path, thickness: float, hardness: str, interpolation: 
     InputError
         The file has faults, has no table for the rule, or its table cannot be used.
     """
-    data, _ = read_toml(path, "springback table")
-    faults: list[str] = []
-    file = TomlTable(data, str(path), faults)
-    name = file.text("name")
-    found, known = None, []
-    for rule in file.tables("rule"):
-        this = (rule.quantity("thickness", "length"), rule.text("hardness"))
-        angles = np.array(rule.rows("angles", ("angle", "angle"))).reshape(-1, 2)
-        step = rule.quantity("radius_step", "angle", default=PAPER_STEP)
-        radii = np.array(rule.rows("radii", ("length", "angle"), needed=False)).reshape(-1, 2)
-        rule.close()
-        known.append(f"{1e3 * this[0]:g} mm {this[1]}")
-        if math.isclose(this[0], thickness, rel_tol=1e-9) and this[1] == hardness:
-            found = (angles, radii, step)
-    file.close()
-    if faults:
-        raise InputError(*faults)
+    data = toml_data(read_text(path, "springback table", MOST_BYTES), str(path), "springback table")
+    file, faults = read_settings(SpringbackFile, data, Settings())
+    if file is None:
+        raise InputError(*(f"{path}: {fault}" for fault in faults))
+    found = next(
+        (
+            rule
+            for rule in file.rule
+            if math.isclose(rule.thickness, thickness, rel_tol=1e-9) and rule.hardness == hardness
+        ),
+        None,
+    )
     if found is None:
         raise InputError(
             f"{path}: no table for a rule of {1e3 * thickness:g} mm, hardness {hardness!r}; the file has "
-            f"{', '.join(known)}; "
+            f"{', '.join(f'{1e3 * rule.thickness:g} mm {rule.hardness}' for rule in file.rule)}; "
             "choose another rule, or measure this one: camwright bend --calibrate"
         )
-    angles, radii, step = found
-    return Springback(name, angles[:, 0], angles[:, 1], radii[:, 0], radii[:, 1], step, interpolation)
+    angles, radii = np.array(found.angles).reshape(-1, 2), np.array(found.radii).reshape(-1, 2)
+    return Springback(file.name, angles[:, 0], angles[:, 1], radii[:, 0], radii[:, 1], found.radius_step, interpolation)

@@ -14,7 +14,8 @@ from camwright.cli.options import Json, Quiet
 from camwright.cli.views.numbers import millimetres, number
 from camwright.cli.views.parts import new_text
 from camwright.house.output import Voice
-from camwright.jobs.job import MOST_BYTES, Job, load_job, parse_job
+from camwright.house.toml_file import MOST_BYTES
+from camwright.jobs.job import Job, load_job, parse_job
 from camwright.jobs.machine_words import machine_words
 from camwright.profiles.errors import InputError
 

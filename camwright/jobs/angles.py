@@ -8,7 +8,7 @@ from camwright.jobs.fields import Known
 from camwright.profiles.cut import Cut
 from camwright.profiles.machines import Machine
 
-_LIMITS = ("speed", "acceleration", "jerk")
+_LIMITS = ("limits.speed", "limits.acceleration", "limits.jerk")
 
 
 def settle_angles(known: Known, machine: Machine | None) -> None:
@@ -23,12 +23,12 @@ def settle_angles(known: Known, machine: Machine | None) -> None:
     for key in _LIMITS:
         if key in angles:
             numbers[key] = angles[key] * machine.slave_turn / (2.0 * math.pi)
-    ratio = numbers.get("sync_ratio")
+    ratio = numbers.get("cut.sync_ratio")
     if ratio is None:
         return
-    if "sync_zone" in angles:
-        numbers["sync_zone"] = machine.zone_of_angle(angles["sync_zone"], ratio)
-    zone = numbers.get("sync_zone")
+    if "cut.sync_zone" in angles:
+        numbers["cut.sync_zone"] = machine.zone_of_angle(angles["cut.sync_zone"], ratio)
+    zone = numbers.get("cut.sync_zone")
     if zone is not None:
         _settle_shear_zone(known, machine, Cut(2.0 * zone, 1.0, zone, 0.0, 0.0, 1e-4, sync_ratio=ratio))
 
@@ -36,14 +36,14 @@ def settle_angles(known: Known, machine: Machine | None) -> None:
 def _settle_shear_zone(known: Known, machine: Machine, cut: Cut) -> None:
     """Turn the angles of the shear zone and of its start into lengths on the master."""
     numbers, angles = known.numbers, known.angles
-    if "shear_zone_at" in angles:
-        numbers["shear_zone_at"] = machine.master_of_angle(angles["shear_zone_at"], cut)
-    if "shear_zone" not in angles:
+    if "cut.shear_zone_at" in angles:
+        numbers["cut.shear_zone_at"] = machine.master_of_angle(angles["cut.shear_zone_at"], cut)
+    if "cut.shear_zone" not in angles:
         return
-    at = numbers.get("shear_zone_at")
+    at = numbers.get("cut.shear_zone_at")
     if at is not None:
         start = machine.angle_of_master(at, cut)
-        numbers["shear_zone"] = machine.master_of_angle(start + angles["shear_zone"], cut) - at
+        numbers["cut.shear_zone"] = machine.master_of_angle(start + angles["cut.shear_zone"], cut) - at
     else:  # at the end of the sync zone
         end = machine.angle_of_master(cut.sync_zone, cut)
-        numbers["shear_zone"] = cut.sync_zone - machine.master_of_angle(end - angles["shear_zone"], cut)
+        numbers["cut.shear_zone"] = cut.sync_zone - machine.master_of_angle(end - angles["cut.shear_zone"], cut)

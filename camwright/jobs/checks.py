@@ -34,17 +34,17 @@ def _mm(value: float) -> str:
 
 def _zones(known: Known) -> Iterator[str]:
     """Check that the zones fit into what holds them."""
-    sync = known.numbers.get("sync_zone")
+    sync = known.numbers.get("cut.sync_zone")
     if sync is None:
         return
     numbers = known.numbers
-    length = numbers.get("length")
+    length = numbers.get("cut.length")
     if length is not None and sync >= length:
         yield (
             f"[cut] sync_zone = {_mm(sync)}: not below [cut] length = {_mm(length)}, so no return zone is left; "
             "shorten the sync zone or cut longer"
         )
-    shear, at = numbers.get("shear_zone"), numbers.get("shear_zone_at")
+    shear, at = numbers.get("cut.shear_zone"), numbers.get("cut.shear_zone_at")
     if shear is not None and shear > sync:
         yield (
             f"[cut] shear_zone = {_mm(shear)}: above [cut] sync_zone = {_mm(sync)}, in which it must lie; "

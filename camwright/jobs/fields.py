@@ -1,16 +1,15 @@
-"""Fields of job files: numbers with units and bare numbers, read once and kept so that they can be checked against others."""
+"""Fields that only job files have: limits in the slave's own unit, zones as angles, the motor's curve; and what a file is known to say."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import cast
+from typing import Any, cast
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationInfo, WithJsonSchema
+from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
+from camwright.house.setting_fields import Settings, keep, quantity_schema, read_quantity, refusal
 from camwright.house.units import KINDS, quantity, shown
 from camwright.profiles.errors import InputError
 from camwright.profiles.machines import MACHINES, Machine
@@ -23,17 +22,15 @@ _CURVE = '[["0 rpm", "12 N m"], ["3000 rpm", "8 N m"]]'
 
 
 @dataclass
-class Known:
-    """What is right in itself in a job file, whatever else is wrong.
+class Known(Settings):
+    """What is right in itself in a job file, whatever else is wrong; its numbers by their place.
 
     Parameters
     ----------
     kind
         Kind of the machine; nothing if the file names none that is known.
-    numbers
-        Numbers by key, in SI units; those of the machine by `machine_key`.
     angles
-        By key what is written as an angle (rad) or a speed, acceleration or jerk of it, until the machine is known.
+        By its place what is written as an angle (rad) or a speed, acceleration or jerk of it, until the machine is known.
     choices
         Words of the machine by key, those that are known.
     spreads
@@ -43,7 +40,6 @@ class Known:
     """
 
     kind: str | None = None
-    numbers: dict[str, float] = field(default_factory=dict)
     angles: dict[str, float] = field(default_factory=dict)
     choices: dict[str, str] = field(default_factory=dict)
     spreads: dict[str, Spread] = field(default_factory=dict)
@@ -59,48 +55,9 @@ class Known:
         """Whether the slave is an angle."""
         return self.machine is not None and self.machine.slave_unit == "rad"
 
-
-def machine_key(key: str) -> str:
-    """Key under which a number of the machine is kept: a machine may use any word, those of other tables too."""
-    return f"machine.{key}"
-
-
-class Table(BaseModel):
-    """A table of a job file: no unknown keys, no conversions."""
-
-    model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False)
-
-
-def refusal(message: str) -> PydanticCustomError:
-    """Make the error of a value whose message is complete but for its place."""
-    return PydanticCustomError("value", "{message}", {"message": message})
-
-
-def keep(value: float, info: ValidationInfo, key: str | None = None) -> float:
-    """Keep a number under its key, or another one, so that it can be checked although the file has faults."""
-    cast(Known, info.context).numbers[key or cast(str, info.field_name)] = value
-    return value
-
-
-def quantity_field(
-    kind: str,
-    *,
-    zero: bool = False,
-    signed: bool = False,
-    example: str | None = None,
-    kept_as: str | None = None,
-    times: float = 1.0,
-) -> tuple[BeforeValidator, WithJsonSchema]:
-    """Make the parts of a field that is written as a number with a unit; arguments as `camwright.house.units.quantity`.
-
-    ``kept_as`` is the key under which it is kept, the field's own if not given; ``times`` what it is kept multiplied by.
-    """
-
-    def read(value: object, info: ValidationInfo) -> float:
-        return keep(times * _read(value, kind, zero=zero, signed=signed, example=example), info, kept_as)
-
-    least = "of either sign" if signed else "zero or more" if zero else "greater than zero"
-    return BeforeValidator(read), _schema(f"{KINDS[kind].name}, {least}", [example or KINDS[kind].example], signed)
+    def example(self, path: str, examples: list[Any]) -> Any:
+        """Choose what a message tells to write at a place: limits have the unit of the slave."""
+        return examples[-1 if path.startswith("limits.") and self.turns else 0]
 
 
 def slave_field(straight: str, turning: str, example: str) -> tuple[BeforeValidator, WithJsonSchema]:
@@ -117,7 +74,7 @@ def slave_field(straight: str, turning: str, example: str) -> tuple[BeforeValida
     def read(value: object, info: ValidationInfo) -> float | None:
         machine, turns = cast(Known, info.context).kind, cast(Known, info.context).turns
         if not turns and _is(value, turning) and _by_angle(info):
-            _keep_angle(_read(value, turning), info)
+            _keep_angle(read_quantity(value, turning), info)
             return None
         wanted, other = (turning, straight) if turns else (straight, turning)
         shown_example = example if turns else KINDS[straight].example
@@ -127,12 +84,12 @@ def slave_field(straight: str, turning: str, example: str) -> tuple[BeforeValida
                 f'{shown(value)}: {KINDS[other].name}, but the slave of a {machine} {motion}; write e.g. "{shown_example}"'
             )
         if machine is None and _is(value, turning):
-            return _read(value, turning)  # right for a crank, and what the machine is nobody knows
-        return keep(_read(value, wanted, example=shown_example), info)
+            return read_quantity(value, turning)  # right for a crank, and what the machine is nobody knows
+        return keep(read_quantity(value, wanted, example=shown_example), info)
 
     turning_nouns = " or ".join(machine.noun for machine in MACHINES.values() if machine.slave_unit == "rad")
     words = f"{KINDS[straight].name}, of a {turning_nouns} {KINDS[turning].name}, of a {_knowing()} either, greater than zero"
-    return BeforeValidator(read), _schema(words, [KINDS[straight].example, example], signed=False)
+    return BeforeValidator(read), quantity_schema(words, [KINDS[straight].example, example])
 
 
 def zone_field(kind: str, *, zero: bool = False) -> tuple[BeforeValidator, WithJsonSchema]:
@@ -143,17 +100,17 @@ def zone_field(kind: str, *, zero: bool = False) -> tuple[BeforeValidator, WithJ
 
     def read(value: object, info: ValidationInfo) -> float | None:
         if not _is(value, "angle", zero=zero):
-            return keep(_read(value, kind, zero=zero), info)
+            return keep(read_quantity(value, kind, zero=zero), info)
         if cast(Known, info.context).machine is not None and not _by_angle(info):
             raise refusal(
                 f'{shown(value)}: an angle, which only a {_knowing()} knows; write e.g. "{KINDS[kind].example}"'
             )
-        _keep_angle(_read(value, "angle", zero=zero), info)
+        _keep_angle(read_quantity(value, "angle", zero=zero), info)
         return None
 
     least = "zero or more" if zero else "greater than zero"
     words = f"{KINDS[kind].name}, of a {_knowing()} also {KINDS['angle'].name}, {least}"
-    return BeforeValidator(read), _schema(words, [KINDS[kind].example, "60 deg"], signed=False)
+    return BeforeValidator(read), quantity_schema(words, [KINDS[kind].example, "60 deg"])
 
 
 def _knowing() -> str:
@@ -168,51 +125,9 @@ def _by_angle(info: ValidationInfo) -> bool:
 
 
 def _keep_angle(value: float, info: ValidationInfo) -> None:
-    """Keep an angle under its key until the machine is known."""
-    cast(Known, info.context).angles[cast(str, info.field_name)] = value
-
-
-def number_field(
-    least: float, greatest: float, words: str, example: str, *, above: bool = False, kept_as: str | None = None
-) -> BeforeValidator:
-    """Make the validator of a field that is written as a bare number in a range.
-
-    Parameters
-    ----------
-    least, greatest
-        The range.
-    words
-        What a number outside is told.
-    example
-        A number to write.
-    above
-        Whether the least value itself is outside.
-    kept_as
-        As of `quantity_field`.
-    """
-
-    def read(value: object, info: ValidationInfo) -> float:
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            raise refusal(f"{shown(value)}: not a number; write e.g. {info.field_name} = {example}")
-        if not math.isfinite(value) or not (least < value <= greatest if above else least <= value <= greatest):
-            raise refusal(f"{shown(value)}: {words}")
-        return keep(float(value), info, kept_as)
-
-    return BeforeValidator(read)
-
-
-def whole_field(least: int, greatest: int, example: int, *, kept_as: str | None = None) -> BeforeValidator:
-    """Make the validator of a field that is written as a whole number in a range; ``kept_as`` as of `quantity_field`."""
-
-    def read(value: object, info: ValidationInfo) -> int:
-        if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= greatest:
-            raise refusal(
-                f"{shown(value)}: not a whole number from {least} to {greatest}; write e.g. {info.field_name} = {example}"
-            )
-        keep(value, info, kept_as)
-        return value
-
-    return BeforeValidator(read)
+    """Keep an angle under its place until the machine is known."""
+    known = cast(Known, info.context)
+    known.angles[known.path(cast(str, info.field_name))] = value
 
 
 def curve_field() -> tuple[BeforeValidator, WithJsonSchema]:
@@ -228,7 +143,10 @@ def curve_field() -> tuple[BeforeValidator, WithJsonSchema]:
                     f"{shown(value)}: point {number}: {shown(point)} is not a pair of speed and torque; write e.g. {_CURVE}"
                 )
             try:
-                pair = _read(point[0], "angular rate", zero=True, example="3000 rpm"), _read(point[1], "torque")
+                pair = (
+                    read_quantity(point[0], "angular rate", zero=True, example="3000 rpm"),
+                    read_quantity(point[1], "torque"),
+                )
             except PydanticCustomError as error:
                 raise refusal(f"{shown(value)}: point {number}: {error.message()}") from error
             before = value[number - 2]
@@ -260,25 +178,6 @@ def curve_field() -> tuple[BeforeValidator, WithJsonSchema]:
     return BeforeValidator(read), WithJsonSchema(schema)
 
 
-def checked(check: Callable[[object], str | None]) -> BeforeValidator:
-    """Make the validator of a text from a check that tells what is wrong with it."""
-
-    def read(value: object) -> object:
-        message = check(value)
-        if message is not None:
-            raise refusal(message)
-        return value
-
-    return BeforeValidator(read)
-
-
-def _read(value: object, kind: str, *, zero: bool = False, signed: bool = False, example: str | None = None) -> float:
-    try:
-        return quantity(value, kind, zero=zero, signed=signed, example=example)
-    except InputError as error:
-        raise refusal(str(error)) from error
-
-
 def _is(value: object, kind: str, *, zero: bool = False) -> bool:
     """Whether a value is a quantity of a kind, in range."""
     return isinstance(value, str) and _text_is(value, kind, zero)
@@ -292,18 +191,3 @@ def _text_is(text: str, kind: str, zero: bool) -> bool:
     except InputError:
         return False
     return True
-
-
-def _schema(words: str, examples: list[str], signed: bool) -> WithJsonSchema:
-    """Make the JSON Schema of a number with a unit."""
-    sign = "[+-]?" if signed else "[+]?"
-    return WithJsonSchema(
-        {
-            "type": "string",
-            "description": f"{words}, as a number and a unit",
-            "examples": examples,
-            "minLength": 3,
-            "maxLength": 100,
-            "pattern": rf"^\s*{sign}([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{{1,3}})?\s*([A-Za-z°µμ/]|1\s*/).*$",
-        }
-    )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -11,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from camwright.house.files import read_text
-from camwright.house.toml_faults import toml_fault
+from camwright.house.toml_file import MOST_BYTES, toml_data
 from camwright.jobs.checks import conflicts
 from camwright.jobs.fields import Known
 from camwright.jobs.machine_checks import moved_by_nothing
@@ -37,9 +36,6 @@ from camwright.profiles.task import Task
 
 BUNDLED_JOB = Path(__file__).parent / "paper-600.toml"
 """The paper's job, read when no job file is named."""
-
-MOST_BYTES = 1 << 20
-"""The most bytes that a job file may have."""
 
 
 @dataclass(frozen=True)
@@ -275,13 +271,7 @@ def parse_job(text: str, place: str) -> Job:
     InputError
         It is not TOML, or it has faults.
     """
-    try:
-        data = tomllib.loads(text.removeprefix("\ufeff"))
-    except RecursionError as error:
-        raise InputError(f"{place}: not a job file: its arrays or tables are nested too deeply") from error
-    except ValueError as error:  # TOMLDecodeError, and integers beyond Python's limit of digits
-        raise InputError(f"{place}: not TOML: {toml_fault(text, error)}") from error
-    return read_job(data, text, place)
+    return read_job(toml_data(text, place, "job file"), text, place)
 
 
 def read_job(data: dict[str, Any], text: str | None, place: str) -> Job:
@@ -307,8 +297,8 @@ def _job(file: JobFile, known: Known, machine: Machine) -> Job:
     """Make the job of a file without faults; fill in what it leaves out."""
     cut, objective, numbers = file.cut, file.objective, known.numbers
     servo = Servo(**file.servo.model_dump(exclude={"tolerance"}))
-    zone, shear = numbers["sync_zone"], numbers["shear_zone"]
-    at = numbers.get("shear_zone_at", zone - shear)
+    zone, shear = numbers["cut.sync_zone"], numbers["cut.shear_zone"]
+    at = numbers.get("cut.shear_zone_at", zone - shear)
     return Job(
         name=file.name,
         machine=machine,
@@ -324,9 +314,9 @@ def _job(file: JobFile, known: Known, machine: Machine) -> Job:
             shaped=objective.servo_aware and objective.command == "shaped",
         ),
         limits=Limits(
-            numbers["speed"],
-            numbers["acceleration"],
-            numbers["jerk"],
+            numbers["limits.speed"],
+            numbers["limits.acceleration"],
+            numbers["limits.jerk"],
             file.limits.reversal,
             None if file.limits.motor is None else MotorCurve(file.limits.motor),
         ),

@@ -146,7 +146,7 @@ def _range(entry: dict[str, Any]) -> str:
 def _example(path: str, machine: str, entry: dict[str, Any]) -> str:
     """Write an example of a key."""
     if "examples" not in entry:
-        return written(entry.get("default", entry.get("enum", ["paper-600" if path == "name" else ""])[0]))
+        return written(entry.get("default", entry.get("enum", [""])[0]))
     turning = path.startswith("limits.") and machine and MACHINES[machine].slave_unit == "rad"
     return written(entry["examples"][-1 if turning else 0])
 

@@ -18,15 +18,15 @@ def machine_conflicts(known: Known, machine: Machine | None) -> list[str]:
     own = [] if machine is None else [words(fault) for fault in machine.faults()]
     if own:
         return own
-    zone, ratio = known.numbers.get("sync_zone"), known.numbers.get("sync_ratio")
-    line_speed, speed = known.numbers.get("line_speed"), known.numbers.get("speed")
+    zone, ratio = known.numbers.get("cut.sync_zone"), known.numbers.get("cut.sync_ratio")
+    line_speed, speed = known.numbers.get("cut.line_speed"), known.numbers.get("limits.speed")
     if ratio is None:
         return []
     faults: list[str] = []
     pace = None if known.turns else ratio  # at least; more where the tool does not move like its slave
     if machine is not None and zone is not None:
         cut = Cut(2.0 * zone, 1.0, zone, 0.0, 0.0, 1e-4, sync_ratio=ratio)
-        faults += [words(fault) for fault in machine.zone_faults(cut, known.angles.get("sync_zone"))]
+        faults += [words(fault) for fault in machine.zone_faults(cut, known.angles.get("cut.sync_zone"))]
         pace = pace if faults else machine.sync_pace(cut)
     if pace and line_speed and speed and pace * line_speed > speed * (1 + 1e-12):
         faults.append(_slow(known, pace, machine))
@@ -51,12 +51,12 @@ def moved_by_nothing(machine: Machine, objective: ObjectiveName, *, with_curve: 
 
 def _slow(known: Known, pace: float, made: Machine | None) -> str:
     """Say that the slave may not run as fast as the sync zone needs."""
-    limit, line_speed = known.numbers["speed"], known.numbers["line_speed"]
+    limit, line_speed = known.numbers["limits.speed"], known.numbers["cut.line_speed"]
     line = f"[cut] line_speed = {line_speed * 60:.10g} m/min"
     way_out = f"run the line at {_down(limit / pace * 60)} m/min at most or raise the limit"
     machine = known.machine
     noun, place = ("slave", "") if machine is None else (machine.noun, machine.place_name)
-    by_angle = made is not None and made.slave_turn is not None and "speed" in known.angles
+    by_angle = made is not None and made.slave_turn is not None and "limits.speed" in known.angles
     if known.turns or by_angle:
         rpm = 60.0 / made.slave_turn if by_angle and made is not None and made.slave_turn else 30.0 / math.pi
         given = place and f"machine.{place}" in known.numbers

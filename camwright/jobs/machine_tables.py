@@ -12,22 +12,31 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, create_model
 
+from camwright.house.setting_fields import Table, number_field, quantity_field, whole_field
 from camwright.house.units import KINDS
-from camwright.jobs.fields import Known, Table, machine_key, number_field, quantity_field, whole_field
+from camwright.jobs.fields import Known
 from camwright.profiles.machines import MACHINES, Machine
 from camwright.profiles.machines.fields import Choice, Instead, MachineField, Number, Quantity, Whole, fields_of
 
 
+class MachineTable(Table):
+    """The table of any machine."""
+
+    _place = "machine"
+
+
 @cache
-def table_of(machine: type[Machine]) -> type[Table]:
+def table_of(machine: type[Machine]) -> type[MachineTable]:
     """Make the table of a kind of machine: its keys with what they take, and their defaults."""
     kind = Annotated[Literal[machine.kind], Field(description="which machine", examples=[machine.kind])]  # type: ignore[name-defined]
     keys: dict[str, Any] = {}
     for each in fields_of(machine):
         keys[each.key] = _key(each)
         if isinstance(each.about, Quantity) and each.about.instead is not None:
-            keys[each.about.instead.key] = _instead(each.about, each.about.instead, machine_key(each.key))
-    return create_model(f"{machine.__name__}Table", __base__=Table, __doc__=machine.summary, kind=(kind, ...), **keys)
+            keys[each.about.instead.key] = _instead(each.about, each.about.instead, each.key)
+    return create_model(
+        f"{machine.__name__}Table", __base__=MachineTable, __doc__=machine.summary, kind=(kind, ...), **keys
+    )
 
 
 def machine_tables() -> Any:
@@ -38,23 +47,19 @@ def machine_tables() -> Any:
 
 def _key(each: MachineField) -> tuple[Any, Any]:
     """Make a key of a machine table: its type with validators and schema, and its default."""
-    about, kept_as = each.about, machine_key(each.key)
+    about = each.about
     default: Any = ... if each.required else None if each.free else each.default
     if isinstance(about, Quantity):
         default = None if about.instead is not None and each.required else default  # `either_faults` asks for either
-        parts = quantity_field(
-            about.kind, zero=about.zero, signed=about.signed, example=about.example or None, kept_as=kept_as
-        )
+        parts = quantity_field(about.kind, zero=about.zero, signed=about.signed, example=about.example or None)
         known = [] if default in (..., None) else [Field(json_schema_extra={"default": _written(about, default)})]
         return Annotated[(float | None if default is None else float, *parts, *known)], default
     if isinstance(about, Whole):
-        whole = whole_field(about.least, about.greatest, about.example, kept_as=kept_as)
+        whole = whole_field(about.least, about.greatest, about.example)
         extra: dict[str, Any] = {"minimum": about.least, "maximum": about.greatest}
         return Annotated[int, whole, Field(description=about.description, json_schema_extra=extra)], default
     if isinstance(about, Number):
-        number = number_field(
-            about.above, about.greatest, about.advice, f"{about.example:g}", above=True, kept_as=kept_as
-        )
+        number = number_field(about.above, about.greatest, about.advice, f"{about.example:g}", above=True)
         extra = {"exclusiveMinimum": about.above, "maximum": about.greatest}
         shown = Field(description=about.description, examples=[about.example], json_schema_extra=extra)
         return Annotated[float, number, shown], default
@@ -99,7 +104,7 @@ def machine_of(known: Known) -> Machine | None:
         found = (
             known.choices.get(each.key)
             if isinstance(each.about, Choice)
-            else known.numbers.get(machine_key(each.key), each.default if each.free else None)
+            else known.numbers.get(f"machine.{each.key}", each.default if each.free else None)
         )
         if found is None:
             return None

@@ -24,9 +24,9 @@ def servo_conflicts(known: Known) -> Iterator[str]:
     yield from late
     ranges = list(_ranges(known))
     yield from ranges
-    if late or not all(key in values for key in _NEEDED):
+    if late or not all(f"servo.{key}" in values for key in _NEEDED):
         return  # a servo that samples so late is unstable for this reason alone
-    servo = Servo(**{key: values[key] for key in _NEEDED})
+    servo = Servo(**{key: values[f"servo.{key}"] for key in _NEEDED})
     radius = spectral_radius(servo)
     if not radius < 1.0:
         yield (
@@ -50,10 +50,10 @@ def tolerance_of(known: Known, servo: Servo) -> ServoTolerance:
 
 def _sampling(values: Mapping[str, float], *, servo_aware: bool) -> Iterator[str]:
     """Check the sample time against the cycle and, of a servo-aware design, against the shear zone."""
-    sample, length, line_speed = (values.get(key) for key in ("sample_time", "length", "line_speed"))
+    sample, length, line_speed = (values.get(key) for key in ("servo.sample_time", "cut.length", "cut.line_speed"))
     if sample is None or line_speed is None:
         return
-    shear = values.get("shear_zone")
+    shear = values.get("cut.shear_zone")
     if length is not None and sample > length / line_speed:
         yield (
             f"[servo] sample_time = {_written('sample_time', sample)}: longer than the cycle of "
@@ -72,7 +72,7 @@ def _sampling(values: Mapping[str, float], *, servo_aware: bool) -> Iterator[str
 def _ranges(known: Known) -> Iterator[str]:
     """Check that every range has some width and contains the servo's own value."""
     for key, spread in known.spreads.items():
-        nominal = known.numbers.get(key)
+        nominal = known.numbers.get(f"servo.{key}")
         if nominal is None:
             continue
         own = f"[servo] {key} = {_written(key, nominal)}"

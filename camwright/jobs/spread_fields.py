@@ -9,8 +9,9 @@ from typing import cast
 
 from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
 
+from camwright.house.setting_fields import refusal
 from camwright.house.units import KINDS, quantity, shown
-from camwright.jobs.fields import Known, Spread, refusal
+from camwright.jobs.fields import Known, Spread
 from camwright.profiles.errors import InputError
 
 _PERCENT = re.compile(r"\s*([0-9]+\.?[0-9]*|\.[0-9]+)\s*%\s*")

@@ -1,30 +1,18 @@
-"""The structure of a job file: its tables and keys as pydantic models, its JSON Schema, its faults in plain words."""
+"""The structure of a job file: its tables and keys as pydantic models, and its JSON Schema."""
 
 from __future__ import annotations
 
-import difflib
-import json
 from functools import cache
-from typing import Annotated, Any, Literal, cast
+from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, Field, ValidationError, create_model
-from pydantic_core import ErrorDetails
+from pydantic import Field, create_model
 
+from camwright.house.servo_table import ServoNumbers
+from camwright.house.setting_fields import Table, checked, number_field, quantity_field, whole_field
+from camwright.house.settings import read_settings
 from camwright.house.units import shown
 from camwright.jobs.angles import settle_angles
-from camwright.jobs.fields import (
-    Known,
-    Spread,
-    Table,
-    checked,
-    curve_field,
-    machine_key,
-    number_field,
-    quantity_field,
-    slave_field,
-    whole_field,
-    zone_field,
-)
+from camwright.jobs.fields import Known, Spread, curve_field, slave_field, zone_field
 from camwright.jobs.machine_tables import either_faults, either_of, machine_of, machine_tables, table_of
 from camwright.jobs.spread_fields import aware_only, number_spread, quantity_spread
 from camwright.profiles.machines import MACHINES, Machine
@@ -56,6 +44,8 @@ def _name(value: object) -> str | None:
 class CutTable(Table):
     """What is cut, how fast, and where the knife must be in sync."""
 
+    _place = "cut"
+
     length: Annotated[float, *quantity_field("length")]
     line_speed: Annotated[float, *quantity_field("speed")]
     sync_zone: Annotated[float | None, *zone_field("length")]
@@ -77,6 +67,8 @@ class CutTable(Table):
 class LimitsTable(Table):
     """What the slave may do."""
 
+    _place = "limits"
+
     speed: Annotated[float | None, *slave_field("speed", "angular rate", "300 rpm")]
     acceleration: Annotated[float | None, *slave_field("acceleration", "angular acceleration", "2000 rad/s^2")]
     jerk: Annotated[float | None, *slave_field("jerk", "angular jerk", "50000 rad/s^3")]
@@ -87,6 +79,8 @@ class LimitsTable(Table):
 class ServoToleranceTable(Table):
     """Ranges in which the servo's parameters are known to lie."""
 
+    _place = "servo.tolerance"
+
     bandwidth: Annotated[Spread | None, *quantity_spread("angular rate", "108 rad/s", "132 rad/s")] = None
     damping: Annotated[Spread | None, *number_spread(100.0, "the damping ratio", 0.63, 0.77)] = None
     position_gain: Annotated[Spread | None, *quantity_spread("gain", "33 1/s", "37 1/s")] = None
@@ -94,26 +88,9 @@ class ServoToleranceTable(Table):
     dead_time: Annotated[Spread | None, *quantity_spread("time", "0 ms", "1 ms", zero=True)] = None
 
 
-class ServoTable(Table):
+class ServoTable(ServoNumbers):
     """The discrete servo."""
 
-    bandwidth: Annotated[float, *quantity_field("angular rate")]
-    damping: Annotated[
-        float,
-        number_field(0.0, 100.0, "the damping ratio must be above 0 (else the velocity loop never settles) and at most 100; "
-                     "drives have 0.7 to 0.9", "0.7", above=True),
-        Field(description="damping ratio of the velocity loop", examples=[0.7],
-              json_schema_extra={"exclusiveMinimum": 0, "maximum": 100}),
-    ]  # fmt: skip
-    position_gain: Annotated[float, *quantity_field("gain")]
-    sample_time: Annotated[float, *quantity_field("time")]
-    velocity_feedforward: Annotated[
-        float,
-        number_field(0.0, 1.0, "it is the share of the command's velocity that is fed forward, from 0 (none) to 1 (all, no "
-                     "following error at constant speed); more makes the axis run ahead of its command", "1.0"),
-        Field(description="share of the command's velocity fed forward", examples=[1.0],
-              json_schema_extra={"minimum": 0, "maximum": 1}),
-    ]  # fmt: skip
     dead_time: Annotated[float, *quantity_field("time", zero=True), Field(json_schema_extra={"default": "0 ms"})] = 0.0
     lead_time: Annotated[float, *quantity_field("time", zero=True), Field(json_schema_extra={"default": "0 ms"})] = 0.0
     tolerance: ServoToleranceTable | None = None
@@ -121,6 +98,8 @@ class ServoTable(Table):
 
 class ObjectiveTable(Table):
     """What is made least, and whether of the command alone or with the axis in mind."""
+
+    _place = "objective"
 
     servo_aware: Annotated[
         bool, Field(description="whether the axis, not only its command, keeps the sync tolerance")
@@ -143,6 +122,8 @@ class ObjectiveTable(Table):
 class OutputTable(Table):
     """How the cam is written."""
 
+    _place = "output"
+
     origin: Annotated[
         Literal["return", "cut"], Field(description="master zero: start of the return zone, or mid sync zone")
     ] = "return"
@@ -161,6 +142,7 @@ class JobFile(Table):
         checked(_name),
         Field(
             description="names the job and its output directory",
+            examples=["paper-600"],
             json_schema_extra={"minLength": 1, "maxLength": _LONGEST_NAME, "pattern": r'^[^/\\<>:"|?*\n\r]+$'},
         ),
     ]
@@ -224,18 +206,10 @@ def read_structure(data: dict[str, Any]) -> tuple[JobFile | None, Known, list[st
         known.choices = _choices(machine, known)
     objective = data.get("objective")
     known.servo_aware = isinstance(objective, dict) and objective.get("servo_aware", False) is not False
-    for name in JobFile.model_fields:
-        if isinstance(data.get(name), dict):
-            _fill_in(known, name, data[name], _model_at([name], known))
     own = [] if known.machine is None or not isinstance(machine, dict) else list(either_faults(known.machine, machine))
-    file, faults = None, own
-    try:
-        found = job_model().model_validate(data, context=known)
-        file = None if own else found
-    except ValidationError as error:
-        faults = [*own, *(_fault(entry, known) for entry in error.errors(include_url=False))]
+    file, faults = read_settings(job_model(), data, known)
     settle_angles(known, None if own else machine_of(known))
-    return file, known, faults
+    return None if own else file, known, [*own, *faults]
 
 
 def _choices(table: dict[str, Any], known: Known) -> dict[str, str]:
@@ -246,73 +220,3 @@ def _choices(table: dict[str, Any], known: Known) -> dict[str, str]:
         if isinstance(each.about, Choice) and word in each.about.words:
             found[each.key] = word
     return found
-
-
-def _fill_in(known: Known, name: str, table: dict[str, Any], model: type[BaseModel] | None) -> None:
-    """Keep the default numbers of what a table leaves out."""
-    for key, field in model.model_fields.items() if model is not None else ():
-        if key not in table and isinstance(field.default, int | float) and not isinstance(field.default, bool):
-            known.numbers[machine_key(key) if name == "machine" else key] = field.default
-
-
-def _fault(error: ErrorDetails, known: Known) -> str:
-    """Say what is wrong, where, and the way out."""
-    parts = [str(part) for part in error["loc"]]
-    if parts[0] == "machine" and len(parts) > 2:  # its kind, which pydantic puts between its table and the key
-        del parts[1]
-    place, key = parts[:-1], parts[-1]
-    kind, value = error["type"], error["input"]
-    if kind in ("union_tag_not_found", "union_tag_invalid"):
-        if kind == "union_tag_not_found":
-            return '[machine] kind: missing; add e.g. kind = "rotary_knife"'
-        return f"[machine] kind = {shown(value['kind'])}: not known; write {_choice(list(MACHINES))}"
-    table = ".".join(place)
-    where = f"[{table}] {key}" if place else (f"[{key}]" if _is_table(key) else key)
-    if kind == "missing":
-        return f"{where}: missing; {_example(place, key, known)}"
-    if kind == "extra_forbidden":
-        known_keys = list(cast(type[BaseModel], _model_at(place, known)).model_fields)
-        where = f"[{table}] {shown(key)[1:-1]}" if place else shown(key)[1:-1]
-        near = difflib.get_close_matches(key[:100], known_keys, n=1, cutoff=0.5)
-        advice = f"did you mean {near[0]}?" if near else f"the keys here are {', '.join(known_keys)}"
-        return f"{where}: there is no such key; {advice}"
-    if kind == "value":
-        return f"{where} = {error['msg']}"
-    if kind == "literal_error":
-        allowed = str(error["ctx"]["expected"]).replace("'", '"')
-        return f"{where} = {shown(value)}: not known; write {allowed}"
-    if kind == "bool_type":
-        return f"{where} = {shown(value)}: neither true nor false; write true or false without quotes"
-    return f"{where} = {shown(value)}: not a table; write [{'.'.join(parts)}] on a line of its own and its keys below"
-
-
-def _choice(words: list[str]) -> str:
-    """Write words to choose from."""
-    quoted = [f'"{word}"' for word in words]
-    return f"{', '.join(quoted[:-1])} or {quoted[-1]}"
-
-
-def _is_table(key: str) -> bool:
-    """Whether a key of the file names one of its tables."""
-    return key in JobFile.model_fields and key != "name"
-
-
-def _model_at(place: list[str], known: Known) -> type[BaseModel] | None:
-    """Find the model of a table by its place; nothing for a machine of no known kind and for what is no table."""
-    if not place:
-        return JobFile
-    if place[0] == "machine":
-        return None if known.machine is None else table_of(known.machine)
-    if place == ["servo", "tolerance"]:
-        return ServoToleranceTable
-    model = JobFile.model_fields[place[0]].annotation
-    return model if isinstance(model, type) and issubclass(model, BaseModel) else None
-
-
-def _example(place: list[str], key: str, known: Known) -> str:
-    """Say what to write for a key or table that is missing."""
-    if not place:
-        return f"add the table [{key}]" if _is_table(key) else f'add e.g. {key} = "paper-600"'
-    schema = cast(type[BaseModel], _model_at(place, known)).model_json_schema()["properties"][key]
-    example = schema["examples"][-1 if place[0] == "limits" and known.turns else 0]
-    return f"add e.g. {key} = {json.dumps(example)}"

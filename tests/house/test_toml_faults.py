@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from camwright.bender.toml_table import read_toml
+from camwright.bender.job import load_bender
 from camwright.jobs.job import BUNDLED_JOB, parse_job
 from camwright.profiles.errors import InputError
 
@@ -39,7 +39,7 @@ def test_the_remedy_stands_in_the_message(written: str, remedy: str, tmp_path: P
     file = tmp_path / "bender.toml"
     file.write_text(text, encoding="utf-8")
     with pytest.raises(InputError, match=told):
-        read_toml(file, "bender job")
+        load_bender(file)
 
 
 @pytest.mark.parametrize("text", ["name = ", "[machine", "a = 1\na = 2", 'a = "x', "a = [1, 2", "a == 600 mm"])

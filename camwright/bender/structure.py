@@ -1,0 +1,168 @@
+"""The structure of a bender's settings files: the bender job, and tables of springback."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from camwright.house.servo_table import ServoNumbers
+from camwright.house.setting_fields import Table, line_field, quantity_field, row_field, whole_field
+from camwright.profiles.bender.division import DivisionRule, EqualSides, EqualSteps, FewestBends
+from camwright.profiles.bender.nc_code import Flavour
+from camwright.profiles.bender.springback import PAPER_STEP, Interpolation
+from camwright.profiles.limits import Limits
+
+Unit = Literal["none", "mm", "cm", "m", "in", "ft"]
+"""Unit of drawings that do not say theirs; none refuses them."""
+
+
+class RuleTable(Table):
+    """The rule that is bent."""
+
+    _place = "rule"
+
+    thickness: Annotated[float, *quantity_field("length", example="0.71 mm")]
+    height: Annotated[float, *quantity_field("length", example="23.8 mm")]
+    hardness: Annotated[str, *line_field("standard")]
+    least_radius: Annotated[float, *quantity_field("length", example="0.5 mm")]
+
+
+class ChordErrorTable(Table):
+    """Arcs as the fewest bends within a chord error."""
+
+    _place = "arcs"
+
+    rule: Literal["chord_error"]
+    chord_error: Annotated[float, *quantity_field("length", example="0.05 mm")]
+
+    @property
+    def division(self) -> DivisionRule:
+        """The rule by which arcs become bends."""
+        return FewestBends(self.chord_error)
+
+
+class SidesTable(Table):
+    """Arcs as equal sides of a full circle."""
+
+    _place = "arcs"
+
+    rule: Literal["sides"]
+    sides: Annotated[int, whole_field(3, 100_000, 25)] = 25
+
+    @property
+    def division(self) -> DivisionRule:
+        """The rule by which arcs become bends."""
+        return EqualSides(self.sides)
+
+
+class StepTable(Table):
+    """Arcs as equal steps along them."""
+
+    _place = "arcs"
+
+    rule: Literal["step"]
+    step: Annotated[float, *quantity_field("length", example="2 mm")]
+
+    @property
+    def division(self) -> DivisionRule:
+        """The rule by which arcs become bends."""
+        return EqualSteps(self.step)
+
+
+class SpringbackTable(Table):
+    """Which springback table is the rule's."""
+
+    _place = "springback"
+
+    table: Annotated[str, *line_field("example")]
+    interpolation: Interpolation = "linear"
+
+
+class MouldTable(Table):
+    """The mould, which turns and bends."""
+
+    _place = "mould"
+
+    greatest_angle: Annotated[float, *quantity_field("angle", example="175 deg")]
+    least_turn: Annotated[float, *quantity_field("angle", example="0.01 deg")]
+    finger_radius: Annotated[float, *quantity_field("length", example="8 mm")]
+    play: Annotated[float, *quantity_field("angle", zero=True, example="2.5 deg")]
+    envelope: Annotated[
+        list[Annotated[tuple[float, float], row_field("length", "length")]],
+        Field(examples=[[["0 mm", "0 mm"], ["30 mm", "5 mm"]]]),
+    ]
+    speed: Annotated[float, *quantity_field("angular rate", example="720 deg/s")]
+    acceleration: Annotated[float, *quantity_field("angular acceleration", example="20000 deg/s^2")]
+    jerk: Annotated[float, *quantity_field("angular jerk", example="4000000 deg/s^3")]
+    window: Annotated[float, *quantity_field("angle", example="0.02 deg")]
+
+
+class FeedTable(Table):
+    """The feed, which pushes the rule."""
+
+    _place = "feed"
+
+    least_step: Annotated[float, *quantity_field("length", example="0.05 mm")]
+    speed: Annotated[float, *quantity_field("speed", example="30 m/min")]
+    acceleration: Annotated[float, *quantity_field("acceleration", example="5 m/s^2")]
+    jerk: Annotated[float, *quantity_field("jerk", example="1000 m/s^3")]
+    window: Annotated[float, *quantity_field("length", example="0.01 mm")]
+
+
+class DrawingTable(Table):
+    """How drawings are read."""
+
+    _place = "drawing"
+
+    gap: Annotated[float, *quantity_field("length", example="0.01 mm")]
+    flattening: Annotated[float, *quantity_field("length", example="0.01 mm")]
+    units: Unit = "none"
+
+
+class ProgramTable(Table):
+    """How programs are written."""
+
+    _place = "program"
+
+    flavour: Flavour = "fagor"
+    first_line: Annotated[int, whole_field(4, 99_999_999, 10)] = 10
+    last_line: Annotated[int, whole_field(4, 99_999_999, 9999)] = 9999
+
+
+class BenderFile(Table):
+    """A bender job: the machine, the rule, and how drawings become programs."""
+
+    name: Annotated[str, *line_field("example-bender")]
+    rule: RuleTable
+    arcs: Annotated[ChordErrorTable | SidesTable | StepTable, Field(discriminator="rule")]
+    springback: SpringbackTable
+    mould: MouldTable
+    feed: FeedTable
+    servo: ServoNumbers
+    drawing: DrawingTable
+    program: ProgramTable
+
+
+class SpringbackRule(Table):
+    """What one rule springs back."""
+
+    thickness: Annotated[float, *quantity_field("length", example="0.71 mm")]
+    hardness: Annotated[str, *line_field("standard")]
+    angles: Annotated[
+        list[Annotated[tuple[float, float], row_field("angle", "angle")]], Field(examples=[[["15 deg", "16.8 deg"]]])
+    ]
+    radius_step: Annotated[float, *quantity_field("angle", example="14.4 deg")] = PAPER_STEP
+    radii: Annotated[list[Annotated[tuple[float, float], row_field("length", "angle")]], Field(default=[])]
+
+
+class SpringbackFile(Table):
+    """Springback of one rule or more."""
+
+    name: Annotated[str, *line_field("steel")]
+    rule: Annotated[list[SpringbackRule], Field(min_length=1)]
+
+
+def limits_of(axis: MouldTable | FeedTable) -> Limits:
+    """Limits of an axis of the bender."""
+    return Limits(axis.speed, axis.acceleration, axis.jerk, reversal=True)
