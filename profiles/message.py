@@ -13,6 +13,12 @@ HOLE = re.compile(r"\{(@?)([\w.]+)\}")
 """A hole in a sentence: the sign of a quantity's name, and the name."""
 
 
+def rounded_to(value: float, digits: int, up: bool) -> float:
+    """Round to a number of digits, up or down."""
+    scale = 10.0 ** (digits - 1 - math.floor(math.log10(abs(value))))
+    return (math.ceil(value * scale - 1e-6) if up else math.floor(value * scale + 1e-6)) / scale
+
+
 @dataclass(frozen=True)
 class Value:
     """A number in a message.

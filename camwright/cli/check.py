@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -11,8 +10,8 @@ import typer
 
 from camwright.answers.check import check_answer
 from camwright.cli.options import Json, Quiet
-from camwright.cli.views.numbers import millimetres, number
 from camwright.cli.views.parts import new_text
+from camwright.house.numbers import number, typed, with_unit
 from camwright.house.output import Voice
 from camwright.house.toml_file import MOST_BYTES
 from camwright.jobs.job import Job, load_job, parse_job
@@ -47,10 +46,10 @@ def _typed() -> str:
 def _view(job: Job) -> RenderableType:
     """Show what a job file says."""
     cut, limits, unit = job.cut, job.limits, job.machine.slave_unit
-    speed = f"{number(limits.speed * 60)} m/min" if unit == "m" else f"{number(limits.speed * 30 / math.pi)} rpm"
+    speed = with_unit(limits.speed, "m/s") if unit == "m" else typed(limits.speed, "rad/s", 5)
     return new_text(
-        f"{job.name}: cut {millimetres(cut.length)} mm at {number(cut.line_speed * 60)} m/min, "
-        f"{machine_words(job.machine)}, sync zone {millimetres(cut.sync_zone)} mm, "
-        f"shear zone {millimetres(cut.shear_zone)} mm; at most {speed}, "
+        f"{job.name}: cut {with_unit(cut.length, 'm', 4)} at {with_unit(cut.line_speed, 'm/s')}, "
+        f"{machine_words(job.machine)}, sync zone {with_unit(cut.sync_zone, 'm', 4)}, "
+        f"shear zone {with_unit(cut.shear_zone, 'm', 4)}; at most {speed}, "
         f"{number(limits.acceleration)} {unit}/s², {number(limits.jerk)} {unit}/s³.\nThe job file has no faults."
     )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,11 +13,11 @@ from camwright.cli.views.checks import checks_view
 from camwright.cli.views.files import files_view
 from camwright.cli.views.lead import lead_view
 from camwright.cli.views.lengths import lengths_view
-from camwright.cli.views.numbers import millimetres, number
 from camwright.cli.views.parts import new_text, stacked
 from camwright.cli.views.profiles import profiles_view
 from camwright.figures.design import design_figures
 from camwright.house.files import staged
+from camwright.house.numbers import number, si_unit, with_unit
 from camwright.house.output import Voice
 from camwright.jobs.job import load_job
 from camwright.stored.save import design_files
@@ -71,7 +70,7 @@ def _view(design: Design, files: Sequence[Path]) -> RenderableType:
 
 def _head(design: Design) -> list[str]:
     """Say how the design ended: objective and bound, what was chosen, how well several starts agree."""
-    solution, unit = design.solution, objective_unit(design.job).replace("^2", "²").replace("^3", "³")
+    solution, unit = design.solution, si_unit(objective_unit(design.job))
     bound = (
         "no lower bound is known"
         if design.gap is None
@@ -81,9 +80,7 @@ def _head(design: Design) -> list[str]:
     lines = [f"{ending} in {design.profile.pieces} pieces; {bound}"]
     machine = solution.machine
     if machine.place_name:
-        place = (
-            f"{math.degrees(machine.place):.5g}°" if machine.slave_unit == "rad" else f"{millimetres(machine.place)} mm"
-        )
+        place = with_unit(machine.place, machine.slave_unit)
         lines.append(f"sync zone on the {machine.noun}: its middle at {place}")
     starts = solution.agreement
     if starts is not None:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 from camwright.answers.limits import limits_answer
 from camwright.cli.options import GivenJob, Json, Quiet
 from camwright.cli.views.lengths import lengths_view
-from camwright.cli.views.numbers import millimetres, number
 from camwright.cli.views.parts import new_table, stacked
+from camwright.house.numbers import with_unit
 from camwright.house.output import Voice
 from camwright.jobs.job import load_job
 from camwright.studies.axis_lengths import AxisLengths
@@ -32,16 +32,16 @@ def run(job: GivenJob, as_json: Json = False, quiet: Quiet = False) -> int:
 def _view(found: MachineLimits) -> RenderableType:
     """Show how fast and how short a job can be done, and what binds."""
     job, far, lengths, axis = found.job, found.far, found.lengths, found.axis
-    speed = f"{number(far.max_line_speed * 60)} m/min" if far.max_line_speed else "none works"
-    length = f"{millimetres(far.min_cut_length)} mm" if far.min_cut_length else "none works"
+    speed = with_unit(far.max_line_speed, "m/s") if far.max_line_speed else "none works"
+    length = with_unit(far.min_cut_length, "m", 4) if far.min_cut_length else "none works"
     table = new_table(title="How fast, how short", title_justify="left")
     for name in ("", "", "binds"):
         table.add_column(name)
     table.add_row(
-        f"highest line speed at a cut length of {millimetres(job.cut.length)} mm", speed, far.line_speed_binding
+        f"highest line speed at a cut length of {with_unit(job.cut.length, 'm', 4)}", speed, far.line_speed_binding
     )
     table.add_row(
-        f"shortest cut length at {number(job.cut.line_speed * 60)} m/min with a sync zone of {millimetres(job.cut.sync_zone)} mm",
+        f"shortest cut length at {with_unit(job.cut.line_speed, 'm/s')} with a sync zone of {with_unit(job.cut.sync_zone, 'm', 4)}",
         length,
         far.cut_length_binding,
     )

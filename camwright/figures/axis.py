@@ -15,6 +15,7 @@ from camwright.figures.style import (
     shade_shear_zone,
     title,
 )
+from camwright.house.numbers import with_unit
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.studies.axis_study import RobustBand
 from camwright.studies.design import Design
@@ -77,7 +78,7 @@ def axis_figure(design: Design, runs: Mapping[str, ServoRun], band: RobustBand |
         _band(axes[2], band, cut.sync_tolerance)
     axes[-1].set_xlim(first * 1e3, last * 1e3)
     axes[-1].set_xlabel("master from the start of the sync zone (mm)")
-    figure.suptitle(f"{job.name}: the axis at {cut.line_speed * 60:g} m/min", fontsize=8.5)
+    figure.suptitle(f"{job.name}: the axis at {with_unit(cut.line_speed, 'm/s')}", fontsize=8.5)
     _legend(figure, [name for name in AXES if name in runs], band is not None)
     return figure
 

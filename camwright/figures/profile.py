@@ -15,6 +15,7 @@ from camwright.figures.style import (
     shade_zones,
     title,
 )
+from camwright.house.numbers import with_unit
 from camwright.profiles.machines import Machine
 from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
@@ -83,7 +84,7 @@ def profile_figure(comparison: Comparison) -> Figure:
     jerk.set_xlim(0.0, cut.length * 1e3)
     figure.align_ylabels()
     figure.suptitle(
-        f"{comparison.job.name}: {cut.length * 1e3:g} mm at {v * 60:g} m/min, "
+        f"{comparison.job.name}: {with_unit(cut.length, 'm')} at {with_unit(v, 'm/s')}, "
         f"least {OBJECTIVES[comparison.job.objective].words}",
         fontsize=9.5,
     )

@@ -15,6 +15,7 @@ from camwright.figures.style import (
     shade_shear_zone,
     title,
 )
+from camwright.house.numbers import with_unit
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.studies.comparison import Comparison
 from camwright.studies.measured import Measured
@@ -83,9 +84,9 @@ def servo_figure(comparison: Comparison, runs: Mapping[str, ServoRun]) -> Figure
     close.set_xlabel("master from the start of the sync zone (mm)")
     servo = job.servo
     figure.suptitle(
-        f"{job.name}: the servo at {job.cut.line_speed * 60:g} m/min, all {runs[AXES[0]].phases} sampling phases\n"
+        f"{job.name}: the servo at {with_unit(job.cut.line_speed, 'm/s')}, all {runs[AXES[0]].phases} sampling phases\n"
         f"(ω = {servo.bandwidth:g} rad/s, ζ = {servo.damping:g}, K = {servo.position_gain:g} 1/s, "
-        f"ΔT = {servo.sample_time * 1e3:g} ms, α = {servo.velocity_feedforward:g})",
+        f"ΔT = {with_unit(servo.sample_time, 's')}, α = {servo.velocity_feedforward:g})",
         fontsize=8.5,
     )
     _legend(figure)

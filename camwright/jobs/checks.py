@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from camwright.house.numbers import typed
 from camwright.jobs.fields import Known
 from camwright.jobs.machine_checks import machine_conflicts
 from camwright.jobs.machine_tables import machine_of
@@ -27,11 +28,6 @@ def conflicts(known: Known) -> list[str]:
     return [*_zones(known), *machine_conflicts(known, machine), *servo_conflicts(known)]
 
 
-def _mm(value: float) -> str:
-    """Write a length in millimetres."""
-    return f"{value * 1e3:.10g} mm"
-
-
 def _zones(known: Known) -> Iterator[str]:
     """Check that the zones fit into what holds them."""
     sync = known.numbers.get("cut.sync_zone")
@@ -41,17 +37,17 @@ def _zones(known: Known) -> Iterator[str]:
     length = numbers.get("cut.length")
     if length is not None and sync >= length:
         yield (
-            f"[cut] sync_zone = {_mm(sync)}: not below [cut] length = {_mm(length)}, so no return zone is left; "
+            f"[cut] sync_zone = {typed(sync, 'm')}: not below [cut] length = {typed(length, 'm')}, so no return zone is left; "
             "shorten the sync zone or cut longer"
         )
     shear, at = numbers.get("cut.shear_zone"), numbers.get("cut.shear_zone_at")
     if shear is not None and shear > sync:
         yield (
-            f"[cut] shear_zone = {_mm(shear)}: above [cut] sync_zone = {_mm(sync)}, in which it must lie; "
+            f"[cut] shear_zone = {typed(shear, 'm')}: above [cut] sync_zone = {typed(sync, 'm')}, in which it must lie; "
             "shorten the shear zone or lengthen the sync zone"
         )
     elif shear is not None and at is not None and at + shear > sync * (1 + 1e-12):
         yield (
-            f"[cut] shear_zone_at = {_mm(at)}: the shear zone of {_mm(shear)} would end {_mm(at + shear)} after the "
-            f"start of the sync zone of {_mm(sync)}; begin it at {_mm(sync - shear)} at the latest"
+            f"[cut] shear_zone_at = {typed(at, 'm')}: the shear zone of {typed(shear, 'm')} would end {typed(at + shear, 'm')} after the "
+            f"start of the sync zone of {typed(sync, 'm')}; begin it at {typed(sync - shear, 'm')} at the latest"
         )

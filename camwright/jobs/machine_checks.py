@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 
+from camwright.house.numbers import typed
 from camwright.house.units import KINDS
 from camwright.jobs.fields import Known
 from camwright.jobs.wording import words
 from camwright.profiles.cut import Cut
 from camwright.profiles.machines import Machine
 from camwright.profiles.machines.fields import Quantity, fields_of
+from camwright.profiles.message import rounded_to
 from camwright.profiles.objective import OBJECTIVES, ObjectiveName
 
 
@@ -52,8 +54,8 @@ def moved_by_nothing(machine: Machine, objective: ObjectiveName, *, with_curve: 
 def _slow(known: Known, pace: float, made: Machine | None) -> str:
     """Say that the slave may not run as fast as the sync zone needs."""
     limit, line_speed = known.numbers["limits.speed"], known.numbers["cut.line_speed"]
-    line = f"[cut] line_speed = {line_speed * 60:.10g} m/min"
-    way_out = f"run the line at {_down(limit / pace * 60)} m/min at most or raise the limit"
+    line = f"[cut] line_speed = {typed(line_speed, 'm/s')}"
+    way_out = f"run the line at {rounded_to(limit / pace * 60, 6, up=False):.10g} m/min at most or raise the limit"
     machine = known.machine
     noun, place = ("slave", "") if machine is None else (machine.noun, machine.place_name)
     by_angle = made is not None and made.slave_turn is not None and "limits.speed" in known.angles
@@ -68,11 +70,5 @@ def _slow(known: Known, pace: float, made: Machine | None) -> str:
     if pace == 1.0:
         why = f"below {line}, at which the {noun} runs in the sync zone"
     else:
-        why = f"below the {pace * line_speed * 60:.6g} m/min at which the {noun} runs in the sync zone ({line}, times {pace:.6g})"
-    return f"[limits] speed = {limit * 60:.10g} m/min: {why}; {way_out}"
-
-
-def _down(value: float) -> str:
-    """Write a number with six digits, rounded down."""
-    step = 10.0 ** (math.floor(math.log10(value)) - 5)
-    return f"{math.floor(value / step + 1e-6) * step:.10g}"
+        why = f"below the {typed(pace * line_speed, 'm/s', 6)} at which the {noun} runs in the sync zone ({line}, times {pace:.6g})"
+    return f"[limits] speed = {typed(limit, 'm/s')}: {why}; {way_out}"

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from camwright.house.numbers import typed
 from camwright.house.units import KINDS
-from camwright.jobs.wording import SHOWN
 from camwright.profiles.machines import Machine
 from camwright.profiles.machines.fields import MachineField, Quantity, fields_of
 
@@ -20,8 +20,7 @@ def _field_words(each: MachineField, value: float | str, digits: int) -> str:
     if not each.about.shown:
         return ""
     if isinstance(each.about, Quantity):
-        factor, unit, _ = SHOWN.get(KINDS[each.about.kind].unit, (1.0, KINDS[each.about.kind].unit, None))
-        return f"{name} {float(value) * factor:.{digits}g} {unit}"
+        return f"{name} {typed(float(value), KINDS[each.about.kind].unit, digits)}"
     if value == each.default:
         return ""
     return f"{value} {name}"

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from camwright.house.numbers import typed
 from camwright.jobs.fields import Known
 from camwright.jobs.spread_fields import ends
 from camwright.profiles.servo import Servo, gain_margin, spectral_radius
 from camwright.profiles.servo_tolerance import ServoTolerance
 
-_UNITS = {"bandwidth": (1.0, " rad/s"), "damping": (1.0, ""), "position_gain": (1.0, " 1/s")}
-_MS = (1e3, " ms")
+_UNITS = {"bandwidth": "bandwidth", "damping": "1", "position_gain": "1/s"}
 _NEEDED = ("bandwidth", "damping", "position_gain", "sample_time", "velocity_feedforward", "dead_time", "lead_time")
 
 
@@ -64,8 +64,8 @@ def _sampling(values: Mapping[str, float], *, servo_aware: bool) -> Iterator[str
         lasts = shear / line_speed
         yield (
             f"[servo] sample_time = {_written('sample_time', sample)}: longer than the shear zone lasts, "
-            f"{lasts * 1e3:.4g} ms ([cut] shear_zone / line_speed), so {lasts / sample:.3g} samples fall in it and the servo cannot see "
-            f"the sync tolerance there; lengthen the shear zone to {1.00001e3 * sample * line_speed:.6g} mm or more, or sample faster"
+            f"{typed(lasts, 's', 4)} ([cut] shear_zone / line_speed), so {lasts / sample:.3g} samples fall in it and the servo cannot see "
+            f"the sync tolerance there; lengthen the shear zone to {typed(1.00001 * sample * line_speed, 'm', 6)} or more, or sample faster"
         )
 
 
@@ -113,5 +113,4 @@ def _way_out(servo: Servo) -> str:
 
 def _written(key: str, value: float) -> str:
     """Write a parameter with its unit."""
-    factor, unit = _UNITS.get(key, _MS)
-    return f"{value * factor:.10g}{unit}"
+    return typed(value, _UNITS.get(key, "s"))

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from camwright.house.numbers import SHOWN, Shown
 from camwright.profiles.errors import CamwrightError, InfeasibleError, InputError
 from camwright.profiles.message import HOLE, Message, Value
 
@@ -18,14 +18,6 @@ TABLES: dict[str, tuple[str, ...]] = {
 }
 """Tables of a job file that hold the quantities which messages name; a machine names its own as ``machine.stroke``."""
 
-SHOWN: dict[str, tuple[float, str, int | None]] = {
-    "m": (1e3, "mm", None),
-    "m/s": (60.0, "m/min", None),
-    "rad": (math.degrees(1.0), "deg", 3),
-    "rad/s": (30.0 / math.pi, "rpm", None),
-}
-"""Unit in which people write a quantity, by SI unit: factor, name, decimals of a bound."""
-
 
 def place_of(quantity: str) -> str:
     """Say where in a job file a quantity stands: ``[table] key``."""
@@ -36,8 +28,8 @@ def place_of(quantity: str) -> str:
 
 def value_words(value: Value) -> str:
     """Write a value in the unit that people use for it."""
-    factor, unit, decimals = SHOWN.get(value.unit, (1.0, value.unit, None))
-    return value.written(factor, unit, decimals)
+    unit = SHOWN.get(value.unit, Shown(value.unit))
+    return value.written(unit.factor, unit.typed or unit.printed, unit.bound)
 
 
 def words(message: Message | str) -> str:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from camwright.house.numbers import shown
 from camwright.recipes.catalogue import Catalogue
-from camwright.recipes.quantities import shown
 
 Block = dict[str, Any]
 """A ``kind`` and what belongs to it."""

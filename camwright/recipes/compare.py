@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 from camwright.house.files import read_text
+from camwright.house.numbers import SHOWN, converted, unit_shown
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.recipes.facts import GROUPS
 from camwright.recipes.model import Recipe, RecipeCheck, RecipeTable
-from camwright.recipes.quantities import SHOWN, converted, unit_shown
 from camwright.recipes.recipe_file import RECIPE_FILE, parse_recipe
 from camwright.stored.design_file import MOST_BYTES
 

@@ -6,12 +6,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
+from camwright.house.numbers import with_unit
 from camwright.house.units import KINDS
 from camwright.profiles.machines import MACHINES
 from camwright.profiles.machines.fields import Choice, MachineField, Quantity, fields_of
 from camwright.recipes.catalogue import Catalogue
 from camwright.recipes.model import Recipe
-from camwright.recipes.quantities import with_unit
 
 
 @dataclass(frozen=True)

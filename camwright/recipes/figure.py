@@ -9,15 +9,15 @@ from html import escape
 
 import numpy as np
 
-from camwright.profiles.polynomial.profile import CamProfile, FloatArray
-from camwright.recipes.catalogue import Catalogue
-from camwright.recipes.model import Recipe
-from camwright.recipes.quantities import (
+from camwright.house.numbers import (
     converted,
     number,
     shown,
     unit_shown,
 )
+from camwright.profiles.polynomial.profile import CamProfile, FloatArray
+from camwright.recipes.catalogue import Catalogue
+from camwright.recipes.model import Recipe
 
 _WIDTH, _HEIGHT = 680.0, 440.0
 _LEFT, _RIGHT, _TOP, _PANEL, _GAP = 84.0, 18.0, 8.0, 114.0, 14.0

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from camwright.jobs.numbers import stored_machine
-from camwright.recipes.blocks import Block, fixed_text, text_block
-from camwright.recipes.catalogue import Catalogue
-from camwright.recipes.model import AtSpeed, Recipe, RecipeTable
-from camwright.recipes.quantities import (
+from camwright.house.numbers import (
     number,
     shown,
     unit_shown,
     with_unit,
 )
+from camwright.jobs.numbers import stored_machine
+from camwright.recipes.blocks import Block, fixed_text, text_block
+from camwright.recipes.catalogue import Catalogue
+from camwright.recipes.model import AtSpeed, Recipe, RecipeTable
 
 _FINEST = 0.001
 """What an error is at least said to be within: micrometres, and percent of the acceleration."""

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from camwright.recipes.blocks import Block, table_block, text_block
-from camwright.recipes.catalogue import Catalogue
-from camwright.recipes.model import Recipe, RecipeCheck, RecipeTable
-from camwright.recipes.quantities import (
+from camwright.house.numbers import (
     number,
     shown,
     si_unit,
     unit_shown,
 )
+from camwright.recipes.blocks import Block, table_block, text_block
+from camwright.recipes.catalogue import Catalogue
+from camwright.recipes.model import Recipe, RecipeCheck, RecipeTable
 
 REACHED = ("speed", "acceleration", "jerk", "reversal", "stroke", "motor_speed", "motor_torque", "shear_zone_error")
 """Checks that compare a quantity of the machine with its limit."""

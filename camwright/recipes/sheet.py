@@ -5,6 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from camwright.house.numbers import (
+    number,
+    shown,
+    unit_shown,
+    with_unit,
+)
 from camwright.recipes.blocks import (
     Block,
     length_text,
@@ -22,12 +28,6 @@ from camwright.recipes.judgements import (
     table_checks,
 )
 from camwright.recipes.model import Edge, Recipe
-from camwright.recipes.quantities import (
-    number,
-    shown,
-    unit_shown,
-    with_unit,
-)
 from camwright.recipes.user_text import shortened, visible
 from camwright.recipes.working_range import LONGEST, NOT_FOUND
 

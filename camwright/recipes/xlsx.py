@@ -7,10 +7,10 @@ import io
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from camwright.house.numbers import converted, unit_shown
 from camwright.recipes.catalogue import Catalogue, catalogue
 from camwright.recipes.facts import GROUPS, Fact, fact_text
 from camwright.recipes.model import Recipe, RecipeCheck, RecipeTable
-from camwright.recipes.quantities import converted, unit_shown
 from camwright.recipes.sheet import objective_text, speed_columns
 from camwright.recipes.user_text import visible
 

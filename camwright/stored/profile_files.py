@@ -6,6 +6,7 @@ import math
 from pathlib import Path
 
 from camwright.house.files import read_text
+from camwright.house.numbers import typed
 from camwright.house.provenance import provenance
 from camwright.jobs.job import Job
 from camwright.jobs.place import not_placed, place_in
@@ -104,8 +105,8 @@ def _one_cycle(profile: CamProfile, length: float, place: str) -> CamProfile:
     allowed = _ROUNDING * length
     if abs(profile.start) > allowed or abs(profile.end - length) > allowed:
         raise InputError(
-            f"{place}: runs over the master from {profile.start * 1e3:.10g} mm to {profile.end * 1e3:.10g} mm, "
-            f"but a cycle of the job from 0 mm to {length * 1e3:.10g} mm ([cut] length); "
+            f"{place}: runs over the master from {typed(profile.start, 'm')} to {typed(profile.end, 'm')}, "
+            f"but a cycle of the job from 0 mm to {typed(length, 'm')} ([cut] length); "
             "name the job that the file was made for"
         )
     return profile.over(0.0, length)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from camwright.house.numbers import with_unit
 from camwright.house.provenance import camwright_version
 from camwright.house.units import quantity
 from camwright.profiles.cross_cutter import CrossCut
@@ -68,9 +69,9 @@ class QuickAnswer:
         return [
             ("case", _CASES[self.case]),
             ("return", curve),
-            ("critical length", f"{self.critical_length * 1e3:.6g} mm"),
+            ("critical length", with_unit(self.critical_length, "m", 6)),
             ("least ratio", f"{self.least_ratio:.6g}"),
-            ("standstill", f"{self.standstill * 1e3:.6g} mm of material"),
+            ("standstill", f"{with_unit(self.standstill, 'm', 6)} of material"),
         ]
 
 

@@ -18,7 +18,7 @@ from camwright.design.feasible.feasibility import (
     with_limit,
 )
 from camwright.profiles.errors import InfeasibleError, Suggestion
-from camwright.profiles.message import Message, Value
+from camwright.profiles.message import Message, Value, rounded_to
 from camwright.profiles.motor import MotorCurve
 from camwright.profiles.task import Task
 
@@ -201,12 +201,6 @@ def _nearest_length(works: Callable[[float], bool], task: Task) -> float | None:
             bad = max(bad, 1.0) if factor > 1.0 else min(bad, 1.0)
             return edge(works, cut.length * factor, cut.length * bad, EDGE)
     return None
-
-
-def rounded_to(value: float, digits: int, up: bool) -> float:
-    """Round to a number of digits, up or down."""
-    scale = 10.0 ** (digits - 1 - math.floor(math.log10(abs(value))))
-    return (math.ceil(value * scale - 1e-6) if up else math.floor(value * scale + 1e-6)) / scale
 
 
 def _named(change: str) -> str:

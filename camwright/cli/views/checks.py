@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from camwright.cli.views.numbers import millimetres, number
 from camwright.cli.views.parts import new_table, new_text
+from camwright.house.numbers import number, with_unit
 from camwright.validation.check import Check
 
 if TYPE_CHECKING:
@@ -22,10 +22,10 @@ def checks_view(checks: Sequence[Check]) -> RenderableType:
         table.add_row(
             check.name,
             new_text("passed", "green") if check.passed else new_text("FAILED", "bold red"),
-            number(check.value, "none"),
-            number(check.limit, ""),
+            number(check.value, without="none"),
+            number(check.limit, without=""),
             check.unit,
-            "" if check.at is None else f"{millimetres(check.at)} mm",
+            "" if check.at is None else with_unit(check.at, "m", 4),
             new_text(check.source),
         )
     return table

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camwright.cli.views.numbers import millimetres, number
 from camwright.cli.views.parts import new_table, new_text, stacked
+from camwright.house.numbers import number, shown
 from camwright.studies.comparison import Comparison
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ def profiles_view(comparison: Comparison) -> RenderableType:
     table.add_column("profile")
     unit = comparison.job.machine.slave_unit
     moved = comparison["optimised"].motor.rms_torque is not None
-    for name, shown in (
+    for name, below in (
         ("peak speed", f"{unit}/s"),
         ("peak acc.", f"{unit}/s²"),
         ("RMS acc.", f"{unit}/s²"),
@@ -29,21 +29,21 @@ def profiles_view(comparison: Comparison) -> RenderableType:
         ("following", "mm"),
         ("shear zone", "mm"),
     ):
-        table.add_column(f"{name}\n{shown}", justify="right")
+        table.add_column(f"{name}\n{below}", justify="right")
     for row in comparison.rows:
         motion, motor, servo = row.motion, row.motor, row.response
-        torques = (number(value, "unbounded") for value in (motor.peak_torque, motor.rms_torque, motor.energy))
+        torques = (number(value, without="unbounded") for value in (motor.peak_torque, motor.rms_torque, motor.energy))
         table.add_row(
             row.name,
             number(motion.peak_speed),
-            number(motion.peak_acceleration, "unbounded"),
-            number(motion.rms_acceleration, "unbounded"),
-            number(motion.peak_jerk, "unbounded"),
+            number(motion.peak_acceleration, without="unbounded"),
+            number(motion.rms_acceleration, without="unbounded"),
+            number(motion.peak_jerk, without="unbounded"),
             *(torques if moved else ()),
-            millimetres(servo.crossing),
-            millimetres(servo.settling),
-            millimetres(servo.peak_following_error),
-            millimetres(servo.shear_zone_error),
+            shown(servo.crossing, "m", 4),
+            shown(servo.settling, "m", 4),
+            shown(servo.peak_following_error, "m", 4),
+            shown(servo.shear_zone_error, "m", 4),
             style="bold" if row.name == "optimised" else "",
         )
     return table if comparison.screw is None else stacked(table, new_text(comparison.screw.sentence))

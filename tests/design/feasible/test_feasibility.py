@@ -10,12 +10,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from camwright.design.feasible.feasibility import edge, is_feasible
-from camwright.design.feasible.refusal import require_feasible, rounded_to
+from camwright.design.feasible.refusal import require_feasible
 from camwright.profiles.closed_forms.reach import greatest_reach
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InfeasibleError, Suggestion
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import RotaryKnife
+from camwright.profiles.message import rounded_to
 from camwright.profiles.task import Task
 
 KNIFE = RotaryKnife(0.4)

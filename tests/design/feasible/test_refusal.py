@@ -12,7 +12,7 @@ from camwright.design.feasible.feasibility import (
     least_factor,
     needed_limits,
 )
-from camwright.design.feasible.refusal import infeasible, require_feasible, rounded_to
+from camwright.design.feasible.refusal import infeasible, require_feasible
 from camwright.design.optimise import solve
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InfeasibleError, Suggestion
@@ -23,6 +23,7 @@ from camwright.profiles.machines import (
     Machine,
     RotaryKnife,
 )
+from camwright.profiles.message import rounded_to
 from camwright.profiles.motor import MotorCurve
 from camwright.profiles.task import Task
 
