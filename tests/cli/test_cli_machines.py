@@ -32,7 +32,7 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 MACHINES = {
     # examples, made quick: the motion's objectives are solved in a tenth of the time of the torque's
     "flying-saw": [("rms_torque", "peak_torque")],
-    "chasing-shear": [('"rms_torque"', '"rms_acceleration"'), ('"0.2 mm"', '"0.5 mm"')],
+    "chasing-shear": [('"rms_torque"', '"rms_acceleration"'), ('"0.25 mm"', '"0.5 mm"')],
     "thick-product": [("peak_acceleration", "rms_acceleration")],
     "cross-cutter": [],
 }
