@@ -14,7 +14,7 @@ from camwright.design.optimise import (
 )
 from camwright.design.returns.curve_limits import motor_limits, motor_speed_limits
 from camwright.design.returns.ipopt import SolveStatus
-from camwright.design.servo_aware.axis_motion import AxisMotion, design_axis, servo_blind_optimum
+from camwright.design.servo_aware.axis_motion import AxisMotion, design_axis, motion_of, servo_blind_optimum
 from camwright.design.servo_aware.axis_problem import AxisProblem
 from camwright.design.servo_aware.command_basis import Command
 from camwright.design.servo_aware.programme import AxisProgramme
@@ -51,6 +51,7 @@ def solve_axis(
     command: Command,
     servos: tuple[Servo, ...],
     between: tuple[Servo, ...] = (),
+    shares: tuple[float, ...] = (1.0,),
     *,
     suggest: bool = True,
 ) -> Solution:
@@ -71,6 +72,8 @@ def solve_axis(
         Servos with which the tolerance must be kept, the nominal one first.
     between
         Servos between the corners of the ranges, which must keep the tolerance too, or be hardly worse than the corners.
+    shares
+        Line speeds at which all this must hold, as shares of the cut's, from the full line speed down.
     suggest
         Whether an `InfeasibleError` says what would work; finding that takes longer than the design.
 
@@ -91,7 +94,7 @@ def solve_axis(
         blind = solve(task, of_command(cost), suggest=suggest)
     placed = machine if blind is None else blind.machine
     structure = None if blind is None or command == "shaped" else blind.back
-    problem = AxisProblem(task.with_machine(placed), command, servos, True, structure, between)
+    problem = AxisProblem(task.with_machine(placed), command, servos, True, structure, between, shares=shares)
     order = OBJECTIVES[cost].order
     # the servo-blind optimum keeps the motor's curve, though it may lie in none of the rectangles that stand for it
     by_motor = _within(problem, motor_speed_limits(placed, limits))
@@ -110,7 +113,7 @@ def solve_axis(
 
         def settles(other: Cut) -> bool:
             try:
-                solve_axis(task.with_cut(other), objective, command, servos, between, suggest=False)
+                solve_axis(task.with_cut(other), objective, command, servos, between, shares, suggest=False)
             except (InfeasibleError, InputError, SolverError):
                 return False
             return True
@@ -165,11 +168,8 @@ def _without_choice(problem: AxisProblem, blind: Solution, value: float | None) 
     if programme.least_share() is not None:
         return []
     profile = assemble(blind.back, problem.task.from_return())
-    errors = programme.problem.errors(profile)
-    if value is not None and max(errors) > problem.task.cut.sync_tolerance:
-        return []
-    kept = programme.keeps_axis_limits(profile)
-    return [AxisMotion(profile, errors, max(errors) if value is None else value, programme.solved, kept)]
+    motion = motion_of(programme, profile, value, axis_limits=programme.keeps_axis_limits(profile))
+    return [] if value is not None and motion.error > problem.task.cut.sync_tolerance else [motion]
 
 
 def _from_mid_sync(profile: CamProfile, task: Task) -> CamProfile:
@@ -193,7 +193,7 @@ def _infeasible(problem: AxisProblem, settles: Callable[[Cut], bool] | None) -> 
                 "a servo-aware design found no command that keeps the limits although the job allows one; report this job"
             )
         only = assemble(problem.structure, problem.task.from_return())
-        share = max(problem.errors(only)) / tolerance
+        share = motion_of(AxisProgramme(problem), only, axis_limits=False).error / tolerance
     needed = max(1.0, share) * tolerance
     suggestions = () if settles is None else tuple(_suggestions(problem, needed, settles))
     ways = "; ".join(f"{each.change} {each.value:.6g} {each.unit}" for each in suggestions)

@@ -12,10 +12,7 @@ from camwright.design.returns.solver import objective_value
 from camwright.design.servo_aware.axis_problem import AxisProblem
 from camwright.design.servo_aware.axis_response import PHASES
 from camwright.design.servo_aware.gathered_rows import LEAST_ERROR
-from camwright.design.servo_aware.programme import (
-    BAND_MARGIN,
-    AxisProgramme,
-)
+from camwright.design.servo_aware.programme import AxisProgramme
 from camwright.profiles.errors import SolverError
 from camwright.profiles.objective import OBJECTIVES, CommandObjective, ObjectiveName
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
@@ -40,27 +37,33 @@ class AxisMotion:
         One cycle of the command over ``[0, x_c]`` from the start of the return. Its slave zero is the machine at the end of its sync zone,
         where a shaped command itself need not be.
     errors
-        Largest sync error of the tool in the shear zone (m) over all phases, by servo, the nominal one first.
+        Largest sync error of the tool in the shear zone (m) over all phases and line speeds, by servo, the nominal one first.
+    by_speed
+        That of the nominal servo by line speed, as a share of the cut's, from the full one down.
     value
         What was made least: the sync error (m), or the peak or root mean square over the master.
     programmes
         Programmes solved.
     axis_limits
         Whether the nominal axis, too, keeps the limits of speed, acceleration and reversal.
+    shares
+        Line speeds that carry the design, as shares of the cut's, from the full one down.
     phases
         Sampling phases for which the errors hold.
     """
 
     profile: CamProfile
     errors: tuple[float, ...]
+    by_speed: dict[float, float]
     value: float
     programmes: int
     axis_limits: bool
+    shares: tuple[float, ...] = (1.0,)
     phases: int = PHASES
 
     @property
     def error(self) -> float:
-        """Largest sync error over all servos (m)."""
+        """Largest sync error over all servos and line speeds (m)."""
         return max(self.errors)
 
 
@@ -97,13 +100,13 @@ def design_axis(problem: AxisProblem, objective: ObjectiveName) -> AxisMotion | 
             found = _smoothest(programme, found, 1.0, of.order)
         return _motion(programme, found[0], value)
     band = LEAST_ERROR
-    softer = _softest(programme, band) if len(problem.servos) == 1 else None  # no command suits several servos so well
+    softer = _softest(programme, band) if not problem.several else None  # no command suits several servos so well
     if softer is not None:
         return _motion(programme, _smoothest(programme, softer, band, 2)[0])
     found = programme.solve("sync_error", None)
     if found is None:
         return None
-    band = found[1] * (1.0 + KEPT_ERROR) / (1.0 - BAND_MARGIN)
+    band = found[1] * (1.0 + KEPT_ERROR) / (1.0 - programme.margin)
     softer = _softest(programme, band)
     if softer is not None:
         found = _smoothest(programme, softer, band, 2)
@@ -122,7 +125,7 @@ def servo_blind_optimum(programme: AxisProgramme, objective: CommandObjective) -
         value = programme.problem.torque.value_of(problem.structure, objective)
     else:
         value = objective_value(problem.structure, objective)
-    return AxisMotion(profile, programme.problem.errors(profile), value, programme.solved, problem.axis_limits)
+    return motion_of(programme, profile, value, axis_limits=problem.axis_limits)
 
 
 def _softest(programme: AxisProgramme, band: float) -> tuple[FloatArray, float] | None:
@@ -144,9 +147,17 @@ def _smoothest(
     return found if smooth is None else smooth
 
 
+def motion_of(
+    programme: AxisProgramme, profile: CamProfile, value: float | None = None, *, axis_limits: bool
+) -> AxisMotion:
+    """Judge a command; its ``value`` is its largest sync error if not given."""
+    errors = programme.rows.errors(profile)
+    worst = tuple(max(each.values()) for each in errors)
+    least = max(worst) if value is None else value
+    return AxisMotion(profile, worst, errors[0], least, programme.solved, axis_limits, programme.rows.shares)
+
+
 def _motion(programme: AxisProgramme, unknowns: FloatArray, value: float | None = None) -> AxisMotion:
     profile = programme.profile(unknowns)
-    errors = programme.problem.errors(profile)
-    least = max(errors) if value is None else value
-    axis_limits = programme.problem.axis_limits and programme.keeps_axis_limits(profile)
-    return AxisMotion(profile, errors, least, programme.solved, axis_limits)
+    kept = programme.problem.axis_limits and programme.keeps_axis_limits(profile)
+    return motion_of(programme, profile, value, axis_limits=kept)

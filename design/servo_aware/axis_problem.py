@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-
-import numpy as np
+from typing import TypeVar
 
 from camwright.design.servo_aware.axis_response import Axis
 from camwright.design.servo_aware.command_basis import Command, CommandBasis, command_basis
@@ -13,6 +13,12 @@ from camwright.design.servo_aware.torque import AxisTorque
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
+
+Each = TypeVar("Each")
+"""What is thinned out."""
+
+# Of the line speeds that are looked at, servos at the corners of their ranges are looked at at each so many-th.
+CORNERED = 5
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,9 +38,12 @@ class AxisProblem:
     structure
         A return whose breaks the command may share.
     between
-        Servos between the corners of the ranges, whose error must not be much larger than that of the others.
+        Servos between the corners of the ranges, whose error must not be much larger than that of the others; each at a line speed of its
+        own.
     wider
         Factor by which the band of these servos is wider than that of the others.
+    shares
+        Line speeds at which all this is to hold, as shares of the cut's, from the full line speed down.
     """
 
     task: Task
@@ -44,16 +53,34 @@ class AxisProblem:
     structure: CamProfile | None = None
     between: tuple[Servo, ...] = ()
     wider: float = 1.0
+    shares: tuple[float, ...] = (1.0,)
 
     @cached_property
-    def axes(self) -> tuple[Axis, ...]:
-        """Axes of the servos that must keep to the band."""
-        return tuple(Axis(self.task, servo) for servo in self.servos)
+    def axes(self) -> tuple[tuple[Axis, ...], ...]:
+        """Axes of the servos that must keep to the band, by servo: the nominal one at all line speeds, the others at fewer of them."""
+        fewer = thinned(self.shares, CORNERED)
+        return tuple(
+            tuple(Axis(self.task, servo.at_speed(share), share) for share in (fewer if number else self.shares))
+            for number, servo in enumerate(self.servos)
+        )
+
+    @cached_property
+    def axes_between(self) -> tuple[Axis, ...]:
+        """Axes of the servos between the corners; their line speeds are spread over all."""
+        shares = [self.shares[number % len(self.shares)] for number in range(len(self.between))]
+        return tuple(
+            Axis(self.task, servo.at_speed(share), share) for servo, share in zip(self.between, shares, strict=True)
+        )
+
+    @property
+    def several(self) -> bool:
+        """Whether more than one axis must keep to the band."""
+        return len(self.servos) > 1 or len(self.shares) > 1
 
     @cached_property
     def basis(self) -> CommandBasis:
         """Commands that may be chosen."""
-        return command_basis(self.task, self.command, self.structure, robust=len(self.servos) > 1)
+        return command_basis(self.task, self.command, self.structure, robust=self.several)
 
     @cached_property
     def scale(self) -> float:
@@ -76,11 +103,15 @@ class AxisProblem:
             found[0] = (machine.guide[0] - end, machine.guide[1] - end)
         return found
 
-    @cached_property
-    def own_limits(self) -> dict[int, tuple[float, float]]:
-        """Limits that the axis' own motion is held to: speed, reversal and acceleration."""
-        return {order: limits for order, limits in self.limits.items() if order in (1, 2)}
+    def own_limits(self, axis: Axis) -> dict[int, tuple[float, float]]:
+        """Limits over the master that an axis' own motion is held to at its line speed: speed, reversal and acceleration."""
+        return {
+            order: (low / axis.share**order, high / axis.share**order)
+            for order, (low, high) in self.limits.items()
+            if order in (1, 2)
+        }
 
-    def errors(self, profile: CamProfile) -> tuple[float, ...]:
-        """Largest sync error of the tool in the shear zone (m), by servo."""
-        return tuple(float(np.abs(axis.zone_errors(profile)[2]).max()) for axis in self.axes)
+
+def thinned(every: Sequence[Each], step: int) -> tuple[Each, ...]:
+    """Take each so many-th of a sequence, the first and the last among them."""
+    return tuple(every) if len(every) == 1 else (*every[:-1:step], every[-1])

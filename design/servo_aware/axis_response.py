@@ -39,11 +39,14 @@ class Axis:
     task
         The machine, its sync zone placed, and the cut.
     servo
-        The servo.
+        The servo, as it does at the cut's line speed.
+    share
+        Share of the cut's line speed for which that servo stands (`camwright.profiles.servo.Servo.at_speed`).
     """
 
     task: Task
     servo: Servo
+    share: float = 1.0
 
     @property
     def sample(self) -> float:
@@ -197,7 +200,7 @@ class Axis:
 
     def _after_sample(self, times: FloatArray, order: int) -> tuple[FloatArray, FloatArray]:
         """Give what state and held reference at a sampling instant contribute to a derivative over the master, times (s) after it."""
-        turned, pushed = _sampled_plants(self.servo.loop, tuple(times.tolist()))
+        turned, pushed = sampled_plants(self.servo.loop, tuple(times.tolist()))
         return turned[:, 2 - order] / self.task.cut.line_speed**order, pushed[
             :, 2 - order
         ] / self.task.cut.line_speed**order
@@ -271,7 +274,7 @@ def _before(profile: CamProfile, places: tuple[float, ...], sample: float, count
 
 
 @lru_cache(maxsize=256)
-def _sampled_plants(servo: Servo, times: tuple[float, ...]) -> tuple[FloatArray, FloatArray]:
+def sampled_plants(servo: Servo, times: tuple[float, ...]) -> tuple[FloatArray, FloatArray]:
     """Transitions and inputs of `camwright.profiles.servo.sample_plant` at several times, shapes ``(n, 3, 3)`` and ``(n, 3)``."""
     parts = [sample_plant(servo, time) for time in times]
     return np.array([part.transition for part in parts]), np.array([part.input for part in parts])

@@ -112,6 +112,49 @@ class CommandBasis:
         table = np.bincount(flat, values.ravel(), minlength=len(places) * count).reshape(len(places), count)
         return table @ self.matrix, constant + table @ self.constant
 
+    def sums(self, places: FloatArray, weights: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Several weighted sums of the command at the same places.
+
+        Of every interval the moments of the weights are taken first, then the splines' powers: less to gather than spline by spline.
+
+        Parameters
+        ----------
+        places
+            Master positions (m), any cycle, shape ``(rows, samples)``.
+        weights
+            Shape ``(samples, sums)``, the same for all rows.
+
+        Returns
+        -------
+        (matrix, constant)
+            Shapes ``(rows, sums, n)`` and ``(rows, sums)``: the sums are ``matrix @ z + constant``.
+        """
+        rows, kinds = len(places), weights.shape[1]
+        turns = np.floor(places / self.length)
+        local = places - turns * self.length
+        constant = self.pitch * (turns @ weights)
+        intervals = len(self.nodes) - 1
+        inside = np.minimum(local, self.nodes[-1])
+        index = np.clip(np.searchsorted(self.nodes, inside, side="right") - 1, 0, intervals - 1)
+        part = inside - self.nodes[index]
+        flat = (index + np.arange(rows)[:, None] * intervals).ravel()
+        free = np.ones(local.shape)
+        if self.sync is not None:
+            free = np.asarray(local < self.nodes[-1], dtype=np.float64)
+            known = (1.0 - free) * self.sync(np.clip(local, self.sync.start, self.sync.end))
+            constant = constant + known @ weights
+        moments = np.empty((kinds, _DEGREE + 1, rows, intervals))
+        power = free
+        for degree in range(_DEGREE + 1):
+            for kind in range(kinds):
+                found = np.bincount(flat, (power * weights[:, kind]).ravel(), minlength=rows * intervals)
+                moments[kind, degree] = found.reshape(rows, intervals)
+            power = power * part
+        table = np.zeros((rows, kinds, len(self.constant)))
+        for spline in range(_DEGREE + 1):
+            table[:, :, spline : spline + intervals] += np.einsum("kpri,ip->rki", moments, self.pieces[:, :, spline])
+        return table @ self.matrix, constant + table @ self.constant
+
     def profile(self, unknowns: FloatArray) -> CamProfile:
         """Return the command as a profile over ``[0, length]``, its slave counted as in the basis."""
         coefficients = self.matrix @ unknowns + self.constant

@@ -12,6 +12,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from camwright.design.servo_aware.interior_point import interior_point, least_excess
 from camwright.design.servo_aware.least_distance import least_distance
 from camwright.profiles.errors import SolverError
 from camwright.profiles.polynomial.profile import FloatArray
@@ -39,6 +40,8 @@ _QPOASES: dict[str, Any] = {
     "hessian_type": "posdef",
     "initialStatusBounds": "inactive",
 }
+# More rows than these are asked of the interior-point method first.
+MANY = 500
 # HiGHS' words for a programme without an answer.
 _INFEASIBLE, _UNBOUNDED = "Infeasible", "Unbounded"
 # Added to the diagonal of a quadratic cost, relative to its mean: directions that cost nothing are left where they are.
@@ -118,6 +121,8 @@ class ConvexProgramme:
             Every solver ended without an answer.
         """
         rows = self.rows()
+        if len(rows.matrix) > MANY:
+            return _many(rows, cost, square)
         return _linear(rows, cost) if square is None else _quadratic(rows, cost, square)
 
 
@@ -148,6 +153,22 @@ class Rows:
 
 _Road = Callable[[FloatArray, FloatArray, FloatArray, FloatArray], tuple[FloatArray | None, str]]
 """What solves a linear programme of a matrix, bounds of its rows and a cost: the answer, or nothing, and the status."""
+
+
+def _many(rows: Rows, cost: FloatArray, square: FloatArray | None) -> FloatArray | None:
+    """Solve a programme of many rows by the interior-point method; by HiGHS or least squares where that comes to no end."""
+    found = interior_point(rows.matrix, rows.low, rows.high, cost, square)
+    if found is not None and rows.missed(found) <= 0.0:
+        return found
+    excess = least_excess(rows.matrix, rows.low, rows.high)
+    if excess is not None and excess > rows.accepted.max():
+        return None
+    if square is None:
+        return _linear(rows, cost)
+    nearest = _nearest(rows, cost, square)
+    if nearest is not None:
+        return nearest
+    raise SolverError("an interior-point method ended a servo-aware design without an answer; report this job")
 
 
 def _linear(rows: Rows, cost: FloatArray) -> FloatArray | None:
@@ -196,17 +217,28 @@ def _by_simplex(
 
 def _quadratic(rows: Rows, cost: FloatArray, square: FloatArray) -> FloatArray | None:
     """Solve a quadratic programme by least squares, or by qpOASES where rounding leaves these without an answer."""
-    square = square + _STEADY * np.trace(square) / len(cost) * np.eye(len(cost))
-    nearest = least_distance(square, cost, rows.matrix, rows.low, rows.high)
-    if nearest is not None and rows.missed(nearest) <= 0.0:
+    nearest = _nearest(rows, cost, square)
+    if nearest is not None:
         return nearest
-    matrix = sparse(rows.matrix)
-    answer, status = _ask("qpoases", _QPOASES, cost, matrix, (rows.low, rows.high), (-np.inf, np.inf), sparse(square))
+    matrix, definite = sparse(rows.matrix), sparse(_definite(square))
+    answer, status = _ask("qpoases", _QPOASES, cost, matrix, (rows.low, rows.high), (-np.inf, np.inf), definite)
     if answer is not None and rows.missed(answer["x"]) <= 0.0:
         return answer["x"]
     if _linear(rows, np.zeros(len(cost))) is None:
         return None
     raise SolverError(f"qpOASES ended a servo-aware design with {status!r}; report this job")
+
+
+def _nearest(rows: Rows, cost: FloatArray, square: FloatArray) -> FloatArray | None:
+    """Solve a quadratic programme by least squares; ``None`` where rounding leaves no answer."""
+    found = least_distance(_definite(square), cost, rows.matrix, rows.low, rows.high)
+    return found if found is not None and rows.missed(found) <= 0.0 else None
+
+
+def _definite(square: FloatArray) -> FloatArray:
+    """Make directions that cost nothing cost a little."""
+    found: FloatArray = square + _STEADY * np.trace(square) / len(square) * np.eye(len(square))
+    return found
 
 
 def sparse(matrix: FloatArray) -> ca.DM:

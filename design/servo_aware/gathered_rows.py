@@ -9,19 +9,18 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
-from camwright.design.servo_aware.axis_problem import AxisProblem
+from camwright.design.servo_aware.axis_problem import AxisProblem, thinned
 from camwright.design.servo_aware.axis_response import PHASES, SUBSTEPS, Axis
 from camwright.design.servo_aware.rows import (
     MOST_EACH,
     MOST_ROWS,
     RATIO,
     AxisRows,
-    band_rows,
-    first_places,
-    ratio_rows,
     worst_places,
 )
+from camwright.design.servo_aware.zone_table import ZoneTable
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 
 # Limits of the axis' own speed and acceleration are drawn in by this share, for the same reason.
@@ -29,6 +28,13 @@ AXIS_MARGIN = 1e-3
 # Places in the shear zone that have rows from the start, one for each sample in it, at least so many, and times after a sample: few where
 # rounds are cheap, more for the linear programmes of a single servo.
 FEW, MORE = (6, 2), (12, 4)
+# Of several line speeds each so many-th has rows from the start, and has the axis' own motion looked at.
+BEGUN = 4
+# Most line speeds of a servo that get rows in a round: those where it is worst, far from each other.
+MOST_SPEEDS = 16
+# Between line speeds where a servo comes so near to its limit (share of it) the one in the middle is looked at, down to this step (share of
+# the band of line speeds).
+NEAR, FINEST = 0.02, 1 / 60
 # Most rows of the axis' own motion added in a round: it runs along its limits where the tool only touches its band.
 MOST_OWN = 24
 # Most servos between the corners that get rows in a round.
@@ -42,7 +48,7 @@ NEARLY = 1e-3
 class GatheredRows:
     """Rows of one `AxisProblem`: bands in the shear zone, ratios there, and the nominal axis' own limits.
 
-    Servos between the corners get rows only where they prove worse.
+    Line speeds, and servos between the corners, get rows only where they prove worse.
     """
 
     def __init__(self, problem: AxisProblem) -> None:
@@ -51,52 +57,92 @@ class GatheredRows:
         self.ratios: list[AxisRows] = []
         self.own = OwnRows(problem)
         self._between = BetweenServos(problem)
-        self._begun: set[str] = set()
+        self._tables = [[ZoneTable(axis, problem.basis) for axis in axes] for axes in problem.axes]
 
     def begin(self, *, linear: bool, ratio: bool) -> None:
         """Make the first rows of a design, unless a mean square is made least of a command in sync, which may well need none."""
         in_sync, mean = self.problem.command == "in_sync", not linear
         if in_sync and mean:
             return
-        first = FEW if in_sync or mean or len(self.problem.axes) > 1 else MORE
-        if "band" not in self._begun:
-            self._begun.add("band")
-            self.bands += [
-                band_rows(axis, self.problem.basis, *first_places(axis, *first)) for axis in self.problem.axes
-            ]
-        if ratio and "ratio" not in self._begun and self.problem.task.cut.shear_zone:
-            self._begun.add("ratio")
-            self.ratios.append(
-                ratio_rows(self.problem.axes[0], self.problem.basis, *first_places(self.problem.axes[0], *first))
-            )
+        first = FEW if in_sync or mean or self.problem.several else MORE
+        if not any(table.begun for table in self._tables[0]):
+            for tables in self._tables:
+                for table in thinned(tables, BEGUN):
+                    self.bands.append(table.band_rows(table.spread(*first)))
+        if ratio and not self.ratios and self.problem.task.cut.shear_zone:
+            table = self._tables[0][0]
+            self.ratios.append(table.ratio_rows(table.spread(*first)))
 
-    def add_worst(self, profile: CamProfile, band: float, *, ratio: bool) -> bool:
-        """Add rows where a command leaves its band, or the nominal axis breaks a limit; whether there were any."""
+    def add_worst(self, command: FloatArray | CamProfile, profile: CamProfile, band: float, *, ratio: bool) -> bool:
+        """Add rows where a command leaves its band, or the nominal axis breaks a limit; whether there were any.
+
+        Parameters
+        ----------
+        command
+            The command as `ZoneTable` takes it: its unknowns (slave unit), or the profile where it has none.
+        profile
+            The command.
+        band
+            Its band, as a share of the tolerance.
+        ratio
+            Whether the band of the ratio counts too.
+        """
         nearly = 1.0 if band == 1.0 else 1.0 + NEARLY
         limit = max(band, LEAST_ERROR) * self.problem.task.cut.sync_tolerance * nearly
         added = False
-        for axis in self.problem.axes:
-            places, times, errors = axis.zone_errors(profile)
-            worst = worst_places(np.abs(errors) - limit, _most(self.problem))
-            if len(worst):
-                self.bands.append(band_rows(axis, self.problem.basis, places[worst], times[worst]))
-                added = True
+        for tables in self._tables:
+            excesses = [np.abs(each.errors(command)) - limit for each in tables]
+            worst = _worst(tables, excesses) or self._finer(tables, excesses, command, limit)
+            self.bands += [table.band_rows(worst_places(excess, _most(self.problem))) for table, excess in worst]
+            added |= bool(worst)
         if ratio and self.problem.task.cut.shear_zone:
-            added |= self._add_ratio(profile, max(1.0, band))
+            added |= self._add_ratio(command, max(1.0, band))
         if self.problem.axis_limits:
             added |= self.own.add_worst(profile)
-        between = self._between.rows(profile, self.problem.wider * limit, unseen=not added)
+        between = self._between.rows(command, self.problem.wider * limit, unseen=not added)
         self.bands += between
         return bool(between) or added
 
-    def _add_ratio(self, profile: CamProfile, band: float) -> bool:
+    def _finer(
+        self, tables: list[ZoneTable], excesses: list[FloatArray], command: FloatArray | CamProfile, limit: float
+    ) -> list[tuple[ZoneTable, FloatArray]]:
+        """Look at line speeds beside those where a servo comes near to its limit, and from then on; give those where it exceeds it."""
+        least = FINEST * (self.problem.shares[0] - self.problem.shares[-1])
+        shares = [table.axis.share for table in tables]
+        peaks = np.array([float(excess.max()) for excess in excesses])
+        near = set(worst_places(peaks + NEAR * limit, MOST_SPEEDS).tolist())
+        new = []
+        for number in range(len(tables) - 1):
+            wide = shares[number] - shares[number + 1] > least
+            if wide and (number in near or number + 1 in near):
+                axis, share = tables[number].axis, 0.5 * (shares[number] + shares[number + 1])
+                servo = axis.servo.at_speed(share / axis.share)
+                new.append(ZoneTable(Axis(axis.task, servo, share), self.problem.basis))
+        tables += new
+        tables.sort(key=lambda table: -table.axis.share)
+        found = [(table, np.abs(table.errors(command)) - limit) for table in new]
+        return [(table, excess) for table, excess in found if excess.max() > 0.0]
+
+    def errors(self, profile: CamProfile) -> tuple[dict[float, float], ...]:
+        """Largest sync error of the tool in the shear zone (m), by servo and there by line speed, as a share of the cut's."""
+        return tuple(
+            {table.axis.share: float(np.abs(table.axis.zone_errors(profile)[2]).max()) for table in tables}
+            for tables in self._tables
+        )
+
+    @property
+    def shares(self) -> tuple[float, ...]:
+        """Line speeds that have rows, as shares of the cut's, from the full one down."""
+        begun = {table.axis.share for tables in self._tables for table in tables if table.begun}
+        return tuple(sorted(begun | self._between.shares, reverse=True)) or (1.0,)
+
+    def _add_ratio(self, command: FloatArray | CamProfile, band: float) -> bool:
         """Add rows where the ratio of the nominal axis leaves its band, widened to a share of itself."""
-        axis, cut = self.problem.axes[0], self.problem.task.cut
-        places, times, errors = axis.zone_ratios(profile)
-        worst = worst_places(np.abs(errors) - band * RATIO * cut.sync_tolerance / cut.shear_zone)
-        if len(worst):
-            self.ratios.append(ratio_rows(axis, self.problem.basis, places[worst], times[worst]))
-        return bool(len(worst))
+        cut, tables = self.problem.task.cut, self._tables[0]
+        limit = band * RATIO * cut.sync_tolerance / cut.shear_zone
+        worst = _worst(tables, [np.abs(each.ratios(command)) - limit for each in tables])
+        self.ratios += [table.ratio_rows(worst_places(excess)) for table, excess in worst]
+        return bool(worst)
 
 
 class OwnRows:
@@ -106,48 +152,48 @@ class OwnRows:
         self.problem = problem
         self.rows: list[AxisRows] = []
         self._judged: CamProfile | None = None
-        self._excess: dict[int, FloatArray] = {}
+        self._excess: dict[tuple[float, int], FloatArray] = {}
 
     def keeps(self, profile: CamProfile) -> bool:
-        """Whether the nominal axis keeps its limits, to the share that rows of it are drawn in by."""
+        """Whether the nominal axis keeps its limits at its line speeds, to the share that rows of it are drawn in by."""
         return all(
-            self.problem.axes[0].keeps_within(profile, order, low, high)
-            or float(self._over(profile, order).max()) <= AXIS_MARGIN * high
-            for order, (low, high) in self.problem.own_limits.items()
+            axis.keeps_within(profile, order, low, high)
+            or float(self._over(axis, profile, order).max()) <= AXIS_MARGIN * high
+            for axis in thinned(self.problem.axes[0], BEGUN)
+            for order, (low, high) in self.problem.own_limits(axis).items()
         )
 
     def add_worst(self, profile: CamProfile) -> bool:
         """Add rows where the nominal axis breaks a limit by half of what rows are drawn in by; whether there were any."""
-        axis, added = self.problem.axes[0], False
-        for order, (low, high) in self.problem.own_limits.items():
-            if axis.keeps_within(profile, order, low, high):
-                continue
-            excess = self._over(profile, order)
-            worst = worst_places(excess.max(axis=0) - 0.5 * AXIS_MARGIN * high, MOST_OWN)
-            if len(worst):  # what is pressed down there rises a sample aside, so that gets rows too
-                worst = np.unique((worst[:, None] + PHASES * np.arange(-1, 2)) % excess.shape[1])
-                times = np.asarray(
-                    excess[:, worst].argmax(axis=0) * (axis.servo.sample_time / SUBSTEPS), dtype=np.float64
-                )
-                places = np.asarray(worst * (axis.sample / PHASES), dtype=np.float64)
-                matrix, constant = axis.rows(self.problem.basis, places, times, order)
-                room, ones = high * AXIS_MARGIN, np.ones(len(matrix))
-                self.rows.append(AxisRows(matrix, constant, (low + room) * ones, (high - room) * ones))
-                added = True
-        return added
+        before = len(self.rows)
+        for axis in thinned(self.problem.axes[0], BEGUN):
+            for order, (low, high) in self.problem.own_limits(axis).items():
+                if axis.keeps_within(profile, order, low, high):
+                    continue
+                excess = self._over(axis, profile, order)
+                worst = worst_places(excess.max(axis=0) - 0.5 * AXIS_MARGIN * high, MOST_OWN)
+                if len(worst):  # what is pressed down there rises a sample aside, so that gets rows too
+                    worst = np.unique((worst[:, None] + PHASES * np.arange(-1, 2)) % excess.shape[1])
+                    times = np.asarray(
+                        excess[:, worst].argmax(axis=0) * (axis.servo.sample_time / SUBSTEPS), dtype=np.float64
+                    )
+                    places = np.asarray(worst * (axis.sample / PHASES), dtype=np.float64)
+                    matrix, constant = axis.rows(self.problem.basis, places, times, order)
+                    room, ones = high * AXIS_MARGIN, np.ones(len(matrix))
+                    self.rows.append(AxisRows(matrix, constant, (low + room) * ones, (high - room) * ones))
+        return len(self.rows) > before
 
-    def _over(self, profile: CamProfile, order: int) -> FloatArray:
+    def _over(self, axis: Axis, profile: CamProfile, order: int) -> FloatArray:
         """By how much the nominal axis breaks a limit over the cycle, by time after a sample and place; negative within it."""
         if self._judged is not profile:
             self._judged, self._excess = profile, {}
-        if order in self._excess:
-            return self._excess[order]
-        low, high = self.problem.own_limits[order]
-        axis = self.problem.axes[0]
-        count = math.ceil(self.problem.task.cut.length / (axis.sample / PHASES))
-        values = axis.on_grid(profile, 0, count, order)
-        self._excess[order] = np.maximum(values - high, low - values)
-        return self._excess[order]
+        key = axis.share, order
+        if key not in self._excess:
+            low, high = self.problem.own_limits(axis)[order]
+            count = math.ceil(self.problem.task.cut.length / (axis.sample / PHASES))
+            values = axis.on_grid(profile, 0, count, order)
+            self._excess[key] = np.maximum(values - high, low - values)
+        return self._excess[key]
 
 
 class BetweenServos:
@@ -155,27 +201,37 @@ class BetweenServos:
 
     def __init__(self, problem: AxisProblem) -> None:
         self._problem = problem
-        self._unseen = [Axis(problem.task, servo) for servo in problem.between]
-        self._seen: list[Axis] = []
+        self._unseen = [ZoneTable(axis, problem.basis) for axis in problem.axes_between]
+        self._seen: list[ZoneTable] = []
 
-    def rows(self, profile: CamProfile, limit: float, *, unseen: bool) -> list[AxisRows]:
+    @property
+    def shares(self) -> set[float]:
+        """Line speeds of those that have rows, as shares of the cut's."""
+        return {table.axis.share for table in self._seen}
+
+    def rows(self, command: FloatArray | CamProfile, limit: float, *, unseen: bool) -> list[AxisRows]:
         """Make rows where a servo between the corners is worse than its limit; those without rows are looked at last."""
         over = []
-        for axis in self._seen + (self._unseen if unseen else []):
-            places, times, errors = axis.zone_errors(profile)
-            worst = worst_places(np.abs(errors) - limit, _most(self._problem))
-            if len(worst):
-                over.append((float(np.abs(errors).max()), axis, places[worst], times[worst]))
+        for table in self._seen + (self._unseen if unseen else []):
+            excess = np.abs(table.errors(command)) - limit
+            if excess.max() > 0.0:
+                over.append((float(excess.max()), table, worst_places(excess, _most(self._problem))))
         over.sort(key=lambda each: -each[0])
         found = []
-        for _, axis, places, times in over[:MOST_SERVOS]:
-            found.append(band_rows(axis, self._problem.basis, places, times, self._problem.wider))
-            if axis in self._unseen:
-                self._unseen.remove(axis)
-                self._seen.append(axis)
+        for _, table, points in over[:MOST_SERVOS]:
+            found.append(table.band_rows(points, self._problem.wider))
+            if table in self._unseen:
+                self._unseen.remove(table)
+                self._seen.append(table)
         return found
+
+
+def _worst(tables: list[ZoneTable], excesses: list[FloatArray]) -> list[tuple[ZoneTable, FloatArray]]:
+    """Find, of a servo's tables by line speed, those that exceed a limit the most, and by how much at their points."""
+    worst: NDArray[np.intp] = worst_places(np.array([float(excess.max()) for excess in excesses]), MOST_SPEEDS)
+    return [(tables[number], excesses[number]) for number in worst.tolist()]
 
 
 def _most(problem: AxisProblem) -> int:
     """Most rows of one servo that are added at a time."""
-    return MOST_EACH if len(problem.servos) > 1 else MOST_ROWS
+    return MOST_EACH if problem.several else MOST_ROWS

@@ -16,8 +16,9 @@ from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 
 # Limits are drawn in by this share, twice what an answer may break its rows by.
 LIMIT_MARGIN = 2 * ACCEPTED
-# The band in the shear zone is drawn in by this share, as rows stand at single places and times.
-BAND_MARGIN = 1e-3
+# The band in the shear zone is drawn in by this share, as rows stand at single places and times; and by that where they stand at single
+# line speeds too.
+BAND_MARGIN, SPEED_MARGIN = 1e-3, 2e-3
 # Rows of the axis may be broken by this share of their band, far less than it is drawn in by.
 BAND_ACCEPTED = 1e-5
 # Rounds of adding rows.
@@ -38,6 +39,7 @@ class AxisProgramme:
         self.problem = problem
         self.rows = GatheredRows(problem)
         self.solved = 0
+        self.margin = BAND_MARGIN if len(problem.shares) == 1 else SPEED_MARGIN
         # a return alone comes near to its limits, a whole cycle has room: rows of its limits come when they matter
         self._tight = set(range(4)) if problem.command == "in_sync" else set[int]()
         self._turned: FloatArray | None = None
@@ -72,7 +74,7 @@ class AxisProgramme:
                 return None
             if found is None or _stands_still(found[1], before, found[1] if band is None else band):
                 break
-            if not self.rows.add_worst(self.profile(found[0]), found[1] if band is None else band, ratio=band == 1.0):
+            if not self._add_worst(found[0], found[1] if band is None else band, ratio=band == 1.0):
                 break
             if number == rounds < ROUNDS:
                 return None
@@ -87,7 +89,7 @@ class AxisProgramme:
             )  # the gentlest command breaks the fewest limits between the rows
             if found is None:  # rows yet to come can only make it worse
                 return False
-            if not self.rows.add_worst(self.profile(found[0]), 1.0, ratio=True):
+            if not self._add_worst(found[0], 1.0, ratio=True):
                 return True
         return False
 
@@ -98,7 +100,7 @@ class AxisProgramme:
             room = LIMIT_MARGIN * max(abs(low), abs(high))
             if least < low - room or greatest > high + room:
                 return False
-        return not self.rows.add_worst(profile, 1.0, ratio=True)
+        return not self.rows.add_worst(profile, profile, 1.0, ratio=True)
 
     def least_share(self) -> float | None:
         """Least share of the tolerance that a command keeps with every axis, in position and ratio; ``None`` if none keeps the limits."""
@@ -107,10 +109,8 @@ class AxisProgramme:
             found = self._solve_rows("sync_error", None, {}, elastic=True)
             if found is None:
                 return None
-            share = found[1] / (1.0 - BAND_MARGIN)
-            if _stands_still(found[1], before, found[1]) or not self.rows.add_worst(
-                self.profile(found[0]), found[1], ratio=True
-            ):
+            share = found[1] / (1.0 - self.margin)
+            if _stands_still(found[1], before, found[1]) or not self._add_worst(found[0], found[1], ratio=True):
                 break
             before = found[1]
         return share
@@ -121,9 +121,13 @@ class AxisProgramme:
             return self._solve_rows(cost, 1.0, caps)
         except SolverError:
             wider = self._solve_rows("sync_error", None, caps, elastic=True)
-            if wider is None or wider[1] > 1.0 - BAND_MARGIN:
+            if wider is None or wider[1] > 1.0 - self.margin:
                 return None
             raise
+
+    def _add_worst(self, unknowns: FloatArray, band: float, *, ratio: bool) -> bool:
+        """Add rows where an answer leaves its band; as `GatheredRows.add_worst`."""
+        return self.rows.add_worst(unknowns * self.problem.scale, self.profile(unknowns), band, ratio=ratio)
 
     def profile(self, unknowns: FloatArray) -> CamProfile:
         """Return the command of an answer, from the start of the return; asked again, the same one."""
@@ -185,7 +189,7 @@ class AxisProgramme:
             if band is None:
                 programme.add_peak(matrix, constant, below, above, BAND_ACCEPTED)
             else:
-                share = band * (1.0 - BAND_MARGIN)
+                share = band * (1.0 - self.margin)
                 programme.add(matrix, below * share - constant, above * share - constant, BAND_ACCEPTED)
         for rows in self.rows.own.rows:
             matrix, constant = rows.matrix * (self.problem.scale / rows.size)[:, None], rows.constant / rows.size

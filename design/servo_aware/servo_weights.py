@@ -110,6 +110,32 @@ def sampled_states(servo: Servo, samples: FloatArray) -> tuple[FloatArray, Float
     return states, (gain + lead) * samples[:, 0] - lead * samples[:, 1] - gain * states[:, 2]
 
 
+@lru_cache(maxsize=512)
+def state_weights(servo: Servo, count: int) -> FloatArray:
+    """Weights of the command's samples, newest first, for the plant's state at a sampling instant and the reference held from there.
+
+    Parameters
+    ----------
+    servo
+        The servo; dead time and lead are the caller's.
+    count
+        Samples of the past.
+
+    Returns
+    -------
+    ndarray
+        Shape ``(count + 1, 4)``: the state as in `camwright.profiles.servo.SampledPlant`, and the velocity reference.
+    """
+    gain, lead = servo.position_gain, servo.velocity_feedforward / servo.sample_time
+    states = _past_states(servo, count)
+    reference = -gain * states[:, 2]
+    reference[0] += gain + lead
+    reference[1] -= lead
+    found: FloatArray = np.column_stack([states, reference])
+    found.setflags(write=False)
+    return found
+
+
 @lru_cache(maxsize=256)
 def greatest_gains(servo: Servo, order: int, substeps: int) -> tuple[float, float]:
     """Bound what the servo makes of the command's velocity (order 1) or acceleration (2).

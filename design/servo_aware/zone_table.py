@@ -1,0 +1,148 @@
+"""The axis in the shear zone as a table: from it come both the rows of a programme and the judgement of its answers.
+
+At a sampling instant the plant's state and the reference that is held from there are sums over the command's past, so rows over its
+unknowns. Times after the instant only combine these four. One table serves all rounds of a design.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from camwright.design.servo_aware.axis_response import PHASES, SUBSTEPS, Axis, sampled_plants
+from camwright.design.servo_aware.command_basis import CommandBasis
+from camwright.design.servo_aware.rows import RATIO, AxisRows
+from camwright.design.servo_aware.servo_weights import memory, state_weights
+from camwright.profiles.polynomial.profile import CamProfile, FloatArray
+
+# Sampling instants in the shear zone at most, of a servo that samples often: what the axis does there has no finer waves.
+MOST_INSTANTS = 128
+# Most places in the shear zone that have rows from the start.
+MOST_PLACES = 24
+
+
+class ZoneTable:
+    """Where one servo's axis is looked at in the shear zone: at points ``(place, time after a sampling instant)``.
+
+    At the full line speed the points are those of the validation's phases; a servo that samples more often along the line is looked at
+    about as densely. The ends of the zone are among them.
+
+    Parameters
+    ----------
+    axis
+        The axis.
+    basis
+        The commands.
+    """
+
+    def __init__(self, axis: Axis, basis: CommandBasis) -> None:
+        self.axis, self._basis = axis, basis
+        self.begun = False
+        start, end = axis.shear_zone
+        v, after = axis.task.cut.line_speed, np.arange(SUBSTEPS) * (axis.servo.sample_time / SUBSTEPS)
+        step = axis.sample / PHASES
+        stride = max(1, math.ceil((end - start) / (step * MOST_INSTANTS)))
+        first = math.ceil((start - axis.sample) / step)
+        regular = np.arange(first, math.floor(end / step) + 1, stride) * step
+        places = regular + v * after[:, None]
+        inside = (places >= start) & (places <= end)
+        edges = np.repeat(list(dict.fromkeys((start, end))), PHASES)
+        edge_times = (edges / v) % (axis.servo.sample_time / PHASES)
+        edge_times += np.tile(np.arange(PHASES), len(edges) // PHASES) * (axis.servo.sample_time / PHASES)
+        sub, index = np.nonzero(inside)
+        self.places: FloatArray = np.concatenate([places[inside], edges])
+        self.times: FloatArray = np.concatenate([after[sub], edge_times])
+        self._instants: FloatArray = np.concatenate([regular, edges - v * edge_times])
+        self._of: NDArray[np.intp] = np.concatenate([index, len(regular) + np.arange(len(edges))])
+        self._ideal = axis.ideal(self.places)
+
+    @property
+    def _samples(self) -> FloatArray:
+        """Master positions that the loop sees at each instant, newest first."""
+        cut, servo = self.axis.task.cut, self.axis.servo
+        past = np.arange(memory(servo.loop) + 1) * servo.sample_time
+        return self._instants[:, None] - cut.line_speed * (servo.delay + past)
+
+    @cached_property
+    def _weights(self) -> FloatArray:
+        """Weights of the samples for state and reference, shape ``(samples, 4)``."""
+        return state_weights(self.axis.servo.loop, memory(self.axis.servo.loop))
+
+    @cached_property
+    def _rows(self) -> tuple[FloatArray, FloatArray]:
+        """State and reference at the instants over the unknowns: shapes ``(instants, 4, n)`` and ``(instants, 4)``."""
+        return self._basis.sums(self._samples, self._weights)
+
+    @cached_property
+    def _combined(self) -> tuple[FloatArray, ...]:
+        """What state and reference contribute at each point to the axis, and to its ratio: shapes ``(points, 4)``."""
+        known, index = np.unique(self.times, return_inverse=True)
+        turned, pushed = sampled_plants(self.axis.servo.loop, tuple(known.tolist()))
+        v = self.axis.task.cut.line_speed
+        return tuple(
+            np.concatenate([turned[:, 2 - order], pushed[:, 2 - order, None]], axis=1)[index] / v**order
+            for order in (0, 1)
+        )
+
+    def _motion(self, command: FloatArray | CamProfile, order: int) -> FloatArray:
+        """Axis (0) or its ratio (1) at the points; of a command given by its unknowns (slave unit) or as a profile."""
+        if isinstance(command, CamProfile):
+            states = command(self._samples, outside="repeat") @ self._weights
+        else:
+            matrix, constant = self._rows
+            states = matrix @ command + constant
+        found: FloatArray = np.einsum("pa,pa->p", self._combined[order], states[self._of])
+        return found
+
+    def errors(self, command: FloatArray | CamProfile) -> FloatArray:
+        """Sync error of the tool at the points (m)."""
+        travel, _, coordinate = self._ideal
+        tool = self.axis.task.machine.tool
+        return np.asarray(tool(coordinate + (self._motion(command, 0) - travel)) - tool(coordinate))
+
+    def ratios(self, command: FloatArray | CamProfile) -> FloatArray:
+        """Error of the tool's ratio at the points."""
+        _, ratio, coordinate = self._ideal
+        return np.asarray((self._motion(command, 1) - ratio) * self.axis.task.machine.tool_ratio(coordinate))
+
+    def band_rows(self, points: NDArray[np.intp], wider: float = 1.0) -> AxisRows:
+        """Make rows that keep the axis in its band at some of the points, the tolerance times a factor; from then on it has `begun`."""
+        self.begun = True
+        matrix, constant = self._at(points, 0)
+        low, high = self.axis.band(self.places[points], wider * self.axis.task.cut.sync_tolerance)
+        return AxisRows(matrix, constant - self._ideal[0][points], low, high)
+
+    def ratio_rows(self, points: NDArray[np.intp]) -> AxisRows:
+        """Make rows that keep the ratio of the axis to that of the sync zone at some of the points."""
+        matrix, constant = self._at(points, 1)
+        cut = self.axis.task.cut
+        lever = np.abs(self.axis.task.machine.tool_ratio(self._ideal[2][points]) + np.zeros(len(points)))
+        room = RATIO * cut.sync_tolerance / cut.shear_zone / lever
+        return AxisRows(matrix, constant - self._ideal[1][points], -room, room)
+
+    def _at(self, points: NDArray[np.intp], order: int) -> tuple[FloatArray, FloatArray]:
+        """Axis or its ratio at some of the points, as rows over the unknowns."""
+        matrix, constant = self._rows
+        weights, of = self._combined[order][points], self._of[points]
+        return np.einsum("pa,pan->pn", weights, matrix[of]), np.einsum("pa,pa->p", weights, constant[of])
+
+    def spread(self, least: int, instants: int) -> NDArray[np.intp]:
+        """Choose points for the first rows: the ends of the zone and places between, crowded at the ends, at a few times after a sample.
+
+        Parameters
+        ----------
+        least
+            Fewest places; there is one for each sample in the zone, up to `MOST_PLACES`.
+        instants
+            Times for each place.
+        """
+        start, end = self.axis.shear_zone
+        count = min(max(least, math.ceil((end - start) / self.axis.sample)), MOST_PLACES) if end > start else 1
+        wanted = start + (end - start) * (1.0 - np.cos(np.pi * np.arange(count) / max(1, count - 1))) / 2
+        times = self.axis.servo.sample_time * np.arange(instants) / instants
+        near = np.abs(self.places[:, None] - np.tile(wanted, instants)) / self.axis.sample
+        near = near + np.abs(self.times[:, None] - np.repeat(times, count)) / self.axis.servo.sample_time
+        return np.unique(near.argmin(axis=0))
