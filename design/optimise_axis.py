@@ -196,7 +196,7 @@ def _infeasible(problem: AxisProblem, settles: Callable[[Cut], bool] | None) -> 
         share = motion_of(AxisProgramme(problem), only, axis_limits=False).error / tolerance
     needed = max(1.0, share) * tolerance
     suggestions = () if settles is None else tuple(_suggestions(problem, needed, settles))
-    ways = "; ".join(f"{each.change} {each.value:.6g} {each.unit}" for each in suggestions)
+    ways = "; ".join(f"{each.change} {{{each.change}}}" for each in suggestions)
     excess = (needed - tolerance) * 1e3
     text = (
         f"{{@sync_tolerance}} = {{tolerance}}: no {problem.command} command within the limits holds the axis to it in the shear zone and "
@@ -208,7 +208,22 @@ def _infeasible(problem: AxisProblem, settles: Callable[[Cut], bool] | None) -> 
         ("needed", Value(needed, "m", 6)),
         ("excess", Value(needed - tolerance, "m", 4)),
     )
-    return InfeasibleError(Message(text, values), "sync_tolerance", excess, "mm", suggestions)
+    return InfeasibleError(
+        Message(text, (*values, *((each.change, _offered(each, cut)) for each in suggestions))),
+        "sync_tolerance",
+        excess,
+        "mm",
+        suggestions,
+    )
+
+
+def _offered(suggestion: Suggestion, cut: Cut) -> Value:
+    """Give the value of a suggestion for a `Message`: as it was designed in its unit, in another one beyond it."""
+    chosen = f"{suggestion.value:.6g} {suggestion.unit}"
+    if suggestion.change == "line_speed":
+        return Value(suggestion.value / 60.0, "m/s", 6, "below", chosen)
+    up = suggestion.change == "sync_tolerance" or suggestion.value > cut.length * 1e3
+    return Value(suggestion.value / 1e3, "m", 6, "above" if up else "below", chosen)
 
 
 def _suggestions(problem: AxisProblem, needed: float, settles: Callable[[Cut], bool]) -> Iterator[Suggestion]:

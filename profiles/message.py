@@ -33,16 +33,21 @@ class Value:
         Significant digits.
     toward
         ``"below"`` or ``"above"`` for a bound that itself does not work, so that what is printed does: six digits are kept then.
+    chosen
+        Number and unit as they were rounded and found to work, if they were: printed as they are, but in another unit beyond them.
     """
 
     number: float
     unit: str
     digits: int = 10
     toward: Toward = "nearest"
+    chosen: str = ""
 
     def written(self, factor: float, unit: str, decimals: int | None = None) -> str:
         """Write it in a unit that it is a number of times of; a bound with so many decimals, if given."""
         number, gap = self.number * factor, f" {unit}" if unit else ""
+        if self.chosen and self.chosen.endswith(gap):
+            return self.chosen
         if self.toward == "nearest":
             return f"{number:.{self.digits}g}{gap}"
         up = self.toward == "above"
@@ -81,6 +86,8 @@ class Message:
 
         def filled(found: re.Match[str]) -> str:
             name = found[2]
-            return name.rpartition(".")[2].replace("_", " ") if found[1] else known[name].written(1.0, known[name].unit)
+            if found[1]:
+                return name.rpartition(".")[2].replace("_", " ")
+            return known[name].chosen or known[name].written(1.0, known[name].unit)
 
         return HOLE.sub(filled, self.text)

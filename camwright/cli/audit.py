@@ -79,4 +79,4 @@ def _view(result: Audit, file: Path, files: list[Path]) -> RenderableType:
         notes.insert(
             0, new_text(f"* unbounded; by differences of the positions at the sample time of {time:g} ms, for both")
         )
-    return stacked(table, checks_view(result.judgement.checks), *notes, files_view(files))
+    return stacked(table, checks_view(result.judgement.checks, result.job.units), *notes, files_view(files))

@@ -11,7 +11,7 @@ import typer
 from camwright.answers.check import check_answer
 from camwright.cli.options import Json, Quiet
 from camwright.cli.views.parts import new_text
-from camwright.house.numbers import number, typed, with_unit
+from camwright.house.numbers import typed, with_unit
 from camwright.house.output import Voice
 from camwright.house.toml_file import MOST_BYTES
 from camwright.jobs.job import Job, load_job, parse_job
@@ -45,11 +45,14 @@ def _typed() -> str:
 
 def _view(job: Job) -> RenderableType:
     """Show what a job file says."""
-    cut, limits, unit = job.cut, job.limits, job.machine.slave_unit
-    speed = with_unit(limits.speed, "m/s") if unit == "m" else typed(limits.speed, "rad/s", 5)
+    cut, limits, unit, units = job.cut, job.limits, job.machine.slave_unit, job.units
+    speed = with_unit(limits.speed, "m/s", units=units) if unit == "m" else typed(limits.speed, "rad/s", 5)
+    acceleration, jerk = (
+        with_unit(value, unit + power, units=units)
+        for value, power in ((limits.acceleration, "/s^2"), (limits.jerk, "/s^3"))
+    )
     return new_text(
-        f"{job.name}: cut {with_unit(cut.length, 'm', 4)} at {with_unit(cut.line_speed, 'm/s')}, "
-        f"{machine_words(job.machine)}, sync zone {with_unit(cut.sync_zone, 'm', 4)}, "
-        f"shear zone {with_unit(cut.shear_zone, 'm', 4)}; at most {speed}, "
-        f"{number(limits.acceleration)} {unit}/s², {number(limits.jerk)} {unit}/s³.\nThe job file has no faults."
+        f"{job.name}: cut {with_unit(cut.length, 'm', 4, units)} at {with_unit(cut.line_speed, 'm/s', units=units)}, "
+        f"{machine_words(job.machine, units=units)}, sync zone {with_unit(cut.sync_zone, 'm', 4, units)}, "
+        f"shear zone {with_unit(cut.shear_zone, 'm', 4, units)}; at most {speed}, {acceleration}, {jerk}.\nThe job file has no faults."
     )

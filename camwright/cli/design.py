@@ -17,7 +17,7 @@ from camwright.cli.views.parts import new_text, stacked
 from camwright.cli.views.profiles import profiles_view
 from camwright.figures.design import design_figures
 from camwright.house.files import staged
-from camwright.house.numbers import number, si_unit, with_unit
+from camwright.house.numbers import number, with_unit
 from camwright.house.output import Voice
 from camwright.jobs.job import load_job
 from camwright.stored.save import design_files
@@ -56,11 +56,11 @@ def run(
 
 def _view(design: Design, files: Sequence[Path]) -> RenderableType:
     """Show a design: objective, comparison, checks, minimum cut lengths, files."""
-    lengths = [] if design.lengths is None else [lengths_view(design.lengths)]
+    lengths = [] if design.lengths is None else [lengths_view(design.lengths, design.job.units)]
     return stacked(
         new_text("\n".join(_head(design))),
         profiles_view(design.comparison),
-        checks_view(design.report.checks),
+        checks_view(design.report.checks, design.job.units),
         *_axis(design),
         lead_view(design.job, design.report.length_errors),
         *lengths,
@@ -70,17 +70,20 @@ def _view(design: Design, files: Sequence[Path]) -> RenderableType:
 
 def _head(design: Design) -> list[str]:
     """Say how the design ended: objective and bound, what was chosen, how well several starts agree."""
-    solution, unit = design.solution, si_unit(objective_unit(design.job))
+    solution, measure = design.solution, design.job.units.measure(objective_unit(design.job))
+    factor, unit = measure.factor, measure.printed
     bound = (
         "no lower bound is known"
         if design.gap is None
-        else f"lower bound {number(design.bound.value)} {unit} ({design.bound.method}), gap {design.gap:.1e}"
+        else f"lower bound {number(design.bound.value * factor)} {unit} ({design.bound.method}), gap {design.gap:.1e}"
     )
-    ending = f"{design.job.name}: {solution.status.value}, {design.job.objective} {number(design.objective)} {unit}"
+    ending = (
+        f"{design.job.name}: {solution.status.value}, {design.job.objective} {number(design.objective * factor)} {unit}"
+    )
     lines = [f"{ending} in {design.profile.pieces} pieces; {bound}"]
     machine = solution.machine
     if machine.place_name:
-        place = with_unit(machine.place, machine.slave_unit)
+        place = with_unit(machine.place, machine.slave_unit, units=design.job.units)
         lines.append(f"sync zone on the {machine.noun}: its middle at {place}")
     starts = solution.agreement
     if starts is not None:

@@ -11,9 +11,10 @@ from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import new_table, stacked
 from camwright.figures.envelope import envelope_figure
 from camwright.house.files import staged
+from camwright.house.numbers import converted, unit_shown
 from camwright.house.output import Voice
 from camwright.jobs.job import load_job
-from camwright.studies.envelope import EnvelopeAnswer, envelope_answer, per_minute
+from camwright.studies.envelope import EnvelopeAnswer, envelope_answer
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -52,12 +53,15 @@ def run(
 
 def _view(answer: EnvelopeAnswer) -> RenderableType:
     """Show the highest line speed at each cut length."""
-    table = new_table(title="Highest line speed (m/min)", title_justify="left")
-    for name in ("cut length\nmm", "optimised", "quintic", "linear", "binds"):
+    units = answer.job.units
+    table = new_table(title=f"Highest line speed ({unit_shown('m/s', units)})", title_justify="left")
+    for name in (f"cut length\n{unit_shown('m', units)}", "optimised", "quintic", "linear", "binds"):
         table.add_column(name, justify="left" if name == "binds" else "right")
     for row in answer.envelope.rows:
-        speeds = (per_minute(speed) for speed in (row.optimised, row.quintic, row.linear))
+        speeds = (row.optimised, row.quintic, row.linear)
         table.add_row(
-            f"{row.length * 1e3:.5g}", *("–" if speed is None else f"{speed:.5g}" for speed in speeds), row.binding
+            f"{converted(row.length, 'm', units):.5g}",
+            *("–" if speed is None else f"{converted(speed, 'm/s', units):.5g}" for speed in speeds),
+            row.binding,
         )
     return table

@@ -8,7 +8,7 @@ from camwright.answers.limits import limits_answer
 from camwright.cli.options import GivenJob, Json, Quiet
 from camwright.cli.views.lengths import lengths_view
 from camwright.cli.views.parts import new_table, stacked
-from camwright.house.numbers import with_unit
+from camwright.house.numbers import Units, converted, unit_shown, with_unit
 from camwright.house.output import Voice
 from camwright.jobs.job import load_job
 from camwright.studies.axis_lengths import AxisLengths
@@ -32,43 +32,47 @@ def run(job: GivenJob, as_json: Json = False, quiet: Quiet = False) -> int:
 def _view(found: MachineLimits) -> RenderableType:
     """Show how fast and how short a job can be done, and what binds."""
     job, far, lengths, axis = found.job, found.far, found.lengths, found.axis
-    speed = with_unit(far.max_line_speed, "m/s") if far.max_line_speed else "none works"
-    length = with_unit(far.min_cut_length, "m", 4) if far.min_cut_length else "none works"
+    units = job.units
+    zone = with_unit(job.cut.sync_zone, "m", 4, units)
+    speed = with_unit(far.max_line_speed, "m/s", units=units) if far.max_line_speed else "none works"
+    length = with_unit(far.min_cut_length, "m", 4, units) if far.min_cut_length else "none works"
     table = new_table(title="How fast, how short", title_justify="left")
     for name in ("", "", "binds"):
         table.add_column(name)
     table.add_row(
-        f"highest line speed at a cut length of {with_unit(job.cut.length, 'm', 4)}", speed, far.line_speed_binding
+        f"highest line speed at a cut length of {with_unit(job.cut.length, 'm', 4, units)}",
+        speed,
+        far.line_speed_binding,
     )
     table.add_row(
-        f"shortest cut length at {with_unit(job.cut.line_speed, 'm/s')} with a sync zone of {with_unit(job.cut.sync_zone, 'm', 4)}",
+        f"shortest cut length at {with_unit(job.cut.line_speed, 'm/s', units=units)} with a sync zone of {zone}",
         length,
         far.cut_length_binding,
     )
     views: list[RenderableType] = [table]
     if lengths is not None:
-        views.append(lengths_view(lengths))
+        views.append(lengths_view(lengths, units))
     if axis is not None:
-        views.append(_axis_view(axis))
+        views.append(_axis_view(axis, units))
     return stacked(*views)
 
 
-def _axis_view(lengths: AxisLengths) -> RenderableType:
+def _axis_view(lengths: AxisLengths, units: Units) -> RenderableType:
     """Show how short a piece can be cut with the axis within the tolerance, the sync zone chosen best each time."""
     table = new_table(title="Minimum cut length with the axis in sync", title_justify="left")
     table.add_column("by")
-    table.add_column("limits of the command\nmm", justify="right")
-    table.add_column("of the axis too\nmm", justify="right")
+    table.add_column(f"limits of the command\n{unit_shown('m', units)}", justify="right")
+    table.add_column(f"of the axis too\n{unit_shown('m', units)}", justify="right")
     for name, value, strict in (
         ("linear return (limit of speed alone)", lengths.linear_return, ""),
         ("polynomial 3-4-5", lengths.poly_3_4_5, ""),
-        ("servo-aware, command in sync", lengths.in_sync, _hundredths(lengths.in_sync_axis_limits)),
-        ("servo-aware, command shaped", lengths.shaped, _hundredths(lengths.shaped_axis_limits)),
+        ("servo-aware, command in sync", lengths.in_sync, _hundredths(units, lengths.in_sync_axis_limits)),
+        ("servo-aware, command shaped", lengths.shaped, _hundredths(units, lengths.shaped_axis_limits)),
     ):
-        table.add_row(name, _hundredths(value), strict)
+        table.add_row(name, _hundredths(units, value), strict)
     return table
 
 
-def _hundredths(length: float | None) -> str:
-    """Write a length in millimetres with two decimals."""
-    return "none" if length is None else f"{length * 1e3:.2f}"
+def _hundredths(units: Units, length: float | None) -> str:
+    """Write a length in the job's unit with two decimals."""
+    return "none" if length is None else f"{converted(length, 'm', units):.2f}"

@@ -42,4 +42,6 @@ def _view(job: Job, file: Path, report: ValidationReport) -> RenderableType:
     """Show the checks on a file and the verdict."""
     failed = [check.name for check in report.checks if not check.passed]
     verdict = f"{len(failed)} checks failed: {', '.join(failed)}" if failed else "every check passed"
-    return stacked(checks_view(report.checks), lead_view(job, report.length_errors), new_text(f"{file}: {verdict}"))
+    return stacked(
+        checks_view(report.checks, job.units), lead_view(job, report.length_errors), new_text(f"{file}: {verdict}")
+    )

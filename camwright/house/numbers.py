@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 
 @dataclass(frozen=True)
@@ -52,9 +54,70 @@ SHOWN: dict[str, Shown] = {
 """Units by the SI unit; ``bandwidth`` is an angular rate that is no speed of rotation."""
 
 
-def unit_shown(unit: str) -> str:
+@dataclass(frozen=True)
+class Units:
+    """Units in which a job is answered, those of who wrote it.
+
+    Parameters
+    ----------
+    name
+        What they are together.
+    shown
+        Units by the SI unit.
+    si_measures
+        Whether measures of motion are shown in SI units on the screen.
+    fine
+        Decimals of a length where servo errors are told.
+    """
+
+    name: str
+    shown: Mapping[str, Shown] = field(hash=False, compare=False, repr=False)
+    si_measures: bool
+    fine: int
+
+    def measure(self, unit: str) -> Shown:
+        """Give the unit in which a measure of motion is shown on the screen."""
+        return Shown(si_unit(unit)) if self.si_measures else self.shown.get(unit, Shown(si_unit(unit)))
+
+
+METRIC = Units("metric", SHOWN, si_measures=True, fine=4)
+"""Millimetres and metres a minute."""
+
+INCH = Units(
+    "inch",
+    SHOWN
+    | {
+        "m": Shown("in", 1 / 0.0254),
+        "m/s": Shown("ft/min", 60 / 0.3048),
+        "m/s^2": Shown("ft/s²", 1 / 0.3048, "ft/s^2"),
+        "m/s^3": Shown("ft/s³", 1 / 0.3048, "ft/s^3"),
+    },
+    si_measures=False,
+    fine=5,
+)
+"""Inches and feet a minute."""
+
+_LENGTH = re.compile(r"\s*[-+0-9.eE]+\s*([a-zµ]+)\s*")
+_IMPERIAL = frozenset({"in", "inch", "inches", "ft", "foot", "feet"})
+
+
+def units_of(data: Mapping[str, object]) -> Units:
+    """Tell the units of a job file's data from its cut length: inches and feet, or metric.
+
+    Examples
+    --------
+    >>> units_of({"cut": {"length": "24 in"}}).name, units_of({"cut": {"length": "600 mm"}}).name, units_of({}).name
+    ('inch', 'metric', 'metric')
+    """
+    cut = data.get("cut")
+    length = cut.get("length") if isinstance(cut, Mapping) else None
+    found = _LENGTH.fullmatch(length) if isinstance(length, str) else None
+    return INCH if found is not None and found[1] in _IMPERIAL else METRIC
+
+
+def unit_shown(unit: str, units: Units = METRIC) -> str:
     """Name the unit in which a quantity is read, as it is printed."""
-    return SHOWN[unit].printed
+    return units.shown[unit].printed
 
 
 def si_unit(unit: str) -> str:
@@ -62,9 +125,9 @@ def si_unit(unit: str) -> str:
     return unit.replace("^2", "²").replace("^3", "³").replace(" ", "⋅")
 
 
-def converted(value: float, unit: str) -> float:
+def converted(value: float, unit: str, units: Units = METRIC) -> float:
     """Turn an SI value into the unit in which it is read."""
-    return value * SHOWN[unit].factor
+    return value * units.shown[unit].factor
 
 
 def number(value: float | None, digits: int = 5, *, without: str = "–") -> str:
@@ -93,25 +156,32 @@ def _trimmed(text: str) -> str:
     return text.rstrip("0").rstrip(".") if "." in text else text
 
 
-def shown(value: float | None, unit: str, digits: int = 5) -> str:
+def shown(value: float | None, unit: str, digits: int = 5, units: Units = METRIC) -> str:
     """Write an SI value in the unit in which it is read, without the unit."""
-    return number(None if value is None else converted(value, unit), digits)
+    return number(None if value is None else converted(value, unit, units), digits)
 
 
-def with_unit(value: float, unit: str, digits: int = 5) -> str:
+def fine_length(value: float, units: Units = METRIC) -> float:
+    """Round a length to a tenth of a micrometre, in inches to a hundred thousandth, in the unit in which it is read."""
+    return round(converted(value, "m", units), units.fine)
+
+
+def with_unit(value: float, unit: str, digits: int = 5, units: Units = METRIC) -> str:
     """Write an SI value with its unit as it is printed."""
-    symbol = unit_shown(unit)
+    symbol = unit_shown(unit, units)
     gap = "" if symbol == "°" else " "
-    return shown(value, unit, digits) + ("" if symbol == "1" else gap + symbol)
+    return shown(value, unit, digits, units) + ("" if symbol == "1" else gap + symbol)
 
 
-def typed(value: float, unit: str, digits: int = 10) -> str:
+def typed(value: float, unit: str, digits: int = 10, units: Units = METRIC) -> str:
     """Write an SI value as it is typed in a job file.
 
     Examples
     --------
     >>> typed(0.6, "m"), typed(-0.5235987755982988, "rad"), typed(0.7, "1")
     ('600 mm', '-30 deg', '0.7')
+    >>> typed(0.6096, "m", units=INCH), typed(1.3208, "m/s", units=INCH)
+    ('24 in', '260 ft/min')
     """
-    name = SHOWN[unit].typed or SHOWN[unit].printed
-    return f"{converted(value, unit):.{digits}g}{'' if name == '1' else ' ' + name}"
+    name = units.shown[unit].typed or units.shown[unit].printed
+    return f"{converted(value, unit, units):.{digits}g}{'' if name == '1' else ' ' + name}"

@@ -34,20 +34,24 @@ def _zones(known: Known) -> Iterator[str]:
     if sync is None:
         return
     numbers = known.numbers
+
+    def written(value: float) -> str:
+        return typed(value, "m", units=known.units)
+
     length = numbers.get("cut.length")
     if length is not None and sync >= length:
         yield (
-            f"[cut] sync_zone = {typed(sync, 'm')}: not below [cut] length = {typed(length, 'm')}, so no return zone is left; "
+            f"[cut] sync_zone = {written(sync)}: not below [cut] length = {written(length)}, so no return zone is left; "
             "shorten the sync zone or cut longer"
         )
     shear, at = numbers.get("cut.shear_zone"), numbers.get("cut.shear_zone_at")
     if shear is not None and shear > sync:
         yield (
-            f"[cut] shear_zone = {typed(shear, 'm')}: above [cut] sync_zone = {typed(sync, 'm')}, in which it must lie; "
+            f"[cut] shear_zone = {written(shear)}: above [cut] sync_zone = {written(sync)}, in which it must lie; "
             "shorten the shear zone or lengthen the sync zone"
         )
     elif shear is not None and at is not None and at + shear > sync * (1 + 1e-12):
         yield (
-            f"[cut] shear_zone_at = {typed(at, 'm')}: the shear zone of {typed(shear, 'm')} would end {typed(at + shear, 'm')} after the "
-            f"start of the sync zone of {typed(sync, 'm')}; begin it at {typed(sync - shear, 'm')} at the latest"
+            f"[cut] shear_zone_at = {written(at)}: the shear zone of {written(shear)} would end {written(at + shear)} after the "
+            f"start of the sync zone of {written(sync)}; begin it at {written(sync - shear)} at the latest"
         )

@@ -9,6 +9,7 @@ from typing import Any, cast
 from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
+from camwright.house.numbers import METRIC, Units
 from camwright.house.setting_fields import Settings, keep, quantity_schema, read_quantity, refusal
 from camwright.house.units import KINDS, quantity, shown
 from camwright.profiles.errors import InputError
@@ -37,6 +38,8 @@ class Known(Settings):
         Ranges of the servo's parameters, by key.
     servo_aware
         Whether the file says so.
+    units
+        Those of the file, in which its faults are told.
     """
 
     kind: str | None = None
@@ -44,6 +47,7 @@ class Known(Settings):
     choices: dict[str, str] = field(default_factory=dict)
     spreads: dict[str, Spread] = field(default_factory=dict)
     servo_aware: bool = False
+    units: Units = METRIC
 
     @property
     def machine(self) -> type[Machine] | None:

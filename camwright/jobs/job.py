@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from camwright.house.files import read_text
+from camwright.house.numbers import METRIC, Units
 from camwright.house.toml_file import MOST_BYTES, toml_data
 from camwright.jobs.checks import conflicts
 from camwright.jobs.fields import Known
@@ -77,6 +78,8 @@ class Job:
         How the cam is written.
     source
         The file that it was read from, nothing where there is none; two jobs of the same numbers are equal whatever their files.
+    units
+        Units in which it is answered, those of who wrote it; no part of its numbers either.
 
     Examples
     --------
@@ -100,6 +103,7 @@ class Job:
     servo_tolerance: ServoTolerance | None
     output: Output
     source: Source | None = field(default=None, compare=False, repr=False)
+    units: Units = field(default=METRIC, compare=False, repr=False)
 
     @staticmethod
     def of(
@@ -325,4 +329,5 @@ def _job(file: JobFile, known: Known, machine: Machine) -> Job:
         servo_aware=objective.servo_aware,
         servo_tolerance=None if file.servo.tolerance is None else tolerance_of(known, servo),
         output=Output(file.output.points),
+        units=known.units,
     )

@@ -17,7 +17,7 @@ from camwright.profiles.objective import OBJECTIVES, ObjectiveName
 
 def machine_conflicts(known: Known, machine: Machine | None) -> list[str]:
     """Check the machine, its sync zone and the speed that it needs; nothing to check where the machine is not known."""
-    own = [] if machine is None else [words(fault) for fault in machine.faults()]
+    own = [] if machine is None else [words(fault, known.units) for fault in machine.faults()]
     if own:
         return own
     zone, ratio = known.numbers.get("cut.sync_zone"), known.numbers.get("cut.sync_ratio")
@@ -28,7 +28,7 @@ def machine_conflicts(known: Known, machine: Machine | None) -> list[str]:
     pace = None if known.turns else ratio  # at least; more where the tool does not move like its slave
     if machine is not None and zone is not None:
         cut = Cut(2.0 * zone, 1.0, zone, 0.0, 0.0, 1e-4, sync_ratio=ratio)
-        faults += [words(fault) for fault in machine.zone_faults(cut, known.angles.get("cut.sync_zone"))]
+        faults += [words(fault, known.units) for fault in machine.zone_faults(cut, known.angles.get("cut.sync_zone"))]
         pace = pace if faults else machine.sync_pace(cut)
     if pace and line_speed and speed and pace * line_speed > speed * (1 + 1e-12):
         faults.append(_slow(known, pace, machine))
@@ -54,8 +54,10 @@ def moved_by_nothing(machine: Machine, objective: ObjectiveName, *, with_curve: 
 def _slow(known: Known, pace: float, made: Machine | None) -> str:
     """Say that the slave may not run as fast as the sync zone needs."""
     limit, line_speed = known.numbers["limits.speed"], known.numbers["cut.line_speed"]
-    line = f"[cut] line_speed = {typed(line_speed, 'm/s')}"
-    way_out = f"run the line at {rounded_to(limit / pace * 60, 6, up=False):.10g} m/min at most or raise the limit"
+    units, shown = known.units, known.units.shown["m/s"]
+    line = f"[cut] line_speed = {typed(line_speed, 'm/s', units=units)}"
+    slower = f"{rounded_to(limit / pace * shown.factor, 6, up=False):.10g} {shown.printed}"
+    way_out = f"run the line at {slower} at most or raise the limit"
     machine = known.machine
     noun, place = ("slave", "") if machine is None else (machine.noun, machine.place_name)
     by_angle = made is not None and made.slave_turn is not None and "limits.speed" in known.angles
@@ -70,5 +72,6 @@ def _slow(known: Known, pace: float, made: Machine | None) -> str:
     if pace == 1.0:
         why = f"below {line}, at which the {noun} runs in the sync zone"
     else:
-        why = f"below the {typed(pace * line_speed, 'm/s', 6)} at which the {noun} runs in the sync zone ({line}, times {pace:.6g})"
-    return f"[limits] speed = {typed(limit, 'm/s')}: {why}; {way_out}"
+        needed = typed(pace * line_speed, "m/s", 6, units)
+        why = f"below the {needed} at which the {noun} runs in the sync zone ({line}, times {pace:.6g})"
+    return f"[limits] speed = {typed(limit, 'm/s', units=units)}: {why}; {way_out}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 from camwright.house.numbers import typed
 from camwright.jobs.fields import Known
@@ -20,7 +20,7 @@ def servo_conflicts(known: Known) -> Iterator[str]:
     Of a servo-aware design also that at least one sample falls in the shear zone.
     """
     values = known.numbers
-    late = list(_sampling(values, servo_aware=known.servo_aware))
+    late = list(_sampling(known))
     yield from late
     ranges = list(_ranges(known))
     yield from ranges
@@ -48,8 +48,9 @@ def tolerance_of(known: Known, servo: Servo) -> ServoTolerance:
     )
 
 
-def _sampling(values: Mapping[str, float], *, servo_aware: bool) -> Iterator[str]:
+def _sampling(known: Known) -> Iterator[str]:
     """Check the sample time against the cycle and, of a servo-aware design, against the shear zone."""
+    values = known.numbers
     sample, length, line_speed = (values.get(key) for key in ("servo.sample_time", "cut.length", "cut.line_speed"))
     if sample is None or line_speed is None:
         return
@@ -60,12 +61,12 @@ def _sampling(values: Mapping[str, float], *, servo_aware: bool) -> Iterator[str
             f"{_written('sample_time', length / line_speed)} ([cut] length / line_speed); "
             "give the drive's sampling period, usually 1 ms to 8 ms"
         )
-    elif servo_aware and shear is not None and sample > shear / line_speed:
-        lasts = shear / line_speed
+    elif known.servo_aware and shear is not None and sample > shear / line_speed:
+        lasts, longer = shear / line_speed, typed(1.00001 * sample * line_speed, "m", 6, known.units)
         yield (
             f"[servo] sample_time = {_written('sample_time', sample)}: longer than the shear zone lasts, "
             f"{typed(lasts, 's', 4)} ([cut] shear_zone / line_speed), so {lasts / sample:.3g} samples fall in it and the servo cannot see "
-            f"the sync tolerance there; lengthen the shear zone to {typed(1.00001 * sample * line_speed, 'm', 6)} or more, or sample faster"
+            f"the sync tolerance there; lengthen the shear zone to {longer} or more, or sample faster"
         )
 
 

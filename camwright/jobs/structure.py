@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, create_model
 
+from camwright.house.numbers import units_of
 from camwright.house.servo_table import ServoNumbers
 from camwright.house.setting_fields import Table, checked, number_field, quantity_field, whole_field
 from camwright.house.settings import read_settings
@@ -198,7 +199,7 @@ def read_structure(data: dict[str, Any]) -> tuple[JobFile | None, Known, list[st
         The file, or nothing if it has faults; what is right in itself, defaults of what was left out included; one
         message for each fault, each with its place.
     """
-    known = Known()
+    known = Known(units=units_of(data))
     machine = data.get("machine")
     if isinstance(machine, dict):
         kind = machine.get("kind")

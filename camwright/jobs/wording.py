@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from camwright.house.numbers import SHOWN, Shown
+from camwright.house.numbers import METRIC, Shown, Units
 from camwright.profiles.errors import CamwrightError, InfeasibleError, InputError
 from camwright.profiles.message import HOLE, Message, Value
 
@@ -26,41 +26,41 @@ def place_of(quantity: str) -> str:
     return f"[{table}] {key}"
 
 
-def value_words(value: Value) -> str:
+def value_words(value: Value, units: Units = METRIC) -> str:
     """Write a value in the unit that people use for it."""
-    unit = SHOWN.get(value.unit, Shown(value.unit))
+    unit = units.shown.get(value.unit, Shown(value.unit))
     return value.written(unit.factor, unit.typed or unit.printed, unit.bound)
 
 
-def words(message: Message | str) -> str:
+def words(message: Message | str, units: Units = METRIC) -> str:
     """Word a message as one that speaks of a job file."""
     if isinstance(message, str):
         return message
     known = dict(message.values)
     return HOLE.sub(
-        lambda found: place_of(found[2]) if found[1] else value_words(known[found[2]]),
+        lambda found: place_of(found[2]) if found[1] else value_words(known[found[2]], units),
         message.text,
     )
 
 
-def error_words(error: CamwrightError) -> tuple[str, ...]:
+def error_words(error: CamwrightError, units: Units = METRIC) -> tuple[str, ...]:
     """Word the faults that an error tells, one message each."""
     if isinstance(error, InputError):
-        return tuple(words(message) for message in error.messages)
+        return tuple(words(message, units) for message in error.messages)
     if isinstance(error, InfeasibleError):
-        return (words(error.message),)
+        return (words(error.message, units),)
     return (str(error),)
 
 
 @contextmanager
-def in_job_words() -> Iterator[None]:
-    """Let errors that leave speak of the job file; also a decorator."""
+def in_job_words(units: Units = METRIC) -> Iterator[None]:
+    """Let errors that leave speak of the job file, in its units."""
     try:
         yield
     except InfeasibleError as error:
-        message = words(error.message)
+        message = words(error.message, units)
         raise InfeasibleError(message, error.binding, error.excess, error.unit, error.suggestions) from error
     except InputError as error:
         if not any(isinstance(message, Message) for message in error.messages):
             raise
-        raise InputError(*error_words(error)) from error
+        raise InputError(*error_words(error, units)) from error

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from camwright.house.numbers import shown
+from camwright.house.numbers import Units, fine_length, shown
 from camwright.recipes.catalogue import Catalogue
 
 Block = dict[str, Any]
@@ -21,14 +21,13 @@ def table_block(head: list[str], rows: list[list[str]], left: int = 1, widths: l
     return {"kind": "table", "head": head, "rows": rows, "left": left, "widths": widths or []}
 
 
-def length_text(value: float, unit: str) -> str:
+def length_text(value: float, unit: str, units: Units) -> str:
     """Write a value; a length to a tenth of a micrometre, the same number of digits at every speed."""
     if unit != "m":
-        return shown(value, unit, 4)
-    text = f"{1e3 * value:.4f}".replace("-", "−")
-    return "0.0000" if text == "−0.0000" else text
+        return shown(value, unit, 4, units)
+    return f"{fine_length(value, units):z.{units.fine}f}".replace("-", "−")
 
 
 def fixed_text(value: float | None, words: Catalogue) -> str:
     """Write a length like `length_text`, or that there is none."""
-    return words("nothing") if value is None else length_text(value, "m")
+    return words("nothing") if value is None else length_text(value, "m", words.units)

@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import json
+import tomllib
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import get_args
 
-from camwright.recipes.model import Language
+from camwright.house.numbers import METRIC, Units, unit_shown, units_of
+from camwright.recipes.model import Language, Recipe
 
 LANGUAGES: tuple[Language, ...] = get_args(Language)
+
+_FEED = {"metric": "1000 mm", "inch": "40 in"}
+"""How much material is fed to see which way the master counts, by units."""
 
 _MESSAGES = Path(__file__).parent / "messages"
 
@@ -27,11 +32,14 @@ class Catalogue:
         Messages by key, with ``{name}`` where a value belongs.
     phrases
         What targets say in English (titles and import steps) in this language; empty for English.
+    units
+        Units in which its reader reads lengths and speeds.
     """
 
     language: Language
     messages: dict[str, str]
     phrases: dict[str, str]
+    units: Units = METRIC
 
     def __call__(self, key: str, **values: str) -> str:
         """Give a message, its values filled in."""
@@ -49,11 +57,34 @@ class Catalogue:
         return self.phrases.get(english, english)
 
 
-@lru_cache(maxsize=len(LANGUAGES))
-def catalogue(language: Language) -> Catalogue:
-    """Read the messages of a language."""
+def catalogue(language: Language, units: Units = METRIC) -> Catalogue:
+    """Give the messages of a language, for a reader of these units."""
+    return _kept(language, units)
+
+
+@lru_cache(maxsize=2 * len(LANGUAGES))
+def _kept(language: Language, units: Units) -> Catalogue:
+    """Read the messages of a language once for all that ask, with the default units or by their name."""
     phrases = _MESSAGES / f"{language}-targets.json"
-    return Catalogue(language, _read(_MESSAGES / f"{language}.json"), _read(phrases) if language != "en" else {})
+    messages = {key: _in_units(text, units) for key, text in _read(_MESSAGES / f"{language}.json").items()}
+    return Catalogue(language, messages, _read(phrases) if language != "en" else {}, units)
+
+
+def catalogue_of(recipe: Recipe) -> Catalogue:
+    """Read the messages that a recipe is written with: its language, and the units of its job file."""
+    return catalogue(recipe.language, units_of(tomllib.loads(recipe.job.toml.removeprefix("\ufeff"))))
+
+
+def _in_units(text: str, units: Units) -> str:
+    """Put the names of units into a message."""
+    names = {
+        "{length_unit}": unit_shown("m", units),
+        "{speed_unit}": unit_shown("m/s", units),
+        "{feed}": _FEED[units.name],
+    }
+    for hole, name in names.items():
+        text = text.replace(hole, name)
+    return text
 
 
 def _read(file: Path) -> dict[str, str]:

@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 
 from camwright.house.files import read_text
-from camwright.house.numbers import SHOWN, converted, unit_shown
+from camwright.house.numbers import SHOWN, Units, converted, unit_shown
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import CamProfile
+from camwright.recipes.catalogue import catalogue_of
 from camwright.recipes.facts import GROUPS
 from camwright.recipes.model import Recipe, RecipeCheck, RecipeTable
 from camwright.recipes.recipe_file import RECIPE_FILE, parse_recipe
@@ -75,12 +76,15 @@ def _same(change: Change) -> bool:
     """Whether two values are the same, lengths to a nanometre: below that servo errors are rounding."""
     before, after = change.before, change.after
     if isinstance(before, float) and isinstance(after, float):
-        return abs(before - after) <= _ROUNDING * max(abs(before), abs(after)) + (1e-6 if change.unit == "mm" else 0.0)
+        return abs(before - after) <= _ROUNDING * max(abs(before), abs(after)) + (
+            1e-6 if change.unit in ("mm", "in") else 0.0
+        )
     return bool(before == after)
 
 
 def _pairs(before: Recipe, after: Recipe) -> Iterator[Change]:
-    """Set side by side everything that can differ."""
+    """Set side by side everything that can differ, in the units of the newer recipe."""
+    shown = catalogue_of(after).units
     yield Change("recipe", "name", "", before.name, after.name)
     yield Change("recipe", "note", "", before.note, after.note)
     yield Change("recipe", "released", "", before.released, after.released)
@@ -92,15 +96,15 @@ def _pairs(before: Recipe, after: Recipe) -> Iterator[Change]:
         for key in dict.fromkeys([*facts[0], *facts[1]]):
             units = [each[key].unit for each in facts if key in each]
             values = [each[key].value if key in each else None for each in facts]
-            yield _change(group, key, units, values)
-    yield from _cam(before, after)
-    yield from _reached(before.checks, after.checks)
-    yield from _range(before, after)
-    yield from _speeds(before, after)
+            yield _change(group, key, units, values, shown)
+    yield from _cam(before, after, shown)
+    yield from _reached(before.checks, after.checks, shown)
+    yield from _range(before, after, shown)
+    yield from _speeds(before, after, shown)
     yield from _tables(before, after)
 
 
-def _change(group: str, name: str, units: list[str], values: list[Any]) -> Change:
+def _change(group: str, name: str, units: list[str], values: list[Any], shown_in: Units) -> Change:
     """Make a change of a number in the unit in which a fitter reads it; of two kinds of slave both are told in SI."""
     unit = units[0]
     if len(set(units)) > 1:
@@ -108,17 +112,21 @@ def _change(group: str, name: str, units: list[str], values: list[Any]) -> Chang
         return Change(group, name, "", *texts)
     if unit not in SHOWN or any(isinstance(value, str | bool) for value in values):
         return Change(group, name, "", *values)
-    shown = [None if value is None else converted(value, unit) for value in values]
-    return Change(group, name, unit_shown(unit), *shown)
+    shown = [None if value is None else converted(value, unit, shown_in) for value in values]
+    return Change(group, name, unit_shown(unit, shown_in), *shown)
 
 
-def _cam(before: Recipe, after: Recipe) -> Iterator[Change]:
+def _cam(before: Recipe, after: Recipe, units: Units) -> Iterator[Change]:
     yield Change("cam", "pieces", "", len(before.profile.coefficients), len(after.profile.coefficients))
     if before.slave_unit == after.slave_unit:
         largest, at = position_difference(before, after)
         unit = before.slave_unit
         yield Change(
-            "cam", "largest position difference over the master", unit_shown(unit), 0.0, converted(largest, unit)
+            "cam",
+            "largest position difference over the master",
+            unit_shown(unit, units),
+            0.0,
+            converted(largest, unit, units),
         )
         if largest > 0.0:
             yield Change("cam", "where it is, of the cycle", "%", None, 100.0 * at)
@@ -143,20 +151,20 @@ def position_difference(before: Recipe, after: Recipe) -> tuple[float, float]:
     return float(off.max()), float(part[off.argmax()])
 
 
-def _reached(before: tuple[RecipeCheck, ...], after: tuple[RecipeCheck, ...]) -> Iterator[Change]:
+def _reached(before: tuple[RecipeCheck, ...], after: tuple[RecipeCheck, ...], shown_in: Units) -> Iterator[Change]:
     found = [{check.name: check for check in checks} for checks in (before, after)]
     for name in dict.fromkeys([*found[0], *found[1]]):
         checks = [each.get(name) for each in found]
         units = [check.unit for check in checks if check is not None]
         if name not in _CLOSING:
-            yield _change("reached", name, units, [check.value if check else None for check in checks])
+            yield _change("reached", name, units, [check.value if check else None for check in checks], shown_in)
         yield Change("reached", f"{name}: passed", "", *(check.passed if check else None for check in checks))
 
 
-def _range(before: Recipe, after: Recipe) -> Iterator[Change]:
+def _range(before: Recipe, after: Recipe, shown_in: Units) -> Iterator[Change]:
     for name, unit in (("min_length", "m"), ("max_length", "m"), ("min_line_speed", "m/s"), ("max_line_speed", "m/s")):
         ends = [getattr(recipe.working_range, name) for recipe in (before, after)]
-        yield _change("range", name, [unit], [end.value for end in ends])
+        yield _change("range", name, [unit], [end.value for end in ends], shown_in)
         yield Change("range", f"{name}: binding", "", *(end.binding for end in ends))
 
 
@@ -173,11 +181,11 @@ _SPEED_UNITS = {
 }
 
 
-def _speeds(before: Recipe, after: Recipe) -> Iterator[Change]:
+def _speeds(before: Recipe, after: Recipe, shown_in: Units) -> Iterator[Change]:
     for rows in zip(before.speeds, after.speeds, strict=False):
         for name, unit in _SPEED_UNITS.items():
             yield _change(
-                "speeds", f"{name} at {100 * rows[0].share:g} %", [unit], [getattr(row, name) for row in rows]
+                "speeds", f"{name} at {100 * rows[0].share:g} %", [unit], [getattr(row, name) for row in rows], shown_in
             )
 
 

@@ -128,10 +128,13 @@ def fact_text(fact: Fact, words: Catalogue) -> str:
     if isinstance(value, str):
         return words.named("word", value)
     if fact.unit == "curve":
-        return _curve_text(value)
-    return with_unit(value, fact.unit)
+        return _curve_text(value, words)
+    return with_unit(value, fact.unit, units=words.units)
 
 
-def _curve_text(points: Iterable[Iterable[float]]) -> str:
-    pairs = [(with_unit(speed, "rad/s", 4), with_unit(torque, "N m", 4)) for speed, torque in points]
+def _curve_text(points: Iterable[Iterable[float]], words: Catalogue) -> str:
+    pairs = [
+        (with_unit(speed, "rad/s", 4, words.units), with_unit(torque, "N m", 4, words.units))
+        for speed, torque in points
+    ]
     return ";\n".join(f"{speed}, {torque}" for speed, torque in pairs)

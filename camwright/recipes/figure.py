@@ -38,7 +38,7 @@ class Panel:
     label
         What is drawn, and its unit.
     x, y
-        The curve: master (mm), value in the unit shown.
+        The curve: master (m), value in the unit shown.
     limits
         Limits that may be drawn.
     """
@@ -54,7 +54,7 @@ def figure_svg(recipe: Recipe, words: Catalogue) -> str:
 
     Zones are grey and hatched, limits dashed, so the figure reads in black and white. Text stays text.
     """
-    length = converted(recipe.job.si["cut"]["length"], "m")
+    length = recipe.job.si["cut"]["length"]
     parts = [
         (
             f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {_WIDTH:g} {_HEIGHT:g}" role="img" '
@@ -80,12 +80,16 @@ def _panels(recipe: Recipe, words: Catalogue) -> Iterable[Panel]:
     per_master = "1" if unit == "m" else "rad/m"
     over_time = f"{unit}/s^2"
     x, y = _curve(profile, 0)
-    yield Panel(words("figure.position", unit=unit_shown(unit)), x * 1e3, y * converted(1.0, unit))
+    yield Panel(words("figure.position", unit=unit_shown(unit, words.units)), x, y * converted(1.0, unit, words.units))
     x, y = _curve(profile, 1)
-    yield Panel(words("figure.ratio", unit=unit_shown(per_master)), x * 1e3, y, (limits["speed"] / v,))
+    yield Panel(words("figure.ratio", unit=unit_shown(per_master, words.units)), x, y, (limits["speed"] / v,))
     x, y = _curve(profile, 2)
     peak = limits["acceleration"]
-    yield Panel(words("figure.acceleration", unit=unit_shown(over_time)), x * 1e3, y * v * v, (-peak, peak))
+    scale = converted(1.0, over_time, words.units)
+    limit = scale * peak
+    yield Panel(
+        words("figure.acceleration", unit=unit_shown(over_time, words.units)), x, scale * y * v * v, (-limit, limit)
+    )
 
 
 def _curve(profile: CamProfile, order: int) -> tuple[FloatArray, FloatArray]:
@@ -119,7 +123,7 @@ def _drawn(panel: Panel, recipe: Recipe, length: float, top: float) -> list[str]
     parts = []
     for zones, fill in ((recipe.zones.sync, "#e4e4e4"), (recipe.zones.shear, "url(#cam-hatch)")):
         for start, end in zones:
-            left, right = (_across(converted(x, "m"), length) for x in (start, end))
+            left, right = (_across(x, length) for x in (start, end))
             if start == end:  # a shear zone of no length
                 parts.append(f'<path d="M{left:.2f} {top:.2f}v{_PANEL:g}" stroke="#000" stroke-width="1.5" {_DOTTED}/>')
                 continue
@@ -158,8 +162,9 @@ def _across(master: float, length: float) -> float:
 
 def _master_axis(length: float, bottom: float, words: Catalogue) -> list[str]:
     parts = []
-    for tick in _ticks(0.0, length, 8):
-        at = _across(tick, length)
+    shown_length = converted(length, "m", words.units)
+    for tick in _ticks(0.0, shown_length, 8):
+        at = _across(tick, shown_length)
         parts.append(f'<path d="M{at:.2f} {bottom:.2f}v4" stroke="#000" stroke-width="0.7"/>')
         parts.append(f'<text x="{at:.2f}" y="{bottom + 15:.2f}" text-anchor="middle">{number(tick, 6)}</text>')
     middle = _across(0.5 * length, length)
@@ -194,4 +199,4 @@ def _ticks(low: float, high: float, most: int) -> list[float]:
 
 def figure_caption(recipe: Recipe, words: Catalogue) -> str:
     """Say what the figure shows."""
-    return words("figure.caption", line_speed=shown(recipe.job.si["cut"]["line_speed"], "m/s"))
+    return words("figure.caption", line_speed=shown(recipe.job.si["cut"]["line_speed"], "m/s", units=words.units))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from camwright.recipes.catalogue import catalogue
+from camwright.recipes.catalogue import catalogue_of
 from camwright.recipes.figure import figure_svg
 from camwright.recipes.model import Recipe
 from camwright.recipes.sheet import sheet
@@ -16,7 +16,7 @@ def recipe_html(recipe: Recipe) -> str:
     """Write a recipe as a page; every text is escaped, and the page may load nothing."""
     import jinja2
 
-    words = catalogue(recipe.language)
+    words = catalogue_of(recipe)
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(_TEMPLATES), autoescape=True, undefined=jinja2.StrictUndefined
     )

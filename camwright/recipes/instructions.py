@@ -21,21 +21,21 @@ def before(recipe: Recipe, words: Catalogue) -> list[Block]:
     """List what to see with one's own eyes before the drive is enabled."""
     machine, cut = stored_machine(recipe.job.si["machine"]), recipe.job.si["cut"]
     full = _at_full_speed(recipe)
-    speed, unit = shown(cut["line_speed"], "m/s"), recipe.slave_unit
+    speed, unit = shown(cut["line_speed"], "m/s", units=words.units), recipe.slave_unit
     values = {
         "origin": words.named("word", cut["origin"]),
-        "start": shown(recipe.slave_start, unit),
-        "first": with_unit(recipe.profile.coefficients[0][0], unit),
-        "pitch": shown(recipe.pitch, unit),
+        "start": shown(recipe.slave_start, unit, units=words.units),
+        "first": with_unit(recipe.profile.coefficients[0][0], unit, units=words.units),
+        "pitch": shown(recipe.pitch, unit, units=words.units),
         "line_speed": speed,
-        "lead": shown(recipe.lead_time, "s", 4),
-        "speed": shown(full.motor_speed, "rad/s", 4),
+        "lead": shown(recipe.lead_time, "s", 4, words.units),
+        "speed": shown(full.motor_speed, "rad/s", 4, words.units),
         "error": fixed_text(full.following_error, words),
     }
     if machine.slave_turn is not None:
-        values["turn"] = shown(machine.slave_turn, unit)
+        values["turn"] = shown(machine.slave_turn, unit, units=words.units)
     if machine.guide is not None:
-        values["home"], values["end"] = (shown(end, unit) for end in machine.guide)
+        values["home"], values["end"] = (shown(end, unit, units=words.units) for end in machine.guide)
     keys = (
         "guards",
         "master",
@@ -102,11 +102,11 @@ def record(recipe: Recipe, words: Catalogue) -> list[Block]:
     designed = {
         "position_gain": number(servo["position_gain"]),
         "velocity_feedforward": number(servo["velocity_feedforward"]),
-        "lead_time": shown(recipe.lead_time, "s", 4),
-        "slave_zero": f"{shown(recipe.slave_start, unit)} {unit_shown(unit)}",
+        "lead_time": shown(recipe.lead_time, "s", 4, words.units),
+        "slave_zero": f"{shown(recipe.slave_start, unit, units=words.units)} {unit_shown(unit, words.units)}",
         "following_error": fixed_text(_at_full_speed(recipe).following_error, words),
     }
-    length = shown(recipe.job.si["cut"]["length"], "m")
+    length = shown(recipe.job.si["cut"]["length"], "m", units=words.units)
     designed |= {f"length_{share}": length for share in (25, 50, 100)}
     return [
         {

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from camwright.house.numbers import (
+    Units,
+    fine_length,
     number,
     shown,
     si_unit,
@@ -32,19 +34,21 @@ def reached(recipe: Recipe, words: Catalogue) -> list[Block]:
         rows.append(
             [
                 words.named("check", check.name),
-                unit_shown(check.unit),
-                _marked(words("unbounded") if check.value is None else _rounded(check.value, check.unit), check),
-                words("nothing") if check.limit is None else shown(check.limit, check.unit),
+                unit_shown(check.unit, words.units),
+                _marked(
+                    words("unbounded") if check.value is None else _rounded(check.value, check.unit, words.units), check
+                ),
+                words("nothing") if check.limit is None else shown(check.limit, check.unit, units=words.units),
                 words("nothing") if share is None else number(round(100.0 * share, 2)),
-                words("nothing") if check.at is None else shown(check.at, "m"),
+                words("nothing") if check.at is None else shown(check.at, "m", units=words.units),
             ]
         )
     return [table_block(head, rows, left=2)]
 
 
-def _rounded(value: float, unit: str) -> str:
+def _rounded(value: float, unit: str, units: Units) -> str:
     """Write a value; a length to a tenth of a micrometre."""
-    return number(round(1e3 * value, 4)) if unit == "m" else shown(value, unit)
+    return number(fine_length(value, units)) if unit == "m" else shown(value, unit, units=units)
 
 
 def checks(recipe: Recipe, words: Catalogue) -> list[Block]:

@@ -8,7 +8,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from camwright.recipes.catalogue import catalogue
+from camwright.recipes.catalogue import catalogue_of
 from camwright.recipes.figure import figure_svg
 from camwright.recipes.fonts import font_files, printable
 from camwright.recipes.model import Recipe
@@ -21,7 +21,7 @@ def recipe_pdf(recipe: Recipe) -> bytes:
     """Typeset a recipe; the same recipe gives the same bytes."""
     import typst
 
-    words = catalogue(recipe.language)
+    words = catalogue_of(recipe)
     data = _printable({**sheet(recipe, words), "version": recipe.provenance.camwright})
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder)

@@ -79,7 +79,9 @@ def objective_text(recipe: Recipe, words: Catalogue) -> str:
     """Name what was minimised, with its value where it has one."""
     objective = recipe.objective
     name = words.named("word", objective.name)
-    return name if objective.value is None else f"{name}: {with_unit(objective.value, objective.unit)}"
+    return (
+        name if objective.value is None else f"{name}: {with_unit(objective.value, objective.unit, units=words.units)}"
+    )
 
 
 _COLUMNS = (("section.machine", "section.servo"), ("section.product", "section.limits"))
@@ -124,20 +126,20 @@ def _speeds(recipe: Recipe, words: Catalogue) -> list[Block]:
         values = [getattr(row, field) for row in recipe.speeds]
         rows.append(
             [
-                words(key, unit=unit_shown(unit)),
-                *(words("nothing") if value is None else length_text(value, unit) for value in values),
+                words(key, unit=unit_shown(unit, words.units)),
+                *(words("nothing") if value is None else length_text(value, unit, words.units) for value in values),
             ]
         )
     return [
         table_block(head, rows, widths=[2.6, *(1.0 for _ in recipe.speeds)]),
         text_block(words("speeds.law")),
-        text_block(words("speeds.lead", lead=shown(recipe.lead_time, "s", 4))),
+        text_block(words("speeds.lead", lead=shown(recipe.lead_time, "s", 4, words.units))),
     ]
 
 
 def _range(recipe: Recipe, words: Catalogue) -> list[Block]:
     cut = recipe.job.si["cut"]
-    speed, length = shown(cut["line_speed"], "m/s"), shown(cut["length"], "m")
+    speed, length = shown(cut["line_speed"], "m/s", units=words.units), shown(cut["length"], "m", units=words.units)
     far = recipe.working_range
     looked = far.max_length.binding == NOT_FOUND
     longest = words("range.not_looked", factor=number(LONGEST)) if looked else words("range.no_longest")
@@ -150,7 +152,7 @@ def _range(recipe: Recipe, words: Catalogue) -> list[Block]:
     rows = [
         [
             words(key, line_speed=speed, length=length),
-            without if edge.value is None else shown(edge.value, unit),
+            without if edge.value is None else shown(edge.value, unit, units=words.units),
             words.named("binding", edge.binding),
         ]
         for key, edge, unit, without in ends

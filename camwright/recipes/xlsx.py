@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from camwright.house.numbers import converted, unit_shown
-from camwright.recipes.catalogue import Catalogue, catalogue
+from camwright.recipes.catalogue import Catalogue, catalogue_of
 from camwright.recipes.facts import GROUPS, Fact, fact_text
 from camwright.recipes.model import Recipe, RecipeCheck, RecipeTable
 from camwright.recipes.sheet import objective_text, speed_columns
@@ -39,7 +39,7 @@ def recipe_xlsx(recipe: Recipe) -> bytes:
     """
     import xlsxwriter
 
-    words, file = catalogue(recipe.language), io.BytesIO()
+    words, file = catalogue_of(recipe), io.BytesIO()
     book = xlsxwriter.Workbook(file, _TEXT_ONLY)
     book.set_properties({"title": f"{words('recipe')} {visible(recipe.name)}", "created": _EPOCH})
     _parameters(_Page(book, words("sheet.parameters"), (44, 24, 10)), recipe, words)
@@ -111,11 +111,11 @@ def _parameters(page: _Page, recipe: Recipe, words: Catalogue) -> None:
         ("range.max_line_speed", far.max_line_speed, "m/s"),
     ):
         values = {
-            "length": f"{converted(cut['length'], 'm'):.6g}",
-            "line_speed": f"{converted(cut['line_speed'], 'm/s'):.6g}",
+            "length": f"{converted(cut['length'], 'm', words.units):.6g}",
+            "line_speed": f"{converted(cut['line_speed'], 'm/s', words.units):.6g}",
         }
-        value = None if edge.value is None else converted(edge.value, unit)
-        page.row(words(key, **values), value, unit_shown(unit), words.named("binding", edge.binding))
+        value = None if edge.value is None else converted(edge.value, unit, words.units)
+        page.row(words(key, **values), value, unit_shown(unit, words.units), words.named("binding", edge.binding))
     page.gap()
     page.head(words("section.files"), "SHA-256")
     for table in recipe.tables:
@@ -126,17 +126,22 @@ def _parameters(page: _Page, recipe: Recipe, words: Catalogue) -> None:
 def _value(fact: Fact, words: Catalogue) -> tuple[Cell, str]:
     if isinstance(fact.value, bool | str) or fact.value is None or fact.unit == "curve":
         return fact_text(fact, words), ""
-    return converted(fact.value, fact.unit), unit_shown(fact.unit)
+    return converted(fact.value, fact.unit, words.units), unit_shown(fact.unit, words.units)
 
 
 def _speeds(page: _Page, recipe: Recipe, words: Catalogue) -> None:
     columns = speed_columns(recipe)
     page.head(
-        words("column.share_of_speed"), *(words(key, unit=unit_shown(unit)) for key, _, unit in columns), fixed=True
+        words("column.share_of_speed"),
+        *(words(key, unit=unit_shown(unit, words.units)) for key, _, unit in columns),
+        fixed=True,
     )
     for row in recipe.speeds:
         values = [(getattr(row, field), unit) for _, field, unit in columns]
-        page.row(100.0 * row.share, *(None if value is None else converted(value, unit) for value, unit in values))
+        page.row(
+            100.0 * row.share,
+            *(None if value is None else converted(value, unit, words.units) for value, unit in values),
+        )
 
 
 def _checks(page: _Page, recipe: Recipe, words: Catalogue) -> None:
@@ -148,7 +153,7 @@ def _checks(page: _Page, recipe: Recipe, words: Catalogue) -> None:
 
 
 def _check(check: RecipeCheck, words: Catalogue) -> tuple[Cell, ...]:
-    at = None if check.at is None else converted(check.at, "m")
+    at = None if check.at is None else converted(check.at, "m", words.units)
     passed = words("yes" if check.passed else "no")
     return words.named("check", check.name), check.value, check.limit, check.unit, at, passed, check.source
 

@@ -11,7 +11,6 @@ from camwright.stored.profile_files import read_cycle
 from camwright.validation.report import ValidationReport, judge
 
 
-@in_job_words()
 def validate(profile: CamProfile | str | Path, job: Job) -> ValidationReport:
     """Judge one cycle by a job's machine, limits and servo.
 
@@ -36,7 +35,8 @@ def validate(profile: CamProfile | str | Path, job: Job) -> ValidationReport:
     >>> report.motion.sync_ratio_error
     0.0
     """
-    if isinstance(profile, CamProfile):
-        return judge(profile, job.task, job.servo, servo_aware=job.servo_aware)
-    cycle, machine = read_cycle(Path(profile), job)
-    return judge(cycle, job.task.with_machine(machine), job.servo, servo_aware=job.servo_aware)
+    with in_job_words(job.units):
+        if isinstance(profile, CamProfile):
+            return judge(profile, job.task, job.servo, servo_aware=job.servo_aware)
+        cycle, machine = read_cycle(Path(profile), job)
+        return judge(cycle, job.task.with_machine(machine), job.servo, servo_aware=job.servo_aware)

@@ -87,7 +87,6 @@ def between_of(job: Job) -> tuple[Servo, ...]:
     return () if job.servo_tolerance is None else job.servo_tolerance.between(job.servo)
 
 
-@in_job_words()
 def solve_job(job: Job, *, suggest: bool = True) -> Solution:
     """Design the cycle of a job, servo-aware if it says so.
 
@@ -105,15 +104,16 @@ def solve_job(job: Job, *, suggest: bool = True) -> Solution:
     SolverError
         The solver failed.
     """
-    if job.servo_aware:
-        servos, between = servos_of(job), between_of(job)
-        return solve_axis(job.task, job.objective, job.command, servos, between, suggest=suggest)
-
-    if job.objective == "sync_error":
-        raise InputError(
-            '[objective] minimise = "sync_error": for servo-aware designs only; add servo_aware = true or minimise e.g. "peak_acceleration"'
-        )
-    return solve(job.task, job.objective, suggest=suggest)
+    with in_job_words(job.units):
+        if job.servo_aware:
+            servos, between = servos_of(job), between_of(job)
+            return solve_axis(job.task, job.objective, job.command, servos, between, suggest=suggest)
+        if job.objective == "sync_error":
+            raise InputError(
+                '[objective] minimise = "sync_error": for servo-aware designs only; add servo_aware = true or minimise '
+                'e.g. "peak_acceleration"'
+            )
+        return solve(job.task, job.objective, suggest=suggest)
 
 
 def sync_error(profile: CamProfile, job: Job) -> float | None:

@@ -43,6 +43,9 @@ _UNITS = {
 }
 
 
+_SI_POWERS = {"stroke": "", "speed": "/s", "acceleration": "/s^2", "jerk": "/s^3"}
+
+
 def require_feasible(task: Task, *, suggest: bool = True) -> None:
     """Refuse a job that no motion can do.
 
@@ -90,9 +93,14 @@ def infeasible(task: Task, *, suggest: bool = True, load: float | None = None) -
     if not suggest:
         return InfeasibleError(Message(text, values), binding, excess, unit, ())
     suggestions = tuple(_suggestions(task, need, torque))
-    offers = "; ".join(_offer(suggestion) for suggestion in suggestions)
+    offers = "; ".join(_offer(suggestion, f"offer_{number}") for number, suggestion in enumerate(suggestions))
+    offered = (
+        (f"offer_{number}", _offered(each, task))
+        for number, each in enumerate(suggestions)
+        if each.unit not in ("", "%")
+    )
     works = f"What works, each alone: {offers}" if offers else "No single change of speed, length or limit works"
-    return InfeasibleError(Message(f"{text}. {works}", values), binding, excess, unit, suggestions)
+    return InfeasibleError(Message(f"{text}. {works}", (*values, *offered)), binding, excess, unit, suggestions)
 
 
 def _torque_needed(task: Task) -> float:
@@ -123,7 +131,7 @@ def _why(task: Task, binding: str, need: dict[str, float], torque: float) -> tup
         return more, "%", Message(f"{{@motor}} binds, {more:.3g} % more torque is needed at the speeds of the motion")
     slave = task.machine.slave_unit
     factor, unit = _UNITS[slave][binding]
-    si = slave + {"stroke": "", "speed": "/s", "acceleration": "/s^2", "jerk": "/s^3"}[binding]
+    si = slave + _SI_POWERS[binding]
     have = stroke_of(task.machine) if binding == "stroke" else float(getattr(task.limits, binding))
     needed = need[binding]
     values = ("have", Value(have, si, 6)), ("needed", Value(needed, si, 6))
@@ -208,11 +216,26 @@ def _named(change: str) -> str:
     return "{@machine.stroke}" if change == "stroke" else f"{{@{change}}}"
 
 
-def _offer(suggestion: Suggestion) -> str:
-    """Write a suggestion, its quantity as in a `Message`."""
+def _offer(suggestion: Suggestion, hole: str) -> str:
+    """Write a suggestion, its quantity and its value as in a `Message`."""
     quantity = _named(suggestion.change)
     if suggestion.change == "reversal":
         return f"{quantity} = true"
     if suggestion.change == "motor":
         return f"{quantity} with {suggestion.value:.15g} % of its torque"
-    return f'{quantity} = "{suggestion.value:.15g} {suggestion.unit}"'
+    return f'{quantity} = "{{{hole}}}"'
+
+
+def _offered(suggestion: Suggestion, task: Task) -> Value:
+    """Give the value of a suggestion for a `Message`: printed as it was checked in its unit, in another one beyond it, which works too.
+
+    What is offered lies `ASIDE` beyond the edge, a thousand times what is rounded off in another unit.
+    """
+    slave, chosen = task.machine.slave_unit, f"{suggestion.value:.15g} {suggestion.unit}"
+    if suggestion.change == "length":
+        up = suggestion.value > task.cut.length * 1e3
+        return Value(suggestion.value / 1e3, "m", 6, "above" if up else "below", chosen)
+    if suggestion.change == "line_speed":
+        return Value(suggestion.value / 60.0, "m/s", 6, "below", chosen)
+    factor, _ = _UNITS[slave][suggestion.change]
+    return Value(suggestion.value / factor, slave + _SI_POWERS[suggestion.change], 6, "above", chosen)

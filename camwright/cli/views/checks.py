@@ -6,26 +6,27 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from camwright.cli.views.parts import new_table, new_text
-from camwright.house.numbers import number, with_unit
+from camwright.house.numbers import Units, number, with_unit
 from camwright.validation.check import Check
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
 
-def checks_view(checks: Sequence[Check]) -> RenderableType:
+def checks_view(checks: Sequence[Check], units: Units) -> RenderableType:
     """Show checks with values, limits and the master position of the worst value."""
     table = new_table(title="Checks", title_justify="left")
     for name in ("check", "", "value", "limit", "unit", "at", "source"):
         table.add_column(name, justify="right" if name in ("value", "limit", "at") else "left")
     for check in checks:
+        measure = units.measure(check.unit)
         table.add_row(
             check.name,
             new_text("passed", "green") if check.passed else new_text("FAILED", "bold red"),
-            number(check.value, without="none"),
-            number(check.limit, without=""),
-            check.unit,
-            "" if check.at is None else with_unit(check.at, "m", 4),
+            number(None if check.value is None else check.value * measure.factor, without="none"),
+            number(None if check.limit is None else check.limit * measure.factor, without=""),
+            check.unit if units.si_measures else measure.printed,
+            "" if check.at is None else with_unit(check.at, "m", 4, units),
             new_text(check.source),
         )
     return table

@@ -21,12 +21,18 @@ def lead_view(job: Job, errors: Sequence[LengthError]) -> RenderableType:
         title=f"Where the cut falls; mean lag {mean_lag(servo) * 1e3:.4g} ms, lead time set {servo.lead_time * 1e3:.4g} ms",
         title_justify="left",
     )
-    for name in ("line speed", "m/min", "fixed offset\nmm", "with that lead\nmm", "from cut to cut\nmm"):
+    speed, length = job.units.shown["m/s"], job.units.shown["m"]
+    lengths = (f"{each}\n{length.printed}" for each in ("fixed offset", "with that lead", "from cut to cut"))
+    for name in (
+        "line speed",
+        speed.printed,
+        *lengths,
+    ):
         table.add_column(name, justify="right")
     for error in errors:
         table.add_row(
             f"{100 * error.share:g} %",
-            f"{error.line_speed * 60:.4g}",
-            *(f"{value * 1e3:z.4f}" for value in (error.offset, error.offset_with_lead, error.variation)),
+            f"{error.line_speed * speed.factor:.4g}",
+            *(f"{value * length.factor:z.4f}" for value in (error.offset, error.offset_with_lead, error.variation)),
         )
     return table
