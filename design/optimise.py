@@ -16,7 +16,6 @@ from camwright.design.returns.problem import ReturnProblem, return_problem
 from camwright.design.returns.solver import (
     grid_objective,
     objective_value,
-    smoothest,
     solve_return,
 )
 from camwright.design.servo_aware.axis_motion import AxisMotion
@@ -26,7 +25,7 @@ from camwright.design.torque.search import solve_torque, zone_peak
 from camwright.design.torque.task import TorqueTask
 from camwright.design.torque.within_curve import keeps_curve, least_load, solve_within_curve
 from camwright.profiles.cut import Cut
-from camwright.profiles.errors import InputError
+from camwright.profiles.errors import InputError, SolverError
 from camwright.profiles.machines import Machine
 from camwright.profiles.message import Message
 from camwright.profiles.objective import OBJECTIVES, CommandObjective, MotionObjective, ObjectiveName, of_motion
@@ -122,7 +121,8 @@ def solve(task: Task, objective: CommandObjective, *, suggest: bool = True) -> S
     Examples
     --------
     >>> from camwright.profiles.cut import Cut
-    >>>     >>> from camwright.profiles.machines import RotaryKnife
+    >>> from camwright.profiles.limits import Limits
+    >>> from camwright.profiles.machines import RotaryKnife
     >>> knife = RotaryKnife(circumference=0.4)
     >>> cut = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4)
     >>> result = solve(Task(knife, cut, Limits(200 / 60, 30.0, 3000.0)), "peak_acceleration")
@@ -140,12 +140,36 @@ def solve(task: Task, objective: CommandObjective, *, suggest: bool = True) -> S
     decisive = motion_objective(machine, objective)
     if decisive is None:
         return _solve_torque(task, objective)
-    problem = return_problem(task, decisive)
-    back, status, iterations = solve_return(problem)
-    if OBJECTIVES[decisive].form == "peak" and not _unique(problem):
-        back = _smoothest(problem, back)
-    value = _over_time(back, decisive, cut)
+    back, status, value, iterations = _solve_motion(task, decisive)
     return Solution(machine, assemble(back, task), back, status, objective, value, iterations)
+
+
+def _solve_motion(task: Task, objective: MotionObjective) -> tuple[CamProfile, SolveStatus, float, int]:
+    """Solve an objective of the motion: the return, how the solver ended, the value over time, and the iterations.
+
+    A peak is that of the cycle: where the sync zone has a higher one than the return needs, it is the zone's.
+    """
+    problem = return_problem(task, objective)
+    back, status, iterations = solve_return(problem)
+    if status is SolveStatus.BEST_FOUND:
+        back, more = _second_opinion(task, problem, back)
+        iterations += more
+    if OBJECTIVES[objective].form != "peak":
+        return back, status, _over_time(back, objective, task.cut), iterations
+    zone = max(abs(extremum.value) for extremum in task.sync.extrema(OBJECTIVES[objective].order))
+    if not _unique(problem):
+        back = _smoothest(problem, back, zone)
+    zone_value = OBJECTIVES[objective].over_time(zone, task.cut.line_speed)
+    return back, status, max(_over_time(back, objective, task.cut), zone_value), iterations
+
+
+def _second_opinion(task: Task, problem: ReturnProblem, back: CamProfile) -> tuple[CamProfile, int]:
+    """Look for a better return where the arcs of a structure could not be polished: on a mesh refined where the motion changes."""
+    try:
+        found = solve_torque(TorqueTask(task, problem, problem.objective))
+    except SolverError:
+        return back, 0
+    return min(back, found.back, key=lambda each: objective_value(each, problem.objective)), found.iterations
 
 
 def _over_time(back: CamProfile, objective: MotionObjective, cut: Cut) -> float:
@@ -205,12 +229,17 @@ def _unique(problem: ReturnProblem) -> bool:
     return problem.start_ratio == problem.end_ratio and problem.start_slope == problem.end_slope == 0.0
 
 
-def _smoothest(problem: ReturnProblem, back: CamProfile) -> CamProfile:
-    """Of all returns with the least peak take the one of least RMS jerk (lexicographic choice); the given one if that fails."""
-    peak = objective_value(back, problem.objective) * (1 + KEPT_PEAK)
+def _smoothest(problem: ReturnProblem, back: CamProfile, zone: float) -> CamProfile:
+    """Of all returns with the least peak, or the sync zone's, take the one of least RMS acceleration; the given one if that fails."""
+    peak = max(objective_value(back, problem.objective) * (1 + KEPT_PEAK), zone)
     limit = "greatest_slope" if problem.objective == "peak_acceleration" else "greatest_jerk"
-    smooth = smoothest(replace(problem, **{limit: min(peak, getattr(problem, limit))}))
-    return back if smooth is None else smooth
+    within = replace(problem, objective="rms_acceleration", **{limit: min(peak, getattr(problem, limit))})
+    try:
+        smooth, _, _ = solve_return(within)
+    except SolverError:
+        return back
+    better = objective_value(smooth, "rms_acceleration") < objective_value(back, "rms_acceleration")
+    return smooth if better and objective_value(smooth, problem.objective) <= peak * (1 + KEPT_PEAK) else back
 
 
 def require_moving(machine: Machine, objective: ObjectiveName) -> None:

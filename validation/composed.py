@@ -99,7 +99,21 @@ def compose(formula: Callable[[FloatArray, FloatArray, FloatArray], FloatArray],
 def _states(
     profile: CamProfile, piece: NDArray[np.intp], start: FloatArray, width: FloatArray, points: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Position, ratio and ratio slope at points of parts of pieces, by each part's own piece; shapes ``(parts, points)``."""
-    local = start[:, None] + width[:, None] * points
-    position, ratio, slope = (profile.on_pieces(piece[:, None], local, order) for order in range(3))
-    return position, ratio, slope
+    """Position, ratio and ratio slope at points of parts of pieces, by each part's own piece; shapes ``(parts, points)``.
+
+    Each part's polynomial is first counted from its own start: on a long piece the large terms that cancel there would otherwise put
+    their rounding on every point anew, and no halving would make that smoother.
+    """
+    table = profile.coefficients[piece].copy()
+    for power in range(profile.degree):  # synthetic division, once for each power
+        for k in range(profile.degree - 1, power - 1, -1):
+            table[:, k] += start * table[:, k + 1]
+    local = width[:, None] * points
+    states = []
+    for _ in range(3):
+        value = np.zeros_like(local)
+        for k in range(table.shape[1] - 1, -1, -1):  # Horner
+            value = value * local + table[:, k, None]
+        states.append(value)
+        table = table[:, 1:] * np.arange(1, table.shape[1]) if table.shape[1] > 1 else np.zeros((len(piece), 1))
+    return states[0], states[1], states[2]

@@ -275,7 +275,8 @@ def excess(profile: CamProfile, problem: ScaledProblem) -> float:
     room = max(problem.greatest_ratio, -problem.least_ratio)
     return max(
         (high - problem.greatest_ratio) / room,
-        (problem.least_ratio - low) / room,
+        (problem.least_ratio - low)
+        / max(-problem.least_ratio, 1e-300),  # a slave that may not reverse: of its speed in sync
         slope / problem.greatest_slope - 1.0,
         jerk / problem.greatest_jerk - 1.0,
         abs(float(profile(1.0)) - problem.height),
@@ -316,25 +317,6 @@ def _room(problem: ScaledProblem) -> float:
     """Share by which the limits could move a rest-to-rest slave further than its height."""
     far = greatest_reach(1.0, problem.greatest_ratio, problem.greatest_slope, problem.greatest_jerk)
     return far / problem.height - 1.0
-
-
-def smoothest(problem: ReturnProblem) -> CamProfile | None:
-    """Return of least RMS jerk among those that keep the problem's limits; None if no look at it finds one."""
-    scale = motion_scale(problem)
-    scaled = replace(scale_problem(problem, scale), objective="rms_jerk")
-    on_grid: CamProfile | None = None
-    for count in (COARSE[3], MEDIUM):
-        grid, success, _ = _on_grid(scaled, np.full(count, 1.0 / count), 0.0)
-        if not success:
-            continue
-        polished, success, _ = _polish(scaled, grid, thorough=count == MEDIUM)
-        profile = _kept(polished, scaled) if success else None
-        if profile is not None:
-            return unscale_profile(profile, problem, scale)
-        profile = _kept(grid, scaled)
-        if profile is not None:
-            on_grid = unscale_profile(profile, problem, scale)
-    return on_grid
 
 
 def grid_objective(problem: ReturnProblem) -> float:

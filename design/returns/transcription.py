@@ -33,6 +33,8 @@ speed."""
 
 # The solver answers to about 1e-10; limits drawn in by this much are kept to better than 1e-9 by whatever it returns.
 LIMIT_MARGIN = 2e-10
+# The least ratio is small beside the greatest, to which the solver's answers are as good as that.
+REVERSAL_MARGIN = 5e-9
 
 
 # Parts into which a piece of unknown length and higher degree is cut for its limits.
@@ -238,7 +240,7 @@ class Programme:
         q, v = start.nodes()
         factor = (1.0 - LIMIT_MARGIN) * (1.0 + relax)
         slope, jerk = problem.greatest_slope * factor, problem.greatest_jerk * factor
-        low, high = problem.least_ratio * factor, problem.greatest_ratio * factor
+        low, high = problem.least_ratio * factor * (1.0 - REVERSAL_MARGIN), problem.greatest_ratio * factor
         steps = p * np.diff(start.accelerations) / np.repeat(np.maximum(start.lengths, 1e-12), p)
         guess = {"a": start.accelerations, "v": v, "q": q, "j": steps, "h": start.lengths, "t": [start.objective]}
         hull = np.full(m * p + 1, slope if self._hull else np.inf)

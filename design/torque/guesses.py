@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterator
 
 import numpy as np
@@ -32,6 +33,24 @@ def from_profile(back: CamProfile, task: TorqueTask, count: int) -> Guess:
     return Guess((mesh,), np.ones(1), back(x, 2) * length**2 / scale, back(x, 1) * length / scale, back(x) / scale)
 
 
+def turning_from(back: CamProfile, task: TorqueTask, count: int) -> Guess | None:
+    """Guess of three phases from a return that turns twice; None if it does not."""
+    turns = back.roots(1)
+    if len(turns) != len(TURNING[0]) - 1:
+        return None
+    length, scale = task.problem.length, task.scale
+    edges = np.concatenate([[0.0], turns, [back.end]])
+    meshes, rows = [], []
+    for number, (first, last) in enumerate(itertools.pairwise(edges)):
+        look = np.linspace(0.0, 1.0, LOOKS + 1)
+        x = first + look * (last - first)
+        meshes.append(spread(look, density(look, back(x), back(x, 2)), count))
+        x = np.minimum(first + _nodes(meshes[-1]) * (last - first), back.end)[0 if number == 0 else 1 :]
+        rows.append((back(x, 2) * length**2 / scale, back(x, 1) * length / scale, back(x) / scale))
+    a, v, q = (np.concatenate([row[k] for row in rows]) for k in range(3))
+    return Guess(tuple(meshes), np.diff(edges) / length, a, v, q)
+
+
 def from_path(family: PathStarts, k: int, task: TorqueTask, count: int) -> Guess:
     """Guess of one phase from a return along the path."""
     passed = np.concatenate([[0.0], np.cumsum(family.times[k])])
@@ -50,7 +69,7 @@ def family_of(task: TorqueTask) -> PathStarts | None:
         return None
     ends = task.start, task.start + problem.height
     speeds = problem.start_ratio * v, problem.end_ratio * v
-    return path_starts(task.machine.inertia, task.machine.friction, ends, speeds, task.duration, task.aim)
+    return path_starts(task.inertia, task.machine.friction, ends, speeds, task.duration, task.aim)
 
 
 def resting(task: TorqueTask, count: int) -> Iterator[tuple[Pattern, Guess]]:

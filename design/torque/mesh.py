@@ -32,7 +32,7 @@ def spread(nodes: FloatArray, density: FloatArray, count: int) -> FloatArray:
 
 def density(nodes: FloatArray, way: FloatArray, acceleration: FloatArray) -> FloatArray:
     """Density of a mesh for a motion given at the nodes of another."""
-    step = np.diff(nodes)
+    step = np.maximum(np.diff(nodes), 1e-300)
     found = np.full(len(step), BY_TIME)
     for part, share in ((way, BY_WAY), (acceleration, BY_CHANGE)):
         change = np.abs(np.diff(part))

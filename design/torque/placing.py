@@ -123,7 +123,7 @@ def _at(
     pace = task.cut.sync_ratio * task.cut.line_speed
     speeds = pace / float(machine.tool_ratio(ends[1])), pace / float(machine.tool_ratio(ends[0]))
     way = ends[1], ends[0] + machine.pitch
-    family = path_starts(machine.inertia, machine.friction, way, speeds, task.duration, task.aim)
+    family = path_starts(task.inertia, machine.friction, way, speeds, task.duration, task.aim)
     guesses = [replace(from_path(family, k, task, COARSE), ends=ends) for k in family.valleys()[:PATHS]]
     if before is not None:
         guesses.append(replace(before.guess, ends=ends))

@@ -10,7 +10,16 @@ import numpy as np
 from camwright.design.returns.scaling import scale_problem
 from camwright.design.returns.solver import ALLOWED_EXCESS, excess, solve_return
 from camwright.design.torque.finish import finish
-from camwright.design.torque.guesses import ANYHOW, family_of, from_path, from_profile, resting, turning
+from camwright.design.torque.guesses import (
+    ANYHOW,
+    TURNING,
+    family_of,
+    from_path,
+    from_profile,
+    resting,
+    turning,
+    turning_from,
+)
 from camwright.design.torque.mesh import remesh
 from camwright.design.torque.programme import Guess, TorqueAnswer, TorqueProgramme
 from camwright.design.torque.task import Pattern, TorqueTask
@@ -211,5 +220,11 @@ def _guesses(task: TorqueTask, starts: Sequence[CamProfile]) -> Iterator[tuple[P
                 yield ANYHOW, from_path(family, k, task, FIRST)
     if rubs:
         yield from resting(task, FIRST // 2)
-        if task.may_turn:
-            yield from turning(task, FIRST // 3)
+    if task.may_turn and rubs:
+        yield from turning(task, FIRST // 3)
+    elif task.problem.height < 0:
+        # where it turns a slave is at rest, so a stroke that it may not leave is kept there exactly
+        for profile in profiles:
+            turned = turning_from(profile, task, FIRST // 3)
+            if turned is not None:
+                yield TURNING[0], turned

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from typing import Any, Literal
 
 from camwright.design.returns.problem import ReturnProblem
 from camwright.design.returns.scaling import motion_scale
 from camwright.profiles.cut import Cut
 from camwright.profiles.machines import Machine
 from camwright.profiles.motor import MotorCurve
-from camwright.profiles.objective import CommandObjective
+from camwright.profiles.objective import MOTION_OBJECTIVES, CommandObjective
 from camwright.profiles.task import Task
 
 Aim = CommandObjective | Literal["load"]
@@ -83,6 +83,10 @@ class TorqueTask:
     def start(self) -> float:
         """Slave coordinate at the start of the return (slave unit)."""
         return self.task.slave_at_sync_end
+
+    def inertia(self, y: Any) -> Any:
+        """Inertia that the aim weighs: the machine's for what the motor feels, one for what the slave does."""
+        return 1.0 + 0.0 * y if self.aim in MOTION_OBJECTIVES else self.machine.inertia(y)
 
     @property
     def may_turn(self) -> bool:

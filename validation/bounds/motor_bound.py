@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from camwright.profiles.objective import MotorObjective
-from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.objective import OBJECTIVES, MotionObjective, MotorObjective
+from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.task import Task
 from camwright.validation.bounds.bound import NONE, Bound
 from camwright.validation.bounds.constant_inertia import drawn, peak_with_friction, square_with_friction
@@ -63,6 +63,31 @@ def motor_bound(profile: CamProfile, task: Task, objective: MotorObjective, moti
     return _along_path(profile, task, objective)
 
 
+def bent_bound(profile: CamProfile, task: Task, objective: MotionObjective) -> Bound:
+    """Bound of an objective of the motion where the slave's ratio changes in sync.
+
+    A peak is that of the cycle, so the sync zone's own bounds it; the RMS acceleration is an RMS torque of inertia one.
+    """
+    table = OBJECTIVES[objective]
+    if table.form == "peak":
+        zone = max(abs(extremum.value) for extremum in task.sync.extrema(table.order))
+        return Bound(table.over_time(zone, task.cut.line_speed), ZONE)
+    if objective != "rms_acceleration" or task.height <= 0 or task.reverses:
+        return Bound(math.nan, NONE)
+    path, cut = _path(task, np.ones(PLACES)), task.cut
+    back = profile.restrict(cut.return_start, cut.return_start + cut.return_zone)
+    level = back.mean_square(2) * cut.line_speed**4 * path.time
+    found, method = _least_square(path, level)
+    return Bound(math.sqrt(max(found, 0.0) / path.time), method)
+
+
+def _path(task: Task, inertia: FloatArray) -> PathTask:
+    """Path of the return, with an inertia at its places."""
+    v = task.cut.line_speed
+    speeds = float(task.sync(task.sync.end, 1)) * v, float(task.sync(task.sync.start, 1)) * v
+    return PathTask(inertia, task.height, speeds, task.cut.return_zone / v, task.limits.speed)
+
+
 def _constant(profile: CamProfile, task: Task, objective: MotorObjective, motion: Bound) -> Bound:
     machine, cut = task.machine, task.cut
     inertia, friction = float(machine.inertia(task.slave_at_sync_start)), machine.friction
@@ -87,21 +112,18 @@ def _constant(profile: CamProfile, task: Task, objective: MotorObjective, motion
 
 def _along_path(profile: CamProfile, task: Task, objective: MotorObjective) -> Bound:
     """Bound where the inertia or the ratio in sync changes along the way, for a slave that goes one way and has no friction."""
-    machine, cut = task.machine, task.cut
-    v = cut.line_speed
+    machine = task.machine
     q = task.slave_at_sync_end + np.linspace(0.0, task.height, PLACES)
-    inertia = np.asarray(machine.inertia(q)) + 0.0 * q
-    speeds = float(task.sync(task.sync.end, 1)) * v, float(task.sync(task.sync.start, 1)) * v
-    path = PathTask(inertia, task.height, speeds, cut.return_zone / v, task.limits.speed)
+    path = _path(task, np.asarray(machine.inertia(q)) + 0.0 * q)
     ratio, torque = machine.motor_ratio, motor_torque(profile, task)
     if objective == "rms_torque":
         return _square(path, torque, task)
     if objective == "energy":
         zone = _zone_energy(profile, torque, task)
         found = work_drawn(torque, profile, machine) - zone
-        if task.reverses:
-            return Bound(zone + min(found, path.energies[1]) * (1 - 1e-9), SPEEDS)
-        return Bound(zone + least_drawn(path, found) if found > 0 else zone, PATH)
+        # a motion that turns must come from rest to the last speed
+        turning = path.energies[1] if task.reverses else math.inf
+        return Bound(zone + (min(least_drawn(path, found), turning) if found > 0 else 0.0), PATH)
     zone = _zone_peak(profile, task)
     greatest = greatest_magnitude(torque, 0).value
     if greatest <= zone * (1 + EDGE):
@@ -121,6 +143,12 @@ def _square(path: PathTask, torque: CamProfile, task: Task) -> Bound:
     if task.reverses:
         around = task.machine.inertia(np.linspace(0.0, task.machine.pitch, PLACES))
         level = min(level, turning_square(path, np.asarray(around)))
+    found, method = _least_square(path, level)
+    return Bound(math.sqrt((max(found, 0.0) / ratio**2 + zone) / cut.period), method)
+
+
+def _least_square(path: PathTask, level: float) -> tuple[float, str]:
+    """Bound of the integral of the squared torque by both roads, at most the level, and the better one's name."""
     found, method = min(least_square_in_time(path), level), CONVEX
     if found < level * (1 - NEAR):
         standing = standing_square(path)
@@ -128,7 +156,7 @@ def _square(path: PathTask, torque: CamProfile, task: Task) -> Bound:
         seen = least_square(path, below)
         if seen > found:
             found, method = seen, STANDING if below < level and seen > 0.999 * below else PATH
-    return Bound(math.sqrt((max(found, 0.0) / ratio**2 + zone) / cut.period), method)
+    return found, method
 
 
 def _least_peak(path: PathTask, low: float, high: float) -> float:

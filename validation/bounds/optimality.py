@@ -24,7 +24,7 @@ from camwright.profiles.objective import OBJECTIVES, ObjectiveName
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.task import Task
 from camwright.validation.bounds.bound import NONE, Bound
-from camwright.validation.bounds.motor_bound import motor_bound
+from camwright.validation.bounds.motor_bound import bent_bound, motor_bound
 from camwright.validation.bounds.quadratic import multipliers
 
 INTERVALS = 140
@@ -78,10 +78,16 @@ def lower_bound(profile: CamProfile, task: Task, objective: ObjectiveName) -> Bo
     if objective not in OBJECTIVES:
         raise InputError(f"there is no objective {objective!r}; the objectives are {', '.join(OBJECTIVES)}")
     if objective == "rms_torque" or objective == "peak_torque" or objective == "energy":
-        motion = lower_bound(profile, task, "peak_acceleration" if objective == "peak_torque" else "rms_acceleration")
+        motion = Bound(math.nan, NONE)
+        if task.straight and objective != "energy":
+            motion = lower_bound(
+                profile, task, "peak_acceleration" if objective == "peak_torque" else "rms_acceleration"
+            )
         return motor_bound(profile, task, objective, motion)
-    if not task.straight or objective == "sync_error":
+    if objective == "sync_error":
         return Bound(math.nan, NONE)
+    if not task.straight:
+        return bent_bound(profile, task, objective)
     length, v = cut.return_zone, cut.line_speed
     ratio = float(task.sync(0.0, 1))
     height = machine.pitch - ratio * cut.length  # of the motion over the line that sync zone and return zone share
