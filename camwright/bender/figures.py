@@ -3,23 +3,22 @@
 from __future__ import annotations
 
 import math
+import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from camwright.bender.pictures import (
-    Frame,
-    Line,
-    Marks,
-    Picture,
-    write_pictures,
-)
 from camwright.bender.program_file import BentOutline
 from camwright.design.bender.moves import TimeTable
+from camwright.house.fonts import font_folders
+from camwright.house.pictures import Frame, Line, Marks, Picture
+from camwright.house.svg import picture_svg
 from camwright.profiles.bender.outline import Outline
 from camwright.profiles.polynomial.profile import FloatArray
 
+_PIXELS_PER_INCH = 150.0
 _BENDS_SHOWN = 6
 _PER_MOVE = 60
 _FINENESS = 3000
@@ -39,6 +38,26 @@ _DRAWN, _BENT, _WORST, _START, _PAPER = "#b9c4d0", "#11304f", "#c1121f", "#2a9d3
 def draw(outline: BentOutline, directory: Path, name: str) -> None:
     """Write both figures of an outline as SVG and PNG: ``<name>-proof`` and ``<name>-times``."""
     write_pictures({f"{name}-proof": _proof(outline), f"{name}-times": _times(outline)}, directory)
+
+
+def write_pictures(pictures: Mapping[str, Picture], directory: Path) -> None:
+    """Write pictures by name, each as SVG and PNG; typst, which sets the sheet anyway, turns lines into pixels."""
+    import typst
+
+    with tempfile.TemporaryDirectory() as folder:
+        page = Path(folder) / "page.typ"
+        for name, picture in pictures.items():
+            svg = picture_svg(picture)
+            (directory / f"{name}.svg").write_text(svg, encoding="utf-8")
+            page.with_suffix(".svg").write_text(svg, encoding="utf-8")
+            size = f"width: {picture.width:g}pt, height: {picture.height:g}pt"
+            page.write_text(
+                f'#set page({size}, margin: 0pt, fill: white)\n#image("page.svg", {size})\n', encoding="utf-8"
+            )
+            typst.compile(
+                str(page), output=str(directory / f"{name}.png"), root=folder, font_paths=font_folders(),
+                ignore_system_fonts=True, format="png", ppi=_PIXELS_PER_INCH,
+            )  # fmt: skip
 
 
 def outline_path(outline: Outline, coarseness: float | FloatArray) -> FloatArray:

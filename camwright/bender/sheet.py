@@ -13,6 +13,7 @@ import numpy as np
 from camwright.bender.answer import BentDrawing
 from camwright.bender.bend_list import BendRow, bend_rows
 from camwright.bender.program_file import ROUNDING, BentOutline
+from camwright.house.fonts import font_folders
 from camwright.house.provenance import camwright_version
 
 _TEMPLATES = Path(__file__).parent / "templates"
@@ -124,7 +125,9 @@ def _write_pdf(data: dict[str, Any], target: Path, figures: list[Path]) -> None:
         data = {**data, "figures": min(len(figures), _MOST_OUTLINES)}
         (place / "data.json").write_text(json.dumps(data), encoding="utf-8")
         source = str(place / "sheet.typ")
-        typst.compile(source, output=str(target), root=folder, ignore_system_fonts=True, timestamp=0)
+        typst.compile(
+            source, output=str(target), root=folder, font_paths=font_folders(), ignore_system_fonts=True, timestamp=0
+        )
 
 
 def _write_html(data: dict[str, Any], target: Path, figures: list[Path]) -> None:
@@ -132,11 +135,6 @@ def _write_html(data: dict[str, Any], target: Path, figures: list[Path]) -> None
 
     loader = jinja2.FileSystemLoader(_TEMPLATES)
     environment = jinja2.Environment(loader=loader, autoescape=True, undefined=jinja2.StrictUndefined)
-    drawings = [_inline(figure.read_text(encoding="utf-8")) for figure in figures[:_MOST_OUTLINES]]
+    drawings = [figure.read_text(encoding="utf-8") for figure in figures[:_MOST_OUTLINES]]
     page = environment.get_template("sheet.html").render(**data, drawings=drawings)
     target.write_text(page, encoding="utf-8")
-
-
-def _inline(svg: str) -> str:
-    """Drop the XML declaration and the document type, which have no place inside HTML."""
-    return svg[svg.index("<svg") :]

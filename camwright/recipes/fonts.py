@@ -1,4 +1,4 @@
-"""The fonts of a printed recipe, and what of a user's text they can show."""
+"""What of a user's text the fonts of a printed recipe can show."""
 
 from __future__ import annotations
 
@@ -6,35 +6,14 @@ import re
 import textwrap
 import unicodedata
 from functools import cache
-from importlib.util import find_spec
 from pathlib import Path
 
+from camwright.house.fonts import font_files
 from camwright.recipes.user_text import spelled
 
-_LATIN = ("matplotlib", "mpl-data/fonts/ttf", "DejaVuSans.ttf")
-_HAN = ("pylopdf_fonts_zh_cn", "", "NotoSansSC-Regular.otf")
 _LONGEST_WORD = 24
 _LONG_WORD = re.compile(rf"[^\s\u2e80-\uffff]{{{_LONGEST_WORD + 1},}}")  # Chinese can be broken anywhere as it is
 _BREAK = "\u200b"  # where a line may end, without width
-
-
-def font_files() -> tuple[Path, Path]:
-    """Find DejaVu Sans and Noto Sans SC.
-
-    Raises
-    ------
-    ModuleNotFoundError
-        The package that carries one is not installed.
-    """
-    latin, han = (_file(*place) for place in (_LATIN, _HAN))
-    return latin, han
-
-
-def _file(package: str, folder: str, name: str) -> Path:
-    spec = find_spec(package)  # without importing it: matplotlib is large
-    if spec is None or spec.origin is None:
-        raise ModuleNotFoundError(f"the package {package}, which carries the font {name}, is not installed")
-    return Path(spec.origin).parent / folder / name
 
 
 def printable(text: str) -> str:

@@ -8,9 +8,10 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
+from camwright.house.fonts import font_folders
 from camwright.recipes.catalogue import catalogue_of
 from camwright.recipes.figure import figure_svg
-from camwright.recipes.fonts import font_files, printable
+from camwright.recipes.fonts import printable
 from camwright.recipes.model import Recipe
 from camwright.recipes.sheet import sheet
 
@@ -32,7 +33,7 @@ def recipe_pdf(recipe: Recipe) -> bytes:
             typst.compile(
                 str(place / "recipe.typ"),
                 root=folder,
-                font_paths=[str(font.parent) for font in font_files()],
+                font_paths=font_folders(),
                 ignore_system_fonts=True,
                 timestamp=0,
             )

@@ -6,6 +6,7 @@ import re
 from dataclasses import replace
 from html.parser import HTMLParser
 
+import numpy as np
 import pytest
 
 from camwright.recipes.build import MadeRecipe
@@ -58,7 +59,8 @@ def test_one_file_that_fetches_nothing(made: MadeRecipe, saw: MadeRecipe, langua
         assert not [
             each for each in page.attributes if each[1] in ("src", "href", "action") or each[1].startswith("on")
         ]
-        assert page.tags.count("svg") == 1
+        assert page.tags.count("figure") == 1
+        assert "svg" in page.tags
         assert ("html", "lang", {"en": "en", "de": "de", "zh": "zh-Hans"}[language]) in page.attributes
         assert not re.search(r"@import|url\((?!#)", text)
         assert "default-src 'none'" in text
@@ -91,28 +93,46 @@ def test_controls_are_spelled_out(made: MadeRecipe) -> None:
     assert not re.search(r"[\x00-\x08\x0b-\x1f\u202a-\u202e]", text)
 
 
+def curves(svg: str) -> list[list[tuple[float, float]]]:
+    """Points of the curves of a figure, which are its thickest lines (pt)."""
+    paths = re.findall(r'<path d="M([^"]+)" stroke="#000" stroke-width="1.5"/>', svg)
+    numbers = [list(map(float, path.split())) for path in paths]
+    return [list(zip(each[::2], each[1::2], strict=True)) for each in numbers]
+
+
 def test_the_figure_tells_lines_and_zones_apart_without_colour(made: MadeRecipe) -> None:
     svg = figure_svg(made.recipe, catalogue("en"))
     colours = set(re.findall(r'(?:fill|stroke)="(#\w+)"', svg))
     assert all(
         len(set(re.findall("..", colour[1:] if len(colour) == 7 else colour[1:] * 2))) == 1 for colour in colours
     )  # greys
-    assert svg.count("<polyline") == 3
+    assert len(curves(svg)) == 3
     assert 'fill="url(#cam-hatch)"' in svg
     assert "stroke-dasharray" in svg
 
 
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_the_text_of_the_figure_can_be_copied(made: MadeRecipe, language: str) -> None:
+    words = catalogue(language)
+    texts = re.findall(r"<text [^>]*>([^<]+)</text>", figure_svg(made.recipe, words))
+    assert {words(f"figure.{key}") for key in ("master", "sync", "shear", "limit")} <= set(texts)
+    assert {"0", "400", "600"} <= set(texts)
+
+
 def test_the_figure_draws_the_cam(made: MadeRecipe) -> None:
     svg = figure_svg(made.recipe, catalogue("en"))
-    for line in re.findall(r'<polyline points="([^"]+)"', svg):
-        points = [tuple(map(float, point.split(","))) for point in line.split()]
-        across = [x for x, _ in points]
+    found = re.search(r'<svg width="([\d.]+)" height="([\d.]+)" viewBox', svg)
+    assert found is not None
+    width = float(found[1])
+    position, ratio, _ = curves(svg)
+    for line in curves(svg):
+        across = [x for x, _ in line]
         assert across == sorted(across)
-        assert (across[0], across[-1]) == (84.0, 662.0)
-    position = [tuple(map(float, p.split(","))) for p in re.findall(r'<polyline points="([^"]+)"', svg)[0].split()]
+        assert (across[0], across[-1]) == (0.0, width)
     low, high = position[0][1], position[-1][1]
-    middle = min(position, key=lambda point: abs(point[0] - (84.0 + 578.0 / 3)))  # x = 200 mm, where y = 100 of 400 mm
-    assert (low - middle[1]) / (low - high) == pytest.approx(0.25, abs=0.01)
+    at = np.interp(width / 3, *zip(*position, strict=True))  # x = 200 mm, where y = 100 of 400 mm
+    assert (low - at) / (low - high) == pytest.approx(0.25, abs=0.001)
+    assert ratio[-1][1] == pytest.approx(ratio[0][1], abs=0.02)  # 1 at both ends
 
 
 def test_import_steps_name_the_units_of_the_files(made: MadeRecipe) -> None:

@@ -9,16 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from camwright.bender.pictures import (
-    FINEST,
-    Frame,
-    Line,
-    Marks,
-    Picture,
-    simplified,
-    ticks,
-    write_pictures,
-)
+from camwright.bender.figures import write_pictures
+from camwright.house.pictures import Band, Frame, Line, Marks, Picture, ticks
+from camwright.house.svg import FINEST, picture_svg, simplified
 
 
 @given(st.floats(-1e3, 1e3), st.floats(1e-3, 1e5), st.integers(3, 20))
@@ -89,7 +82,7 @@ def test_ten_thousand_segments_stay_a_vector(tmp_path: Path):
         text = (tmp_path / f"{name}.svg").read_text(encoding="utf-8")
         assert "<image" not in text
         assert "data:" not in text
-        assert text.count("<svg") == 1
+        assert "A &lt;wave&gt; &amp; its start</text>" in text
         path = re.search(r'<path d="(M[^"]*)" stroke="#11304f" stroke-width="0.9"', text)
         assert path is not None
         assert path[1].count("M") == 2
@@ -99,3 +92,18 @@ def test_ten_thousand_segments_stay_a_vector(tmp_path: Path):
     few = re.search(r'<path d="M([\d.]+) ([\d.]+) ', (tmp_path / "few.svg").read_text(encoding="utf-8"))
     assert few is not None
     assert (float(few[1]), float(few[2])) == (0.0, 160.0)
+
+
+def test_ticks_without_room_for_their_decimals_are_powers_of_ten():
+    assert ticks(0.0, 3e-6, 6)[1] == ["0", "1e\u22126", "2e\u22126", "3e\u22126"]
+
+
+def test_a_band_is_as_wide_as_its_part_and_dotted_where_it_has_none():
+    bands = (Band(2.0, 4.0, "grey", "sync"), Band(3.0, 4.0, "hatched"), Band(8.0, 8.0, "hatched"))
+    frame = Frame(10, 10, 100, 50, np.array([0.0, 0.0]), np.array([10.0, 1.0]), bands, "x")
+    text = picture_svg(Picture(120, 90, "", 10, (frame,), bands[:1]))
+    assert '<rect x="20" width="20" height="50" fill="#e4e4e4"/>' in text
+    assert '<rect x="30" width="10" height="50" fill="url(#cam-hatch)"/>' in text
+    assert '<path d="M80 0V50" stroke="#000" stroke-width="1.5" stroke-dasharray="1.5 2.5"/>' in text
+    assert text.count('<pattern id="cam-hatch"') == 1
+    assert ">sync</text>" in text
