@@ -24,6 +24,8 @@ class Trace:
         Positions (m or rad), shape ``(n,)``.
     unit
         Whether positions are counted in m or in rad.
+    notes
+        What the reader found worth telling.
     """
 
     start: float
@@ -31,6 +33,7 @@ class Trace:
     command: FloatArray
     actual: FloatArray
     unit: SlaveUnit
+    notes: tuple[str, ...] = ()
 
     @property
     def times(self) -> FloatArray:

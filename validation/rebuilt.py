@@ -38,6 +38,11 @@ _EDGE = 1e-6
 """Part of the cut length next to the ends of the sync zone in which the ratio is not judged: a point that stands for an
 end is rounded to the number format, and what lies on its other side is the return."""
 
+_RINGS = 4
+"""Steps of a table over which a spline rings on behind a corner: by then to a two hundredth."""
+_MOST_MARGIN = 0.05
+"""Part of the sync zone that these may take at either end; a table of wider steps is judged all over."""
+
 _NODES = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, 17))
 _PHASES = 4096
 
@@ -174,6 +179,7 @@ def _sync(run: CamProfile, task: Task, wraps: int) -> list[Check]:
         return []
     sync = task.sync
     began = task.slave_at_sync_start - task.slave_at_start  # of the zone, from the start of the cycle
+    margins = _margins(run, task)
     zone = cut.return_start + cut.return_zone
     edge = _EDGE * cut.length
     points, middles, homes = [], [], []
@@ -183,7 +189,9 @@ def _sync(run: CamProfile, task: Task, wraps: int) -> list[Check]:
             x = _places(run, wrap * cut.length + start, min(wrap * cut.length + end, run.end))
             middle = 0.5 * (x[1:] + x[:-1])
             points.append(x)
-            middles.append(middle[(middle > x[0] + edge) & (middle < x[-1] - edge)])
+            low = x[0] + (edge if start == 0.0 and len(cut.sync_parts) > 1 else max(edge, margins[0]))
+            high = x[-1] - (edge if later and len(cut.sync_parts) > 1 else max(edge, margins[1]))
+            middles.append(middle[(middle > low) & (middle < high)])
             origin = wrap * cut.length + zone - (0.0 if later else cut.length)
             homes.append((wrap * cut.length, origin, (wrap + (1 if later else 0)) * machine.pitch))
 
@@ -214,9 +222,29 @@ def _sync(run: CamProfile, task: Task, wraps: int) -> list[Check]:
             cut.sync_tolerance / cut.sync_zone,
             "1",
             ratio_at,
-            "speed of the tool in the sync zone (S1), against the sync tolerance over the sync zone",
+            "speed of the tool in the sync zone (S1), against the sync tolerance over the sync zone"
+            + ("; not beside ends of the zone that are no points of the table" if any(margins) else ""),
         ),
     ]
+
+
+def _margins(run: CamProfile, task: Task) -> tuple[float, float]:
+    """Give how far from either end of the sync zone the ratio is not judged.
+
+    Where an end lies between two points of a dense table, the drive leads across it with what it computes between points,
+    and a spline rings on for some points more: what that does to the position is judged, its slope there is not.
+    """
+    cut = task.cut
+    zone = (cut.return_start + cut.return_zone) % cut.length
+    found = []
+    for end in (zone, (zone + cut.sync_zone) % cut.length + cut.length):
+        near = int(np.searchsorted(run.breaks, end))
+        beside = run.breaks[max(near - 1, 0) : near + 1]
+        off = float(np.abs(beside - end).min())
+        step = float(np.diff(beside)[0]) if len(beside) > 1 else 0.0
+        dense = _RINGS * step <= _MOST_MARGIN * cut.sync_zone
+        found.append(_RINGS * step if off > _EDGE * cut.length and dense else 0.0)
+    return found[0], found[1]
 
 
 def _places(run: CamProfile, start: float, end: float) -> FloatArray:

@@ -31,6 +31,18 @@ def run(
         str | None,
         typer.Option("--units", metavar="M,S", help="Units of master and slave, for files that state none: mm,deg."),
     ] = None,
+    travel: Annotated[
+        str | None,
+        typer.Option(
+            "--travel", metavar="Q", help="Travel of the slave per cycle, for files that leave it out: 400 mm."
+        ),
+    ] = None,
+    slopes: Annotated[
+        str | None,
+        typer.Option(
+            "--slopes", metavar="A,B", help="Ratios at the ends that MCCP is given, for a CAM tag without them."
+        ),
+    ] = None,
     out: Out = None,
     no_figures: NoFigures = False,
     as_json: Json = False,
@@ -41,7 +53,7 @@ def run(
     voice = Voice(as_json, quiet)
     files: list[Path] = []
     with voice.progress(4) as step:
-        result = audit(file, asked, target, units, step)
+        result = audit(file, asked, target, units, travel, slopes, step)
         if not no_figures:
             step("writing files")
             directory = output_directory(out, asked)

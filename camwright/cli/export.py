@@ -10,11 +10,12 @@ import typer
 from camwright.cli.options import Json, Quiet
 from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.drives.export import export_answer
-from camwright.drives.options import parse_targets, parse_units
+from camwright.drives.options import parse_targets
 from camwright.drives.table_files import TableFiles, export
 from camwright.house.files import read_text
 from camwright.house.output import Voice
 from camwright.house.units import quantity
+from camwright.jobs.table_units import parse_units
 from camwright.profiles.errors import InputError
 from camwright.profiles.tables.knots import Accuracy
 from camwright.stored.design_file import MOST_BYTES, StoredDesign, parse_design

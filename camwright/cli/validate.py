@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -14,7 +15,7 @@ from camwright.cli.views.lead import lead_view
 from camwright.cli.views.parts import new_text, stacked
 from camwright.house.output import Voice
 from camwright.jobs.job import Job, load_job
-from camwright.stored.judge import validate
+from camwright.stored.judge import validate_file
 from camwright.validation.report import ValidationReport
 
 if TYPE_CHECKING:
@@ -32,16 +33,20 @@ def run(
     voice = Voice(as_json, quiet)
     with voice.progress(1) as step:
         step("checking")
-        report = validate(file, asked)
+        report, notes = validate_file(file, asked)
 
-    voice.answer(lambda: validate_answer(asked, file, report), lambda: _view(asked, file, report))
+    voice.answer(lambda: validate_answer(asked, file, report, notes), lambda: _view(asked, file, report, notes))
     return 0 if report.passed else 1
 
 
-def _view(job: Job, file: Path, report: ValidationReport) -> RenderableType:
+def _view(job: Job, file: Path, report: ValidationReport, notes: Sequence[str]) -> RenderableType:
     """Show the checks on a file and the verdict."""
     failed = [check.name for check in report.checks if not check.passed]
     verdict = f"{len(failed)} checks failed: {', '.join(failed)}" if failed else "every check passed"
+    told = [new_text(f"Note: {note}") for note in notes]
     return stacked(
-        checks_view(report.checks, job.units), lead_view(job, report.length_errors), new_text(f"{file}: {verdict}")
+        checks_view(report.checks, job.units),
+        lead_view(job, report.length_errors),
+        *told,
+        new_text(f"{file}: {verdict}"),
     )

@@ -2,21 +2,36 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
 from camwright.jobs.job import Job
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 
-_BEGINS = 3600
+Misfit = Callable[[FloatArray], FloatArray]
+"""How ill each of some beginnings fits, shape ``(n,)`` to ``(n,)``."""
+
 _IN_ZONE = 65
-"""Master positions at which the cycle is tried to begin, and places in the sync zone where it is compared."""
-_PLATEAU = 0.1
-"""Beginnings that miss by less than this part of the sync tolerance are as good as each other."""
+"""Places in the sync zone where the cycle is compared."""
+_CHUNK = 4096
+_EVENLY = 3600
+"""Beginnings that are tried beside those at the cam's own points, where these stand far apart."""
+_EXACT = 1e-6
+"""Misfit, as a part of what is allowed, that is rounding: beginnings below it are as good as each other."""
+_TOLD = 1e-6
+"""Shift of the zero, as a part of the cut length, from which on it is told."""
+_ROUNDS = 60
+"""Steps of the golden section: the last is far below a nanometre."""
 
 
 def aligned(rebuilt: CamProfile, job: Job) -> tuple[CamProfile, tuple[str, ...]]:
     """Begin the cycle where it fits the job's sync zone best, and put the slave's zero where the job has it.
+
+    The zero is found from the cam alone: the beginnings tried are those at which an end of the zone falls on a point of
+    the cam, so that the answer does not depend on where the file begins. Where many fit, as in a cam that stays in sync
+    for longer than the job's zone, it is the middle of them; where one fits best, it is refined between its neighbours.
 
     Parameters
     ----------
@@ -31,43 +46,92 @@ def aligned(rebuilt: CamProfile, job: Job) -> tuple[CamProfile, tuple[str, ...]]
     task, cut, machine = job.task, job.cut, job.machine
     sync = task.sync
     in_zone = np.linspace(0.0, cut.sync_zone, _IN_ZONE)
-    meant = sync(in_zone)
+    inside = np.linspace(0.0, cut.sync_zone, _IN_ZONE + 2)[1:-1]
+    meant, slope = sync(in_zone), sync(inside, 1)
     zone = (cut.return_start + cut.return_zone) % cut.length
+    stretch = rebuilt.length / cut.length
+    lever = float(np.abs(machine.tool_ratio(task.slave_at_sync_start + meant)).max())
+    speed = machine.tool_ratio(task.slave_at_sync_start + sync(inside)) / cut.sync_ratio
 
     def misfit(begin: FloatArray) -> FloatArray:
-        """Half the range of the slave's error in the zone, for cycles that begin at these places."""
-        x = (begin[:, None] + zone + in_zone) * (rebuilt.length / cut.length)
-        off = rebuilt(x, outside="repeat") - meant
-        return np.asarray(0.5 * np.ptp(off, axis=1))
+        """Error of the tool in the zone over the tolerance, and of its speed over what that allows; the greater."""
+        found = []
+        for part in np.array_split(begin, len(begin) // _CHUNK + 1):
+            at = (part[:, None] + zone) * stretch
+            off = rebuilt(at + in_zone * stretch, outside="repeat") - meant
+            slip = (rebuilt(at + inside * stretch, 1, outside="repeat") * stretch - slope) * speed
+            position = 0.5 * np.ptp(off, axis=1) * lever / cut.sync_tolerance
+            found.append(np.maximum(position, np.abs(slip).max(axis=1) * cut.sync_zone / cut.sync_tolerance))
+        return np.concatenate(found)
 
-    lever = float(np.abs(machine.tool_ratio(task.slave_at_sync_start + meant)).max())
+    begin = _best(_beginnings(rebuilt, stretch, zone, cut.sync_zone, cut.length), misfit, cut.length)
     notes: tuple[str, ...] = ()
-    as_it_is = float(misfit(np.zeros(1))[0]) * lever
-    if as_it_is > cut.sync_tolerance:
-        begins = np.linspace(0.0, cut.length, _BEGINS, endpoint=False)
-        found = misfit(begins) * lever
-        good = found <= max(2.0 * float(found.min()), _PLATEAU * cut.sync_tolerance)
-        begin = float(begins[_middle_of_run(good)])
-        if float(misfit(np.array([begin]))[0]) * lever < 0.5 * as_it_is and begin > 0.0:
-            rebuilt = rebuilt.roll(begin * rebuilt.length / cut.length)
+    here, there = misfit(np.array([0.0, begin])).tolist()
+    if there < here and here > _EXACT:
+        rebuilt = rebuilt.roll(begin * stretch)
+        if _TOLD * cut.length < begin < (1.0 - _TOLD) * cut.length:
             note = (
-                f"the file's master zero is not the job's: the job's cycle begins {begin * 1e3:.4g} mm into the file's, "
+                f"the file's master zero is not the job's: the job's cycle begins {begin * 1e3:.6g} mm into the file's, "
                 "where the cam fits the sync zone best ([output] origin says which zero is meant)"
             )
             notes = (note,)
-    x = (zone + in_zone) * (rebuilt.length / cut.length)
-    off = rebuilt(x, outside="repeat") - meant
+    off = rebuilt((zone + in_zone) * stretch, outside="repeat") - meant
     wanted = task.height if cut.origin == "return" else machine.pitch - float(sync(0.5 * cut.sync_zone))
     return rebuilt.shift(0.0, wanted - 0.5 * float(off.max() + off.min())), notes
 
 
-def _middle_of_run(good: NDArray[np.bool_]) -> int:
-    """Find the middle of the longest run of true entries of a ring."""
-    if good.all():
-        return 0
-    turned = int(np.argmin(good))
-    ring = np.roll(good, -turned)
-    edges = np.diff(np.concatenate([[0], ring.astype(np.int8), [0]]))
-    starts, ends = np.nonzero(edges == 1)[0], np.nonzero(edges == -1)[0]
-    longest = int(np.argmax(ends - starts))
-    return int((starts[longest] + ends[longest] - 1) // 2 + turned) % len(good)
+def _beginnings(rebuilt: CamProfile, stretch: float, zone: float, width: float, length: float) -> FloatArray:
+    """Give beginnings at which an end of the zone falls on a point of the cam; evenly between where these are few."""
+    points = rebuilt.breaks[:-1] / stretch
+    tried = np.concatenate([points - zone, points - zone - width])
+    extra = max(0, _EVENLY // len(points))
+    if extra > 1:
+        gaps = np.diff(np.append(points, points[0] + length))
+        between = points[:, None] + gaps[:, None] * (np.arange(1, extra) / extra)
+        tried = np.concatenate([tried, between.ravel() - zone])
+    return np.unique(np.mod(tried, length))
+
+
+def _best(begins: FloatArray, misfit: Misfit, length: float) -> float:
+    """Find the best beginning: the middle of those that fit exactly, or the best between neighbours."""
+    found = misfit(begins)
+    least = int(found.argmin())
+    good = found <= max(_EXACT, float(found[least]) * (1.0 + 1e-9))
+    if float(found[least]) <= _EXACT and int(good.sum()) > 1:
+        first, last = _run(good, least)
+        width = (begins[last] - begins[first]) % length
+        middle = (begins[first] + 0.5 * width) % length
+        if float(misfit(np.array([middle]))[0]) <= _EXACT:
+            return float(middle)
+    low = begins[least - 1] - (length if least == 0 else 0.0)
+    high = begins[(least + 1) % len(begins)] + (length if least == len(begins) - 1 else 0.0)
+    refined = _golden(misfit, float(low), float(high))
+    return float(begins[least]) if found[least] <= misfit(np.array([refined]))[0] else refined % length
+
+
+def _run(good: NDArray[np.bool_], at: int) -> tuple[int, int]:
+    """Find the ends of the run of true entries of a ring that holds one of them."""
+    count = len(good)
+    first = last = at
+    while last - first < count - 1 and good[(first - 1) % count]:
+        first -= 1
+    while last - first < count - 1 and good[(last + 1) % count]:
+        last += 1
+    return first % count, last % count
+
+
+def _golden(misfit: Misfit, low: float, high: float) -> float:
+    """Find the least of a function that falls and then rises between two places."""
+    part = 0.5 * (5.0**0.5 - 1.0)
+    left, right = high - part * (high - low), low + part * (high - low)
+    at_left, at_right = misfit(np.array([left, right])).tolist()
+    for _ in range(_ROUNDS):
+        if at_left <= at_right:
+            high, right, at_right = right, left, at_left
+            left = high - part * (high - low)
+            at_left = float(misfit(np.array([left]))[0])
+        else:
+            low, left, at_left = left, right, at_right
+            right = low + part * (high - low)
+            at_right = float(misfit(np.array([right]))[0])
+    return 0.5 * (low + high)

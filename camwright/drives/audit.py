@@ -11,14 +11,15 @@ import numpy as np
 
 from camwright.answers.validate import validate_answer
 from camwright.drives.alignment import aligned
-from camwright.drives.options import parse_units
+from camwright.drives.options import with_slopes
 from camwright.house.progress import Step, ignore
 from camwright.jobs.job import Job
 from camwright.jobs.place import not_placed, place_in
+from camwright.jobs.table_cycle import whole_cycle
 from camwright.profiles.errors import InputError
 from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile
-from camwright.profiles.tables.cam_table import CamTable, Unit, Units
+from camwright.profiles.tables.cam_table import CamTable
 from camwright.profiles.tables.target import Target
 from camwright.profiles.tables.targets import detect, read_table, target_of
 from camwright.profiles.tables.text import read_text
@@ -110,7 +111,15 @@ class Audit:
         return None if own == 0.0 else 1.0 - best / own
 
 
-def audit(path: Path, job: Job, target: str | None = None, units: str | None = None, step: Step = ignore) -> Audit:
+def audit(
+    path: Path,
+    job: Job,
+    target: str | None = None,
+    units: str | None = None,
+    travel: str | None = None,
+    slopes: str | None = None,
+    step: Step = ignore,
+) -> Audit:
     """Read a cam that runs today, rebuild it as its drive does, and compare it with the optimum of the job.
 
     Parameters
@@ -122,8 +131,12 @@ def audit(path: Path, job: Job, target: str | None = None, units: str | None = N
     target
         Name of the layout; found by its words if not given.
     units
-        Units of the file, for layouts that hold none, as `camwright.drives.options.parse_units` reads them. Where nothing
+        Units of the file, for layouts that hold none, as `camwright.jobs.table_units.parse_units` reads them. Where nothing
         is known, the table's period is taken for the cut length and its advance for the pitch.
+    travel
+        Slave's travel per cycle, for files that leave out where the cycle ends: ``400 mm``.
+    slopes
+        Ratios at the start and the end of the table, ``1,1``, for a CAM tag without those that MCCP is given.
 
     Notes
     -----
@@ -148,9 +161,10 @@ def audit(path: Path, job: Job, target: str | None = None, units: str | None = N
     step("reading")
     text = read_text(path)
     layout = detect(text, str(path)) if target is None else target_of(target)
-    table = read_table(layout, text, str(path))
     placed = replace(job, machine=_with_place(job.machine, text, str(path)))
-    rebuilt = _units(table, units, placed, str(path)).to_si(layout.rebuild(table))
+    whole = whole_cycle(with_slopes(read_table(layout, text, str(path)), slopes), placed, str(path), units, travel)
+    table = whole.table
+    rebuilt = whole.units.to_si(layout.rebuild(table))
     one_cycle(rebuilt, job.cut)  # refuses another period
     rebuilt, notes = aligned(rebuilt.shift(-rebuilt.start), placed)
     cycle = one_cycle(rebuilt, job.cut)
@@ -164,7 +178,7 @@ def audit(path: Path, job: Job, target: str | None = None, units: str | None = N
     return Audit(
         layout,
         table,
-        (*table.notes, *notes),
+        (*table.notes, *whole.notes, *notes),
         placed,
         cycle,
         judgement,
@@ -188,33 +202,6 @@ def _with_place(machine: Machine, text: str, place: str) -> Machine:
         return machine.placed_at(float(found))
     except ValueError as error:
         raise InputError(f"{place}: {machine.place_name} {found!r} is not a number") from error
-
-
-def _units(table: CamTable, asked: str | None, job: Job, place: str) -> Units:
-    """Give the units that the file states, else those that the user states, else those in which the cycle is the job's."""
-    unit = job.machine.slave_unit
-    if table.units is not None:
-        if asked is not None:
-            stated = f"{table.units.master.symbol},{table.units.slave.symbol}"
-            raise InputError(f"{place}: the file states its units ({stated}); leave --units out")
-        if table.units.slave.si != unit:
-            raise InputError(
-                f"{place}: the slave is counted in {table.units.slave.si}, but that of the job's machine in {unit}; name "
-                "the job that the file was made for"
-            )
-        return table.units
-    if asked is not None:
-        return parse_units(asked, job.task, table.period)
-    if not (table.advance > 0 and job.machine.pitch > 0):
-        raise InputError(
-            f"{place}: the slave advances by {table.advance!r} in a cycle, so its unit cannot be told from the pitch; "
-            "say it with --units, for example --units cycle,mm (cycle: the master's unit is that in which the cut length "
-            "is the table's period)"
-        )
-    return Units(
-        Unit("master unit", job.cut.length / table.period),
-        Unit("slave unit", job.machine.pitch / table.advance, unit),
-    )
 
 
 def _sampled(cycle: CamProfile, job: Job) -> Sampled:

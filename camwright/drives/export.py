@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from camwright.drives.options import default_units
 from camwright.house.progress import Step, ignore
 from camwright.house.provenance import camwright_version, provenance
 from camwright.jobs.job import Job
+from camwright.jobs.table_units import default_units
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.tables.cam_table import CamTable, Units

@@ -12,8 +12,8 @@ from pathlib import Path
 from camwright.profiles.errors import InputError
 
 
-def read_text(path: Path, what: str, limit: int) -> str:
-    """Read a text file in UTF-8.
+def read_bytes(path: Path, what: str, limit: int) -> bytes:
+    """Read a file.
 
     Parameters
     ----------
@@ -27,7 +27,7 @@ def read_text(path: Path, what: str, limit: int) -> str:
     Raises
     ------
     InputError
-        It is missing, a directory, unreadable, larger than the limit, empty, or not UTF-8.
+        It is missing, a directory, unreadable, larger than the limit, or empty.
     """
     try:
         with path.open("rb") as file:
@@ -42,6 +42,18 @@ def read_text(path: Path, what: str, limit: int) -> str:
         raise InputError(f"{path}: larger than {limit} bytes, the most that a {what} may have")
     if not data.strip():
         raise InputError(f"{path}: the {what} is empty")
+    return data
+
+
+def read_text(path: Path, what: str, limit: int) -> str:
+    """Read a text file in UTF-8, else like `read_bytes`.
+
+    Raises
+    ------
+    InputError
+        As of `read_bytes`, or it is not UTF-8.
+    """
+    data = read_bytes(path, what, limit)
     try:
         return data.decode("utf-8")
     except UnicodeDecodeError as error:

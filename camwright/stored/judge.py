@@ -38,5 +38,11 @@ def validate(profile: CamProfile | str | Path, job: Job) -> ValidationReport:
     with in_job_words(job.units):
         if isinstance(profile, CamProfile):
             return judge(profile, job.task, job.servo, servo_aware=job.servo_aware)
-        cycle, machine = read_cycle(Path(profile), job)
-        return judge(cycle, job.task.with_machine(machine), job.servo, servo_aware=job.servo_aware)
+    return validate_file(Path(profile), job)[0]
+
+
+def validate_file(path: Path, job: Job) -> tuple[ValidationReport, tuple[str, ...]]:
+    """Judge the cycle of a file like `validate`; with the report what had to be assumed to read it, a sentence each."""
+    with in_job_words(job.units):
+        cycle, machine, notes = read_cycle(path, job)
+        return judge(cycle, job.task.with_machine(machine), job.servo, servo_aware=job.servo_aware), notes

@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
-from camwright.house.files import read_text
+from camwright.house.files import read_bytes
 from camwright.house.numbers import typed
 from camwright.house.provenance import provenance
 from camwright.jobs.job import Job
 from camwright.jobs.place import not_placed, place_in
+from camwright.jobs.table_cycle import whole_cycle
 from camwright.profiles.errors import InputError
 from camwright.profiles.machines import Machine
+from camwright.profiles.machines.machine import SlaveUnit
 from camwright.profiles.polynomial.profile import CamProfile
-from camwright.profiles.tables.cam_csv import read_cam_csv, rebuild, write_cam_csv
+from camwright.profiles.tables import csv_target
+from camwright.profiles.tables.cam_csv import write_cam_csv
+from camwright.profiles.tables.text import decode
 from camwright.stored.design_file import MOST_BYTES, parse_design
 from camwright.studies.design import Design
 
@@ -44,15 +49,15 @@ def read_profile(path: Path, job: Job) -> CamProfile:
     return read_cycle(path, job)[0]
 
 
-def read_cycle(path: Path, job: Job) -> tuple[CamProfile, Machine]:
-    """Read one cycle from a design.json or a table, told apart by the first character, and the machine to judge it by.
+def read_cycle(path: Path, job: Job) -> tuple[CamProfile, Machine, tuple[str, ...]]:
+    """Read one cycle from a design.json or a table, told apart by the first character, the machine to judge it by, and notes.
 
     The machine is the job's; where the job leaves the place of its sync zone free, it is that of the file.
 
     Parameters
     ----------
     path
-        The file. A table has the columns that `camwright.profiles.tables.cam_csv.read_cam_csv` describes; it runs over one cycle
+        The file. A table has the columns that `camwright.profiles.tables.cam_rows.read_cam_csv` describes; it runs over one cycle
         of the job, from master position 0 to the cut length, both to a millionth of the cut length. The slave may begin
         anywhere.
     job
@@ -63,21 +68,29 @@ def read_cycle(path: Path, job: Job) -> tuple[CamProfile, Machine]:
     InputError
         The file cannot be read, holds no profile, or one of another cut length or slave unit.
     """
-    text = read_text(path, "profile file", MOST_BYTES)
-    if text.removeprefix("\ufeff").lstrip().startswith("{"):
+    text = decode(read_bytes(path, "profile file", MOST_BYTES), str(path))
+    if text.lstrip().startswith("{"):
         stored = parse_design(text, str(path))
-        profile, unit = stored.profile, stored.job.machine.slave_unit
-        place = stored.job.machine.place
-    else:
-        rows = read_cam_csv(text, str(path))
-        profile, unit = rebuild(rows.x, rows.y, rows.dy, rows.d2y), rows.slave_unit
-        place = _stated_place(job.machine, text)
+        unit = stored.job.machine.slave_unit
+        _require_unit(unit, job, path)
+        profile = _one_cycle(stored.profile, job.cut.length, str(path))
+        return profile, _with_place(job, stored.job.machine.place, str(path)), ()
+    machine = _with_place(job, _stated_place(job.machine, text), str(path))
+    table = csv_target.read(text, str(path))
+    if table.units is not None:
+        _require_unit(table.units.slave.si, job, path)
+    whole = whole_cycle(table, replace(job, machine=machine), str(path))
+    profile = whole.units.to_si(csv_target.rebuild(whole.table))
+    return _one_cycle(profile, job.cut.length, str(path)), machine, (*whole.table.notes, *whole.notes)
+
+
+def _require_unit(unit: SlaveUnit, job: Job, path: Path) -> None:
+    """Refuse a slave counted in another unit than the job's."""
     if unit != job.machine.slave_unit:
         raise InputError(
             f"{path}: the slave is counted in {unit}, but that of the job's machine in {job.machine.slave_unit}; name the job that the "
             "file was made for"
         )
-    return _one_cycle(profile, job.cut.length, str(path)), _with_place(job, place, str(path))
 
 
 def _stated_place(machine: Machine, text: str) -> float:

@@ -7,9 +7,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from camwright.house.files import read_text
+from camwright.house.files import read_bytes
 from camwright.house.provenance import camwright_version
 from camwright.profiles.errors import InputError
+from camwright.profiles.tables.text import decode
 from camwright.profiles.tables.trace_csv import read_trace_csv
 from camwright.profiles.trace import Trace
 from camwright.validation.identify.identification import Identified, identify
@@ -41,7 +42,7 @@ def read_trace(path: Path) -> Trace:
     InputError
         The file cannot be read, or is no trace with equally spaced rows.
     """
-    return read_trace_csv(read_text(path, "trace", _MOST_BYTES), str(path))
+    return read_trace_csv(decode(read_bytes(path, "trace", _MOST_BYTES), str(path), _MOST_BYTES), str(path))
 
 
 def identify_file(path: Path, velocity_feedforward: float | None) -> tuple[Trace, Identified]:

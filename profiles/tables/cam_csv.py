@@ -1,12 +1,8 @@
-"""The cam as CSV text: rows of master and slave position and derivatives over the master; and back to a profile."""
+"""The cam as CSV text, rows of master and slave position and derivatives over the master; and rows as a profile."""
 
 from __future__ import annotations
 
-import difflib
-import math
-import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -15,57 +11,12 @@ from camwright.profiles.machines.machine import SlaveUnit
 from camwright.profiles.message import Message
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 
-_LENGTHS: dict[str, tuple[float, float]] = {
-    "m": (1, 1), "mm": (1, 1000), "cm": (1, 100), "um": (1, 1e6), "µm": (1, 1e6), "in": (127, 5000), "ft": (381, 1250)
-}  # fmt: skip
-_COLUMNS: dict[str, dict[str, tuple[float, float]]] = {
-    "x": _LENGTHS,
-    "y": {**_LENGTHS, "rad": (1, 1), "deg": (math.pi, 180)},
-    "dy/dx": {"1": (1, 1), "m/m": (1, 1), "mm/mm": (1, 1), "rad/m": (1, 1)},
-    "d2y/dx2": {"1/m": (1, 1), "1/mm": (1000, 1), "rad/m^2": (1, 1)},
-    "d3y/dx3": {"1/m^2": (1, 1), "1/mm^2": (1e6, 1), "rad/m^3": (1, 1)},
-}
-# Columns, their units, and how a number in that unit becomes SI: multiplied by the first, divided by the second.
-
 _HEADERS: dict[SlaveUnit, tuple[str, ...]] = {
     "m": ("x [mm]", "y [mm]", "dy/dx [1]", "d2y/dx2 [1/m]", "d3y/dx3 [1/m^2]"),
     "rad": ("x [mm]", "y [rad]", "dy/dx [rad/m]", "d2y/dx2 [rad/m^2]", "d3y/dx3 [rad/m^3]"),
 }
-_CELL = re.compile(r"\s*([^\s\[\](){}_]+)(?:\s*\[([^\[\]]+)\]|\s*\(([^()]+)\)|_(\S+))?\s*")
-_NUMBER = re.compile(r"\s*[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,4})?\s*")
-_GREATEST = 1e12
-_FEWEST_ROWS = 4
-
-_CLOSEST = 1e-12
-"""Least distance of two rows on the master as a part of the table's length: closer rows hold no derivatives."""
-
 _ROUNDING = 8 * np.finfo(np.float64).eps
 """Residuals below this part of the values that they come from are rounding."""
-
-
-@dataclass(frozen=True, eq=False)
-class CamRows:
-    """Rows of a cam table in SI units.
-
-    Parameters
-    ----------
-    x
-        Master positions (m), shape ``(n,)``, increasing.
-    y
-        Slave positions (slave unit), shape ``(n,)``.
-    dy
-        Ratio, shape ``(n,)``, if the table has it.
-    d2y
-        Ratio slope (slave unit per m²), shape ``(n,)``, if the table has it.
-    slave_unit
-        Whether the slave is counted in m or in rad.
-    """
-
-    x: FloatArray
-    y: FloatArray
-    dy: FloatArray | None = None
-    d2y: FloatArray | None = None
-    slave_unit: SlaveUnit = "m"
 
 
 def table_positions(profile: CamProfile, points: int) -> FloatArray:
@@ -142,108 +93,6 @@ def write_cam_csv(profile: CamProfile, points: int, comments: Sequence[str], sla
     lines.append(",".join(_HEADERS[slave_unit]))
     lines.extend(",".join(map(repr, row)) for row in zip(*((column + 0.0).tolist() for column in columns), strict=True))
     return "\n".join(lines) + "\n"
-
-
-def read_cam_csv(text: str, place: str) -> CamRows:
-    """Read a table: comment lines begin with ``#``, the header names columns and units, rows follow.
-
-    Parameters
-    ----------
-    text
-        The table. Columns: ``x`` and ``y``, and ``dy/dx`` with ``d2y/dx2`` if known; ``d3y/dx3`` is allowed and not
-        used. A unit stands in brackets or after an underscore: ``x [mm]``, ``x_mm``.
-    place
-        What messages begin with.
-
-    Raises
-    ------
-    InputError
-        The header or a row is not as described; the message names the line.
-    """
-    numbered = [
-        (number, line)
-        for number, line in enumerate(text.removeprefix("\ufeff").replace("\r\n", "\n").split("\n"), start=1)
-        if line.strip() and not line.lstrip().startswith("#")
-    ]
-    if not numbered:
-        raise InputError(f"{place}: there is no table in it; write a header like x [mm],y [mm] and rows below")
-    columns, slave_unit = _header(numbered[0][1], f"{place}, line {numbered[0][0]}")
-    if len(numbered) - 1 < _FEWEST_ROWS:
-        raise InputError(
-            f"{place}: {len(numbered) - 1} rows; a cam table needs {_FEWEST_ROWS} at least, "
-            "from the start to the end of a cycle"
-        )
-    rows = np.array([_row(line, len(columns), f"{place}, line {number}") for number, line in numbered[1:]])
-    data = {}
-    for position, (name, (factor, divisor)) in enumerate(columns):
-        data[name] = rows[:, position] * factor / divisor
-    steps = np.diff(data["x"])
-    close = steps <= _CLOSEST * abs(float(data["x"][-1] - data["x"][0]))
-    if close.any():
-        line = numbered[2 + int(np.argmax(close))][0]
-        raise InputError(
-            f"{place}, line {line}: x does not increase from the row before; rows must be sorted by x, each x once"
-        )
-    return CamRows(data["x"], data["y"], data.get("dy/dx"), data.get("d2y/dx2"), slave_unit)
-
-
-def _header(line: str, place: str) -> tuple[list[tuple[str, tuple[float, float]]], SlaveUnit]:
-    """Read the header: for each column its name and what makes its numbers SI, and the unit of the slave."""
-    columns: list[tuple[str, tuple[float, float]]] = []
-    turning: dict[str, bool] = {}
-    for cell in line.split(","):
-        found = _CELL.fullmatch(cell)
-        name = found.group(1) if found else cell.strip()
-        if found is None or name not in _COLUMNS:
-            near = difflib.get_close_matches(name[:50], _COLUMNS, n=1)
-            advice = f"did you mean {near[0]}?" if near else f"columns are {', '.join(_COLUMNS)};"
-            raise InputError(
-                f"{place}: there is no column {cell.strip()[:50]!r}; {advice} write a header like x [mm],y [mm]"
-            )
-        units = _COLUMNS[name]
-        unit = next((group for group in found.groups()[1:] if group is not None), None)
-        if unit is None:
-            example = "mm" if "mm" in units else next(iter(units))
-            raise InputError(f"{place}: column {name} has no unit; write it in brackets, e.g. {name} [{example}]")
-        if unit.strip() not in units:
-            raise InputError(
-                f"{place}: column {name} cannot be in {unit[:50]!r}; its unit is one of {', '.join(units)}"
-            )
-        if name in (earlier for earlier, _ in columns):
-            raise InputError(f"{place}: column {name} stands there twice; leave one out")
-        columns.append((name, units[unit.strip()]))
-        turning[name] = unit.strip().startswith(("rad", "deg"))
-    names = {name for name, _ in columns}
-    missing = [name for name in ("x", "y") if name not in names]
-    if missing:
-        raise InputError(f"{place}: column {' and '.join(missing)} is missing; write a header like x [mm],y [mm]")
-    if ("dy/dx" in names) != ("d2y/dx2" in names):
-        raise InputError(f"{place}: dy/dx and d2y/dx2 go together; give both or neither")
-    for name in turning.keys() - {"x"}:
-        if turning[name] != turning["y"]:
-            slave = "an angle" if turning["y"] else "a length"
-            raise InputError(
-                f"{place}: column {name} does not go with y, which is {slave}; write both in units of {slave}"
-            )
-    return columns, "rad" if turning["y"] else "m"
-
-
-def _row(line: str, count: int, place: str) -> list[float]:
-    """Read one row of numbers."""
-    cells = line.split(",")
-    if len(cells) != count:
-        raise InputError(
-            f"{place}: {len(cells)} cells where the header has {count}; numbers have a decimal point, no comma"
-        )
-    values = []
-    for cell in cells:
-        if _NUMBER.fullmatch(cell) is None or abs(float(cell)) > _GREATEST:
-            raise InputError(
-                f"{place}: {cell.strip()[:50]!r} is not a finite number of at most {_GREATEST:g}; "
-                "write it like 12.5 or 1.25e1"
-            )
-        values.append(float(cell))
-    return values
 
 
 def rebuild(x: FloatArray, y: FloatArray, dy: FloatArray | None = None, d2y: FloatArray | None = None) -> CamProfile:

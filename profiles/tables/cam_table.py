@@ -81,6 +81,12 @@ class CamTable:
         Whether the cycle repeats.
     notes
         What a reader found worth telling.
+    words
+        What the file calls its units where only the job says how long they are: a degree of the master is part of the
+        cycle. ``None`` for one that it does not name.
+    travel_known
+        Whether the last point is the file's: where a layout leaves it out, for the table closes by itself, the slave
+        stands at the first point's position there and the travel must be found.
 
     Raises
     ------
@@ -97,6 +103,8 @@ class CamTable:
     units: Units | None = None
     periodic: bool = True
     notes: tuple[str, ...] = ()
+    words: tuple[str | None, str | None] = (None, None)
+    travel_known: bool = True
 
     def __post_init__(self) -> None:
         n = len(self.x)
@@ -146,6 +154,10 @@ class CamTable:
             return "open"
         return "closed" if abs(self.advance) <= 1e-9 * float(np.ptp(self.y) or 1.0) else "appending"
 
+    def closing_by(self, travel: float) -> CamTable:
+        """State the slave's travel per cycle of a table that leaves it out."""
+        return replace(self, y=np.append(self.y[:-1], self.y[0] + travel), travel_known=True)
+
     def with_units(self, units: Units) -> CamTable:
         """State the units of a table."""
         return replace(self, units=units)
@@ -161,6 +173,7 @@ def make_table(
     units: Units | None = None,
     periodic: bool = True,
     notes: tuple[str, ...] = (),
+    travel_known: bool = True,
 ) -> CamTable:
     """Make a `CamTable` from anything array-like; columns not given hold NaN, one law stands for all pieces."""
     master = np.array(x, dtype=np.float64)
@@ -168,7 +181,8 @@ def make_table(
         np.full(len(master), np.nan) if c is None else np.array(c, dtype=np.float64) for c in (ratio, ratio_slope)
     ]
     laws = (law,) * max(0, len(master) - 1) if isinstance(law, str) else law
-    return CamTable(master, np.array(y, dtype=np.float64), columns[0], columns[1], laws, units, periodic, notes)
+    slave = np.array(y, dtype=np.float64)
+    return CamTable(master, slave, columns[0], columns[1], laws, units, periodic, notes, travel_known=travel_known)
 
 
 def sample_profile(profile: CamProfile, x: FloatArray, units: Units, law: PieceLaw = "quintic") -> CamTable:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import re
+from dataclasses import replace
 
 import numpy as np
 
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
-from camwright.profiles.tables.cam_csv import read_cam_csv
 from camwright.profiles.tables.cam_csv import rebuild as rebuild_rows
+from camwright.profiles.tables.cam_rows import read_cam_csv
 from camwright.profiles.tables.cam_table import (
     CamTable,
     PieceLaw,
@@ -19,18 +19,10 @@ from camwright.profiles.tables.cam_table import (
 )
 from camwright.profiles.tables.splines import cyclic_spline
 from camwright.profiles.tables.target import Header, Target
-from camwright.profiles.tables.text import (
-    check_ascending,
-    check_count,
-    lines_of,
-    real,
-    refuse,
-)
+from camwright.profiles.tables.text import check_count, lines_of
 
 MOST_POINTS = 32_767
 
-_NAMES = re.compile(r"[^\[\](),;\t]{1,60}[,;\t][^\[\](),;\t]{1,60}")  # columns named without units
-_PLAIN = re.compile(r"\s*[-+.0-9][-+.,0-9eE]{0,40}\s*[,;\t]\s*[-+.0-9][-+.,0-9eE]{0,40}\s*")
 _METRIC = "x [mm],y [mm],dy/dx [1],d2y/dx2 [1/m]"
 _TURNED = "x [mm],y [rad],dy/dx [rad/m],d2y/dx2 [rad/m^2]"
 
@@ -62,44 +54,18 @@ def write(table: CamTable, header: Header) -> dict[str, str]:
 
 
 def read(text: str, place: str) -> CamTable:
-    """Rows with or without derivatives, in metres; or two columns of plain numbers without header and units."""
-    lines = lines_of(text, place)
-    rows_of = (line for line in lines if line.strip() and not line.lstrip().startswith("#"))
-    first, second = next(rows_of, ""), next(rows_of, "")
-    if _PLAIN.fullmatch(first) or (_NAMES.fullmatch(first) and _PLAIN.fullmatch(second)):
-        return _plain(lines, place, heading=not _PLAIN.fullmatch(first))
+    """Rows with or without derivatives: in metres where the file names both units, else in its own."""
+    lines_of(text, place)
     rows = read_cam_csv(text, place)
     check_count(len(rows.x), 2, MOST_POINTS, place)
     law: PieceLaw = "spline" if rows.dy is None else "quintic"
-    units = Units(Unit("m", 1.0), Unit(rows.slave_unit, 1.0, rows.slave_unit))
-    return make_table(rows.x, rows.y, rows.dy, rows.d2y, law=law, units=units)
-
-
-def _plain(lines: list[str], place: str, *, heading: bool) -> CamTable:
-    """Two columns with ``;`` or a tab between, decimal point or comma; or with a comma between and a decimal point.
-
-    A heading is the first row that is no comment; what it calls the columns is passed over.
-    """
-    x: list[float] = []
-    y: list[float] = []
-    numbers: list[int] = []
-    for number, line in enumerate(lines, start=1):
-        if not line.strip() or line.lstrip().startswith("#"):
-            continue
-        if heading:
-            heading = False
-            continue
-        separator = next((sign for sign in ";\t" if sign in line), ",")
-        cells = line.strip().split(separator)
-        if len(cells) != 2:
-            raise refuse(place, number, f"the line has {len(cells)} values, not master and slave")
-        x.append(real(cells[0], place, number, comma=separator != ","))
-        y.append(real(cells[1], place, number, comma=separator != ","))
-        numbers.append(number)
-    check_count(len(x), 2, MOST_POINTS, place)
-    check_ascending(x, numbers, place)
-    note = "no derivatives and no units in the file: a cubic spline is assumed"
-    return make_table(x, y, law="spline", notes=(note,))
+    if rows.words is None:
+        units = Units(Unit("m", 1.0), Unit(rows.slave_unit, 1.0, rows.slave_unit))
+        return make_table(rows.x, rows.y, rows.dy, rows.d2y, law=law, units=units, notes=rows.notes)
+    notes = (
+        rows.notes if rows.dy is not None else (*rows.notes, "no derivatives in the file: a cubic spline is assumed")
+    )
+    return replace(make_table(rows.x, rows.y, rows.dy, rows.d2y, law=law, notes=notes), words=rows.words)
 
 
 def _millimetres(metres: FloatArray) -> FloatArray:

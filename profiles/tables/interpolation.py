@@ -64,11 +64,6 @@ def chords(table: CamTable) -> CamProfile:
     return CamProfile(table.x.copy(), np.column_stack([table.y[:-1], slope]))
 
 
-def counted_chords(table: CamTable) -> CamProfile:
-    """Straight lines between whole positions."""
-    return chords(in_format(table, "int32"))
-
-
 def by_law(table: CamTable) -> CamProfile:
     """Do what the laws say: a cyclic spline, chords of a table without ratios, or lines and quintics."""
     if "spline" in table.laws:

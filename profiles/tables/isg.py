@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import numpy as np
 
@@ -138,14 +139,13 @@ def _table(cells: list[tuple[list[float], int]], kind: int, function: int, text:
         x, y = [row[0] for row in values], [row[1] for row in values]
         check_ascending(x, [number for _, number in cells], place)
     stated = advance_in(text)
-    notes = () if stated is not None else ("the slave's travel per turn is not in the file; none is assumed",)
     x.append(x[0] + TURN)
     y.append(y[0] + (stated or 0.0))
     if x[-1] <= x[-2]:
         raise refuse(place, cells[-1][1], "the master positions span more than one turn of 360°")
-    units = units_in(text)
+    units, known = units_in(text), stated is not None
     if function == _LINEAR:
-        return make_table(x, y, law="line", units=units, notes=notes)
+        return make_table(x, y, law="line", units=units, travel_known=known)
     if len(values) % 2:
         raise refuse(
             place, None, f"a table of lines and quintics in turn has an even number of pairs; there are {len(values)}"
@@ -153,7 +153,7 @@ def _table(cells: list[tuple[list[float], int]], kind: int, function: int, text:
     last: PieceLaw = "line" if function == _LINE_POLY5 else "quintic"
     other: PieceLaw = "quintic" if last == "line" else "line"
     laws = tuple(last if k % 2 else other for k in range(len(values)))
-    return _smooth(make_table(x, y, law=laws, units=units, notes=notes))
+    return _smooth(make_table(x, y, law=laws, units=units, travel_known=known))
 
 
 def _smooth(table: CamTable) -> CamTable:
@@ -166,15 +166,12 @@ def _smooth(table: CamTable) -> CamTable:
         ratio[0] = chord[-1]
     else:
         ratio[-1] = chord[0]
-    return make_table(
-        table.x, table.y, ratio, np.zeros(table.points), law=table.laws, units=table.units, notes=table.notes
-    )
+    return replace(table, ratio=ratio, ratio_slope=np.zeros(table.points))
 
 
 def rebuild(table: CamTable) -> CamProfile:
     """Lines, and quintics that take over the lines' slopes with no ratio slope."""
-    stored = in_format(table, "int32")
-    return quintics(_smooth(stored) if "quintic" in stored.laws else stored)
+    return quintics(_smooth(table) if "quintic" in table.laws else table)
 
 
 TARGET = Target(

@@ -20,6 +20,7 @@ from camwright.profiles.tables.cam_table import (
 )
 from camwright.profiles.tables.candidates import candidates, required_points, zone_ends
 from camwright.profiles.tables.deviation import Deviation, deviation, glance
+from camwright.profiles.tables.interpolation import in_format
 from camwright.profiles.tables.number_formats import NumberFormat, rounded
 from camwright.profiles.tables.target import Target
 
@@ -179,7 +180,8 @@ def _sampled(
     table = sample_profile(profile, np.clip(placed, profile.start, profile.end), units, law)
     if not straight:
         table = replace(table, laws=(law,) * len(table.laws))
-    return table, units.to_si(rebuild(table))
+    stored = in_format(table, "int32") if number_format == "int32" else table  # as it will be written
+    return table, units.to_si(rebuild(stored))
 
 
 def table_units(target: Target, profile: CamProfile, units: Units) -> Units:

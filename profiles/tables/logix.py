@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import struct
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from xml.parsers import expat
 
 import numpy as np
@@ -148,7 +148,11 @@ class _Collector:
 
 
 def read(text: str, place: str) -> CamTable:
-    """Read the one CAM tag of a file, or where there is none the coefficients in a CAM_PROFILE tag."""
+    """Read the one CAM tag of a file, with the slopes of its tags or the CAM_PROFILE that was computed from it.
+
+    Where there is no CAM tag the coefficients in the one CAM_PROFILE are read. A CAM without slopes keeps NaN at its
+    ends: MCCP is given them in the program.
+    """
     collector = _Collector(place)
     try:
         collector.parser.Parse(text, True)
@@ -166,27 +170,63 @@ def read(text: str, place: str) -> CamTable:
         raise refuse(place, found[1].line, f"there is more than one cam: {names}; leave one in the file")
     if not cams:
         return _profile(profiles[0], text, place)
-    return _cam(cams[0], collector.tags, text, place)
+    cam = _cam(cams[0], collector.tags, text, place)
+    return cam if np.isfinite(cam.ratio[[0, -1]]).all() else _calculated(cam, cams[0], profiles, text, place)
+
+
+def _calculated(cam: CamTable, tag: _Tag, profiles: list[_Tag], text: str, place: str) -> CamTable:
+    """Give the calculated profile whose knots are those of a cam without slopes; the cam itself if there is none."""
+    for profile in profiles:
+        if _never_calculated(profile):
+            continue
+        found = _profile(profile, text, place)
+        same = found.points == cam.points and all(
+            np.allclose(a, b, rtol=1e-6, atol=1e-6 * float(np.ptp(b))) for a, b in ((found.x, cam.x), (found.y, cam.y))
+        )
+        if same:
+            note = f"the profile {shown(profile.name)} has the points of {shown(tag.name)}: its coefficients are judged"
+            return replace(found, notes=(*found.notes, note))
+    return cam
 
 
 def _cam(tag: _Tag, tags: list[_Tag], text: str, place: str) -> CamTable:
     rows = _decorated(tag, place) if tag.elements else _compact(tag, place)
+    if tag.elements and "".join(tag.compact).strip():
+        _require_same(tag, _used(rows), _used(_compact(tag, place)), place)
     used = _used(rows)
     check_count(len(used), 2, MOST_POINTS, place)
     x, y = [row[0] for row in used], [row[1] for row in used]
     check_ascending(x, [row[3] for row in used], place)
     laws: list[PieceLaw] = ["line" if row[2] == _LINEAR else "spline" for row in used[:-1]]
-    slopes, notes = [0.0, 0.0], []
-    for at, end in enumerate(("Start", "End")):
+    ratio = np.full(len(x), np.nan)
+    for at, end in ((0, "Start"), (-1, "End")):
         wanted = f"{tag.name}_{end}Slope"
         given = [other for other in tags if other.name == wanted and other.value is not None]
         if given:
-            slopes[at] = real(given[0].value or "", place, given[0].line)
-        else:
-            notes.append(f"no tag {wanted}: {end.lower()} slope 0, the instruction's default, is assumed")
-    ratio = np.full(len(x), np.nan)
-    ratio[0], ratio[-1] = slopes
-    return make_table(x, y, ratio, law=tuple(laws), units=units_in(text), notes=tuple(notes))
+            ratio[at] = real(given[0].value or "", place, given[0].line)
+    return make_table(x, y, ratio, law=tuple(laws), units=units_in(text))
+
+
+def _require_same(
+    tag: _Tag, first: list[tuple[float, float, int, int]], second: list[tuple[float, float, int, int]], place: str
+) -> None:
+    """Refuse a tag whose two copies of its data differ by more than what float32 is written with."""
+    if len(first) != len(second):
+        raise refuse(
+            place,
+            tag.line,
+            f"the two copies of {shown(tag.name)} have {len(first)} and {len(second)} rows; export it again",
+        )
+    for k, (one, other) in enumerate(zip(first, second, strict=True)):
+        if one[2] != other[2] or any(
+            abs(a - b) > 2e-6 * max(abs(a), abs(b)) for a, b in zip(one[:2], other[:2], strict=True)
+        ):
+            raise refuse(
+                place,
+                one[3],
+                f"the two copies of {shown(tag.name)} (L5K and Decorated) differ in row {k}: {one[:3]} and {other[:3]}; "
+                "one was edited: export the tag again",
+            )
 
 
 def _decorated(tag: _Tag, place: str) -> list[tuple[float, float, int, int]]:
@@ -230,6 +270,13 @@ def _used(rows: list[tuple[float, float, int, int]]) -> list[tuple[float, float,
 
 def _profile(tag: _Tag, text: str, place: str) -> CamTable:
     """Knots from the coefficients C0 … C3 that a CAM_PROFILE holds as pairs of integers, high word first."""
+    if _never_calculated(tag):
+        raise refuse(
+            place,
+            tag.line,
+            f"the profile {shown(tag.name)} was never calculated (Status 0): run MCCP in the controller and export it again, "
+            "or export the CAM tag that it is made from",
+        )
     knots: list[tuple[float, ...]] = []
     last: list[float] = []
     for k, found in enumerate(_ROW.finditer("".join(tag.compact))):
@@ -254,6 +301,14 @@ def _profile(tag: _Tag, text: str, place: str) -> CamTable:
     check_ascending(columns[0], [tag.line] * len(knots), place)
     note = "read from the coefficients that the controller computed"
     return make_table(*columns, units=units_in(text), notes=(note,))
+
+
+def _never_calculated(tag: _Tag) -> bool:
+    """Whether the controller has not computed a profile: the Status of its rows is 0, in either copy."""
+    rows = [found[1].split(",") for found in _ROW.finditer("".join(tag.compact))]
+    stored = any(row[0].strip() not in ("0", "") for row in rows)
+    shown_status = [element["Status"][0].strip() for element in tag.elements if "Status" in element]
+    return not stored or (bool(shown_status) and all(status == "0" for status in shown_status))
 
 
 def _double(high: int, low: int) -> float:
@@ -285,6 +340,11 @@ def rebuild(table: CamTable) -> CamProfile:
             last += 1
         start = stored.ratio[0] if first == 0 else chord[first - 1]
         end = stored.ratio[-1] if last == len(chord) else chord[last]
+        if not (np.isfinite(start) and np.isfinite(end)):
+            raise InputError(
+                "the slopes that MCCP is given are not in the file, and the cam depends on them: say them with "
+                "--slopes START,END (ratios, as in the MCCP instruction), or export the calculated CAM_PROFILE too"
+            )
         parts.append(clamped_spline(x[first : last + 1], y[first : last + 1], float(start), float(end)))
         first = last
     return join(*parts)

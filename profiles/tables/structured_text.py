@@ -56,7 +56,7 @@ class Reader:
         path = self.path(0)
         if self.words.accept(":="):
             value = self.value(0)
-            if self.words.now.text not in (";", ",", ")", ""):
+            if self.words.now.text not in (";", ")", ""):
                 value = self.sum_of(value)
             elif isinstance(value, Word) and (number := self.known(value)) is not None:
                 value = number
@@ -73,11 +73,10 @@ class Reader:
                 self.variables[path[0]] = int(value)
             else:
                 self.variables.pop(path[0], None)
-        if not isinstance(value, Other):
-            self.assignments.append(Assignment(path, value, line))
+        self.assignments.append(Assignment(path, value, line))
 
     def sum_of(self, value: Value) -> Value:
-        """``value + 1`` and ``value - 1`` of whole numbers; any other expression is passed over."""
+        """``value + 1`` and ``value - 1`` of whole numbers; any other expression is no number, which table readers refuse."""
         sign = {"+": 1.0, "-": -1.0}.get(self.words.now.text)
         first = self.known(value)
         if sign is not None and first is not None and self.words.after.kind == "number":

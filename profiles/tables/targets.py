@@ -22,6 +22,9 @@ from camwright.profiles.tables import (
     twincat,
 )
 from camwright.profiles.tables.cam_table import CamTable
+from camwright.profiles.tables.column_words import cam_role
+from camwright.profiles.tables.delimited import read_sheet
+from camwright.profiles.tables.plc_objects import program_text
 from camwright.profiles.tables.target import Target, points_in
 from camwright.profiles.tables.text import refuse
 
@@ -49,10 +52,6 @@ TARGETS: dict[str, Target] = {
 }
 """All targets by name."""
 
-_HEADING = r"(?:#[^\n]*\n){0,50}(?:[^\n\[\](),;\t]{1,60}[,;][^\n\[\](),;\t]{1,60}\n)?"
-_NUMBER = r"[-+.0-9][-+.0-9eE]{0,40}"
-_WITH_COMMA = r"[-+.,0-9][-+.,0-9eE]{0,40}"
-
 _SIGNS: tuple[tuple[str, str], ...] = (
     ("logix", r"<RSLogix5000Content|DataType=\"CAM(?:_PROFILE)?\""),
     ("codesys-cambuilder", r"\.Append\s{0,99}\(\s{0,99}(?:\w{1,20}\.)?Poly5"),
@@ -67,10 +66,8 @@ _SIGNS: tuple[tuple[str, str], ...] = (
     ("kollmorgen-kas", r"(?m)^TABLE_BEGIN"),
     ("schneider-asc", r"(?m)^CamPoints\s{0,99}$"),
     ("trio", r"(?m)^[ \t]{0,99}TABLE[ \t]{0,99}\("),
-    ("csv", r"(?m)^x ?[\[(_]"),
-    ("csv", rf"\A{_HEADING}\s{{0,9}}{_NUMBER}\s{{0,9}},\s{{0,9}}{_NUMBER}\s{{0,9}}\n"),
-    ("csv", rf"\A{_HEADING}\s{{0,9}}{_WITH_COMMA}\s{{0,9}};\s{{0,9}}{_WITH_COMMA}\s{{0,9}}\n"),
     ("sew", r"\A\s{0,100}[0-9]{1,5};?\s*\n"),
+    ("lenze", r"\A\s{0,99}[-+.,0-9]{1,40}[ \t]{1,20}[-+.,0-9]{1,40}(?:[ \t]{1,20}[-+.,0-9]{1,40})?[ \t]{0,20}//"),
 )
 
 
@@ -99,7 +96,7 @@ def read_table(target: Target, text: str, place: str) -> CamTable:
     InputError
         The text does not hold a table of this target, or it was cut off.
     """
-    table = target.read(text, place)
+    table = target.read(program_text(text, place), place)
     stated = points_in(text)
     if stated is not None and stated != table.points:
         raise refuse(place, None, f"the head states {stated} points, but the table has {table.points}")
@@ -112,13 +109,28 @@ def detect(text: str, place: str) -> Target:
     Raises
     ------
     InputError
-        No layout is recognised; two plain columns of numbers, for one, could be Lenze's, Technosoft's or anyone's.
+        No layout is recognised. Two plain columns of numbers are taken for a table of positions: the drive may do
+        something else with them, which a note says.
     """
     own = _OWN.search(text)
     for target in TARGETS.values():
         if own and own[1] == target.title:
             return target
+    text = program_text(text, place)
     for name, sign in _SIGNS:
         if re.search(sign, text, re.IGNORECASE):
             return TARGETS[name]
+    if technosoft.is_written_so(text):
+        return technosoft.TARGET
+    if _has_columns(text, place):
+        return csv_target.TARGET
     raise InputError(f"{place}: the layout is not recognised; name it with --target, one of {', '.join(TARGETS)}")
+
+
+def _has_columns(text: str, place: str) -> bool:
+    """Whether a text is rows of numbers, with or without headings."""
+    try:
+        sheet = read_sheet(text, place, cam_role, "x [mm],y [mm]", "table")
+    except InputError as error:
+        return "line" in str(error) and "cells" in str(error)  # rows, one of them broken: the reader names it
+    return len(sheet.columns) > 1 and len(sheet.rows) > 1

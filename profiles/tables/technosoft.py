@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from camwright.profiles.errors import InputError
 from camwright.profiles.tables.cam_table import CamTable, make_table
-from camwright.profiles.tables.interpolation import counted_chords, in_format
+from camwright.profiles.tables.interpolation import chords, in_format
 from camwright.profiles.tables.target import Header, Target, companion
 from camwright.profiles.tables.text import (
     check_count,
@@ -19,6 +21,8 @@ MOST_POINTS = 8192
 STEPS = (1, 2, 4, 8, 16, 32, 64, 128)
 
 _LARGEST = 2**31 - 1
+_ENOUGH = 4
+"""Rows that tell the layout."""
 
 
 def write(table: CamTable, header: Header) -> dict[str, str]:
@@ -62,7 +66,21 @@ def read(text: str, place: str) -> CamTable:
         x.append(values[0])
         y.append(values[1])
     check_count(len(x), 2, MOST_POINTS, place)
-    return make_table(x, y, law="line")
+    note = (
+        "two columns of whole numbers, evenly spaced, are taken for Technosoft's, straight lines between them "
+        "(--target csv reads them as a spline)"
+    )
+    return make_table(x, y, law="line", notes=(note,))
+
+
+def is_written_so(text: str) -> bool:
+    """Whether a text begins like a file of this drive: two columns of whole numbers, the first from 0 on in one of `STEPS`."""
+    rows = [line.split() for line in text[:2000].split("\n")[:20] if line.strip()]
+    whole = all(len(row) == 2 and row[0].isdigit() and row[1].lstrip("-").isdigit() for row in rows)
+    if not whole or len(rows) < _ENOUGH:
+        return False
+    steps = {int(after[0][:19]) - int(before[0][:19]) for before, after in pairwise(rows)}
+    return int(rows[0][0][:19]) == 0 and len(steps) == 1 and steps <= set(STEPS)
 
 
 TARGET = Target(
@@ -87,5 +105,5 @@ TARGET = Target(
     endings=("_technosoft.txt", "_technosoft_head.txt"),
     write=write,
     read=read,
-    rebuild=counted_chords,
+    rebuild=chords,
 )

@@ -15,6 +15,8 @@ LONGEST_LINE = 2000
 MOST_LINES = 40_000
 
 _CONTROL = re.compile(r"[\x00-\x08\x0b\x0e-\x1f\x7f]")
+_HIGH = re.compile(rb"[\x80-\xff]+")
+_GB2312 = re.compile(rb"(?:[\xa1-\xa9\xb0-\xf7][\xa1-\xfe])+")
 _REAL = re.compile(r"[+-]?(?:[0-9]{1,40}(?:\.[0-9]{0,40})?|\.[0-9]{1,40})(?:[eE][+-]?[0-9]{1,4})?")
 _INTEGER = re.compile(r"[+-]?[0-9]{1,18}")
 
@@ -45,24 +47,15 @@ def read_text(path: Path) -> str:
     return decode(data, str(path))
 
 
-def decode(data: bytes, place: str) -> str:
+def decode(data: bytes, place: str, most: int = LARGEST_FILE) -> str:
     r"""Turn a table file's bytes into text with ``\n`` line ends.
 
-    UTF-8 with or without a byte order mark, UTF-16 with one; bytes that are no UTF-8 are read as Latin-1, for old
-    editors put names with accents into comments.
+    UTF-8 with or without a byte order mark; UTF-16, which has a zero in every second byte if it has no mark; what is
+    neither is GBK if all its bytes beyond ASCII stand in pairs of that code, else the Windows code page 1252.
     """
-    if len(data) > LARGEST_FILE:
-        raise refuse(place, None, f"the file is larger than {LARGEST_FILE} bytes; no cam table of a drive is")
-    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        try:
-            text = data.decode("utf-16")
-        except UnicodeDecodeError as error:
-            raise refuse(place, None, "the file begins like UTF-16 but is not") from error
-    else:
-        try:
-            text = data.decode("utf-8-sig")
-        except UnicodeDecodeError:
-            text = data.decode("latin-1")
+    if len(data) > most:
+        raise refuse(place, None, f"the file is larger than {most} bytes; no cam table of a drive is")
+    text = text_of(data, place)
     found = _CONTROL.search(text)
     if found:
         line = text.count("\n", 0, found.start()) + 1
@@ -70,6 +63,38 @@ def decode(data: bytes, place: str) -> str:
     if not text.strip():
         raise refuse(place, None, "the file is empty")
     return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def text_of(data: bytes, place: str) -> str:
+    """Find the code of a text."""
+    wide = _wide(data)
+    if wide is not None:
+        try:
+            return data.decode(wide).removeprefix("\ufeff")
+        except UnicodeDecodeError as error:
+            raise refuse(place, None, "the file begins like UTF-16 but is not") from error
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        pass
+    runs = _HIGH.findall(data)
+    if all(_GB2312.fullmatch(run) for run in runs):
+        try:
+            return data.decode("gbk")
+        except UnicodeDecodeError:
+            pass
+    return data.decode("cp1252", "replace")
+
+
+def _wide(data: bytes) -> str | None:
+    """Name the code of a text in UTF-16, by its mark or by the zeros of its ASCII signs."""
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        return "utf-16"
+    head = data[:400]
+    for name, first in (("utf-16-le", 1), ("utf-16-be", 0)):
+        if len(head) >= 8 and head[first::2].count(0) > 0.4 * len(head) and not head[1 - first :: 2].count(0):
+            return name
+    return None
 
 
 def lines_of(text: str, place: str) -> list[str]:

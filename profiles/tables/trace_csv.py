@@ -1,31 +1,29 @@
-"""A drive's recording as CSV text: time, command and actual position, each with its unit."""
+"""A drive's recording as text: time, command and actual position, each with its unit, as scopes and spreadsheets write them."""
 
 from __future__ import annotations
 
 import difflib
 import math
-import re
 
 import numpy as np
 
 from camwright.profiles.errors import InputError
 from camwright.profiles.machines.machine import SlaveUnit
 from camwright.profiles.polynomial.profile import FloatArray
+from camwright.profiles.tables.column_words import trace_role
+from camwright.profiles.tables.delimited import Sheet, read_sheet
 from camwright.profiles.trace import Trace
 
 MOST_ROWS = 10_000
 
-_LENGTHS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "um": 1e-6, "µm": 1e-6, "in": 0.0254, "ft": 0.3048}
+_LENGTHS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "um": 1e-6, "in": 0.0254, "ft": 0.3048}
 _ANGLES = {"rad": 1.0, "deg": math.pi / 180, "rev": 2 * math.pi}
 _UNITS: dict[str, dict[str, float]] = {
-    "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6},
+    "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6},
     "command": {**_LENGTHS, **_ANGLES},
     "actual": {**_LENGTHS, **_ANGLES},
 }
 _HEADER = "time [ms],command [mm],actual [mm]"
-_CELL = re.compile(r"\s*([^\[\]()]*[^\s\[\]()])\s*(?:\[([^\[\]]*)\]|\(([^()]*)\))?\s*")
-_NUMBER = re.compile(r"\s*[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,4})?\s*")
-_GREATEST = 1e12
 
 _UNEQUAL = 0.01
 """What a step of the time may differ from the others, as a part of it: times are rounded."""
@@ -35,13 +33,14 @@ _GAP = 1.5
 
 
 def read_trace_csv(text: str, place: str) -> Trace:
-    """Read a recording: comment lines begin with ``#``, the header names columns and units, rows follow.
+    """Read a recording: whatever separates its cells, with headings in one line or several.
 
     Parameters
     ----------
     text
-        The recording. Columns ``time``, ``command`` and ``actual`` with their units in brackets, ``time [ms]``, in any order; other
-        columns are not read.
+        The recording. Columns of time, command and actual position are known by their names
+        (`camwright.profiles.tables.column_words.trace_role`), in any order; other columns are not read. A scope may give each channel a
+        column of times; they must be one and the same.
     place
         What messages begin with.
 
@@ -50,85 +49,92 @@ def read_trace_csv(text: str, place: str) -> Trace:
     InputError
         The header or a row is not as described, or the rows are not equally spaced in time; the message names the line.
     """
-    numbered = [
-        (number, line)
-        for number, line in enumerate(text.removeprefix("\ufeff").replace("\r\n", "\n").split("\n"), start=1)
-        if line.strip() and not line.lstrip().startswith("#")
-    ]
-    if not numbered:
-        raise InputError(f"{place}: there is no recording in it; write a header like {_HEADER} and rows below")
-    where = f"{place}, line {numbered[0][0]}"
-    columns, count, unit = _header(numbered[0][1], where)
-    rows = numbered[1:]
-    if len(rows) < 2:
-        raise InputError(f"{place}: {len(rows)} rows below the header; a recording has hundreds")
-    if len(rows) > MOST_ROWS:
+    sheet = read_sheet(text, place, trace_role, _HEADER, "recording")
+    at = _roles(sheet)
+    factors, unit, notes = _factors(sheet, at)
+    rows = len(sheet.rows)
+    if rows < 2:
+        raise InputError(f"{place}: {rows} rows below the header; a recording has hundreds")
+    if rows > MOST_ROWS:
         raise InputError(
-            f"{place}: {len(rows)} rows, the limit is {MOST_ROWS}; cut out a part with lively motion, 2 s at 1 kHz are enough"
+            f"{place}: {rows} rows, the limit is {MOST_ROWS}; cut out a part with lively motion, 2 s at 1 kHz are enough"
         )
-    data = np.array([_row(line, count, columns, f"{place}, line {number}") for number, line in rows])
-    time, command, actual = (data.T[i] * factor for i, (_, factor) in enumerate(columns.values()))
-    lines = [number for number, _ in rows]
-    _require_equal_steps(time, lines, place)
-    step = (time[-1] - time[0]) / (len(time) - 1)
-    return Trace(float(time[0]), float(step), command, actual, unit)
-
-
-def _header(line: str, place: str) -> tuple[dict[str, tuple[int, float]], int, SlaveUnit]:
-    """Read the header: place and SI factor of the three columns in their order, the number of cells, and the unit of positions."""
-    cells = line.split(",")
-    if len(cells) == 1 and re.search(r"[;\t]", line):
-        raise InputError(
-            f"{place}: there is no comma; separate the columns by commas, and write numbers with a decimal point"
-        )
-    found: dict[str, tuple[int, float]] = {}
-    names: list[str] = []
-    kinds: dict[str, bool] = {}
-    for number, cell in enumerate(cells):
-        parts = _CELL.fullmatch(cell)
-        name = (parts.group(1) if parts else cell.strip()).lower()
-        names.append(name)
-        if parts is None or name not in _UNITS:
-            continue
-        if name in found:
-            raise InputError(f"{place}: column {name} stands there twice; leave one out")
-        units, written = _UNITS[name], next((group for group in parts.groups()[1:] if group is not None), None)
-        example = next(iter(cell for cell in _HEADER.split(",") if cell.startswith(name)))
-        if written is None:
-            raise InputError(f"{place}: column {name} has no unit; write it in brackets, e.g. {example}")
-        unit = written.strip()
-        if unit not in units:
+    time, command, actual = (sheet.numbers(at[name][-1], name) * factors[name] for name in _UNITS)
+    _require_equal_steps(time, list(sheet.lines), place)
+    step = (time[-1] - time[0]) / (rows - 1)
+    for other in at["time"][:-1]:
+        if np.abs(sheet.numbers(other, "time") * factors["time"] - time).max() > _UNEQUAL * step:
             raise InputError(
-                f"{place}: column {name} cannot be in {unit[:50]!r}; its unit is one of {', '.join(units)}"
+                f"{place}: the channels have times of their own, which differ; record all channels at one rate, or export "
+                "them interpolated to one"
             )
-        found[name] = number, units[unit]
-        kinds[name] = unit in _ANGLES
-    for name in _UNITS:
-        if name not in found:
-            near = difflib.get_close_matches(name, [other[:50] for other in names], n=1)
-            advice = f"is it {near[0]!r}? " if near else ""
-            raise InputError(f"{place}: there is no column {name}; {advice}write a header like {_HEADER}")
-    if kinds["command"] != kinds["actual"]:
-        raise InputError(f"{place}: command and actual are a length and an angle; give both as they are at one axis")
-    return {name: found[name] for name in _UNITS}, len(cells), "rad" if kinds["command"] else "m"
+    return Trace(float(time[0]), float(step), command, actual, unit, notes)
 
 
-def _row(line: str, count: int, columns: dict[str, tuple[int, float]], place: str) -> list[float]:
-    """Read the three numbers of one row."""
-    cells = line.split(",")
-    if len(cells) != count:
-        raise InputError(
-            f"{place}: {len(cells)} cells where the header has {count}; numbers have a decimal point, no comma"
+def _roles(sheet: Sheet) -> dict[str, list[int]]:
+    """Say which columns are what: one command and one actual position, and the times, the one before the command last."""
+    where = f"{sheet.place}, line {sheet.heading}" if sheet.heading else sheet.place
+    at: dict[str, list[int]] = {"time": [], "command": [], "actual": []}
+    for number, column in enumerate(sheet.columns):
+        role = trace_role(column.name) if column.name else None
+        if role in at:
+            at[role].append(number)
+    names = [column.heading[:50] or column.name[:50] for column in sheet.columns]
+    for name, found in at.items():
+        if not found:
+            left = [names[k] for k, column in enumerate(sheet.columns) if trace_role(column.name) is None]
+            near = difflib.get_close_matches(
+                name, [word.lower().split("[")[0].strip() for word in left], n=1, cutoff=0.6
+            )
+            told = (
+                f"is it {near[0]!r}? "
+                if near
+                else (f"the columns are {', '.join(map(repr, names[:8]))}; " if any(names) else "")
+            )
+            raise InputError(f"{where}: there is no column {name}; {told}write a header like {_HEADER}")
+    scope = all(sheet.columns[k].heading == "Name" for k in at["time"])
+    for name in ("time", "command", "actual"):
+        if len(at[name]) > 1 and not (name == "time" and scope):
+            exact = [k for k in at[name] if sheet.columns[k].name.strip().lower() == name]
+            if len(exact) != 1:
+                both = " and ".join(repr(names[k]) for k in at[name][:2])
+                raise InputError(f"{where}: column {name} stands there twice; leave one out ({both})")
+            at[name] = exact
+    if len(at["time"]) > 1:  # those that stand before the two positions
+        used = sorted(
+            {
+                max((k for k in at["time"] if k < other), default=at["time"][0])
+                for other in (at["command"][0], at["actual"][0])
+            }
         )
-    values = []
-    for name, (number, _) in columns.items():
-        cell = cells[number]
-        if _NUMBER.fullmatch(cell) is None or abs(float(cell)) > _GREATEST:
+        at["time"] = used
+    return at
+
+
+def _factors(sheet: Sheet, at: dict[str, list[int]]) -> tuple[dict[str, float], SlaveUnit, tuple[str, ...]]:
+    """Give what makes the columns SI, and the unit of positions; a servo does not depend on how long that is."""
+    where = f"{sheet.place}, line {sheet.heading}" if sheet.heading else sheet.place
+    columns = {name: sheet.columns[found[-1]] for name, found in at.items()}
+    bare = all(columns[name].unit is None for name in ("command", "actual"))
+    factors: dict[str, float] = {}
+    for name, column in columns.items():
+        units = _UNITS[name]
+        if column.unit is None:
+            if name != "time" and bare:
+                factors[name] = 1e-3
+                continue
+            example = next(cell for cell in _HEADER.split(",") if cell.startswith(name))
+            raise InputError(f"{where}: column {name} has no unit; write it in brackets, e.g. {example}")
+        if not column.known or column.unit not in units:
             raise InputError(
-                f"{place}: {name} {cell.strip()[:50]!r} is not a finite number of at most {_GREATEST:g}; write it like 12.5 or 1.25e1"
+                f"{where}: column {name} cannot be in {column.unit[:50]!r}; its unit is one of {', '.join(units)}"
             )
-        values.append(float(cell))
-    return values
+        factors[name] = units[column.unit]
+    kinds = {columns[name].unit in _ANGLES for name in ("command", "actual")}
+    if len(kinds) > 1:
+        raise InputError(f"{where}: command and actual are a length and an angle; give both as they are at one axis")
+    note = "the positions have no unit in the file: mm is taken, on which the servo's parameters do not depend (name it in the header)"
+    return factors, "rad" if kinds.pop() else "m", (note,) if bare else ()
 
 
 def _require_equal_steps(time: FloatArray, lines: list[int], place: str) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 
 from camwright.profiles.errors import InputError
 from camwright.profiles.tables.cam_table import CamTable, make_table
-from camwright.profiles.tables.interpolation import counted_chords, in_format
+from camwright.profiles.tables.interpolation import chords, in_format
 from camwright.profiles.tables.target import Header, Target, companion
 from camwright.profiles.tables.text import (
     check_count,
@@ -22,6 +22,9 @@ from camwright.profiles.tables.text import (
 MOST_POINTS = 16_000
 
 _LINE = re.compile(r"TABLE\s*\(([^()]*)\)", re.IGNORECASE)
+_TABLE = re.compile(r"TABLE\s*\(", re.IGNORECASE)
+_CAMBOX = re.compile(r"CAMBOX\s*\(([^()]*)\)(?:\s*AXIS\s*\([^()]*\))?", re.IGNORECASE)
+_PLAIN = re.compile(r"[-+.0-9eE]{1,40}")
 
 
 def write(table: CamTable, header: Header) -> dict[str, str]:
@@ -44,26 +47,70 @@ def write(table: CamTable, header: Header) -> dict[str, str]:
 
 
 def read(text: str, place: str) -> CamTable:
-    """Values of all ``TABLE`` lines; master positions are counted in steps, for the link distance stands elsewhere."""
+    """Values of the ``TABLE`` lines of a program; from its ``CAMBOX`` line which of them, the multiplier and the link distance.
+
+    Other statements are passed over. Without a ``CAMBOX`` line of numbers all values are the table, and master
+    positions are counted in its steps.
+    """
     values: dict[int, float] = {}
+    calls: list[tuple[list[str], int]] = []
     for number, line in enumerate(lines_of(text, place), start=1):
-        if not line.strip() or line.lstrip().startswith("'"):
-            continue
-        found = _LINE.fullmatch(line.strip())
-        if not found:
-            raise refuse(place, number, f"{shown(line.strip())} is not of the form TABLE(address, value, …)")
-        first, *cells = found[1].split(",")
-        address = integer(first, place, number)
-        for offset, cell in enumerate(cells):
-            if address + offset in values:
-                raise refuse(place, number, f"the address {address + offset} is filled twice")
-            values[address + offset] = real(cell, place, number)
+        for statement in _statements(line):
+            call = _CAMBOX.fullmatch(statement)
+            if call:
+                calls.append(([cell.strip() for cell in call[1].split(",")], number))
+            elif _TABLE.match(statement):
+                _fill(values, statement, place, number)
+    if not values:
+        raise refuse(place, None, "there is no line TABLE(address, value, …) in it")
     check_count(len(values), 2, MOST_POINTS, place)
+    plain = [(cells, number) for cells, number in calls if len(cells) >= 4 and all(map(_PLAIN.fullmatch, cells[:4]))]
+    if len({tuple(cells[:4]) for cells, _ in plain}) > 1:
+        raise refuse(place, plain[1][1], "there is more than one CAMBOX; leave the one that is meant in the file")
+    if plain:
+        return _called(values, *plain[0], place)
     addresses = sorted(values)
     if addresses[-1] - addresses[0] + 1 != len(values):
         raise refuse(place, None, "the addresses of the table have a gap")
     note = "master positions are counted in steps of the table: the link distance is not in the file"
+    if calls:
+        note += " as a number"
     return make_table(range(len(values)), [values[a] for a in addresses], law="line", notes=(note,))
+
+
+def _statements(line: str) -> list[str]:
+    """Cut a line at colons; what stands behind an apostrophe is a comment."""
+    return [part.strip() for part in line.partition("'")[0].split(":") if part.strip()]
+
+
+def _fill(values: dict[int, float], statement: str, place: str, number: int) -> None:
+    """Take the values of one ``TABLE`` line."""
+    found = _LINE.fullmatch(statement)
+    if not found:
+        raise refuse(place, number, f"{shown(statement)} is not of the form TABLE(address, value, …)")
+    first, *cells = found[1].split(",")
+    address = integer(first, place, number)
+    for offset, cell in enumerate(cells):
+        if address + offset in values:
+            raise refuse(place, number, f"the address {address + offset} is filled twice")
+        values[address + offset] = real(cell, place, number)
+
+
+def _called(values: dict[int, float], cells: list[str], number: int, place: str) -> CamTable:
+    """Take the part of the table that a ``CAMBOX(start, end, multiplier, link distance, …)`` runs."""
+    start, end = (integer(cell, place, number) for cell in cells[:2])
+    multiplier, distance = (real(cell, place, number) for cell in cells[2:4])
+    if not 0 < end - start <= MOST_POINTS:
+        raise refuse(place, number, f"CAMBOX runs from {start} to {end}, which is no part of a table")
+    missing = [address for address in range(start, end + 1) if address not in values]
+    if missing:
+        raise refuse(place, number, f"CAMBOX runs over the address {missing[0]}, which no TABLE line fills")
+    if not (distance > 0.0 and multiplier != 0.0):
+        raise refuse(place, number, f"the link distance {distance:g} and the multiplier {multiplier:g} make no motion")
+    count = end - start
+    y = [values[start + k] * multiplier for k in range(count + 1)]
+    note = f"CAMBOX runs {count + 1} values of the table, times {multiplier:g}, over a link distance of {distance:g}"
+    return make_table([distance * k / count for k in range(count + 1)], y, law="line", notes=(note,))
 
 
 TARGET = Target(
@@ -89,5 +136,5 @@ TARGET = Target(
     endings=("_trio.bas", "_trio.txt"),
     write=write,
     read=read,
-    rebuild=counted_chords,
+    rebuild=chords,
 )

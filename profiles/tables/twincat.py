@@ -106,7 +106,7 @@ def read(text: str, place: str) -> CamTable:
 
 def _check_rows(program: Program, rows: int, place: str) -> None:
     """Refuse a text that fills fewer rows than it says: one that was cut off."""
-    stated = [entry for entry in program.assignments if entry.path[-1] == "noofrows"]
+    stated = [entry for entry in program.assignments if entry.path[-1] == "noofrows" and isinstance(entry.value, float)]
     for entry in stated:
         if entry.value != float(rows):
             raise refuse(place, entry.line, f"NoOfRows does not agree with the {rows} rows that the text fills")

@@ -109,7 +109,7 @@ def test_a_machine_is_designed_written_and_judged_again(
     jsonschema.validate(json.loads((out / "design.json").read_text()), design_schema())
     stored = read_design(out / "design.json")
     for file in ("design.json", "cam.csv"):
-        cycle, machine = read_cycle(out / file, asked)
+        cycle, machine, _ = read_cycle(out / file, asked)
         assert machine == stored.job.machine
         np.testing.assert_allclose(cycle(stored.profile.breaks), stored.profile(stored.profile.breaks), atol=1e-12)
         assert main(["validate", str(out / file), "--job", str(job), "--json"]) == 0

@@ -21,15 +21,15 @@ from camwright.design.returns import transcription
 from camwright.design.servo_aware import axis_response
 from camwright.design.torque import placing
 from camwright.design.torque import search as torque_search
-from camwright.drives.options import parse_units
 from camwright.figures import style
 from camwright.house.output import BROKEN_PIPE
 from camwright.jobs import job as job_file
+from camwright.jobs.table_units import parse_units
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import CamwrightError, InfeasibleError, InputError, MissingExtraError, SolverError
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import RotaryKnife
-from camwright.profiles.tables import cam_csv, text, trace_csv
+from camwright.profiles.tables import cam_rows, text, trace_csv
 from camwright.profiles.tables.knots import Accuracy
 from camwright.profiles.tables.targets import TARGETS
 from camwright.profiles.task import Task
@@ -74,7 +74,7 @@ NUMBERS: dict[str, tuple[object, object, str, str]] = {
     "size of a job file": (job_file.MOST_BYTES, 1_048_576, "contract", "A job file has at most 1 MiB"),
     "size of a design": (design_file.MOST_BYTES, 67_108_864, "contract", "a design, recipe or CSV file 64 MiB"),
     "size of a table": (text.LARGEST_FILE, 4_000_000, "contract", "a table of a drive 4 000 000 bytes"),
-    "rows of a CSV": (cam_csv._FEWEST_ROWS, 4, "contract", "4 rows or more"),
+    "rows of a CSV": (cam_rows.FEWEST_ROWS, 4, "contract", "4 rows or more"),
     "cycle of a CSV": (profile_files._ROUNDING, 1e-6, "contract", "one cycle of the job to a millionth of the"),
     "rows of a trace, least": (quality.FEWEST_ROWS, 200, "contract", "200 to 10 000 rows"),
     "rows of a trace, most": (trace_csv.MOST_ROWS, 10_000, "contract", "200 to 10 000 rows"),

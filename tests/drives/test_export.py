@@ -19,7 +19,8 @@ from camwright.drives.export import (
     export_report,
     targets_answer,
 )
-from camwright.drives.options import default_units, parse_targets, parse_units
+from camwright.drives.options import parse_targets
+from camwright.jobs.table_units import default_units, parse_units
 from camwright.profiles.errors import InputError
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import CrankSlider, LinearCarriage, RotaryKnife

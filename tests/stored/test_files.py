@@ -19,7 +19,7 @@ from camwright.house.provenance import provenance
 from camwright.jobs.job import BUNDLED_JOB
 from camwright.profiles.errors import InputError
 from camwright.profiles.returns import baseline
-from camwright.profiles.tables.cam_csv import read_cam_csv
+from camwright.profiles.tables.cam_rows import read_cam_csv
 from camwright.stored.design_file import (
     design_schema,
     design_text,

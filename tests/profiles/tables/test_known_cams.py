@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 
+from camwright.drives.options import with_slopes
+from camwright.profiles.errors import InputError
 from camwright.profiles.tables.cam_table import make_table
 from camwright.profiles.tables.interpolation import quintics
 from camwright.profiles.tables.splines import clamped_spline, cyclic_spline
@@ -40,13 +42,13 @@ def words(value: float) -> str:
 
 
 def test_the_captured_profile_of_logix_is_the_clamped_spline() -> None:
-    table = TARGETS["logix"].read(L5X.format(n=3, data=ROWS, more=SLOPE), "cam.L5X")
+    end = SLOPE.replace("StartSlope", "EndSlope").replace('"1.0"', '"0.0"')
+    table = TARGETS["logix"].read(L5X.format(n=3, data=ROWS, more=SLOPE + end), "cam.L5X")
     rebuilt = TARGETS["logix"].rebuild(table)
     assert rebuilt.breaks.tolist() == [0, 40, 100]
     assert rebuilt.coefficients == pytest.approx(RECORDED, abs=1e-6)
     assert rebuilt.coefficients[:, 3] == pytest.approx(RECORDED[:, 3], rel=1e-6)
     assert rebuilt(100.0, 1) == pytest.approx(0, abs=1e-12)
-    assert table.notes == ("no tag KnifeCam_EndSlope: end slope 0, the instruction's default, is assumed",)
 
 
 def test_coefficients_are_read_from_a_captured_profile() -> None:
@@ -61,7 +63,10 @@ def test_coefficients_are_read_from_a_captured_profile() -> None:
 
 def test_linear_segments_of_logix() -> None:
     rows = ROWS.replace("[40.0,20.0,1]", "[40.0,20.0,0]")
-    rebuilt = TARGETS["logix"].rebuild(TARGETS["logix"].read(L5X.format(n=3, data=rows, more=""), "cam.L5X"))
+    table = TARGETS["logix"].read(L5X.format(n=3, data=rows, more=""), "cam.L5X")
+    with pytest.raises(InputError, match="--slopes START,END"):  # none is invented
+        TARGETS["logix"].rebuild(table)
+    rebuilt = TARGETS["logix"].rebuild(with_slopes(table, "0,0"))
     assert rebuilt(70.0) == pytest.approx(22.5)
     assert rebuilt(40.0, 1, side="left") == pytest.approx(5 / 60)  # the spline runs into the line
 
@@ -74,9 +79,13 @@ def test_decorated_data_come_first_and_unused_rows_are_dropped() -> None:
     )
     rows = [(0, 0), (40, 20), (90, 25), (0, 0), (0, 0)]
     elements = "".join(element.format(k=k, x=x, y=y) for k, (x, y) in enumerate(rows))
-    data = f'{ROWS}<Data Format="Decorated"><Array DataType="CAM" Dimensions="5">{elements}</Array></Data>'
+    same = '<Data Format="L5K"><![CDATA[[[0,0,1],[40,20,1],[90,25,1]]]]></Data>'
+    data = f'{same}<Data Format="Decorated"><Array DataType="CAM" Dimensions="5">{elements}</Array></Data>'
     table = TARGETS["logix"].read(L5X.format(n=5, data=data, more=""), "cam.L5X")
     assert table.x.tolist() == [0, 40, 90]
+    data = data.replace("[40,20,1]", "[40,21,1]")
+    with pytest.raises(InputError, match="the two copies of 'KnifeCam'"):
+        TARGETS["logix"].read(L5X.format(n=5, data=data, more=""), "cam.L5X")
 
 
 CODESYS = """
@@ -251,7 +260,7 @@ def test_a_written_zebra_table_comes_back() -> None:
     text = next(iter(TARGETS["twincat-cnc"].write(table, HEADER).values()))
     assert "Functiontype = 4" in text
     back = TARGETS["twincat-cnc"].read(text.replace("advance", "gone"), "t")
-    assert back.notes
+    assert not back.travel_known
     assert back.laws == ("quintic", "line")
 
 
@@ -301,8 +310,7 @@ def test_a_quintic_against_its_conditions() -> None:
 
 @pytest.mark.parametrize("text", ["0,0\n1.5,2\n3,3\n", "# mine\n0;0\n1,5;2\n3;3", "0\t0\n1,5\t2.0\n3\t3\n"])
 def test_two_plain_columns(text: str) -> None:
-    if "\t" not in text:
-        assert detect(text, "t").name == "csv"
+    assert detect(text, "t").name == "csv"
     table = TARGETS["csv"].read(text, "t")
     assert (table.x.tolist(), table.y.tolist(), table.units) == ([0, 1.5, 3], [0, 2, 3], None)
     assert TARGETS["csv"].rebuild(table).jumps(2) == pytest.approx([0, 0], abs=1e-12)

@@ -121,11 +121,7 @@ def test_the_layout_is_recognised_and_the_units_come_back(target: str) -> None:
     elif target != "csv":
         assert units_in(text) == chosen(target, "quintic").table.units
         assert advance_in(text) == pytest.approx(chosen(target, "quintic").table.advance)
-    if target == "technosoft":
-        with pytest.raises(InputError, match="name it with --target"):
-            detect(text, file)
-    else:
-        assert detect(text, file) is TARGETS[target]
+    assert detect(text, file) is TARGETS[target]
 
 
 def test_the_acceleration_of_logix_keeps_one_percent_and_more_points_make_it_worse() -> None:

@@ -1,0 +1,214 @@
+"""One whole cycle of a table that somebody recorded or exported: a modulo slave unwrapped, an end that is left out put there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from camwright.jobs.job import Job
+from camwright.jobs.table_units import kernel_units, slave_length, units_of
+from camwright.profiles.errors import InputError
+from camwright.profiles.polynomial.profile import FloatArray
+from camwright.profiles.tables.cam_table import CamTable, Units
+
+_FEWEST = 12
+"""Points from which on a jump can be told from motion."""
+_JUMP = 0.5
+"""Part of the slave's range that one step must cover to be a jump."""
+_USUAL = 5.0
+"""By how many times a jump exceeds the steps beside it."""
+_NEAR = 0.02
+"""Part of a step by which the period may miss the cut length where one row is missing, or one too many."""
+
+
+@dataclass(frozen=True, eq=False)
+class WholeCycle:
+    """A table with both its ends, its units, and what had to be assumed, a sentence each."""
+
+    table: CamTable
+    units: Units
+    notes: tuple[str, ...]
+
+
+def whole_cycle(
+    table: CamTable, job: Job, place: str, units: str | None = None, travel: str | None = None
+) -> WholeCycle:
+    """Bring a table to one whole cycle of the job.
+
+    Parameters
+    ----------
+    table
+        As it was read.
+    job
+        What it is run for.
+    place
+        What messages begin with.
+    units
+        Units as `camwright.jobs.table_units.parse_units` reads them, for files that state none.
+    travel
+        Slave's travel per cycle, ``400 mm`` or ``360 deg``, for files that leave out where the cycle ends.
+
+    Raises
+    ------
+    InputError
+        The units or the travel cannot be told; the message names the option that tells them.
+    """
+    asked = None if travel is None else slave_length(travel, job.machine)
+    if not table.travel_known:
+        return _closed(table, job, place, units, asked)
+    known = _sizes(table, job, place, units)
+    notes: tuple[str, ...] = ()
+    if known is not None:
+        table, notes = _unwrapped(table, job, known, asked, place)
+        table, more = _with_end(table, job, known, asked)
+        notes += more
+    elif job.machine.pitch > 0:
+        table, notes = _unwrapped(table, job, None, None, place)
+    found, assumed = units_of(table, units, job, place)
+    if asked is not None and abs(table.advance * found.slave.size - asked) > job.cut.sync_tolerance:
+        raise InputError(
+            f"{place}: --travel says {asked:.10g} {job.machine.slave_unit} a cycle, but the table's own ends are "
+            f"{table.advance * found.slave.size:.10g} {job.machine.slave_unit} apart; leave --travel out"
+        )
+    return WholeCycle(table, found, (*notes, *assumed))
+
+
+def _sizes(table: CamTable, job: Job, place: str, units: str | None) -> Units | None:
+    """Give the units where they are known without the table's ends; ``None`` where these are needed to tell them."""
+    if units is not None and table.units is None:
+        return None if units.replace(" ", "").startswith("cycle,") else units_of(table, units, job, place)[0]
+    if table.units is not None or None not in table.words:
+        return units_of(table, units, job, place)[0]
+    return None
+
+
+def _unwrapped(
+    table: CamTable, job: Job, units: Units | None, asked: float | None, place: str
+) -> tuple[CamTable, tuple[str, ...]]:
+    """Take out the jumps of a slave that is counted modulo its pitch or its turn."""
+    y = table.y
+    jumps = _jumps(y)
+    if not len(jumps) or job.machine.pitch <= 0:
+        return table, ()
+    steps = np.diff(y)
+    meant = np.array([_beside(steps, k) for k in jumps.tolist()]) - steps[jumps]
+    modulus = float(np.median(np.abs(meant)))
+    slack = 2.0 * float(max(abs(_beside(steps, k)) for k in jumps.tolist()))
+    if units is not None:
+        ways = [way for way in (asked, job.machine.pitch, job.machine.slave_turn) if way]
+        sizes = [way / units.slave.size for way in ways]
+        fits = [size for size in sizes if abs(size - modulus) <= slack]
+        if not fits:
+            raise InputError(
+                f"{place}: the slave jumps by {float(steps[jumps[0]]):.6g} at point {int(jumps[0]) + 2}, which is no whole "
+                f"turn of {', '.join(f'{size:.6g}' for size in sizes)}; say the travel of a cycle with --travel, or mend the row"
+            )
+        modulus = min(fits, key=lambda size: abs(size - modulus))
+    else:
+        modulus = _plain(modulus, slack)
+    turned = np.zeros(len(y))
+    for jump, by in zip(jumps.tolist(), meant.tolist(), strict=True):
+        turned[jump + 1 :] += modulus if by > 0 else -modulus
+    rows = ", ".join(str(int(jump) + 2) for jump in jumps[:3])
+    note = (
+        f"the slave turns over at point {rows}: it is counted modulo {modulus:.6g} and was unwrapped by that"
+        if len(jumps) > 1 or jumps[0] != len(y) - 2
+        else f"the last row wraps: the slave starts anew there; it was unwrapped by {modulus:.6g}"
+    )
+    return replace(table, y=y + turned), (note,)
+
+
+def _jumps(y: FloatArray) -> NDArray[np.intp]:
+    """Find the steps that are far too large for motion."""
+    steps = np.diff(y)
+    if len(y) < _FEWEST:
+        return np.zeros(0, dtype=np.intp)
+    far = np.flatnonzero(np.abs(steps) > _JUMP * float(np.ptp(y)))
+    return far[[abs(steps[k]) > _USUAL * abs(_beside(steps, k)) for k in far.tolist()]]
+
+
+def _beside(steps: FloatArray, k: int) -> float:
+    """Mean of the steps beside one."""
+    near = [float(steps[j]) for j in (k - 1, k + 1) if 0 <= j < len(steps)]
+    return sum(near) / len(near)
+
+
+def _plain(value: float, slack: float) -> float:
+    """Give the number of fewest digits within the slack."""
+    for digits in range(1, 13):
+        rounded = float(f"{value:.{digits}g}")
+        if abs(rounded - value) <= 0.5 * slack:
+            return rounded
+    return value
+
+
+def _with_end(table: CamTable, job: Job, units: Units, asked: float | None) -> tuple[CamTable, tuple[str, ...]]:
+    """Put the end of the cycle there where the last row is one step short of it; take a row away that is beyond it."""
+    length = job.cut.length / units.master.size
+    step = float(table.x[-1] - table.x[-2])
+    missing = length - table.period
+    if abs(missing) > _NEAR * step and abs(missing + step) <= _NEAR * step and table.points > 3:
+        shorter = CamTable(
+            table.x[:-1], table.y[:-1], table.ratio[:-1], table.ratio_slope[:-1], table.laws[:-1], table.units,
+            table.periodic, table.notes, table.words,
+        )  # fmt: skip
+        return shorter, ("the last row is one step beyond the cycle and was left out",)
+    if abs(missing - step) > _NEAR * step:
+        return table, ()
+    travel = (job.machine.pitch if asked is None else asked) / units.slave.size
+    meant = float(table.y[-1]) + 0.5 * float(table.y[-1] - table.y[-2] + table.y[1] - table.y[0])
+    slack = 2.0 * max(abs(float(table.y[-1] - table.y[-2])), abs(float(table.y[1] - table.y[0])), 1e-12)
+    if abs(float(table.y[0]) + travel - meant) > slack:
+        return table, ()
+    longer = CamTable(
+        np.append(table.x, table.x[0] + length),
+        np.append(table.y, table.y[0] + travel),
+        np.append(table.ratio, table.ratio[0]),
+        np.append(table.ratio_slope, table.ratio_slope[0]),
+        (*table.laws, table.laws[-1]),
+        table.units,
+        table.periodic,
+        table.notes,
+        table.words,
+    )
+    note = (
+        "the row that ends the cycle is missing: it was added one step behind the last, "
+        f"{travel:.6g} beyond the first row's slave (--travel says another)"
+    )
+    return longer, (note,)
+
+
+def _closed(table: CamTable, job: Job, place: str, units: str | None, asked: float | None) -> WholeCycle:
+    """Find the travel of a table that leaves its end out: that of the job where the table runs on to it."""
+    tried = (
+        [units_of(table, units, job, place)[0]]
+        if units or table.units
+        else kernel_units(table, job.machine, job.cut.length)
+    )
+    x, y = table.x, table.y
+    slope = 0.5 * ((y[-2] - y[-3]) / (x[-2] - x[-3]) + (y[1] - y[0]) / (x[1] - x[0])) if len(x) > 3 else 0.0
+    end = float(y[-2] + slope * (x[-1] - x[-2]))
+    slack = 1.01 * float(max(abs(y[-2] - y[-3]), abs(y[1] - y[0]), abs(end - y[-2])))
+    if asked is not None:
+        travels = [(each, asked / each.slave.size) for each in tried]
+        fits = travels if len(travels) == 1 else [entry for entry in travels if abs(y[0] + entry[1] - end) <= slack]
+    else:
+        travels = [(each, job.machine.pitch / each.slave.size) for each in tried]
+        fits = [entry for entry in travels if abs(y[0] + entry[1] - end) <= slack]
+    if len(fits) != 1:
+        seems = " or ".join(f"{(end - float(y[0])) * each.slave.size:.6g} {job.machine.slave_unit}" for each in tried)
+        raise InputError(
+            f"{place}: the slave's travel per cycle is not in the file; it runs on to about {seems}, and the job's pitch is "
+            f"{job.machine.pitch:.6g} {job.machine.slave_unit}; say it with --travel, for example --travel '400 mm', and the "
+            "units with --units"
+        )
+    found, travel = fits[0]
+    whose = "the pitch of the job" if asked is None else "what --travel says"
+    notes = [f"the slave's travel per cycle is not in the file: {travel:.6g}, {whose}, is taken"]
+    if not (units or table.units):
+        notes.append(
+            f"the units are taken for the kernel's own: {found.master.symbol}, {found.slave.symbol} (--units says others)"
+        )
+    return WholeCycle(table.closing_by(travel), found, tuple(notes))

@@ -1,0 +1,111 @@
+"""What columns and units are called, in the languages that machines are commissioned in."""
+
+from __future__ import annotations
+
+import re
+
+_UNIT_WORDS: dict[str, str] = {
+    "m": "m", "mm": "mm", "cm": "cm", "um": "um", "in": "in", "inch": "in", "inches": "in", "ft": "ft",
+    "meter": "m", "metre": "m", "millimeter": "mm", "millimetre": "mm", "micron": "um", "microns": "um",
+    "米": "m", "毫米": "mm", "厘米": "cm", "微米": "um", "英寸": "in",
+    "rad": "rad", "radian": "rad", "radians": "rad", "弧度": "rad",
+    "deg": "deg", "degree": "deg", "degrees": "deg", "°": "deg", "º": "deg", "grad": "deg", "度": "deg",
+    "rev": "rev", "revs": "rev", "turn": "rev", "turns": "rev", "umdr": "rev", "转": "rev",
+    "s": "s", "sec": "s", "second": "s", "seconds": "s", "sekunden": "s", "秒": "s",
+    "ms": "ms", "msec": "ms", "毫秒": "ms", "us": "us", "微秒": "us",
+}  # fmt: skip
+"""Words for a unit, and the one name that this house has for it."""
+
+_MEASURES = frozenset({"1", "-", "m/m", "mm/mm", "rad/m", "1/m", "1/mm", "rad/m^2", "1/m^2", "1/mm^2", "rad/m^3"})
+_SPACED = re.compile(r"\s*[\[(]?\s*([^\[\]()]*?)\s*[\])]?\s*")
+_BRACKETS = re.compile(r"(.*?)\s*(?:\[([^\[\]]*)\]|\(([^()]*)\))\s*")
+_SUFFIX = re.compile(r"(.+?)(?:_|\s+in\s+|\s*/\s*|\s*,\s*|\s+)([^\s_/,\[\]()]{1,12})")
+
+
+def unit_word(text: str) -> str | None:
+    """Give the name of a unit, whatever it is called: ``µm`` is ``um``, ``Grad`` is ``deg``; ``None`` for no unit."""
+    word = text.strip().rstrip(".").replace("\u00b5", "u").replace("\u03bc", "u")
+    found = _UNIT_WORDS.get(word) or _UNIT_WORDS.get(word.lower())
+    return found or (word if word in _MEASURES else None)
+
+
+def bare_unit(cell: str) -> str | None:
+    """Give the unit that a cell of a unit row holds, with or without brackets."""
+    found = _SPACED.fullmatch(cell)
+    return unit_word(found[1]) if found else None
+
+
+def split_unit(cell: str) -> tuple[str, str | None, bool]:
+    """Take a column's name and unit apart.
+
+    Returns
+    -------
+    (name, unit, known)
+        The unit as this house names it, or as it stands in square brackets if it is none; ``known`` says which. Words in
+        round brackets that are no unit belong to the name.
+    """
+    text = cell.strip().strip('"').strip()
+    found = _BRACKETS.fullmatch(text)
+    if found:
+        name, square, rounded = found[1].strip(), found[2], found[3]
+        unit = unit_word(square if square is not None else rounded)
+        if unit is not None:
+            return name, unit, True
+        return (name, square.strip(), False) if square is not None else (text, None, True)
+    found = _SUFFIX.fullmatch(text)
+    if found and (unit := unit_word(found[2])) is not None and not (text == "dy/dx" or unit in ("1", "-")):
+        return found[1].strip(), unit, True
+    return text, None, True
+
+
+def words_of(name: str) -> list[str]:
+    """Cut a name into words in lower case: at signs, and where small letters meet capitals."""
+    parted = re.sub(r"(?<=[a-zäöü0-9])(?=[A-ZÄÖÜ])", " ", name)
+    return [word for word in re.split(r"[\s_.\-:/|()\[\]#'\"]+", parted.lower()) if word]
+
+
+_ROLES: tuple[tuple[str, frozenset[str], tuple[str, ...]], ...] = (
+    ("d3y/dx3", frozenset({"d3y/dx3", "j", "y'''"}), ("jerk", "ruck", "跃度", "加加速")),
+    ("d2y/dx2", frozenset({"d2y/dx2", "a", "acc", "accel", "y''"}), ("accel", "beschl", "slaveacc", "加速度")),
+    ("dy/dx", frozenset({"dy/dx", "v", "vel", "velo", "speed", "ratio", "y'"}),
+     ("velo", "geschw", "speed", "vitesse", "速度", "drehzahl")),
+    ("other", frozenset({"torque", "current", "moment", "strom", "error", "lag"}),
+     ("torque", "drehm", "schlepp", "电流", "转矩", "误差")),
+    ("x", frozenset({"x", "master", "leading", "lead", "phase", "theta", "phi", "angle", "winkel"}),
+     ("master", "leit", "theta", "phase", "angle", "winkel", "主轴")),
+    ("y", frozenset({"y", "slave", "s", "position", "pos", "displacement", "following", "follower", "hub", "weg", "lift"}),
+     ("slave", "folge", "follow", "displacement", "displ", "从轴", "位移")),
+    ("index", frozenset({"index", "no", "nr", "n", "i", "point", "pt", "row", "id", "punkt", "nummer", "序号", "点"}),
+     ("index",)),
+)  # fmt: skip
+"""Roles of a cam's columns: exact names, and what a word of the name may begin with. The first that fits holds."""
+
+_TRACED: tuple[tuple[str, tuple[str, ...], tuple[str, ...]], ...] = (
+    ("other", (), ("velo", "vel", "speed", "geschw", "acc", "beschl", "torque", "drehm", "current", "strom", "error",
+                   "err", "lag", "schlepp", "diff", "速度", "加速", "电流", "转矩", "误差")),
+    ("time", ("t",), ("time", "zeit", "timestamp", "时间", "temps", "tempo")),
+    ("command", (), ("command", "cmd", "set", "soll", "demand", "reference", "ref", "target", "指令", "设定", "目标", "给定")),
+    ("actual", (), ("actual", "act", "ist", "feedback", "fbk", "fb", "measured", "encoder", "实际", "反馈")),
+)  # fmt: skip
+"""Roles of a recording's columns, alike."""
+
+
+def cam_role(name: str) -> str | None:
+    """Say what a column of a cam table is: ``x``, ``y``, a derivative, ``index``, ``other``; ``None`` if its name does not tell."""
+    plain = name.strip().lower()
+    words = words_of(name)
+    for role, names, beginnings in _ROLES:
+        if plain in names or any(word.startswith(beginnings) for word in words):
+            return role
+    short = [role for role, names, _ in _ROLES for word in words if word in names]
+    return short[0] if short else None
+
+
+def trace_role(name: str) -> str | None:
+    """Say what a column of a recording is: ``time``, ``command``, ``actual``, ``other``; ``None`` if its name does not tell."""
+    plain = name.strip().lower()
+    words = words_of(name)
+    for role, names, beginnings in _TRACED:
+        if plain in names or any(word.startswith(beginnings) for word in words):
+            return role
+    return None

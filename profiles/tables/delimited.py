@@ -1,0 +1,311 @@
+"""Rows of numbers as spreadsheets, scopes and engineering tools write them: separators, headings, where the numbers begin."""
+
+from __future__ import annotations
+
+import collections
+import csv
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from camwright.profiles.errors import InputError
+from camwright.profiles.polynomial.profile import FloatArray
+from camwright.profiles.tables.column_words import bare_unit, split_unit
+from camwright.profiles.tables.text import refuse
+
+SEPARATORS = ("\t", ";", "|", ",", " ")
+"""Signs that may separate cells; of equals the first."""
+GREATEST = 1e12
+LONGEST_LINE = 20_000
+
+_NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,4})?")
+_COMMA = re.compile(r"[+-]?(?:[0-9]+,[0-9]*|,[0-9]+)(?:[eE][+-]?[0-9]{1,4})?")
+_STAMP = re.compile(r"[0-9]{1,4}[-./:][0-9]{1,2}[-./:][0-9]{1,4}(?:[ T][0-9:.,]{1,20})?(?: ?[AP]M)?")
+_SAID = re.compile(r"sep=(.)", re.IGNORECASE)
+_REMARK = re.compile(r"\s+//.*")
+_MISFIT = (
+    "{count} cells where {where} {width}; separate cells by one sign, and where it is the comma write numbers with a decimal "
+    "point"
+)
+_SAMPLE = 200
+"""Lines that the separator is judged by."""
+_WIDEST = 400
+
+
+@dataclass(frozen=True)
+class Column:
+    """What the headings say of a column.
+
+    Parameters
+    ----------
+    name
+        Its name, ``""`` without one.
+    unit
+        Its unit as `camwright.profiles.tables.column_words.unit_word` names it, what stands in its brackets if that is none, or ``None``.
+    known
+        Whether the unit is one.
+    heading
+        The heading as written.
+    """
+
+    name: str
+    unit: str | None = None
+    known: bool = True
+    heading: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Sheet:
+    """Rows and what they are called.
+
+    Parameters
+    ----------
+    place
+        What messages begin with.
+    columns
+        One for each column.
+    rows
+        Cells as written, all rows of one width.
+    lines
+        Number of each row's line.
+    heading
+        Number of the line that names the columns; 0 without one.
+    comma
+        Whether a comma may be the decimal sign.
+    """
+
+    place: str
+    columns: tuple[Column, ...]
+    rows: tuple[tuple[str, ...], ...]
+    lines: tuple[int, ...]
+    heading: int
+    comma: bool
+
+    def numbers(self, at: int, what: str = "") -> FloatArray:
+        """Read a column.
+
+        Raises
+        ------
+        InputError
+            A cell is no number, with its line.
+        """
+        values = np.empty(len(self.rows))
+        for row, cells in enumerate(self.rows):
+            value = number_in(cells[at], self.comma)
+            if value is None or abs(value) > GREATEST:
+                raise refuse(
+                    self.place,
+                    self.lines[row],
+                    f"{what + ' ' if what else ''}{cells[at].strip()[:50]!r} is not a finite number of at most {GREATEST:g}; "
+                    "write it like 12.5 or 1.25e1",
+                )
+            values[row] = value
+        return values
+
+    def is_numeric(self, at: int) -> bool:
+        """Whether every cell of a column is a number."""
+        return all(number_in(cells[at], self.comma) is not None for cells in self.rows)
+
+
+def number_in(cell: str, comma: bool) -> float | None:
+    """Read a cell with a decimal point, or where allowed a comma; ``None`` for what is no number."""
+    plain = cell.strip().replace("\u2212", "-")
+    if _NUMBER.fullmatch(plain):
+        return float(plain)
+    if comma and _COMMA.fullmatch(plain):
+        return float(plain.replace(",", "."))
+    return None
+
+
+def read_sheet(text: str, place: str, names: Callable[[str], str | None], example: str, kind: str) -> Sheet:
+    """Find the rows of numbers in a text, and their headings.
+
+    Comment lines begin with ``#`` or ``//``. The separator is the one by which most cells are numbers, unless a line
+    ``sep=;`` says it. Numbers begin at the first line that begins with a number (or a time of day) and holds two; what
+    stands above are headings. Every line from there on must have as many cells.
+
+    Parameters
+    ----------
+    text
+        What stands in the file.
+    place
+        What messages begin with.
+    names
+        Tells what a column is from its name, ``None`` if it cannot: so the line that names the columns is found.
+    example
+        A heading as it should be, for messages.
+    kind
+        What the file should hold, for messages.
+
+    Raises
+    ------
+    InputError
+        There are no rows, or one has another number of cells; the message names the line.
+    """
+    lines, remarks, said = _lines(text, place)
+    if not lines:
+        raise InputError(f"{place}: there is no {kind} in it; write a header like {example} and rows below")
+    separator = said or _separator([line for _, line in lines])
+    comma = separator != ","
+    split = [(number, _cells(line, separator)) for number, line in lines]
+    quoted = separator == "," and any('"' in line for _, line in lines)
+    comma = comma or quoted
+    while split and len(split) > 1 and not any(any(sign.isdigit() for sign in cell) for cell in split[-1][1]):
+        split.pop()  # scopes end their files with a word
+    first = next((k for k, (_, cells) in enumerate(split) if _is_row(cells, comma)), len(split))
+    headings, rows = split[:first], split[first:]
+    width = _width(headings, rows)
+    if not headings and remarks:
+        near = remarks[-1]
+        cells = _cells(near[1], separator)
+        if len(_trimmed(cells)) == width > 1 and sum(names(split_unit(cell)[0]) is not None for cell in cells) >= 2:
+            headings = [(near[0], cells)]
+    columns, heading = _columns(headings, width, names)
+    named = len(_trimmed([column.heading for column in columns]))
+    if rows and heading and named < width and sum(names(column.name) is not None for column in columns) >= 2:
+        raise refuse(place, rows[0][0], _MISFIT.format(count=width, where="the header has", width=named))
+    kept = tuple(_row(cells, width, number, place, bool(headings)) for number, cells in rows)
+    return Sheet(place, columns, kept, tuple(number for number, _ in rows), heading, comma)
+
+
+def _lines(text: str, place: str) -> tuple[list[tuple[int, str]], list[tuple[int, str]], str | None]:
+    """Give the lines that say something, the comments above them, and the separator that the first line may state."""
+    kept: list[tuple[int, str]] = []
+    remarks: list[tuple[int, str]] = []
+    said: str | None = None
+    for number, raw in enumerate(text.removeprefix("\ufeff").replace("\r\n", "\n").split("\n"), start=1):
+        if len(raw) > LONGEST_LINE:
+            raise refuse(place, number, f"the line is {len(raw)} characters long; at most {LONGEST_LINE} are read")
+        line = raw.strip(" \r")
+        if not line.strip("\t;,| "):
+            continue
+        if line.lstrip().startswith(("#", "//")):
+            if not kept:
+                remarks.append((number, line.lstrip().lstrip("#/").strip()))
+            continue
+        found = _SAID.fullmatch(line.strip())
+        if found and not kept:
+            said = found[1]
+            continue
+        kept.append((number, _REMARK.sub("", line) if line[:1].isdigit() or line[:1] in "+-." else line))
+    return kept, remarks, said
+
+
+def _separator(lines: Sequence[str]) -> str:
+    """Find the sign that makes most cells numbers and fewest words."""
+    sample = lines[len(lines) // 2 :][:_SAMPLE] if len(lines) > 2 * _SAMPLE else lines[-_SAMPLE:]
+
+    def score(sign: str) -> int:
+        total = 0
+        for line in sample:
+            cells = [cell for cell in _cells(line, sign) if cell.strip()]
+            found = sum(number_in(cell, sign != "," or '"' in line) is not None for cell in cells)
+            total += found - 2 * (len(cells) - found) if found > 1 else 0
+        return total
+
+    best = max(SEPARATORS, key=score)
+    return best if score(best) > 0 else max(SEPARATORS[:4], key=lines[0].count)
+
+
+def _cells(line: str, separator: str) -> list[str]:
+    """Cut a line; quotes hold a cell together."""
+    if separator == " ":
+        return line.split()
+    if '"' not in line:
+        return line.split(separator)
+    try:
+        return next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])
+    except csv.Error:
+        return line.split(separator)
+
+
+def _trimmed(cells: Sequence[str]) -> list[str]:
+    count = len(cells)
+    while count and not cells[count - 1].strip():
+        count -= 1
+    return list(cells[:count])
+
+
+def _is_row(cells: Sequence[str], comma: bool) -> bool:
+    """Whether a line holds numbers: it begins with one, or a time of day, and has two."""
+    filled = [cell.strip() for cell in cells if cell.strip()]
+    found = sum(number_in(cell, comma) is not None for cell in filled)
+    return found >= 2 and (number_in(filled[0], comma) is not None or _STAMP.fullmatch(filled[0]) is not None)
+
+
+def _width(headings: Sequence[tuple[int, list[str]]], rows: Sequence[tuple[int, list[str]]]) -> int:
+    """Count the columns: those of most rows, or of a heading that names more but the rows' empty cells."""
+    usual = collections.Counter(len(_trimmed(cells)) for _, cells in rows).most_common(1)
+    width = usual[0][0] if usual else 0
+    named = len(_trimmed(headings[-1][1])) if headings else 0
+    written = max((len(cells) for _, cells in rows), default=0)
+    return min(named if width < named <= max(written, width + 1) or not width else width, _WIDEST)
+
+
+def _row(cells: list[str], width: int, number: int, place: str, named: bool) -> tuple[str, ...]:
+    """Bring a row to the number of columns: empty cells at its end are no cells."""
+    filled = _trimmed(cells)
+    if len(filled) > width or len(cells) < width:
+        count = len(filled) if len(filled) > width else len(cells)
+        where = "the header has" if named else "most rows have"
+        raise refuse(
+            place,
+            number,
+            _MISFIT.format(count=count, where=where, width=width),
+        )
+    return (*filled, *[""] * (width - len(filled)))
+
+
+def _columns(
+    headings: Sequence[tuple[int, list[str]]], width: int, names: Callable[[str], str | None]
+) -> tuple[tuple[Column, ...], int]:
+    """Name the columns: from a scope's key rows, or the lowest line that names two, with a row of units below it."""
+    scope = [k for k, (_, cells) in enumerate(headings) if cells and cells[0].strip() == "Name" and len(cells) >= width]
+    if scope and len(headings[scope[-1]][1]) >= width > 1:
+        return _scope_columns(headings, scope[-1], width), headings[scope[-1]][0]
+    lines = [(number, _padded(cells, width)) for number, cells in headings if len(_trimmed(cells)) > 1]
+    if not lines:
+        return (Column(""),) * width, 0
+    known = [
+        k for k, (_, cells) in enumerate(lines) if sum(names(split_unit(cell)[0]) is not None for cell in cells) >= 2
+    ]
+    at = known[-1] if known else _lowest_names(lines)
+    number, cells = lines[at]
+    below = [units for _, units in lines[at + 1 :] if _is_unit_row(units)]
+    columns = []
+    for k, cell in enumerate(cells):
+        name, unit, right = split_unit(cell)
+        if unit is None and below and below[0][k].strip():
+            unit = bare_unit(below[0][k])
+        columns.append(Column(name, unit, right, cell.strip()))
+    return tuple(columns), number
+
+
+def _lowest_names(lines: Sequence[tuple[int, list[str]]]) -> int:
+    """Find the lowest heading that is no row of units."""
+    return next((k for k in reversed(range(len(lines))) if not _is_unit_row(lines[k][1])), len(lines) - 1)
+
+
+def _is_unit_row(cells: Sequence[str]) -> bool:
+    filled = [cell for cell in cells if cell.strip()]
+    return bool(filled) and all(bare_unit(cell) is not None for cell in filled)
+
+
+def _padded(cells: Sequence[str], width: int) -> list[str]:
+    return [*cells[:width], *[""] * (width - len(cells))]
+
+
+def _scope_columns(headings: Sequence[tuple[int, list[str]]], at: int, width: int) -> tuple[Column, ...]:
+    """Columns of a TwinCAT Scope export: key rows, the key standing where each channel's time column is; times in ms."""
+    keys: dict[str, list[str]] = {}
+    for _, cells in headings[at:]:
+        keys[cells[0].strip()] = _padded(cells, width)
+    titles, units = keys["Name"], keys.get("Unit", [""] * width)
+    return tuple(
+        Column("time", "ms", heading="Name")
+        if title.strip() == "Name"
+        else Column(title.strip(), bare_unit(unit), heading=title.strip())
+        for title, unit in zip(titles, units, strict=True)
+    )
