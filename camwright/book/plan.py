@@ -17,7 +17,7 @@ from camwright.book.ranges import (
     distinct,
     parse_range,
 )
-from camwright.drives.options import parse_targets
+from camwright.drives.options import chosen_targets
 from camwright.house.provenance import provenance
 from camwright.house.units import shown
 from camwright.jobs.job import Job, parse_job, read_job
@@ -172,7 +172,9 @@ class Book:
         return hashlib.sha256(json.dumps([self.parameters(), ranges], sort_keys=True).encode()).hexdigest()
 
 
-def plan_book(job: Job, length: str, line_speed: str, objectives: Sequence[str] = (), targets: str = "csv") -> Book:
+def plan_book(
+    job: Job, length: str, line_speed: str, objectives: Sequence[str] = (), targets: str | None = None
+) -> Book:
     """Plan a book.
 
     Parameters
@@ -184,7 +186,7 @@ def plan_book(job: Job, length: str, line_speed: str, objectives: Sequence[str] 
     objectives
         Objectives; the job's if none is given.
     targets
-        Names of targets, separated by commas, or ``all``.
+        Names of targets, separated by commas, or ``all``; those of the job, else CSV, if not given.
 
     Raises
     ------
@@ -210,7 +212,7 @@ def plan_book(job: Job, length: str, line_speed: str, objectives: Sequence[str] 
         faults += _objective_faults(job, name)
     names: list[str] = []
     try:
-        names = parse_targets(targets)
+        names = chosen_targets(targets, job)
     except InputError as error:
         faults += [fault.replace("--to ", "--targets ") for fault in error.faults]
     count = len(lengths) * len(speeds) * len(asked)

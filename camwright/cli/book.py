@@ -36,8 +36,13 @@ def run(
         typer.Option("--objective", metavar="NAME", help="Objective; may be repeated; the job's if left out."),
     ] = None,
     targets: Annotated[
-        str, typer.Option("--targets", metavar="NAMES", help="Targets of the tables, separated by commas, or all.")
-    ] = "csv",
+        str | None,
+        typer.Option(
+            "--targets",
+            metavar="NAMES",
+            help="Targets of the tables, separated by commas, or all; else the job's, else csv.",
+        ),
+    ] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Go on with the book in the output directory.")] = False,
     jobs: Annotated[
         int | None, typer.Option("--jobs", metavar="N", min=1, max=512, help="Processes; one a processor if left out.")

@@ -100,7 +100,7 @@ COMMANDS: dict[str, Command] = {
     "recipe": Command(
         "Make the recipe of a product: a folder with all that is needed at the machine.",
         SHEET,
-        "camwright recipe board.toml --targets codesys --out recipe",
+        "camwright recipe board.toml --targets codesys --revision B",
     ),
     "verify": Command(
         "Prove that a recipe folder is what was written, and that its tables are the motion that it promises.",

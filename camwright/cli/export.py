@@ -10,7 +10,7 @@ import typer
 from camwright.cli.options import Json, Quiet
 from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.drives.export import export_answer
-from camwright.drives.options import parse_targets
+from camwright.drives.options import chosen_targets, parse_targets
 from camwright.drives.table_files import TableFiles, export
 from camwright.house.files import read_text
 from camwright.house.output import Voice
@@ -26,7 +26,12 @@ if TYPE_CHECKING:
 
 def run(
     design: Annotated[Path, typer.Argument(metavar="DESIGN", help="A design.json that camwright design wrote.")],
-    to: Annotated[str, typer.Option("--to", metavar="NAMES", help="Targets, separated by commas, or all.")],
+    to: Annotated[
+        str | None,
+        typer.Option(
+            "--to", metavar="NAMES", help="Targets, separated by commas, or all; the job's, else csv, if left out."
+        ),
+    ] = None,
     points: Annotated[
         int | None, typer.Option("--points", metavar="N", help="Number of points; chosen if left out.")
     ] = None,
@@ -45,14 +50,25 @@ def run(
     quiet: Quiet = False,
 ) -> int:
     """Write a design for drives; every file is read back and judged as the drive will run it."""
-    names = parse_targets(to)
+    if to is not None:
+        parse_targets(to)  # a wrong name is told before the file is read
     accuracy = Accuracy(position=quantity(max_error, "length"))
     stored = _design(design)
+    names = chosen_targets(to, stored.job)
     wanted = None if units is None else parse_units(units, stored.job.task)
     directory = design.parent / "tables" if out is None else out
     voice = Voice(as_json, quiet)
     with voice.progress(len(names) + 1) as step:
-        written = export(stored, to, directory, units=wanted, accuracy=accuracy, points=points, force=force, step=step)
+        written = export(
+            stored,
+            names if to is None else to,
+            directory,
+            units=wanted,
+            accuracy=accuracy,
+            points=points,
+            force=force,
+            step=step,
+        )
     voice.answer(
         lambda: {**export_answer(written.results), "set_aside": written.older}, lambda: _view(written, directory)
     )

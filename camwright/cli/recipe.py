@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -11,22 +11,22 @@ from camwright.cli.options import Json, Quiet
 from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.house.files import read_text, require_replaceable
 from camwright.house.output import Voice
-from camwright.house.progress import Step
 from camwright.jobs.job import parse_job
 from camwright.profiles.errors import InputError
 from camwright.profiles.tables.targets import TARGETS, target_of
 from camwright.recipes.build import STEPS, designed, make_recipe
 from camwright.recipes.compare import Change, compare_answer, compare_recipes, read_recipe
 from camwright.recipes.manifest import sha256
-from camwright.recipes.model import Recipe
+from camwright.recipes.model import Language, Particulars, Recipe
 from camwright.recipes.write import WRITE_STEPS, is_recipe, recipe_files, write_folder
-from camwright.stored.design_file import MOST_BYTES, StoredDesign, parse_design
+from camwright.stored.design_file import MOST_BYTES, parse_design
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
 
 _LONGEST_NOTE = 2000
+_LONGEST_PARTICULAR = 100
 
 
 def run(
@@ -34,15 +34,33 @@ def run(
         Path | None, typer.Argument(metavar="[JOB|DESIGN]", help="A job file (TOML) or a design.json.")
     ] = None,
     targets: Annotated[
-        str | None, typer.Option("--targets", metavar="NAMES", help="Targets, separated by commas, or all.")
+        str | None,
+        typer.Option(
+            "--targets", metavar="NAMES", help="Targets, separated by commas, or all; else the job's, else csv."
+        ),
     ] = None,
     out: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="The recipe folder; replaced if it is one already.")
+        Path | None,
+        typer.Option(
+            "--out",
+            metavar="DIR",
+            help="The folder, replaced if it holds a recipe; out/<name>-recipe if left out.",
+        ),
     ] = None,
-    language: Annotated[
-        Literal["en", "de", "zh"], typer.Option("--language", help="Language of what people read.")
-    ] = "en",
+    language: Annotated[Language, typer.Option("--language", help="Language of what people read.")] = "en",
     note: Annotated[str, typer.Option("--note", metavar="TEXT", help="Text that stands on the recipe.")] = "",
+    revision: Annotated[
+        str, typer.Option("--revision", metavar="TEXT", help="Revision that stands on the sheet.")
+    ] = "",
+    customer: Annotated[
+        str, typer.Option("--customer", metavar="TEXT", help="Customer that stands on the sheet.")
+    ] = "",
+    author: Annotated[
+        str, typer.Option("--author", metavar="TEXT", help="Who made it, as it stands on the sheet.")
+    ] = "",
+    date: Annotated[
+        str, typer.Option("--date", metavar="TEXT", help="Date that stands on the sheet, in any form.")
+    ] = "",
     compare: Annotated[
         tuple[Path, Path] | None,
         typer.Option("--compare", metavar="DIR1 DIR2", help="Show what changes between two recipes instead."),
@@ -56,25 +74,44 @@ def run(
         if file is not None or targets is not None or out is not None:
             raise InputError("--compare takes two recipe folders and nothing else")
         return _compare(*compare, voice)
-    missing = [
-        name for name, value in (("JOB or DESIGN", file), ("--targets", targets), ("--out", out)) if value is None
-    ]
-    if file is None or targets is None or out is None:
-        raise InputError(f"{', '.join(missing)} missing; camwright recipe JOB --targets csv --out DIR")
-    return _make(file, targets, out, language, note, voice)
+    if file is None:
+        raise InputError("no job or design is named; write e.g. camwright recipe JOB")
+    given = {"revision": revision, "customer": customer, "author": author, "date": date}
+    particulars = Particulars(
+        **{name: _given(f"--{name}", value, _LONGEST_PARTICULAR) for name, value in given.items()}
+    )
+    return _make(file, targets, out, language, _given("--note", note, _LONGEST_NOTE), particulars, voice)
 
 
-def _make(file: Path, targets: str, out: Path, language: Literal["en", "de", "zh"], note: str, voice: Voice) -> int:
-    names = _targets(targets)
-    text = _note(note)
-    require_replaceable(out, is_recipe)
+def _make(
+    file: Path,
+    targets: str | None,
+    out: Path | None,
+    language: Language,
+    note: str,
+    particulars: Particulars,
+    voice: Voice,
+) -> int:
+    """Make and write the recipe of a file."""
+    wanted = None if targets is None else _targets(targets)
+    if out is not None:
+        require_replaceable(out, is_recipe)
+    text = read_text(file, "job or design file", MOST_BYTES)
+    stored = parse_design(text, str(file)) if text.removeprefix("\ufeff").lstrip().startswith("{") else None
+    job = parse_job(text, str(file)) if stored is None else stored.job
+    names = wanted or list(job.output.targets) or ["csv"]
+    folder = Path("out") / f"{job.name}-recipe" if out is None else out
+    require_replaceable(folder, is_recipe)
     with voice.progress(STEPS + len(names) + WRITE_STEPS) as step:
-        design = _design(file, step)
-        made = make_recipe(design, names, language, text, required=targets.strip() != "all", step=step)
+        if stored is None:
+            step("solving")
+        design = designed(job) if stored is None else stored
+        required = targets is None or targets.strip() != "all"
+        made = make_recipe(design, names, language, note, particulars, required=required, step=step)
         files = recipe_files(made, step)
-        write_folder(files, out)
+        write_folder(files, folder)
     answer = {"files": [{"path": path, "sha256": sha256(data)} for path, data in sorted(files.items())]}
-    voice.answer(lambda: answer, lambda: _recipe_view(made.recipe, answer, out))
+    voice.answer(lambda: answer, lambda: _recipe_view(made.recipe, answer, folder))
     return 0 if made.recipe.released else 1
 
 
@@ -88,21 +125,11 @@ def _targets(text: str) -> list[str]:
     return [target_of(name).name for name in names]
 
 
-def _note(text: str) -> str:
-    """Take a note as it is, but for bytes that are no text."""
-    if len(text) > _LONGEST_NOTE:
-        raise InputError(f"--note has {len(text)} characters; it may have {_LONGEST_NOTE}")
+def _given(option: str, text: str, most: int) -> str:
+    """Take a text of the user as it is, but for bytes that are no text."""
+    if len(text) > most:
+        raise InputError(f"{option} has {len(text)} characters; it may have {most}")
     return text.encode("utf-8", "surrogateescape").decode("utf-8", "replace")
-
-
-def _design(file: Path, step: Step) -> StoredDesign:
-    """Read a design, or design a job."""
-    text = read_text(file, "job or design file", MOST_BYTES)
-    if text.removeprefix("\ufeff").lstrip().startswith("{"):
-        return parse_design(text, str(file))
-    job = parse_job(text, str(file))
-    step("solving")
-    return designed(job)
 
 
 def _compare(before: Path, after: Path, voice: Voice) -> int:

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from camwright.jobs.job import Job
 from camwright.profiles.errors import InputError
 from camwright.profiles.tables.cam_table import CamTable
 from camwright.profiles.tables.targets import TARGETS, target_of
@@ -29,6 +30,17 @@ def parse_targets(text: str) -> list[str]:
             f"--to names one or more targets, separated by commas, or all; the targets are {', '.join(TARGETS)}"
         )
     return [target_of(name).name for name in names]
+
+
+def chosen_targets(text: str | None, job: Job) -> list[str]:
+    """Give the targets that an option names, else those of the job, else CSV.
+
+    Raises
+    ------
+    InputError
+        As `parse_targets`.
+    """
+    return list(job.output.targets or ("csv",)) if text is None else parse_targets(text)
 
 
 def with_slopes(table: CamTable, slopes: str | None) -> CamTable:

@@ -14,6 +14,7 @@ from camwright.house.setting_fields import Settings, keep, quantity_schema, read
 from camwright.house.units import KINDS, quantity, shown
 from camwright.profiles.errors import InputError
 from camwright.profiles.machines import MACHINES, Machine
+from camwright.profiles.tables.targets import TARGETS, target_of
 
 Spread = float | tuple[float, float]
 """Range of a parameter: the share of it by which it may be off to both sides, or its two ends."""
@@ -195,3 +196,27 @@ def _text_is(text: str, kind: str, zero: bool) -> bool:
     except InputError:
         return False
     return True
+
+
+def targets_field() -> tuple[BeforeValidator, WithJsonSchema]:
+    """Make the parts of a list of targets, each by its name in any case, or all of them."""
+
+    def read(value: object) -> tuple[str, ...]:
+        if isinstance(value, tuple):
+            return value  # the default
+        if value == "all":
+            return tuple(TARGETS)
+        if not isinstance(value, list) or not value or not all(isinstance(each, str) for each in value):
+            raise refusal(f'{shown(value)}: not a list of targets; write e.g. targets = ["csv", "codesys"], or "all"')
+        try:
+            return tuple(dict.fromkeys(target_of(each).name for each in value))
+        except InputError as error:
+            raise refusal(f"{shown(value)}: {error}") from error
+
+    schema = {
+        "anyOf": [{"const": "all"}, {"type": "array", "minItems": 1, "items": {"type": "string", "maxLength": 40}}],
+        "description": "a list of names of targets, or all",
+        "examples": [["csv", "codesys"]],
+        "default": ["csv"],
+    }
+    return BeforeValidator(read), WithJsonSchema(schema)

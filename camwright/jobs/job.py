@@ -47,9 +47,12 @@ class Output:
     ----------
     points
         Rows of cam.csv.
+    targets
+        Targets of the tables where none are named otherwise; none stands for CSV alone.
     """
 
     points: int
+    targets: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -196,7 +199,11 @@ class Job:
             "limits": limits_table(self.limits, turning=self.machine.slave_unit == "rad"),
             "servo": servo_table(self.servo, self.servo_tolerance),
             "objective": objective,
-            "output": {"origin": self.cut.origin, "points": self.output.points},
+            "output": {
+                "origin": self.cut.origin,
+                "points": self.output.points,
+                **({"targets": list(self.output.targets)} if self.output.targets else {}),
+            },
         }
 
     @property
@@ -328,6 +335,6 @@ def _job(file: JobFile, known: Known, machine: Machine) -> Job:
         objective=objective.minimise,
         servo_aware=objective.servo_aware,
         servo_tolerance=None if file.servo.tolerance is None else tolerance_of(known, servo),
-        output=Output(file.output.points),
+        output=Output(file.output.points, file.output.targets),
         units=known.units,
     )

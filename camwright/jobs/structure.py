@@ -13,7 +13,7 @@ from camwright.house.setting_fields import Table, checked, number_field, quantit
 from camwright.house.settings import read_settings
 from camwright.house.units import shown
 from camwright.jobs.angles import settle_angles
-from camwright.jobs.fields import Known, Spread, curve_field, slave_field, zone_field
+from camwright.jobs.fields import Known, Spread, curve_field, slave_field, targets_field, zone_field
 from camwright.jobs.machine_tables import either_faults, either_of, machine_of, machine_tables, table_of
 from camwright.jobs.spread_fields import aware_only, number_spread, quantity_spread
 from camwright.profiles.machines import MACHINES, Machine
@@ -133,6 +133,7 @@ class OutputTable(Table):
         whole_field(2, 100_000, 361),
         Field(description="rows of cam.csv", json_schema_extra={"minimum": 2, "maximum": 100_000}),
     ] = 361
+    targets: Annotated[tuple[str, ...], *targets_field()] = ()
 
 
 class JobFile(Table):

@@ -25,6 +25,7 @@ from camwright.recipes.model import (
     Language,
     Objective,
     Origin,
+    Particulars,
     Points,
     Profile,
     Recipe,
@@ -44,6 +45,9 @@ from camwright.validation.report import ValidationReport, judge
 
 STEPS = 4
 """Steps that `make_recipe` tells beside one for each target."""
+
+NO_PARTICULARS = Particulars()
+"""A sheet that says nothing of who made it and when."""
 
 TABLES = "tables"
 """Folder of the tables inside a recipe."""
@@ -76,6 +80,7 @@ def make_recipe(
     targets: Sequence[str],
     language: Language = "en",
     note: str = "",
+    particulars: Particulars = NO_PARTICULARS,
     *,
     required: bool = True,
     step: Step = ignore,
@@ -92,6 +97,8 @@ def make_recipe(
         Language of what people read.
     note
         Any text that stands on the recipe.
+    particulars
+        Revision, customer, author and date that stand on it.
     required
         Whether a target that cannot take the cam is a fault; else the recipe names it.
     step
@@ -135,6 +142,7 @@ def make_recipe(
         tables=tuple(_table(result) for result in results),
         refused=tuple(Refusal(name, faults) for name, faults in refused.items()),
         provenance=Origin(str(origin["camwright"]), job.sha256, libraries if isinstance(libraries, dict) else {}),
+        particulars=particulars,
     )
     return MadeRecipe(recipe, {_path(name): text for result in results for name, text in result.files.items()})
 

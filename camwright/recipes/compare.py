@@ -87,6 +87,9 @@ def _pairs(before: Recipe, after: Recipe) -> Iterator[Change]:
     shown = catalogue_of(after).units
     yield Change("recipe", "name", "", before.name, after.name)
     yield Change("recipe", "note", "", before.note, after.note)
+    after_given = asdict(after.particulars)
+    for name, value in asdict(before.particulars).items():
+        yield Change("recipe", name, "", value, after_given[name])
     yield Change("recipe", "released", "", before.released, after.released)
     yield Change("recipe", "objective", "", before.objective.name, after.objective.name)
     yield Change("recipe", "camwright", "", before.provenance.camwright, after.provenance.camwright)

@@ -249,6 +249,16 @@ class Origin:
 
 
 @dataclass(frozen=True, config=_STRICT)
+class Particulars:
+    """What the user gives to stand on the sheet, each any text and never taken from clock or machine."""
+
+    revision: str = ""
+    customer: str = ""
+    author: str = ""
+    date: str = ""
+
+
+@dataclass(frozen=True, config=_STRICT)
 class Recipe:
     """All that one product needs on one machine; SI units, angles in rad.
 
@@ -294,6 +304,8 @@ class Recipe:
         Targets that cannot take the cam.
     provenance
         Where it comes from.
+    particulars
+        Revision, customer, author and date.
     """
 
     schema_version: Literal[1]
@@ -316,3 +328,4 @@ class Recipe:
     tables: tuple[RecipeTable, ...]
     refused: tuple[Refusal, ...]
     provenance: Origin
+    particulars: Particulars = Particulars()

@@ -10,7 +10,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from camwright.house.provenance import SCHEMA_VERSION
 from camwright.profiles.errors import InputError
-from camwright.recipes.model import Recipe
+from camwright.recipes.model import Particulars, Recipe
 from camwright.stored.design_file import StoredDesign, design_schema, parse_design
 
 RECIPE_FILE = "recipe.json"
@@ -26,7 +26,10 @@ def canonical(data: dict[str, Any]) -> str:
 
 def recipe_text(recipe: Recipe) -> str:
     """Write a recipe as the text of a recipe.json."""
-    return canonical(asdict(recipe))
+    data = asdict(recipe)
+    if recipe.particulars == Particulars():
+        del data["particulars"]  # recipes of versions that knew none read as they were written
+    return canonical(data)
 
 
 def parse_recipe(text: str, place: str) -> Recipe:

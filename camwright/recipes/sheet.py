@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import asdict
 from typing import Any
 
 from camwright.house.numbers import (
@@ -65,6 +66,7 @@ def sheet(recipe: Recipe, words: Catalogue) -> dict[str, Any]:
         "status": words("released" if recipe.released else "not_released"),
         "head": [
             *note,
+            *particular_rows(recipe, words),
             [words("head.objective"), objective_text(recipe, words)],
             [words("head.camwright"), f"camwright {recipe.provenance.camwright}"],
             [words("head.job_sha256"), recipe.provenance.job_sha256],
@@ -73,6 +75,21 @@ def sheet(recipe: Recipe, words: Catalogue) -> dict[str, Any]:
         "page": words("page"),
         "sections": [{"key": key, "heading": words(key), "blocks": make(recipe, words)} for key, make in makers],
     }
+
+
+_PARTICULARS = {
+    "revision": "head.revision",
+    "customer": "head.customer",
+    "author": "head.author",
+    "date": "head.date",
+}
+"""Names of what the user gives, by keys of the catalogue."""
+
+
+def particular_rows(recipe: Recipe, words: Catalogue) -> list[list[str]]:
+    """List what the user gave of revision, customer, author and date, each with its name."""
+    given = asdict(recipe.particulars)
+    return [[words(key), visible(given[name])] for name, key in _PARTICULARS.items() if given[name]]
 
 
 def objective_text(recipe: Recipe, words: Catalogue) -> str:

@@ -7,10 +7,10 @@ from pathlib import Path
 
 from camwright.house.files import replaced, require_replaceable
 from camwright.house.progress import Step, ignore
-from camwright.recipes.build import MadeRecipe, make_recipe
+from camwright.recipes.build import NO_PARTICULARS, MadeRecipe, make_recipe
 from camwright.recipes.html import recipe_html
 from camwright.recipes.manifest import MANIFEST_FILE, manifest_text
-from camwright.recipes.model import Language, Recipe
+from camwright.recipes.model import Language, Particulars, Recipe
 from camwright.recipes.pdf import recipe_pdf
 from camwright.recipes.recipe_file import RECIPE_FILE, recipe_text
 from camwright.recipes.xlsx import recipe_xlsx
@@ -45,9 +45,10 @@ def recipe_files(made: MadeRecipe, step: Step = ignore) -> dict[str, bytes]:
 def recipe(
     design: StoredDesign | Design,
     directory: str | Path,
-    targets: Sequence[str] = ("csv",),
+    targets: Sequence[str] = (),
     language: Language = "en",
     note: str = "",
+    particulars: Particulars = NO_PARTICULARS,
 ) -> Recipe:
     """Write all that one product needs on one machine into a folder: PDF, HTML, workbook, tables and a manifest.
 
@@ -58,11 +59,13 @@ def recipe(
     directory
         The folder; a recipe that stands there already is replaced as a whole.
     targets
-        Names of the targets that tables are written for.
+        Names of the targets that tables are written for; those of the job, else CSV, if none are named.
     language
         Language of what people read: ``"en"``, ``"de"`` or ``"zh"``.
     note
         Any text that stands on the recipe.
+    particulars
+        Revision, customer, author and date that stand on it.
 
     Returns
     -------
@@ -85,7 +88,8 @@ def recipe(
     ['manifest.json', 'recipe.html', 'recipe.json', 'recipe.pdf', 'recipe.xlsx', 'tables']
     """
     require_replaceable(Path(directory), is_recipe)
-    made = make_recipe(StoredDesign(design.profile, design.job), targets, language, note)
+    names = targets or design.job.output.targets or ("csv",)
+    made = make_recipe(StoredDesign(design.profile, design.job), names, language, note, particulars)
     write_folder(recipe_files(made), Path(directory))
     return made.recipe
 

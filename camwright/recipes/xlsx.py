@@ -11,7 +11,7 @@ from camwright.house.numbers import converted, unit_shown
 from camwright.recipes.catalogue import Catalogue, catalogue_of
 from camwright.recipes.facts import GROUPS, Fact, fact_text
 from camwright.recipes.model import Recipe, RecipeCheck, RecipeTable
-from camwright.recipes.sheet import objective_text, speed_columns
+from camwright.recipes.sheet import objective_text, particular_rows, speed_columns
 from camwright.recipes.user_text import visible
 
 if TYPE_CHECKING:
@@ -93,6 +93,8 @@ def _parameters(page: _Page, recipe: Recipe, words: Catalogue) -> None:
     page.row(words("column.passed"), words("released" if recipe.released else "not_released"))
     if recipe.note:
         page.row(words("note"), visible(recipe.note))
+    for row in particular_rows(recipe, words):
+        page.row(*row)
     page.row(words("head.objective"), objective_text(recipe, words))
     page.row(words("head.camwright"), f"camwright {recipe.provenance.camwright}")
     page.row(words("head.job_sha256"), recipe.provenance.job_sha256)

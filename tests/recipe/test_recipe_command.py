@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import html
 import json
 import resource
 import subprocess
@@ -10,9 +11,14 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
+import openpyxl
+import pypdf
 import pytest
 
+from camwright.book.plan import plan_book
 from camwright.cli.main import main
+from camwright.jobs.job import load_job, parse_job
+from camwright.profiles.errors import InputError
 from camwright.profiles.tables.targets import TARGETS
 from camwright.recipes.compare import compare_recipes, position_difference, read_recipe
 from camwright.recipes.verify import verify
@@ -157,8 +163,8 @@ def test_an_infeasible_job_ends_with_3(say: Say, job_with: Callable[..., Path], 
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        ([], "JOB or DESIGN, --targets, --out missing"),
-        (["JOB", "--targets", "csv"], "--out missing"),
+        ([], "no job or design is named; write e.g. camwright recipe JOB"),
+        (["JOB", "--customer", "c" * 101], "--customer has 101 characters; it may have 100"),
         (["JOB", "--targets", "cvs", "--out", "x"], "there is no target 'cvs'"),
         (["JOB", "--targets", " , ", "--out", "x"], "--targets names no target"),
         (["none.toml", "--targets", "csv", "--out", "x"], "there is no such job or design file"),
@@ -258,3 +264,67 @@ def test_any_allowed_name_makes_a_sound_recipe(
     for path in contents(out):
         assert path.isascii()
         assert not set(path) & set(' *?<>|:"\\')
+
+
+GIVEN = {"revision": "B-7", "customer": "Müller & Söhne <Wien>", "author": "=A1+B2", "date": "28th of November"}
+
+
+@pytest.mark.parametrize(("language", "named"), [("en", "Revision"), ("de", "Kunde"), ("zh", "客户")])
+def test_what_the_user_gives_stands_in_every_file(
+    say: Say, paper_job: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, language: str, named: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    options = [part for name, text in GIVEN.items() for part in (f"--{name}", text)]
+    assert say("recipe", paper_job, "--language", language, *options)[0] == 0
+    folder = tmp_path / "out" / "paper-600-recipe"
+    assert {each.name for each in (folder / "tables").iterdir()} == {"paper_600_cam.csv"}
+    pdf = "".join(page.extract_text() for page in pypdf.PdfReader(folder / "recipe.pdf").pages)
+    page = html.unescape((folder / "recipe.html").read_text(encoding="utf-8"))
+    sheet = openpyxl.load_workbook(folder / "recipe.xlsx").worksheets[0]
+    cells = [str(cell.value) for row in sheet.iter_rows() for cell in row]
+    stored = json.loads((folder / "recipe.json").read_text(encoding="utf-8"))
+    assert stored["particulars"] == GIVEN
+    for text in (named, *GIVEN.values()):
+        assert text.replace(" ", "") in pdf.replace(" ", "").replace("\n", "")
+        assert text in page
+        assert text in cells
+    assert verify(folder) == []
+
+
+def test_without_particulars_the_file_is_as_before_they_were_known(folder: Path) -> None:
+    assert "particulars" not in json.loads((folder / "recipe.json").read_text(encoding="utf-8"))
+
+
+def test_the_targets_of_the_job_are_taken_by_recipe_export_and_book(
+    say: Say, paper_job: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    job = tmp_path / "job.toml"
+    text = paper_job.read_text(encoding="utf-8")
+    assert "[output]" in text
+    job.write_text(text.replace("[output]", '[output]\ntargets = ["CSV", "Trio"]', 1), encoding="utf-8")
+    assert load_job(job).output.targets == ("csv", "trio")
+    assert say("design", job, "--no-figures")[0] == 0
+    assert say("export", "out/paper-600/design.json")[0] == 0
+    written = {each.name for each in Path("out/paper-600/tables").iterdir()}
+    assert {"paper_600_cam.csv", "paper_600_trio.bas"} <= written
+    assert plan_book(load_job(job), "600mm:600mm:1mm", "80:80:1").targets == ("csv", "trio")
+    assert say("recipe", "out/paper-600/design.json", "--out", "recipe")[0] == 0
+    assert [table.target for table in read_recipe(Path("recipe")).tables] == ["csv", "trio"]
+
+
+@pytest.mark.parametrize(
+    ("written", "told"),
+    [
+        ('["cvs"]', r"\[output\] targets = \['cvs'\]: there is no target 'cvs'"),
+        (
+            "[]",
+            r'\[output\] targets = \[\]: not a list of targets; write e.g. targets = \["csv", "codesys"\], or "all"',
+        ),
+        ('"csv"', r"\[output\] targets = 'csv': not a list of targets"),
+    ],
+)
+def test_targets_of_a_job_that_do_not_exist_are_told(paper_job: Path, written: str, told: str) -> None:
+    text = paper_job.read_text(encoding="utf-8").replace("[output]", f"[output]\ntargets = {written}", 1)
+    with pytest.raises(InputError, match=told):
+        parse_job(text, "job.toml")
