@@ -10,10 +10,11 @@ import typer
 
 from camwright.answers.check import check_answer
 from camwright.cli.options import Json, Quiet
-from camwright.cli.views.parts import new_text
+from camwright.cli.views.parts import new_text, stacked
 from camwright.house.numbers import typed, with_unit
 from camwright.house.output import Voice
 from camwright.house.toml_file import MOST_BYTES
+from camwright.jobs.doubts import doubts
 from camwright.jobs.job import Job, load_job, parse_job
 from camwright.jobs.machine_words import machine_words
 from camwright.profiles.errors import InputError
@@ -51,8 +52,13 @@ def _view(job: Job) -> RenderableType:
         with_unit(value, unit + power, units=units)
         for value, power in ((limits.acceleration, "/s^2"), (limits.jerk, "/s^3"))
     )
-    return new_text(
+    found = doubts(job)
+    said = new_text(
         f"{job.name}: cut {with_unit(cut.length, 'm', 4, units)} at {with_unit(cut.line_speed, 'm/s', units=units)}, "
         f"{machine_words(job.machine, units=units)}, sync zone {with_unit(cut.sync_zone, 'm', 4, units)}, "
         f"shear zone {with_unit(cut.shear_zone, 'm', 4, units)}; at most {speed}, {acceleration}, {jerk}.\nThe job file has no faults."
     )
+    notes = [new_text(f"Warning: {text}", "yellow") for text in found.warnings]
+    if found.missing:
+        notes.append(new_text("\n".join(["Optional and not given:", *(f"  {text}" for text in found.missing)])))
+    return stacked(said, *notes)
