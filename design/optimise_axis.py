@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
-from camwright.design.feasible.refusal import require_feasible
+from camwright.design.feasible.refusal import infeasible, require_feasible
 from camwright.design.optimise import (
     Solution,
     motion_objective,
     require_moving,
     solve,
 )
+from camwright.design.place_cost import place_for
 from camwright.design.returns.curve_limits import motor_limits, motor_speed_limits
 from camwright.design.returns.ipopt import SolveStatus
 from camwright.design.servo_aware.axis_motion import AxisMotion, design_axis, motion_of, servo_blind_optimum
@@ -89,9 +90,17 @@ def solve_axis(
     machine, limits = task.machine, task.limits
     require_moving(machine, objective)
     cost = _cost(machine, objective)
+
+    def designs(other: Task) -> bool:
+        try:
+            solve_axis(other, objective, command, servos, between, shares, suggest=False)
+        except (InfeasibleError, InputError, SolverError):
+            return False
+        return True
+
     blind = None
     if command == "in_sync" or not machine.placed:
-        blind = solve(task, of_command(cost), suggest=suggest)
+        blind = _servo_blind(task, cost, designs if suggest else None)
     placed = machine if blind is None else blind.machine
     structure = None if blind is None or command == "shaped" else blind.back
     problem = AxisProblem(task.with_machine(placed), command, servos, True, structure, between, shares=shares)
@@ -110,18 +119,27 @@ def solve_axis(
         )
     if not motions:
         loosest = _within(replace(problem, axis_limits=False), motor_speed_limits(placed, limits))
-
-        def settles(other: Cut) -> bool:
-            try:
-                solve_axis(task.with_cut(other), objective, command, servos, between, shares, suggest=False)
-            except (InfeasibleError, InputError, SolverError):
-                return False
-            return True
-
-        raise _infeasible(loosest, settles if suggest else None)
+        raise _infeasible(loosest, (lambda cut: designs(task.with_cut(cut))) if suggest else None)
     motion = min(motions, key=lambda each: each.value)
     status = blind.status if blind is not None and not motion.programmes else SolveStatus.BEST_FOUND
     return _solution(motion, status, task.with_machine(placed), objective, order)
+
+
+def _servo_blind(task: Task, cost: ObjectiveName, designs: Callable[[Task], bool] | None) -> Solution:
+    """Solve a job as if there were no servo; where no motion keeps the limits, what is offered instead is designed with the servo.
+
+    Raises
+    ------
+    InfeasibleError
+        No motion keeps the limits.
+    """
+    try:
+        return solve(task, of_command(cost), suggest=False)
+    except InfeasibleError as error:
+        if designs is None:
+            raise
+        placed = task if task.machine.placed else place_for(task, of_command(cost)).task
+        raise infeasible(placed, designs=designs) from error
 
 
 def _within(problem: AxisProblem, limits: Limits) -> AxisProblem:

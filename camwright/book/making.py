@@ -19,7 +19,7 @@ from camwright.drives.export import Exported, export_possible, export_report
 from camwright.house.json_text import to_json
 from camwright.house.provenance import provenance
 from camwright.jobs.job import Job
-from camwright.jobs.wording import error_words
+from camwright.jobs.wording import error_words, unforeseen
 from camwright.profiles.errors import InfeasibleError, InputError, SolverError
 from camwright.stored.design_file import design_text
 from camwright.studies.axis_study import axis_study, solve_job
@@ -74,7 +74,7 @@ def make_chunk(book: Book, numbers: Sequence[int]) -> list[Made]:
     if faults:
         raise InputError(*faults)
     with _ONE_AT_A_TIME:
-        return [_made(*make(book, book.combination(number))) for number in numbers]
+        return [_made(*_row(book, number)) for number in numbers]
 
 
 def _made(entry: Entry, texts: dict[str, str]) -> Made:
@@ -107,6 +107,14 @@ def make(book: Book, combination: Combination) -> tuple[Entry, dict[str, str]]:
     except SolverError as error:
         return Entry(number, "failed", reason="\n".join(error_words(error)), limit=limit), {}
     return _exported(number, design, book.targets, limit)
+
+
+def _row(book: Book, number: int) -> tuple[Entry, dict[str, str]]:
+    """Make one combination; what nobody foresaw is its row, and the book goes on."""
+    try:
+        return make(book, book.combination(number))
+    except Exception as error:  # noqa: BLE001 - whatever it is, the other rows are none the worse for it
+        return Entry(number, "failed", reason=unforeseen(error)), {}
 
 
 def _no_job(number: int, error: InputError, limit: Limit | None) -> Entry:

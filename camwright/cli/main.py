@@ -18,8 +18,8 @@ from camwright.cli.commands import COMMANDS
 from camwright.house.json_text import to_json
 from camwright.house.output import BROKEN_PIPE, complain, prepare_streams, silence_stdout
 from camwright.house.provenance import camwright_version
-from camwright.jobs.wording import error_words
-from camwright.profiles.errors import CamwrightError
+from camwright.jobs.wording import error_words, unforeseen
+from camwright.profiles.errors import CamwrightError, SolverError
 
 INTERRUPTED = 130
 """Exit code when the user stops the command, as a shell reports it."""
@@ -87,7 +87,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        0 done and every check passed; 1 done, but a check failed; 2 bad input; 3 infeasible; 4 the solver failed; 130
+        0 done and every check passed; 1 done, but a check failed; 2 bad input; 3 infeasible; 4 the solver failed, or camwright itself; 130
         interrupted; 141 the reader of standard output is gone.
     """
     prepare_streams()
@@ -113,6 +113,10 @@ def _run(arguments: list[str]) -> int:
         exit_code, message, failure = error.exit_code, "\n".join(error_words(error)), error
     except _UsageError as error:
         exit_code, message, failure = 2, cast("typer.BadParameter", error).format_message(), None
+    except typer.Abort:
+        raise
+    except (ArithmeticError, LookupError, RuntimeError, TypeError, ValueError) as error:
+        exit_code, message, failure = SolverError.exit_code, unforeseen(error), None
     if "--json" in arguments:
         sys.stdout.write(to_json(error_answer(exit_code, message, failure)))
         sys.stdout.flush()

@@ -64,3 +64,18 @@ def in_job_words(units: Units = METRIC) -> Iterator[None]:
         if not any(isinstance(message, Message) for message in error.messages):
             raise
         raise InputError(*error_words(error, units)) from error
+
+
+def unforeseen(error: Exception) -> str:
+    """Word an error that nobody foresaw: what it is, in which function, and that it is ours.
+
+    Examples
+    --------
+    >>> unforeseen(ValueError("no such thing"))
+    'a fault of camwright, not of the job: ValueError: no such thing; report it with the job file'
+    """
+    trace = error.__traceback__
+    while trace is not None and trace.tb_next is not None:
+        trace = trace.tb_next
+    where = "" if trace is None else f" (in {trace.tb_frame.f_code.co_name})"
+    return f"a fault of camwright, not of the job: {type(error).__name__}: {error}{where}; report it with the job file"

@@ -26,6 +26,8 @@ from camwright.profiles.task import Task
 DIGITS = (4, 6, 9, 15)
 # Suggestions keep this share away from the edge, so that the motion is not the only one.
 ASIDE = 1e-3
+# Where more than feasibility is asked of a suggestion it may lie further from the edge, by these factors.
+FURTHER = (1.0, 1.02, 1.07, 1.15, 1.3, 1.6, 2.0)
 # Cut lengths are looked for in steps of this factor, up to the longest multiple of the job's.
 STEP = 2**0.125
 LONGEST = 64.0
@@ -65,7 +67,9 @@ def require_feasible(task: Task, *, suggest: bool = True) -> None:
         raise infeasible(task, suggest=suggest)
 
 
-def infeasible(task: Task, *, suggest: bool = True, load: float | None = None) -> InfeasibleError:
+def infeasible(
+    task: Task, *, suggest: bool = True, load: float | None = None, designs: Callable[[Task], bool] | None = None
+) -> InfeasibleError:
     """Say why a job is infeasible and, if asked, what would work; every suggestion has been checked.
 
     Parameters
@@ -77,6 +81,8 @@ def infeasible(task: Task, *, suggest: bool = True, load: float | None = None) -
     load
         Least share of the motor's torque that a motion needs, if that is known; else the motor's rectangles tell
         (`camwright.design.returns.curve_limits.motor_limits`).
+    designs
+        Tells whether a task can be designed, where that asks more than a motion within the limits: of the axis. Each suggestion is.
     """
     cut = task.cut
     need = needed_limits(task)
@@ -92,7 +98,7 @@ def infeasible(task: Task, *, suggest: bool = True, load: float | None = None) -
     )
     if not suggest:
         return InfeasibleError(Message(text, values), binding, excess, unit, ())
-    suggestions = tuple(_suggestions(task, need, torque))
+    suggestions = tuple(_suggestions(task, need, torque, designs))
     offers = "; ".join(_offer(suggestion, f"offer_{number}") for number, suggestion in enumerate(suggestions))
     offered = (
         (f"offer_{number}", _offered(each, task))
@@ -143,53 +149,65 @@ def _why(task: Task, binding: str, need: dict[str, float], torque: float) -> tup
     return (needed - have) * factor, unit, Message(text, values)
 
 
-def _suggestions(task: Task, need: dict[str, float], torque: float) -> Iterator[Suggestion]:
+def _suggestions(
+    task: Task, need: dict[str, float], torque: float, designs: Callable[[Task], bool] | None
+) -> Iterator[Suggestion]:
     """Nearest changes that work: line speed, cut length, stroke, each limit, motor, reversal; each checked as it is written."""
     machine, cut, limits = task.machine, task.cut, task.limits
+    works, further = (is_feasible, FURTHER[:1]) if designs is None else (designs, FURTHER)
 
     def at_speed(v: float) -> bool:
-        return is_feasible(task.at_speed(v))
+        return works(task.at_speed(v))
 
     def at_length(length: float) -> bool:
         return length > cut.sync_zone and is_feasible(task.with_length(length))
 
     slower = slowdown(task)
     if slower > 0:
-        yield from _written("line_speed", slower * cut.line_speed, 60.0, "m/min", False, at_speed)
+        yield from _written("line_speed", slower * cut.line_speed, 60.0, "m/min", False, at_speed, further)
     length = _nearest_length(at_length, task)
     if length is not None:
-        yield from _written("length", length, 1e3, "mm", length > cut.length, at_length)
+        yield from _written(
+            "length", length, 1e3, "mm", length > cut.length, lambda value: works(task.with_length(value)), further
+        )
     if stroke_of(machine) < need.get("stroke", math.inf) < math.inf:
 
         def with_stroke(stroke: float) -> bool:
-            return is_feasible(task.with_machine(machine.with_guide(stroke)))
+            return works(task.with_machine(machine.with_guide(stroke)))
 
-        yield from _written("stroke", need["stroke"], *_UNITS[machine.slave_unit]["stroke"], True, with_stroke)
+        yield from _written("stroke", need["stroke"], *_UNITS[machine.slave_unit]["stroke"], True, with_stroke, further)
     for name in LIMIT_NAMES:
         if not getattr(limits, name) < need[name] < math.inf:
             continue
 
         def with_value(value: float, name: str = name) -> bool:
-            return is_feasible(task.with_limits(with_limit(limits, name, value)))
+            return works(task.with_limits(with_limit(limits, name, value)))
 
         factor, unit = _UNITS[machine.slave_unit][name]
-        yield from _written(name, need[name], factor, unit, True, with_value)
-    if limits.motor is not None and 1.0 < torque < math.inf:
-        yield from _written("motor", torque, 100.0, "%", True, lambda factor: factor > torque)
-    if not task.reverses and is_feasible(task.with_limits(replace(limits, reversal=True))):
+        yield from _written(name, need[name], factor, unit, True, with_value, further)
+    if limits.motor is not None and designs is None and 1.0 < torque < math.inf:
+        yield from _written("motor", torque, 100.0, "%", True, lambda factor: factor > torque, further)
+    if not task.reverses and works(task.with_limits(replace(limits, reversal=True))):
         yield Suggestion("reversal", 1.0, "")
 
 
 def _written(
-    change: str, value: float, factor: float, unit: str, up: bool, works: Callable[[float], bool]
+    change: str,
+    value: float,
+    factor: float,
+    unit: str,
+    up: bool,
+    works: Callable[[float], bool],
+    further: tuple[float, ...],
 ) -> Iterator[Suggestion]:
-    """Write a value at an edge a little aside of it, in a unit, with as few digits as work."""
-    safe = value * (1 + ASIDE if up else 1 - ASIDE)
-    for digits in DIGITS:
-        rounded = rounded_to(safe * factor, digits, up)
-        if works(rounded / factor):
-            yield Suggestion(change, rounded, unit)
-            return
+    """Write a value at an edge a little aside of it, or further, in a unit, with as few digits as work."""
+    for far in further:
+        safe = value * ((1 + ASIDE) * far if up else (1 - ASIDE) / far)
+        for digits in DIGITS if len(further) == 1 else DIGITS[:1]:
+            rounded = rounded_to(safe * factor, digits, up)
+            if works(rounded / factor):
+                yield Suggestion(change, rounded, unit)
+                return
 
 
 def _nearest_length(works: Callable[[float], bool], task: Task) -> float | None:

@@ -331,14 +331,17 @@ class TorqueProgramme:
             start[bound] = upper[bound]
         equal, above = self._rows
         low, high = self._paces()
-        answer = self._solver(
-            x0=start / self._layout.units,
-            p=parameters,
-            lbx=lower / self._layout.units,
-            ubx=upper / self._layout.units,
-            lbg=np.concatenate([np.zeros(equal + above), low]),
-            ubg=np.concatenate([np.zeros(equal), np.full(above, np.inf), high]),
-        )
+        try:
+            answer = self._solver(
+                x0=start / self._layout.units,
+                p=parameters,
+                lbx=lower / self._layout.units,
+                ubx=upper / self._layout.units,
+                lbg=np.concatenate([np.zeros(equal + above), low]),
+                ubg=np.concatenate([np.zeros(equal), np.full(above, np.inf), high]),
+            )
+        except RuntimeError:  # a number that is none, on the way or in the guess: no answer from this start
+            return TorqueAnswer(guess, math.inf, math.inf, False, 0)
         statistics = self._solver.stats()
         flat: FloatArray = np.asarray(answer["x"], dtype=np.float64).ravel() * self._layout.units
         history = statistics.get("iterations", {})

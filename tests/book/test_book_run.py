@@ -22,7 +22,7 @@ from camwright.book.making import Made, make_chunk
 from camwright.book.plan import Book, plan_book
 from camwright.book.run import make_book
 from camwright.design.feasible.extremes import extremes
-from camwright.design.optimise import solve
+from camwright.design.optimise import Solution, solve
 from camwright.drives.export import export
 from camwright.jobs.job import load_job
 from camwright.jobs.wording import words
@@ -31,6 +31,8 @@ from camwright.profiles.errors import (
     InputError,
     SolverError,
 )
+from camwright.profiles.objective import CommandObjective
+from camwright.profiles.task import Task
 from camwright.stored.design_file import read_design
 from camwright.validation.report import judge
 
@@ -337,3 +339,17 @@ def test_workers_of_another_version_are_refused(tmp_path: Path) -> None:
     book = replace(small_book(), versions=(("camwright", "9.9.9"),))
     with pytest.raises(InputError, match=r"a worker runs camwright \S+, but this book is made with 9\.9\.9"):
         make_book(book, tmp_path / "book", inline_crew())
+
+
+def test_what_nobody_foresaw_is_a_row_and_the_book_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def breaks(task: Task, objective: CommandObjective, *, suggest: bool) -> Solution:
+        if objective == "rms_acceleration":
+            raise ZeroDivisionError("by nothing")
+        return solve(task, objective, suggest=suggest)
+
+    monkeypatch.setattr("camwright.studies.axis_study.solve", breaks)
+    book = plan_book(load_job(JOB), "600", "60:80:20", ["rms_acceleration", "peak_jerk"])
+    answer = make_book(book, tmp_path / "book", inline_crew())
+    assert (answer.counts.failed, answer.counts.passed + answer.counts.check_failed) == (2, 2)
+    reasons = [row["reason"] for row in rows(tmp_path / "book") if row["status"] == "failed"]
+    assert all("a fault of camwright, not of the job: ZeroDivisionError: by nothing" in reason for reason in reasons)

@@ -401,6 +401,21 @@ def test_a_failure_of_the_solver_has_its_exit_code(
     assert list(tmp_path.iterdir()) == []
 
 
+def test_what_nobody_foresaw_ends_with_4_and_no_traceback(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    def breaks(*_: object, **__: object) -> None:
+        raise ZeroDivisionError("by nothing")
+
+    monkeypatch.setattr("camwright.cli.design.optimise", breaks)
+    assert main(["design", JOB, "--out", str(tmp_path / "out"), "--json"]) == 4
+    out, err = capsys.readouterr()
+    assert "a fault of camwright, not of the job: ZeroDivisionError: by nothing (in breaks)" in err
+    assert "Traceback" not in err
+    assert json.loads(out)["exit_code"] == 4
+    assert not (tmp_path / "out").exists()
+
+
 def test_a_reader_that_goes_away_is_no_error_worth_a_word() -> None:
     with subprocess.Popen([*COMMAND, "check", JOB], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as run:
         assert run.stdout is not None

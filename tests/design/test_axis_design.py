@@ -220,3 +220,17 @@ def test_under_a_motors_curve_the_blind_optimum_is_taken_where_its_axis_will_do(
     assert found.axis is not None
     assert found.axis.error <= cut.sync_tolerance
     assert found.minimised == pytest.approx(blind.minimised, rel=1e-9)
+
+
+def test_what_no_motion_can_do_is_answered_with_changes_that_the_axis_keeps_too() -> None:
+    """A motion alone would be there at 138 m/min; the axis is in the tolerance from 120 m/min down."""
+    cut = Cut(0.9, 170 / 60, 0.2, 0.02, 0.09, 1e-4)
+    task = Task(KNIFE, cut, Limits(200 / 60, 30.0, 3000.0))
+    with pytest.raises(InfeasibleError) as refused:
+        solve_axis(task, "peak_acceleration", "in_sync", (PAPER,))
+    speeds = [each.value / 60 for each in refused.value.suggestions if each.change == "line_speed"]
+    assert len(speeds) == 1
+    assert speeds[0] < 138 / 60
+    slower = solve_axis(task.at_speed(speeds[0]), "peak_acceleration", "in_sync", (PAPER,), suggest=False)
+    assert slower.axis is not None
+    assert slower.axis.error <= cut.sync_tolerance
