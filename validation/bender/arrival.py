@@ -13,6 +13,13 @@ from camwright.profiles.polynomial.profile import FloatArray
 from camwright.profiles.servo import Servo, spectral_radius
 from camwright.validation.servo.lifting import BLOCK, follow, lift_side_by_side, loops_of
 
+_FORGOTTEN = 1e-13
+"""Part of a thousandth of the window that is left of a move's start where time at constant speed is left out."""
+
+
+_LONG = 4000
+"""Samples at constant speed that are kept all the same."""
+
 
 @dataclass(frozen=True, eq=False)
 class Arrivals:
@@ -35,6 +42,8 @@ def arrivals(moves: Moves, servo: Servo, window: float) -> Arrivals:
 
     Each move starts from rest on a sampling instant; the axis is looked at on the sampling instants. The
     simulation of S1's loop ends when its slowest pole has brought the greatest move down to a thousandth of the window.
+    Once it is forgotten at constant speed, only the following error is left, and what follows no longer depends on how long that
+    lasts: whole samples of it are left out, so that the time does not grow with the distance.
 
     Parameters
     ----------
@@ -53,8 +62,9 @@ def arrivals(moves: Moves, servo: Servo, window: float) -> Arrivals:
     radius = spectral_radius(servo)
     if radius >= 1:
         raise InputError(f"the servo is unstable: largest pole {radius:.4f} in the z-plane, must be below 1")
+    decay = math.log(1e-3 * window / max(window, float(moves.distance.max(initial=0.0)))) / math.log(radius)
+    moves = _shortened(moves, servo, math.ceil(decay + math.log(_FORGOTTEN) / math.log(radius)))
     goal = moves.distance
-    decay = math.log(1e-3 * window / max(window, float(goal.max(initial=0.0)))) / math.log(radius)
     samples = math.ceil(float(moves.time.max(initial=0.0)) / servo.sample_time + decay) + 2
     times = servo.sample_time * np.arange(-1.0, samples)  # one sample at rest is all that is remembered
     command = moves.position(np.broadcast_to(times, (len(goal), len(times)))).T[None]
@@ -63,3 +73,12 @@ def arrivals(moves: Moves, servo: Servo, window: float) -> Arrivals:
     off = axis - goal[:, None]
     last = ((np.abs(off) > window) * np.arange(1, samples + 1)).max(axis=1) * servo.sample_time
     return Arrivals(np.maximum(last - moves.time, 0.0), np.maximum(off.max(axis=1), 0.0))
+
+
+def _shortened(moves: Moves, servo: Servo, decay: int) -> Moves:
+    """Leave whole samples at constant speed out of moves that have more of them than it takes to forget the start."""
+    middle = moves.knots.shape[1] // 2  # the piece at constant speed ends here
+    cruise = moves.knots[:, middle] - moves.knots[:, middle - 1]
+    spare = np.maximum(np.floor(cruise / servo.sample_time) - max(decay, _LONG), 0.0) * servo.sample_time
+    knots = moves.knots - np.where(np.arange(moves.knots.shape[1]) >= middle, spare[:, None], 0.0)
+    return Moves(knots, moves.weights, moves.power)

@@ -205,3 +205,10 @@ def test_velocity_feedforward_makes_the_feed_overshoot():
 def test_unstable_servo_is_refused():
     with pytest.raises(InputError, match="unstable"):
         arrivals(double_s_moves(np.array([0.01]), DRIVE.feed), Servo(500.0, 0.8, 3000.0, 1e-3, 1.0), 1e-5)
+
+
+def test_time_at_constant_speed_is_left_out_without_a_change():
+    # as many whole samples at 0.5 m/s lie between the two as the second is longer, and most of them are not looked at
+    near, far = (arrivals(double_s_moves(np.array([d]), DRIVE.feed), SERVO, 1e-5) for d in (1.9, 30.0))
+    assert far.settling == pytest.approx(near.settling, abs=1e-9)
+    assert far.overshoot == pytest.approx(near.overshoot, rel=1e-6)
