@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from itertools import groupby
 from pathlib import Path
 from typing import Any
 
 from camwright.bender.calibration import Calibration
+from camwright.bender.drawing import Drawing
 from camwright.bender.job import BenderJob
 from camwright.bender.program_file import BentOutline
 from camwright.validation.bender.collision import MOST_REPORTED
@@ -29,17 +30,20 @@ class BentDrawing:
         Its SHA-256, in hexadecimal.
     job
         Bender and rule.
+    found
+        What was read of it.
     outlines
         One result an outline.
     notes
-        What was doubtful about the drawing.
+        What was doubtful about the run.
     """
 
     drawing: Path
     sha256: str
     job: BenderJob
+    found: Drawing
     outlines: tuple[BentOutline, ...]
-    notes: tuple[str, ...]
+    notes: tuple[str, ...] = ()
 
     @property
     def passed(self) -> bool:
@@ -49,10 +53,24 @@ class BentDrawing:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What the operator should know: the table's doubtful rows, what was left out, collisions by line."""
-        found = [*self.job.warnings, *self.notes]
+        found = [*self.job.warnings, *self.found.warnings, *size_warnings(self.found, self.job), *self.notes]
         for outline in self.outlines:
             found += collision_lines(outline, self.job)
         return tuple(found)
+
+
+def size_warnings(found: Drawing, job: BenderJob) -> tuple[str, ...]:
+    """Say that a drawing is larger than what the machine is made for: its unit may be wrong."""
+    if max(found.size) <= job.greatest_size:
+        return ()
+    large = f"the drawing is {size_words(found)} large, beyond the machine's {1e3 * job.greatest_size:g} mm"
+    return (f'{large}; if its unit is not {found.unit}, write units = "mm" under [drawing] of the bender job',)
+
+
+def size_words(found: Drawing) -> str:
+    """Width and height of a drawing in words."""
+    width, height = found.size
+    return f"{1e3 * width:.3f} mm × {1e3 * height:.3f} mm"
 
 
 def collision_lines(outline: BentOutline, job: BenderJob) -> list[str]:
@@ -89,6 +107,23 @@ def answer(result: BentDrawing, programs: Sequence[Path], files: Sequence[Path])
     """Gather what ``--json`` prints."""
     closing = [outline.proof.closing_error for outline in result.outlines if outline.proof.closing_error is not None]
     return {
+        "unit": result.found.unit,
+        "size_mm": [1e3 * side for side in result.found.size],
+        "styles": [asdict(style) for style in dict.fromkeys(result.found.styles)],
+        "overlaps": [
+            {"first": overlap.first, "second": overlap.second, "length_mm": 1e3 * overlap.length}
+            for overlap in result.found.overlaps
+        ],
+        "near_ends": [
+            {
+                "first": ends.first,
+                "second": ends.second,
+                "distance_mm": 1e3 * ends.distance,
+                "gap_mm": 1e3 * ends.gap,
+                "place_mm": [1e3 * part for part in ends.place],
+            }
+            for ends in result.found.near_ends
+        ],
         "outlines": len(result.outlines),
         "bends": sum(outline.plan.bends for outline in result.outlines),
         "length_mm": sum(int(outline.program.feeds.sum()) for outline in result.outlines) / 1e3,
@@ -97,8 +132,8 @@ def answer(result: BentDrawing, programs: Sequence[Path], files: Sequence[Path])
         "closing_error_mm": 1e3 * max(closing) if closing else None,
         "program": str(programs[0]),
         "programs": [
-            {"file": str(path), "sha256": outline.sha256, "bends": outline.plan.bends}
-            for path, outline in zip(programs, result.outlines, strict=True)
+            {"file": str(path), "sha256": outline.sha256, "bends": outline.plan.bends, "style": str(style)}
+            for path, outline, style in zip(programs, result.outlines, result.found.styles, strict=True)
         ],
         "cycle_time_s": sum(outline.times.total for outline in result.outlines),
         "baseline_cycle_time_s": sum(outline.paper_times.total for outline in result.outlines),

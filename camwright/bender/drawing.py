@@ -1,236 +1,304 @@
-"""From a DXF file to outlines: layers, blocks, units, and loose entities joined into paths."""
+"""From a DXF file to outlines: units, styles, overlaps, and loose entities joined into paths."""
 
 from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
+from camwright.bender.chords import FoundArc, with_arcs
+from camwright.bender.dxf_blocks import require_bounded, walk
 from camwright.bender.dxf_curves import MOST_SEGMENTS
-from camwright.bender.dxf_entities import (
-    Piece,
-    piece_of,
-    require_bounded,
-    walk,
-)
-from camwright.bender.dxf_guard import MOST_ENTITIES, look_at
+from camwright.bender.dxf_entities import Resolution, is_line_work, piece_of
+from camwright.bender.dxf_opening import open_dxf, readable
+from camwright.bender.dxf_styles import Layers, Style, StyleChoice
 from camwright.bender.job import UNITS
+from camwright.bender.joining import join
+from camwright.bender.near_ends import NearEnds, near_ends
+from camwright.bender.overlaps import Overlap, without_overlaps
+from camwright.bender.piece import Piece
 from camwright.profiles.bender.outline import Outline
 from camwright.profiles.errors import InputError
 
-_DEEPEST = 8
-_MOST_UNFOLDED = MOST_ENTITIES
 _MOST_FAULTS = 20
-_INSUNITS = {1: UNITS["in"], 2: UNITS["ft"], 4: UNITS["mm"], 5: UNITS["cm"], 6: UNITS["m"]}
-_AROUND = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1)]
+_LEAST = 1e-7
+"""Length (m) below which a segment has none: a tenth of what a program can write."""
+
+_GREATEST = 1e7
+"""Greatest coordinate (m) that is believed; the numbers have nanometres left there."""
+
+_INSUNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m"}
+
+
+@dataclass(frozen=True)
+class Reading:
+    """How a drawing is read.
+
+    Parameters
+    ----------
+    gap
+        Ends nearer to each other are joined, lines nearer to each other are one (m).
+    flattening
+        Largest distance of splines and ellipses from their polylines (m).
+    units
+        Unit of the drawing, whatever its header says; ``None`` for the header's.
+    style
+        Which styles are bent.
+    overlaps
+        Whether lines that lie on each other are used once, or the drawing refused.
+    arc_error
+        Largest distance (m) at a radius (m) between an arc and the chords that are bent as that arc; ``None`` bends
+        chords as they are drawn.
+    """
+
+    gap: float
+    flattening: float
+    units: str | None = None
+    style: StyleChoice = field(default_factory=StyleChoice)
+    overlaps: Literal["merge", "refuse"] = "merge"
+    arc_error: Callable[[float], float] | None = None
 
 
 @dataclass(frozen=True)
 class Drawing:
-    """The outlines of a drawing (m), and what was left out of it.
+    """The outlines of a drawing (m), and what is doubtful about it.
 
     Parameters
     ----------
     outlines
-        In the order of the drawing.
+        Style by style, in the order of the drawing.
+    styles
+        The style of each outline.
+    unit
+        Unit of the drawing.
+    size
+        Width and height of what is bent (m).
+    overlaps
+        What is drawn twice.
+    near_ends
+        Free ends that nearly meet.
     warnings
-        What was ignored.
+        What was left out, repaired, merged or not joined.
     """
 
     outlines: tuple[Outline, ...]
+    styles: tuple[Style, ...]
+    unit: str
+    size: tuple[float, float]
+    overlaps: tuple[Overlap, ...]
+    near_ends: tuple[NearEnds, ...]
     warnings: tuple[str, ...]
 
 
-def read_drawing(
-    path: Path, gap: float, flattening: float, units: str | None = None, layer: str | None = None
-) -> Drawing:
+@dataclass(eq=False)
+class _Found:
+    """What one style holds: its name as first seen, its pieces (m), and what of it cannot be bent."""
+
+    style: Style
+    pieces: list[Piece] = field(default_factory=list)
+    faults: list[str] = field(default_factory=list)
+
+
+@dataclass(frozen=True, eq=False)
+class _Lines:
+    """The lines of one style (m): paths, and what was found on the way to them."""
+
+    paths: list[Piece]
+    overlaps: tuple[Overlap, ...]
+    near: tuple[NearEnds, ...]
+    arcs: tuple[FoundArc, ...]
+
+
+def read_drawing(path: Path, reading: Reading) -> Drawing:
     """Read the die lines of a DXF file.
 
     Parameters
     ----------
     path
         The file.
-    gap
-        Ends nearer to each other are joined (m).
-    flattening
-        Largest distance of splines and ellipses from their polylines (m).
-    units
-        Unit of a drawing that does not say its own; ``None`` refuses such a drawing.
-    layer
-        Read this layer only.
+    reading
+        How it is read.
 
     Raises
     ------
     InputError
-        The file is no DXF, or what it holds cannot be bent; every message with the file, the entity and the reason.
+        The file is no DXF, holds several styles of which none is chosen, or lines that cannot be bent; every message
+        with the file, the entity and the reason.
     """
-    look_at(path)
-    document = _open(path)
-    unit = _unit(path, document, units)
-    layers = {entry.dxf.name.casefold(): entry for entry in document.layers}
-    if layer is not None and layer.casefold() not in layers:
-        known = ", ".join(sorted(entry.dxf.name for entry in layers.values()))
-        raise InputError(f"{path}: there is no layer {layer!r}; the layers are {known}")
-    ignored: Counter[str] = Counter()
-    shown = _shown(document, layers, layer, ignored)
-    pieces, faults = _pieces(document, shown, flattening / unit, ignored)
-    if faults:
-        raise InputError(*(f"{path}: {fault}" for fault in faults[:_MOST_FAULTS]))
-    warnings = tuple(f"{path.name}: left out {count} × {what}" for what, count in sorted(ignored.items()))
-    if not pieces:
-        where = f" on layer {layer}" if layer else ""
-        more = "; " + "; ".join(warnings) if warnings else ""
-        raise InputError(
-            f"{path}: no line, arc, circle, ellipse, spline or polyline{where}: the drawing is empty{more}"
-        )
-    if sum(len(piece.bulges) for piece in pieces) > MOST_SEGMENTS:
-        raise InputError(f"{path}: more than {MOST_SEGMENTS} segments; split the drawing or allow more flattening")
-    outlines = []
-    for piece in join(pieces, gap / unit):
-        name = f"{path.name}: {piece.name}"
-        outlines.append(Outline(unit * piece.points, piece.bulges, name, unit * piece.flattening))
-    return Drawing(tuple(outlines), warnings)
+    document, warnings = open_dxf(path)
+    with readable(path):
+        unit, doubts = _unit(path, document, reading.units)
+        left_out: Counter[str] = Counter()
+        layers, everything = _gathered(path, document, reading, UNITS[unit], left_out)
+    chosen = _chosen(path, everything, layers, reading.style, left_out)
+    lines = [_lines(path, found, reading, left_out) for found in chosen]
+    outlines = [Outline(p.points, p.bulges, f"{path.name}: {p.name}", p.flattening) for one in lines for p in one.paths]
+    styles = [found.style for found, one in zip(chosen, lines, strict=True) for _ in one.paths]
+    overlaps = tuple(overlap for one in lines for overlap in one.overlaps)
+    near = tuple(ends for one in lines for ends in one.near)
+    told = [
+        *(f"left out {count} × {what}" for what, count in sorted((+left_out).items())),
+        *_few([f"{overlap}; it is bent once" for overlap in overlaps], "entities lie on others"),
+        *_few([str(ends) for ends in near], "pairs of ends nearly meet"),
+        *_few([str(arc) for one in lines for arc in one.arcs], "runs of chords are bent as arcs"),
+    ]
+    warnings += (*doubts, *(f"{path.name}: {text}" for text in told))
+    return Drawing(tuple(outlines), tuple(styles), unit, _size(outlines), overlaps, near, warnings)
 
 
-def _shown(document: Any, layers: dict[str, Any], layer: str | None, ignored: Counter[str]) -> Iterator[Any]:
-    """Give the entities that a reader of the drawing sees, of one layer only if it is named; those on layers that are off are counted."""
-    for entity, own in walk(document.modelspace()):
-        if layer is not None and own.casefold() != layer.casefold():
-            continue
-        entry = layers.get(own.casefold())
-        if entry is not None and (entry.is_frozen() or entry.is_off()):
-            ignored[f"entity on layer {own} (off or frozen)"] += 1
-        else:
-            yield entity
-
-
-def _pieces(
-    document: Any, shown: Iterator[Any], flattening: float, ignored: Counter[str]
-) -> tuple[list[Piece], list[str]]:
-    """Turn entities into pieces, as far as they can be; what is no line work is counted, what cannot be bent is a fault."""
-    pieces: list[Piece] = []
-    faults: list[str] = []
-    try:
-        require_bounded(document, _MOST_UNFOLDED, _DEEPEST)
-        for entity in shown:
-            try:
-                piece = piece_of(entity, flattening)
-            except InputError as error:
-                faults += error.faults
-                if len(faults) >= _MOST_FAULTS:
-                    break
-                continue
-            if piece is None:
-                ignored[f"{entity.dxftype()} (no line work)"] += 1
-            else:
-                pieces.append(piece)
-    except InputError as error:
-        faults += error.faults
-    return pieces, faults
-
-
-def _open(path: Path) -> Any:
-    import ezdxf
-
-    try:
-        return ezdxf.readfile(path)  # type: ignore[attr-defined]
-    except (ezdxf.DXFError, OSError, UnicodeError, ValueError, LookupError, TypeError, AttributeError) as error:  # type: ignore[attr-defined]
-        raise InputError(f"{path}: not a DXF file that can be read: {str(error) or type(error).__name__}") from error
-
-
-def _unit(path: Path, document: Any, units: str | None) -> float:
+def _unit(path: Path, document: Any, units: str | None) -> tuple[str, tuple[str, ...]]:
+    """Tell the drawing's unit, and what is doubtful about it: the job's word counts more than the header's."""
     code = document.header.get("$INSUNITS", 0)
-    if code in _INSUNITS:
-        return _INSUNITS[code]
-    if code == 0 and units is not None:
-        return UNITS[units]
+    header = _INSUNITS.get(code)
+    if units is not None:
+        if header == units or code == 0:
+            return units, ()
+        said = header or f"unit code {code}"
+        return units, (
+            f"{path.name}: its header says {said} ($INSUNITS), the bender job says {units}: read in {units}",
+        )
+    if header is not None:
+        return header, ()
     if code == 0:
         raise InputError(
             f"{path}: the drawing does not say its unit ($INSUNITS is 0 or missing); set it in the drawing, "
             'or write units = "mm" under [drawing] of the bender job'
         )
-    raise InputError(f"{path}: unit code {code} of $INSUNITS is not known; set the drawing to mm, cm, m, in or ft")
+    raise InputError(
+        f"{path}: unit code {code} of $INSUNITS is not known; set the drawing to mm, cm, m, in or ft, "
+        'or write units = "mm" under [drawing] of the bender job'
+    )
 
 
-def join(pieces: list[Piece], gap: float) -> list[Piece]:
-    """Join open pieces whose ends are within a gap of each other, and close those whose own ends are.
+def _gathered(
+    path: Path, document: Any, reading: Reading, unit: float, left_out: Counter[str]
+) -> tuple[set[str], list[_Found]]:
+    """Read what is shown of the layer that is asked for, style by style; the names of all layers."""
+    resolution = Resolution(reading.flattening / unit, _LEAST / unit, _GREATEST / unit)
+    layers = Layers(document.layers)
+    names = {name.casefold(): name for name in sorted(layers.names)}
+    found: dict[tuple[str, str, str], _Found] = {}
+    wanted = None if reading.style.layer is None else reading.style.layer.casefold()
+    hidden: Counter[str] = Counter()
+    segments = 0
+    try:
+        require_bounded(document)
+        for seen in walk(document, layers, hidden):
+            names.setdefault(seen.style.layer.casefold(), seen.style.layer)
+            if wanted is not None and seen.style.layer.casefold() != wanted:
+                continue
+            if not is_line_work(seen.entity):
+                left_out[f"{seen.entity.dxftype()} (no line work)"] += 1
+                continue
+            own = found.setdefault(seen.style.key, _Found(seen.style))
+            try:
+                drawn = piece_of(seen.entity, seen.name, resolution)
+            except InputError as error:
+                own.faults += error.faults
+                continue
+            left_out.update(drawn.notes)
+            if drawn.piece is not None:
+                own.pieces.append(drawn.piece.scaled(unit))
+                segments += len(drawn.piece.bulges)
+            if segments > MOST_SEGMENTS:
+                raise InputError(f"more than {MOST_SEGMENTS} segments; split the drawing or allow more flattening")
+    except InputError as error:
+        raise InputError(*(f"{path}: {fault}" for fault in error.faults)) from error
+    left_out.update(hidden)
+    return set(names.values()), [own for own in found.values() if own.pieces or own.faults]
 
-    Paths begin with the first piece of the drawing that is not used yet, and run in its direction; at each end the
-    nearest free end is taken. The end of a joined piece is moved onto the one before it.
+
+def _chosen(
+    path: Path, everything: Sequence[_Found], layers: set[str], choice: StyleChoice, left_out: Counter[str]
+) -> list[_Found]:
+    """Pick the styles that are asked for.
+
+    Raises
+    ------
+    InputError
+        None fits, several do, or one holds what cannot be bent.
     """
-    free = _FreeEnds(pieces, gap)
-    found = []
-    for i, piece in enumerate(pieces):
-        if not free.take(i):
+    if choice.layer is not None and choice.layer.casefold() not in {name.casefold() for name in layers}:
+        raise InputError(f"{path}: there is no layer {choice.layer!r}; the layers are {', '.join(sorted(layers))}")
+    fitting = [found for found in everything if choice.fits(found.style)]
+    if everything and not fitting:
+        raise InputError(f"{path}: no line has the style {choice}; the styles are", *map(_style_words, everything))
+    if len(fitting) > 1 and not choice.each:
+        raise InputError(
+            f"{path}: the drawing holds {len(fitting)} styles, which are never joined into one rule; choose one with "
+            "--style, or bend each for itself with --styles all",
+            *map(_style_words, fitting),
+        )
+    faults = [f"{path}: {fault}" for found in fitting for fault in found.faults]
+    if faults:
+        raise InputError(*faults[:_MOST_FAULTS])
+    if not fitting:
+        where = f" on layer {choice.layer}" if choice.layer else ""
+        more = "".join(f"; left out {count} × {what}" for what, count in sorted(left_out.items()))
+        raise InputError(
+            f"{path}: no line, arc, circle, ellipse, spline or polyline{where}: the drawing is empty{more}"
+        )
+    return fitting
+
+
+def _style_words(found: _Found) -> str:
+    count = len(found.pieces) + len(found.faults)
+    length = 1e3 * sum(piece.length for piece in found.pieces)
+    return f"--style {found.style}: {count} {'entity' if count == 1 else 'entities'}, {length:.3f} mm"
+
+
+def _lines(path: Path, found: _Found, reading: Reading, left_out: Counter[str]) -> _Lines:
+    """Join the pieces of one style: what is drawn twice is used once, chords that lie on an arc become that arc.
+
+    Raises
+    ------
+    InputError
+        Something is drawn twice and that is to be refused, or nothing is left.
+    """
+    try:
+        pieces, doubled = without_overlaps(found.pieces, reading.gap)
+        if doubled and reading.overlaps == "refuse":
+            raise InputError(
+                *(f"{overlap}; remove it, or leave --overlaps refuse out" for overlap in doubled[:_MOST_FAULTS])
+            )
+        lasting = [piece for piece in pieces if piece.length > reading.gap]
+        if not lasting:
+            raise InputError(f"nothing is longer than the gap of {1e3 * reading.gap:g} mm that is closed")
+        left_out["line not longer than the gap"] += len(pieces) - len(lasting)
+        joined = join(lasting, reading.gap)
+    except InputError as error:
+        raise InputError(*(f"{path}: {fault}" for fault in error.faults)) from error
+    near = near_ends(joined, reading.gap)
+    if reading.arc_error is None:
+        return _Lines(joined, doubled, near, ())
+    fitted = [with_arcs(piece, reading.arc_error, reading.gap) for piece in joined]
+    return _Lines([piece for piece, _ in fitted], doubled, near, tuple(arc for _, arcs in fitted for arc in arcs))
+
+
+def _size(outlines: Sequence[Outline]) -> tuple[float, float]:
+    """Width and height of some outlines (m), their arcs' bellies included."""
+    places = [outline.points for outline in outlines]
+    for outline in outlines:
+        arcs = np.flatnonzero(outline.arcs)
+        if not len(arcs):
             continue
-        if piece.closed:
-            found.append(piece)
-            continue
-        chain, names = [piece], [piece.name]
-        for backwards in (False, True):
-            while math.dist(chain[0].points[0], chain[-1].points[-1]) > gap:
-                step = free.nearest(chain[0].points[0] if backwards else chain[-1].points[-1])
-                if step is None:
-                    break
-                other, end = step
-                names.append(other.name)
-                if backwards:
-                    chain.insert(0, other if end == -1 else other.reverse())
-                else:
-                    chain.append(other if end == 0 else other.reverse())
-        found.append(_chained(chain, names, gap))
-    return found
+        start, end = (heading[arcs] for heading in outline.headings)
+        for k in range(4):  # where the arc runs along an axis
+            way = k * math.pi / 2
+            low, high = np.minimum(start, end), np.maximum(start, end)
+            passed = arcs[low + (way - low) % (2 * math.pi) <= high]
+            side = way - math.pi / 2 * np.sign(outline.bulges[passed])
+            out = outline.radii[passed, None] * np.stack([np.cos(side), np.sin(side)], axis=1)
+            places.append(outline.centres[passed] + out)
+    width, height = np.ptp(np.vstack(places), axis=0)
+    return float(width), float(height)
 
 
-class _FreeEnds:
-    """Ends of open pieces that are not joined yet, in cells of twice the gap: all within the gap lie in a cell or its neighbours."""
-
-    def __init__(self, pieces: list[Piece], gap: float) -> None:
-        self._pieces, self._gap = pieces, gap
-        self._used = [False] * len(pieces)
-        self._ends: dict[tuple[int, int], list[tuple[int, int]]] = {}
-        for i, piece in enumerate(pieces):
-            if not piece.closed:
-                for end in (0, -1):
-                    self._ends.setdefault(_cell(piece.points[end], 2 * gap), []).append((i, end))
-
-    def take(self, i: int) -> bool:
-        """Take a piece; whether it was free."""
-        free, self._used[i] = not self._used[i], True
-        return free
-
-    def nearest(self, place: np.ndarray[Any, Any]) -> tuple[Piece, int] | None:
-        """Take the piece whose free end is nearest to a place, within the gap: the piece and which end, or ``None``."""
-        x, y = _cell(place, 2 * self._gap)
-        best, nearest = None, self._gap
-        for i, j in _AROUND:
-            for candidate, end in self._ends.get((x + i, y + j), ()):
-                away = math.dist(self._pieces[candidate].points[end], place)
-                if not self._used[candidate] and (away < nearest or (away == nearest and best is None)):
-                    best, nearest = (candidate, end), away
-        if best is None:
-            return None
-        self.take(best[0])
-        return self._pieces[best[0]], best[1]
-
-
-def _chained(chain: list[Piece], names: list[str], gap: float) -> Piece:
-    points = np.vstack([chain[0].points[:1], *(piece.points[1:] for piece in chain)])
-    if math.dist(points[0], points[-1]) <= gap and len(points) > 2:
-        points[-1] = points[0]
-    name = names[0] if len(names) == 1 else f"{names[0]} and {len(names) - 1} joined to it"
-    empty = np.flatnonzero((np.diff(points, axis=0) == 0).all(axis=1))
-    if len(empty):
-        x, y = points[empty[0]]
-        raise InputError(f"{name}: an entity at ({x:g}, {y:g}) is not longer than the gap that is closed; remove it")
-    flattening = max(piece.flattening for piece in chain)
-    return Piece(points, np.concatenate([piece.bulges for piece in chain]), name, flattening)
-
-
-def _cell(place: np.ndarray[Any, Any], size: float) -> tuple[int, int]:
-    return math.floor(place[0] / size), math.floor(place[1] / size)
+def _few(texts: list[str], what: str) -> list[str]:
+    more = len(texts) - _MOST_FAULTS
+    return texts if more <= 0 else [*texts[:_MOST_FAULTS], f"{more} more {what}"]

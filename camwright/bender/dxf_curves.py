@@ -17,6 +17,9 @@ _LOOKED_AT = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
 """Places on a stretch of the curve: its ends, and where its distance from the chord is measured; three, since a
 stretch with a turning point may meet its chord in the middle."""
 
+_GREATEST = 1e100
+"""Coordinate whose square is a number still."""
+
 Curve = Callable[[FloatArray], FloatArray]
 """Places of shape ``(n, 3)`` on a curve at parameters of shape ``(n,)``."""
 
@@ -54,8 +57,8 @@ def flatten(curve: Curve, parameters: FloatArray, tolerance: float) -> tuple[Flo
     while len(start):
         at = start[:, None] + (end - start)[:, None] * _LOOKED_AT
         places = curve(at.ravel()).reshape(*at.shape, 3)
-        if not np.isfinite(places).all():
-            raise InputError("a coordinate is NaN or infinite; draw the entity again")
+        if not (np.abs(places) < _GREATEST).all():
+            raise InputError("a coordinate is NaN, infinite or absurd; draw the entity again")
         away = _from_chord(places)
         near = away <= tolerance
         distance = max(distance, float(away[near].max(initial=0.0)))

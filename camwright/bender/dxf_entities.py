@@ -3,102 +3,134 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from camwright.bender.dxf_curves import polyline_of
+from camwright.bender.piece import Piece
 from camwright.profiles.errors import InputError
-from camwright.profiles.polynomial.profile import FloatArray
 
 _FRAME = 16
 """Flag of a vertex that frames a fitted spline and is no part of the line."""
+
+MOST_BULGE = 1e6
+"""Greatest bulge: above it, a circle of a quarter of a million chords, the chord is what was drawn."""
 
 _PLANE = 1e-9
 """Difference of height, in drawing units, up to which an entity lies in a plane."""
 
 
+def title(entity: Any, origin: str = "", layer: str | None = None) -> str:
+    """Kind, handle and layer of an entity, for messages; one inside a block by the handle of the block reference."""
+    handle = f"in block reference #{origin}" if origin else f"#{entity.dxf.handle}"
+    return f"{entity.dxftype()} {handle} on layer {entity.dxf.layer if layer is None else layer}"
+
+
+def is_line_work(entity: Any) -> bool:
+    """Whether an entity is of a kind that can be bent."""
+    return entity.dxftype() in _READERS
+
+
 @dataclass(frozen=True, eq=False)
-class Piece:
-    """A stretch of die line from one entity.
+class Drawn:
+    """What an entity gives.
 
     Parameters
     ----------
-    points, bulges
-        As in `camwright.profiles.bender.outline.Outline`, in drawing units.
-    name
-        Kind, handle and layer of the entity.
-    flattening
-        Largest distance of the piece from the curve that it stands for, in drawing units; 0 for lines and arcs.
+    piece
+        The line (drawing units); ``None`` if the entity has no length.
+    notes
+        What of it was left out or taken otherwise.
     """
 
-    points: FloatArray
-    bulges: FloatArray
-    name: str
-    flattening: float = 0.0
-
-    @property
-    def closed(self) -> bool:
-        """Whether the piece ends where it begins."""
-        return bool((self.points[0] == self.points[-1]).all())
-
-    def reverse(self) -> Piece:
-        """Return the same stretch from its other end."""
-        return Piece(self.points[::-1], -self.bulges[::-1], self.name, self.flattening)
+    piece: Piece | None
+    notes: tuple[str, ...] = ()
 
 
-def describe(entity: Any) -> str:
-    """Kind, handle and layer of an entity, for messages."""
-    handle = entity.dxf.handle or getattr(entity.source_block_reference, "dxf", entity.dxf).handle
-    origin = "" if entity.dxf.handle else "in block reference "
-    return f"{entity.dxftype()} {origin}#{handle} on layer {entity.dxf.layer}"
+@dataclass(frozen=True)
+class Resolution:
+    """How finely a drawing is read, in drawing units.
+
+    Parameters
+    ----------
+    flattening
+        Largest distance of a curve from its polyline.
+    least
+        Length below which a segment has none.
+    greatest
+        Greatest coordinate that is believed.
+    """
+
+    flattening: float
+    least: float
+    greatest: float
 
 
-def piece_of(entity: Any, flattening: float) -> Piece | None:
-    """Turn an entity into a piece; nothing for an entity that is no line work.
+def piece_of(entity: Any, name: str, resolution: Resolution) -> Drawn:
+    """Turn an entity of line work into a piece.
 
     Parameters
     ----------
     entity
         The ezdxf entity.
-    flattening
-        Largest distance of a curve from its polyline, in drawing units.
+    name
+        What it is called in messages.
+    resolution
+        How finely the drawing is read.
 
     Raises
     ------
     InputError
         The entity is line work that cannot be bent: not flat, without length, not finite.
     """
-    kind = entity.dxftype()
-    if kind not in _READERS:
-        return None
-    name = describe(entity)
     try:
-        points, bulges, distance = _READERS[kind](entity, flattening)
-    except (ArithmeticError, ValueError, LookupError) as error:  # what the library makes of NaN or missing numbers
-        raise InputError(f"{name}: its geometry cannot be used: {error}") from error
-    piece = Piece(points, bulges, name, distance)
+        points, bulges, distance = _READERS[entity.dxftype()](entity, resolution.flattening)
+    except InputError as error:
+        raise InputError(*(f"{name}: {fault}" for fault in error.faults)) from error
+    except Exception as error:  # whatever the library makes of NaN, missing or absurd numbers
+        reason = str(error) or type(error).__name__
+        raise InputError(f"{name}: its geometry cannot be used: {reason}") from error
     if not (np.isfinite(points).all() and np.isfinite(bulges).all()):
         raise InputError(f"{name}: a coordinate or bulge is NaN or infinite; draw the entity again")
+    if len(points) and float(np.abs(points).max()) > resolution.greatest:
+        raise InputError(
+            f"{name}: a coordinate of {np.abs(points).max():g}, beyond the {resolution.greatest:g} that are believed; move the "
+            "drawing to its origin"
+        )
     if len(bulges) == 0:
         raise InputError(f"{name}: it has fewer than two vertices; remove it")
-    empty = np.flatnonzero((np.diff(points, axis=0) == 0).all(axis=1))
-    if len(empty):
-        x, y = points[empty[0]]
-        raise InputError(f"{name}: segment {empty[0] + 1} has no length, at ({x:g}, {y:g}); remove the doubled vertex")
-    return piece
+    return _cleaned(Piece(points, bulges, name, distance), resolution.least)
 
 
-def _flat(name: str, heights: ArrayLike) -> None:
+def _cleaned(piece: Piece, least: float) -> Drawn:
+    """Leave out what has no length, and take arcs that no machine could tell from a line as lines."""
+    points, bulges, notes = piece.points, piece.bulges, []
+    absurd = np.abs(bulges) > MOST_BULGE
+    if absurd.any():
+        notes.append(f"bulge {bulges[absurd][0]:g} of {piece.name}, taken as a line")
+        bulges = np.where(absurd, 0.0, bulges)
+    chord = np.hypot(*np.diff(points, axis=0).T)
+    lasting = (chord > 0) & (chord * np.maximum(np.abs(bulges), 1.0) > least)
+    if not lasting.any():
+        return Drawn(None, (f"{piece.name} (no length)",))
+    if not lasting.all():
+        notes.append(f"segment without length of {piece.name}")
+        points, bulges = points[np.concatenate([[True], lasting])], bulges[lasting]
+        if piece.closed:
+            points[-1] = points[0]
+    return Drawn(replace(piece, points=points, bulges=bulges), tuple(notes))
+
+
+def _flat(heights: ArrayLike) -> None:
     z = np.asarray(heights, dtype=np.float64)
     if len(z) and float(np.ptp(z)) > _PLANE:
         raise InputError(
-            f"{name}: it is three-dimensional, from z = {z.min():g} to {z.max():g}; flatten it to one height, a "
-            "die line is "
-            "a plane drawing"
+            f"it is three-dimensional, from z = {z.min():g} to {z.max():g}; flatten it to one height, a die line is a "
+            "plane drawing"
         )
 
 
@@ -106,9 +138,7 @@ def _sense(entity: Any) -> float:
     """Tell whether an entity is drawn on the plane's face (1) or seen from behind (-1)."""
     direction = entity.dxf.extrusion
     if abs(direction.x) > _PLANE or abs(direction.y) > _PLANE or direction.z == 0:
-        raise InputError(
-            f"{describe(entity)}: its plane is tilted (extrusion {direction}); turn it into the drawing plane"
-        )
+        raise InputError(f"its plane is tilted (extrusion {direction}); turn it into the drawing plane")
     return math.copysign(1.0, direction.z)
 
 
@@ -133,10 +163,10 @@ def _lwpolyline(entity: Any, _: float) -> tuple[Any, Any, float]:
 
 def _old_polyline(entity: Any, _: float) -> tuple[Any, Any, float]:
     if entity.is_polygon_mesh or entity.is_poly_face_mesh:
-        raise InputError(f"{describe(entity)}: it is a mesh, not a line; remove it")
+        raise InputError("it is a mesh, not a line; remove it")
     vertices = [vertex for vertex in entity.vertices if not vertex.dxf.flags & _FRAME]
     places = [vertex.dxf.location for vertex in vertices]
-    _flat(describe(entity), [place.z for place in places])
+    _flat([place.z for place in places])
     sense = 1.0 if entity.is_3d_polyline else _sense(entity)
     bulges = [vertex.dxf.get("bulge", 0.0) for vertex in vertices]
     return _polyline([(place.x, place.y) for place in places], bulges, bool(entity.is_closed), sense)
@@ -144,13 +174,13 @@ def _old_polyline(entity: Any, _: float) -> tuple[Any, Any, float]:
 
 def _line(entity: Any, _: float) -> tuple[Any, Any, float]:
     start, end = entity.dxf.start, entity.dxf.end
-    _flat(describe(entity), [start.z, end.z])
+    _flat([start.z, end.z])
     return np.array([[start.x, start.y], [end.x, end.y]]), np.zeros(1), 0.0
 
 
 def _arc(entity: Any, _: float) -> tuple[Any, Any, float]:
     if not (math.isfinite(entity.dxf.start_angle) and math.isfinite(entity.dxf.end_angle)):
-        raise InputError(f"{describe(entity)}: an angle is NaN or infinite; draw the entity again")
+        raise InputError("an angle is NaN or infinite; draw the entity again")
     sweep = (entity.dxf.end_angle - entity.dxf.start_angle) % 360.0 or 360.0
     return _round(entity, math.radians(entity.dxf.start_angle), math.radians(sweep))
 
@@ -161,8 +191,10 @@ def _circle(entity: Any, _: float) -> tuple[Any, Any, float]:
 
 def _round(entity: Any, start: float, sweep: float) -> tuple[Any, Any, float]:
     sense, centre, radius = _sense(entity), entity.dxf.center, entity.dxf.radius
+    if radius == 0:
+        return np.zeros((2, 2)), np.zeros(1), 0.0
     if not radius > 0:
-        raise InputError(f"{describe(entity)}: radius {radius:g}; it must be positive")
+        raise InputError(f"radius {radius:g}; it must be positive")
     parts = 1 if sweep <= math.pi else 2  # a bulge above 1 loses digits
     angle = start + sweep * np.arange(parts + 1) / parts
     points = np.stack([centre.x + radius * np.cos(angle), centre.y + radius * np.sin(angle)], axis=1)
@@ -173,7 +205,7 @@ def _round(entity: Any, start: float, sweep: float) -> tuple[Any, Any, float]:
 
 def _curve(entity: Any, flattening: float) -> tuple[Any, Any, float]:
     places, distance = polyline_of(entity, flattening)
-    _flat(describe(entity), places[:, 2])
+    _flat(places[:, 2])
     points = places[:, :2]
     points = points[np.concatenate([[True], (np.diff(points, axis=0) != 0).any(axis=1)])]
     return points, np.zeros(len(points) - 1), distance
@@ -188,56 +220,3 @@ _READERS: dict[str, Callable[[Any, float], tuple[Any, Any, float]]] = {
     "ELLIPSE": _curve,
     "SPLINE": _curve,
 }
-
-
-def _not_placed(entity: Any, reason: str) -> None:
-    if entity.dxftype() in _READERS:
-        raise InputError(f"{describe(entity)}: it cannot be put in the place of its block reference: {reason}")
-
-
-def require_bounded(document: Any, most: int, depth: int) -> None:
-    """Refuse a drawing whose block references unfold to too much, before any of them is unfolded.
-
-    Raises
-    ------
-    InputError
-        References nested deeper than ``depth``, or more than ``most`` entities in all.
-    """
-    sizes: dict[tuple[str, int], int] = {}
-
-    def size(layout: Any, name: str, level: int) -> int:
-        if (name, level) not in sizes:
-            total = 0
-            for entity in layout:
-                if entity.dxftype() != "INSERT":
-                    total += 1
-                    continue
-                if level == depth:
-                    raise InputError(f"{describe(entity)}: blocks are nested more than {depth} deep; explode them")
-                inner = document.blocks.get(entity.dxf.name)
-                if inner is not None:
-                    total += max(1, entity.mcount) * size(inner, entity.dxf.name, level + 1)
-            sizes[name, level] = total
-        return sizes[name, level]
-
-    if size(document.modelspace(), "", 0) > most:
-        raise InputError(f"block references unfold to more than {most} entities; purge what is no die line")
-
-
-def walk(layout: Any, layer: str | None = None) -> Iterator[tuple[Any, str]]:
-    """Go through a layout's entities, those inside block references too, each with the layer it appears on.
-
-    Parameters
-    ----------
-    layout
-        Model space, or the entities of a block reference in their places.
-    layer
-        Layer of that reference, which the block's entities on layer 0 take; ``None`` in model space.
-    """
-    for entity in layout:
-        own = layer if layer is not None and entity.dxf.layer == "0" else entity.dxf.layer
-        if entity.dxftype() != "INSERT":
-            yield entity, own
-            continue
-        for cell in entity.multi_insert() if entity.mcount > 1 else (entity,):
-            yield from walk(cell.virtual_entities(skipped_entity_callback=_not_placed), own)

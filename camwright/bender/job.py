@@ -68,7 +68,9 @@ class BenderJob:
     flattening
         Largest distance of a curve from its polyline (m).
     units
-        Unit of drawings that do not say theirs; ``None`` refuses them.
+        Unit of drawings, whatever their headers say; ``None`` for the headers'.
+    greatest_size
+        Greatest width or height of a drawing that the machine is made for (m); infinite if it is not stated.
     flavour, numbering
         How programs are written.
     warnings
@@ -95,6 +97,7 @@ class BenderJob:
     gap: float
     flattening: float
     units: str | None
+    greatest_size: float
     flavour: Flavour
     numbering: Numbering
     warnings: tuple[str, ...]
@@ -157,6 +160,7 @@ def load_bender(path: Path | None = None) -> BenderJob:
         gap=drawing.gap,
         flattening=drawing.flattening,
         units=None if drawing.units == "none" else drawing.units,
+        greatest_size=np.inf if drawing.greatest_size is None else drawing.greatest_size,
         flavour=program.flavour,
         numbering=numbering,
         warnings=warnings,

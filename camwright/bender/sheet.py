@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from camwright.bender.answer import BentDrawing
+from camwright.bender.answer import BentDrawing, size_words
 from camwright.bender.bend_list import BendRow, bend_rows
 from camwright.bender.program_file import ROUNDING, BentOutline
 from camwright.house.fonts import font_folders
@@ -31,6 +31,7 @@ def sheet_data(result: BentDrawing) -> dict[str, Any]:
         "version": camwright_version(),
         "bender": job.name,
         "facts": [
+            ["Size", f"{size_words(result.found)}, the drawing's unit is {result.found.unit}"],
             ["Rule", f"{1e3 * job.height:g} mm × {1e3 * job.thickness:g} mm"],
             ["Arcs", _division_words(job)],
             ["Ellipses and splines", f"lines within {1e3 * job.flattening:g} mm, counted in the deviation"],
@@ -44,7 +45,10 @@ def sheet_data(result: BentDrawing) -> dict[str, Any]:
         "step": f"{np.degrees(table.step):g}",
         "warnings": list(result.warnings),
         "passed": result.passed,
-        "outlines": [_outline_data(outline, result) for outline in result.outlines[:_MOST_OUTLINES]],
+        "outlines": [
+            _outline_data(outline, str(style), result)
+            for outline, style in zip(result.outlines[:_MOST_OUTLINES], result.found.styles, strict=False)
+        ],
         "left_out": max(0, len(result.outlines) - _MOST_OUTLINES),
     }
 
@@ -58,7 +62,7 @@ def _division_words(job: Any) -> str:
     return f"fewest bends within {1e3 * job.divide.chord_error:g} mm"
 
 
-def _outline_data(outline: BentOutline, result: BentDrawing) -> dict[str, Any]:
+def _outline_data(outline: BentOutline, style: str, result: BentDrawing) -> dict[str, Any]:
     proof, gain = outline.proof, 1 - outline.times.total / outline.paper_times.total
     closing = "open outline" if proof.closing_error is None else f"{1e3 * proof.closing_error:.4f} mm"
     paper = f"paper's rule: {outline.paper_bends}, chord error {1e3 * outline.paper_error:.3f} mm"
@@ -71,6 +75,7 @@ def _outline_data(outline: BentOutline, result: BentDrawing) -> dict[str, Any]:
         "source": outline.plan.outline.name,
         "sha256": outline.sha256,
         "facts": [
+            ["Style", style],
             ["Bends", f"{outline.plan.bends} ({paper})"],
             ["Rule length", f"{1e3 * proof.rule_length:.3f} mm"],
             ["Largest deviation", f"{1e3 * proof.deviation:.4f} mm (allowed {allowed:.4f} mm)"],

@@ -14,7 +14,7 @@ from camwright.profiles.bender.springback import PAPER_STEP, Interpolation
 from camwright.profiles.limits import Limits
 
 Unit = Literal["none", "mm", "cm", "m", "in", "ft"]
-"""Unit of drawings that do not say theirs; none refuses them."""
+"""Unit of drawings, whatever their headers say; none for the headers'."""
 
 
 class RuleTable(Table):
@@ -118,6 +118,7 @@ class DrawingTable(Table):
     gap: Annotated[float, *quantity_field("length", example="0.01 mm")]
     flattening: Annotated[float, *quantity_field("length", example="0.01 mm")]
     units: Unit = "none"
+    greatest_size: Annotated[float | None, *quantity_field("length", example="2 m")] = None
 
 
 class ProgramTable(Table):

@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from camwright.bender.answer import BentDrawing, answer, calibration_answer
+from camwright.bender.answer import BentDrawing, answer, calibration_answer, size_words
 from camwright.bender.bend_list import csv_text
 from camwright.bender.calibration import Calibration, calibrate, residuals_text
-from camwright.bender.drawing import read_drawing
+from camwright.bender.drawing import Reading, read_drawing
+from camwright.bender.dxf_styles import style_choice
 from camwright.bender.figures import draw
 from camwright.bender.job import BenderJob, load_bender
 from camwright.bender.program_file import bend_outlines
@@ -44,6 +45,22 @@ def run(
         Path | None, typer.Option("--out", metavar="DIR", help="Output directory; out/<drawing> if left out.")
     ] = None,
     layer: Annotated[str | None, typer.Option("--layer", metavar="NAME", help="Bend this layer only.")] = None,
+    style: Annotated[
+        str | None,
+        typer.Option("--style", metavar="STYLE", help="Bend lines of this style only, e.g. layer=CUT,colour=1."),
+    ] = None,
+    styles: Annotated[
+        Literal["one", "all"],
+        typer.Option("--styles", help="Bend one style; or all of them, each for itself."),
+    ] = "one",
+    overlaps: Annotated[
+        Literal["merge", "refuse"],
+        typer.Option("--overlaps", help="Lines that lie on each other: use them once, or refuse the drawing."),
+    ] = "merge",
+    arcs: Annotated[
+        Literal["find", "keep"],
+        typer.Option("--arcs", help="Chords that lie on an arc: bend that arc, or keep them as drawn."),
+    ] = "find",
     start: Annotated[
         str | None, typer.Option("--start", metavar="X,Y", help="Begin at the vertex nearest to this place (mm).")
     ] = None,
@@ -72,9 +89,12 @@ def run(
     if drawing is None:
         raise InputError("no drawing is named; give a DXF file, or test bends with --calibrate")
     place = None if start is None else _place(start)
+    choice = style_choice(style, layer, each=styles == "all")
+    arc_error = bender.divide.allowed if arcs == "find" else None
+    reading = Reading(bender.gap, bender.flattening, bender.units, choice, overlaps, arc_error)
     directory = Path("out") / drawing.stem if out is None else out
     with voice.progress(5) as step:
-        result = _bent(drawing, bender, layer, place, reverse, step)
+        result = _bent(drawing, bender, reading, place, reverse, step)
         names = _names(drawing.stem, len(result.outlines))
         programs = [directory / f"{name}.nc" for name in names]
         files = _write(result, names, directory, figures=not no_figures, step=step)
@@ -110,17 +130,17 @@ def _names(stem: str, count: int) -> list[str]:
 
 
 def _bent(
-    drawing: Path, bender: BenderJob, layer: str | None, place: tuple[float, float] | None, reverse: bool, step: Step
+    drawing: Path, bender: BenderJob, reading: Reading, place: tuple[float, float] | None, reverse: bool, step: Step
 ) -> BentDrawing:
     """Read a drawing and bend its outlines."""
     step("reading the drawing")
-    found = read_drawing(drawing, bender.gap, bender.flattening, bender.units, layer)
+    found = read_drawing(drawing, reading)
     outlines = [outline.reverse() if reverse else outline for outline in found.outlines]
     if place is not None:
         outlines = [outline.begin_at(*place) for outline in outlines]
     step("writing and proving programs")
     bent = bend_outlines(outlines, bender, drawing.stem)
-    return BentDrawing(drawing, hashlib.sha256(drawing.read_bytes()).hexdigest(), bender, bent, found.warnings)
+    return BentDrawing(drawing, hashlib.sha256(drawing.read_bytes()).hexdigest(), bender, found, bent)
 
 
 def _write(result: BentDrawing, names: list[str], directory: Path, *, figures: bool, step: Step) -> list[Path]:
@@ -184,6 +204,7 @@ def _drawing_view(result: BentDrawing, files: Sequence[Path]) -> RenderableType:
         )
     more = len(result.outlines) - _MOST_ROWS
     notes = [new_text(f"{more} more programs are not shown")] if more > 0 else []
+    notes += [new_text(f"the drawing is {size_words(result.found)} large, its unit is {result.found.unit}")]
     notes += [
         new_text(
             f"{outline.program.name}: {check.name} {check.value:.3g} {check.unit}, allowed {check.limit:.3g}",

@@ -55,6 +55,9 @@ class DivisionRule(Protocol):
     def __call__(self, radius: FloatArray, included: FloatArray) -> Division:
         """Divide the arcs."""
 
+    def allowed(self, radius: float) -> float:
+        """Distance (m) between a long arc of a radius (m) and its bends that the rule takes for good."""
+
 
 @dataclass(frozen=True)
 class EqualSides:
@@ -73,6 +76,10 @@ class EqualSides:
         """Divide the arcs."""
         del radius  # the step is a part of the circle, whatever its radius
         return _alike(included, included * self.sides / (2 * math.pi))
+
+    def allowed(self, radius: float) -> float:
+        """Distance of the bends outside the arc (m)."""
+        return radius * (1 / math.cos(math.pi / self.sides) - 1)
 
 
 @dataclass(frozen=True)
@@ -95,6 +102,10 @@ class EqualSteps:
         """Divide the arcs."""
         return _alike(included, radius * included / self.step)
 
+    def allowed(self, radius: float) -> float:
+        """Distance of the bends outside the arc (m)."""
+        return radius * (1 / math.cos(min(self.step / (2 * radius), _WIDEST)) - 1)
+
 
 @dataclass(frozen=True)
 class FewestBends:
@@ -110,6 +121,11 @@ class FewestBends:
     """
 
     chord_error: float
+
+    def allowed(self, radius: float) -> float:
+        """Give the chord error, whatever the radius (m)."""
+        del radius
+        return self.chord_error
 
     def __post_init__(self) -> None:
         if not self.chord_error > 0:

@@ -11,8 +11,8 @@ import pytest
 def drawing(tmp_path: Path) -> Callable[..., Path]:
     """Make a DXF file: ``drawing(draw, units=4)`` calls ``draw(modelspace, document)`` and gives the path."""
 
-    def make(draw: Callable[..., None], units: int = 4, name: str = "drawing.dxf") -> Path:
-        document = ezdxf.new("R2000", units=units)
+    def make(draw: Callable[..., None], units: int = 4, name: str = "drawing.dxf", version: str = "R2000") -> Path:
+        document = ezdxf.new(version, units=units)
         draw(document.modelspace(), document)
         document.saveas(tmp_path / name)
         return tmp_path / name

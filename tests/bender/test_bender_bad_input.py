@@ -53,10 +53,6 @@ def wide(m, d):
 
 ROWS = {
     "empty drawing": (lambda *_: None, "the drawing is empty"),
-    "zero-length segment": (
-        lambda m, _: m.add_lwpolyline([(0, 0), (5, 0), (5, 0), (9, 9)]),
-        "LWPOLYLINE #[0-9A-F]+ on layer 0: segment 2 has no length, at .5, 0.; remove the doubled vertex",
-    ),
     "NaN": (lambda m, _: m.add_line((0, 0), (math.nan, 1)), "LINE #[0-9A-F]+ on layer 0: .*NaN"),
     "NaN in a spline": (
         lambda m, _: m.add_spline([(0, 0), (math.nan, 1), (5, 5)]),

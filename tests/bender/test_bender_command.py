@@ -385,3 +385,81 @@ def test_serial_line_that_is_none(drawing: Make, tmp_path: Path, capsys: pytest.
     code, _, err = run(capsys, path, "--out", tmp_path / "out", "--no-figures", "--port", tmp_path / "tty")
     assert code == 2
     assert "the serial line cannot be used" in err
+
+
+def two_styles(m, d):
+    m.add_lwpolyline([(0, 0), (50, 0), (50, 30)], dxfattribs={"layer": "CUT", "color": 1})
+    m.add_line((0, 20), (40, 20), dxfattribs={"layer": "CREASE", "color": 3})
+
+
+def test_styles_on_the_command_line(drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    path, out = drawing(two_styles), tmp_path / "out"
+    code, answer, err = run(capsys, path, "--out", out, "--no-figures")
+    assert code == 2
+    assert not out.exists()
+    assert "--style layer=CUT,colour=1,linetype=Continuous: 1 entity, 80.000 mm" in err
+    assert "--style layer=CREASE,colour=3,linetype=Continuous: 1 entity, 40.000 mm" in answer["message"]
+    for choice in (("--style", "layer=CUT,colour=1"), ("--style", "colour=1"), ("--layer", "cut")):
+        code, answer, _ = run(capsys, path, "--out", out, "--no-figures", *choice)
+        assert (code, answer["outlines"], answer["length_mm"]) == (0, 1, 80.0)
+        assert answer["styles"] == [{"layer": "CUT", "colour": "1", "linetype": "Continuous"}]
+    code, answer, _ = run(capsys, path, "--out", out, "--styles", "all")
+    assert code == 0
+    assert [program["style"] for program in answer["programs"]] == [
+        "layer=CUT,colour=1,linetype=Continuous", "layer=CREASE,colour=3,linetype=Continuous",
+    ]  # fmt: skip
+    assert "layer=CREASE,colour=3" in (out / "sheet.html").read_text(encoding="utf-8")
+
+
+def test_unit_and_size_are_told_always(drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    path = drawing(lambda m, _: m.add_lwpolyline(STEP), units=1)
+    code, answer, _ = run(capsys, path, "--out", tmp_path / "out", "--no-figures")
+    assert (code, answer["unit"], answer["size_mm"]) == (0, "in", pytest.approx([34.5 * 25.4, 22 * 25.4]))
+    assert not any("beyond the machine" in text for text in answer["warnings"])
+    assert main(["bend", str(path), "--out", str(tmp_path / "out"), "--no-figures"]) == 0
+    assert "the drawing is 876.300 mm × 558.800 mm large, its unit is in" in capsys.readouterr().out
+    large = drawing(lambda m, _: m.add_line((0, 0), (100, 0)), units=1)
+    _, answer, _ = run(capsys, large, "--out", tmp_path / "out", "--no-figures")
+    assert any("2540.000 mm × 0.000 mm large, beyond the machine's 2000 mm" in text for text in answer["warnings"])
+    unsaid = changed(tmp_path, ('greatest_size = "2 m"', ""))
+    _, answer, _ = run(capsys, large, "--job", unsaid, "--out", tmp_path / "out", "--no-figures")
+    assert not any("beyond the machine" in text for text in answer["warnings"])
+
+
+def test_doubles_near_ends_and_chords_in_the_answer(drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    def draw(m, _):
+        m.add_line((0, 0), (40, 0))
+        m.add_line((40, 0), (10, 0))
+        m.add_line((40, 0.5), (40, 30))
+        points = [(20 * math.cos(a), 60 + 20 * math.sin(a)) for a in (math.radians(5 * k) for k in range(19))]
+        m.add_lwpolyline(points)
+
+    path, out = drawing(draw), tmp_path / "out"
+    code, answer, _ = run(capsys, path, "--out", out, "--no-figures")
+    assert code == 0
+    assert answer["overlaps"] == [
+        {"first": "LINE #2F on layer 0", "second": "LINE #30 on layer 0", "length_mm": pytest.approx(30)}
+    ]
+    (ends,) = answer["near_ends"]
+    assert (ends["first"], ends["second"]) == ("LINE #2F on layer 0", "LINE #31 on layer 0")
+    assert (ends["distance_mm"], ends["gap_mm"]) == (pytest.approx(0.5), pytest.approx(0.51))
+    few = answer["bends"]
+    code, answer, _ = run(capsys, path, "--out", out, "--no-figures", "--arcs", "keep")
+    assert (code, answer["bends"]) == (0, 17)
+    assert few < 17
+    code, _, err = run(capsys, path, "--out", tmp_path / "none", "--no-figures", "--overlaps", "refuse")
+    assert code == 2
+    assert "LINE #30 on layer 0 lies on LINE #2F on layer 0 over 30.000 mm" in err
+    joined = changed(tmp_path, ('gap = "0.01 mm"', f'gap = "{ends["gap_mm"]} mm"'))
+    code, answer, _ = run(capsys, path, "--job", joined, "--out", out, "--no-figures")
+    assert answer["near_ends"] == []
+
+
+def test_time_does_not_grow_with_the_length_of_a_side(
+    drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+):
+    path = drawing(lambda m, _: m.add_lwpolyline([(0, 0), (1e6, 0), (1e6, 600)]))
+    begin = time.process_time()
+    code, answer, _ = run(capsys, path, "--out", tmp_path / "out", "--no-figures")
+    assert time.process_time() - begin < 2.0
+    assert (code, answer["length_mm"]) == (0, 1_000_600.0)

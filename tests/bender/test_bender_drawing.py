@@ -4,23 +4,27 @@ import math
 from collections.abc import Callable
 from pathlib import Path
 
+import ezdxf
 import numpy as np
 import pytest
 from ezdxf.math import closed_uniform_bspline
 from hypothesis import given
 from hypothesis import strategies as st
 
-from camwright.bender.drawing import Drawing, join, read_drawing
-from camwright.bender.dxf_entities import Piece
+from camwright.bender.drawing import Drawing, Reading, read_drawing
 from camwright.bender.dxf_guard import MOST_ENTITIES
+from camwright.bender.dxf_styles import StyleChoice
+from camwright.bender.joining import join
+from camwright.bender.piece import Piece
 from camwright.profiles.errors import InputError
 
 Make = Callable[..., Path]
 MM = 1e-3
 
 
-def read(path: Path, **more: object) -> Drawing:
-    return read_drawing(path, 1e-5, 1e-5, **more)  # type: ignore[arg-type]
+def read(path: Path, layer: str | None = None, **more: object) -> Drawing:
+    """Read all styles of a drawing, each for itself."""
+    return read_drawing(path, Reading(1e-5, 1e-5, style=StyleChoice(layer, each=True), **more))  # type: ignore[arg-type]
 
 
 def test_lwpolyline_in_its_drawing_order(drawing: Make):
@@ -141,6 +145,7 @@ def test_blocks_layers_and_what_is_left_out(drawing: Make):
         "drawing.dxf: left out 1 × TEXT (no line work)",
         "drawing.dxf: left out 1 × entity on layer HIDDEN (off or frozen)",
     )
+    assert [style.layer for style in found.styles] == ["CUT", "CUT", "0"]
     assert len(read(path, layer="cut").outlines) == 2
     with pytest.raises(InputError, match="no layer 'CUTS'; the layers are 0, CUT, Defpoints, HIDDEN"):
         read(path, layer="CUTS")
@@ -224,12 +229,11 @@ def exponential(m, d):
     ("draw", "message"),
     [
         (lambda *_: None, "the drawing is empty"),
-        (lambda m, *_: m.add_text("only a note"), "the drawing is empty; drawing.dxf: left out 1 × TEXT"),
+        (lambda m, *_: m.add_text("only a note"), "the drawing is empty; left out 1 × TEXT"),
         (
-            lambda m, *_: m.add_lwpolyline([(0, 0), (5, 0), (5, 0), (9, 9)]),
-            "LWPOLYLINE #2F on layer 0: segment 2 has no length",
+            lambda m, *_: m.add_line((1, 1), (1, 1)),
+            r"the drawing is empty; left out 1 × LINE #2F on layer 0 \(no length\)",
         ),
-        (lambda m, *_: m.add_line((1, 1), (1, 1)), "LINE #2F on layer 0: segment 1 has no length"),
         (nan_line, "LINE #2F on layer 0: .*NaN"),
         (
             lambda m, *_: m.add_lwpolyline([(0, 0, math.inf), (1, 0, 0)], format="xyb"),
@@ -237,7 +241,7 @@ def exponential(m, d):
         ),
         (lambda m, *_: m.add_arc((0, 0), math.nan, 0, 90), "ARC #2F on layer 0: radius nan"),
         (lambda m, *_: m.add_arc((0, 0), 1, math.nan, 90), "ARC #2F on layer 0: an angle is NaN"),
-        (lambda m, *_: m.add_circle((0, 0), 0), "CIRCLE #2F on layer 0: radius 0"),
+        (lambda m, *_: m.add_circle((0, 0), 0), r"left out 1 × CIRCLE #2F on layer 0 \(no length\)"),
         (
             lambda m, *_: m.add_polyline3d([(0, 0, 0), (1, 0, 5)]),
             "POLYLINE #2F on layer 0: it is three-dimensional, from z = 0 to 5",
@@ -259,7 +263,7 @@ def test_refused_with_file_entity_and_reason(drawing: Make, draw, message: str):
 
 def test_all_faults_at_once(drawing: Make):
     def draw(m, d):
-        m.add_line((1, 1), (1, 1))
+        m.add_line((1, 1), (math.nan, 1))
         m.add_circle((0, 0), -1)
         m.add_line((0, 0, 0), (1, 0, 2))
 
@@ -298,3 +302,123 @@ def test_a_million_entities_are_refused_before_they_are_read(tmp_path: Path):
     path.write_bytes(b"  0\nSECTION\n  2\nENTITIES\n" + point * 10**6 + b"  0\nENDSEC\n  0\nEOF\n")
     with pytest.raises(InputError, match=f"more than {MOST_ENTITIES} entities"):
         read(path)
+
+
+def test_what_has_no_length_is_left_out_with_a_warning(drawing: Make):
+    def draw(m, _):
+        m.add_lwpolyline([(0, 0), (50, 0), (50, 0), (50, 40), (0, 40), (0, 1e-6)], close=True)
+        m.add_line((5, 5), (5, 5))
+        m.add_circle((9, 9), 0)
+        m.add_lwpolyline([(7, 7), (7, 7)])
+        m.add_line((30, 5), (30.005, 5))
+
+    found = read(drawing(draw))
+    (frame,) = found.outlines
+    assert frame.closed
+    assert frame.points == pytest.approx(MM * np.array([[0, 0], [50, 0], [50, 40], [0, 40], [0, 0]]))
+    said = "\n".join(found.warnings)
+    for part in (
+        "1 × segment without length of LWPOLYLINE #2F on layer 0", "LINE #30 on layer 0 (no length)",
+        "CIRCLE #31 on layer 0 (no length)", "LWPOLYLINE #32 on layer 0 (no length)", "1 × line not longer than the gap",
+    ):  # fmt: skip
+        assert part in said
+
+
+def test_a_bulge_beyond_belief_is_a_line(drawing: Make):
+    rows = [(0, 0, 1e9), (100, 0, 0), (100, 50, 0)]
+    found = read(drawing(lambda m, _: m.add_lwpolyline(rows, format="xyb")))
+    assert found.outlines[0].bulges.tolist() == [0, 0]
+    assert "bulge 1e+09 of LWPOLYLINE #2F on layer 0, taken as a line" in found.warnings[0]
+
+
+def test_the_job_s_unit_wins_over_the_header(drawing: Make):
+    path = drawing(lambda m, _: m.add_line((0, 0), (100, 0)), units=1)
+    found = read(path, units="mm")
+    assert (found.unit, found.size) == ("mm", (0.1, 0.0))
+    assert found.warnings == ("drawing.dxf: its header says in ($INSUNITS), the bender job says mm: read in mm",)
+    header = read(path)
+    assert (header.unit, header.size[0], header.warnings) == ("in", pytest.approx(2.54), ())
+    assert read(drawing(lambda m, _: m.add_line((0, 0), (1, 0)), units=7), units="mm").size[0] == 1e-3
+
+
+@pytest.mark.parametrize("sense", [1, -1])
+def test_the_size_holds_the_bellies_of_arcs(drawing: Make, sense: int):
+    def draw(m, _):
+        m.add_lwpolyline([(0, 0, 0.5 * sense), (30, 0, 0), (30, 1, 0)], format="xyb")
+        m.add_arc((100, 50), 20, 80, 280)
+
+    found = read(drawing(draw))
+    # naive twin: many places on each arc
+    places = [outline.points for outline in found.outlines]
+    for outline in found.outlines:
+        for k in np.flatnonzero(outline.arcs):
+            out = outline.points[k] - outline.centres[k]
+            turn = np.linspace(0, outline.included[k], 20001)
+            x, y = np.cos(turn) * out[0] - np.sin(turn) * out[1], np.sin(turn) * out[0] + np.cos(turn) * out[1]
+            places.append(outline.centres[k] + np.stack([x, y], axis=1))
+    assert found.size == pytest.approx(np.ptp(np.vstack(places), axis=0), rel=1e-7)
+
+
+ABSURD = {
+    "line": lambda m, _: m.add_line((0, 0), (1e300, 0)),
+    "circle": lambda m, _: m.add_circle((0, 0), 1e300),
+    "spline": lambda m, _: m.add_open_spline([(0, 0), (1e300, 1), (3, 4), (5, 6)]),
+    "ellipse": lambda m, _: m.add_ellipse((0, 0), (1e300, 0), 0.5),
+    "polyline": lambda m, _: m.add_lwpolyline([(0, 0, 1), (1, 1e300, 0.5), (2, 2, 0)], format="xyb"),
+    "far away": lambda m, _: m.add_line((1e11, 0), (1e11, 5)),
+}
+
+
+@pytest.mark.parametrize("name", ABSURD)
+def test_absurd_coordinates(drawing: Make, name: str):
+    with pytest.raises(InputError, match=r"#2F on layer 0: .*(coordinate|geometry)"):
+        read(drawing(ABSURD[name]))
+
+
+@pytest.mark.parametrize("binary", [False, True])
+@pytest.mark.parametrize("part", [0.02, 0.5, 0.9, 0.999])
+def test_a_file_that_breaks_off(drawing: Make, binary: bool, part: float):
+    path = drawing(lambda m, _: m.add_line((0, 0), (9, 0)))
+    if binary:
+        ezdxf.readfile(path).saveas(path, fmt="bin")
+        assert len(read(path).outlines) == 1
+    data = path.read_bytes()
+    path.write_bytes(data[: int(part * len(data))])
+    with pytest.raises(InputError, match=r"not a DXF file to its end: it breaks off without EOF"):
+        read(path)
+
+
+DAMAGE = {
+    "handle": ("LINE\n  5\n2F\n", "LINE\n  5\nXYZ\n"),
+    "order of coordinates": (" 10\n0.0\n 20\n0.0\n 30\n0.0\n 11\n", " 20\n0.0\n 10\n0.0\n 30\n0.0\n 11\n"),
+}
+
+
+@pytest.mark.parametrize("name", DAMAGE)
+def test_a_damaged_file_is_read_as_far_as_it_can_be_repaired(drawing: Make, name: str):
+    path = drawing(lambda m, _: m.add_line((0, 0), (9, 0)))
+    text = path.read_text()
+    assert DAMAGE[name][0] in text
+    path.write_text(text.replace(*DAMAGE[name]))
+    found = read(path)
+    assert found.outlines[0].lengths == pytest.approx([9 * MM])
+    assert "the file is damaged" in found.warnings[0]
+    assert "was read as far as it could be repaired" in found.warnings[0]
+
+
+def test_what_the_repair_did_is_said(drawing: Make):
+    path = drawing(lambda m, _: m.add_line((0, 0), (9, 0)))
+    path.write_text(path.read_text().replace("LINE\n  5\n2F\n", "LINE\n  5\nXYZ\n 62\n1.0\n"))
+    assert any('repaired: recovered invalid integer value "1.0"' in text for text in read(path).warnings)
+
+
+def test_a_number_is_not_guessed(drawing: Make):
+    path = drawing(lambda m, _: m.add_line((0, 0), (9.5, 0)))
+    path.write_text(path.read_text().replace("11\n9.5\n", "11\n9,5\n"))
+    with pytest.raises(InputError, match=r"numbers cannot be read .* a guessed coordinate is none"):
+        read(path)
+
+
+def test_devices_are_no_drawings():
+    with pytest.raises(InputError, match="/dev/zero: a device or a pipe, not a drawing"):
+        read(Path("/dev/zero"))
