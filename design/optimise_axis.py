@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
@@ -20,6 +21,7 @@ from camwright.design.servo_aware.axis_problem import AxisProblem
 from camwright.design.servo_aware.command_basis import Command
 from camwright.design.servo_aware.programme import AxisProgramme
 from camwright.design.servo_aware.rows import RATIO
+from camwright.design.servo_aware.servo_weights import memory
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import (
     InfeasibleError,
@@ -42,6 +44,8 @@ ASIDE = 2e-3
 FURTHER = (1.0, 1.02, 1.1)
 # Shares of the least tolerance that a programme keeps, tried in turn.
 WIDER = (1.0 + ASIDE, 1.01, 1.1, 1.5)
+# Samples that a servo remembers and those of a cycle, together, that are looked at.
+MOST_SAMPLES = 2**15
 # Cuts up to so many times the asked length, and line speeds down to such a share, are looked at for a way out.
 LONGEST, SLOWEST = 8.0, 0.02
 
@@ -89,6 +93,7 @@ def solve_axis(
     """
     machine, limits = task.machine, task.limits
     require_moving(machine, objective)
+    _require_samples(task.at_speed(min(shares) * task.cut.line_speed).cut, (*servos, *between))
     cost = _cost(machine, objective)
 
     def designs(other: Task) -> bool:
@@ -140,6 +145,21 @@ def _servo_blind(task: Task, cost: ObjectiveName, designs: Callable[[Task], bool
             raise
         placed = task if task.machine.placed else place_for(task, of_command(cost)).task
         raise infeasible(placed, designs=designs) from error
+
+
+def _require_samples(cut: Cut, servos: tuple[Servo, ...]) -> None:
+    """Refuse a line that is so slow that the rows of a servo-aware design do not fit; a servo follows it well without one."""
+    shortest = min(servo.sample_time for servo in servos)
+    samples = max(memory(servo.loop) for servo in servos) + math.ceil(cut.period / shortest)
+    if samples > MOST_SAMPLES:
+        slowest = cut.length / (shortest * MOST_SAMPLES) * 60
+        raise InputError(
+            Message(
+                f"{{@line_speed}} = {cut.line_speed * 60:g} m/min: a servo-aware design looks at every sample of a cycle, {samples} "
+                f"here, the limit is {MOST_SAMPLES}; raise the line speed above {slowest:.3g} m/min or the sample time, or leave "
+                f"servo_aware out: on so slow a line the axis is near any smooth command, and the check shear_zone_error says how near"
+            )
+        )
 
 
 def _within(problem: AxisProblem, limits: Limits) -> AxisProblem:

@@ -114,8 +114,7 @@ def judge(
     Raises
     ------
     InputError
-        The profile does not run over ``[0, x_c]``, the machine cannot be in sync over the zone, or the servo's memory is too long to
-        simulate.
+        The profile does not run over ``[0, x_c]``, or the machine cannot be in sync over the zone.
     """
     motion, motor = measure_motion(profile, task), measure_motor(profile, task)
     radius = spectral_radius(servo)

@@ -195,12 +195,20 @@ def _linear(rows: Rows, cost: FloatArray) -> FloatArray | None:
 def _by_its_dual(
     matrix: FloatArray, low: FloatArray, high: FloatArray, cost: FloatArray
 ) -> tuple[FloatArray | None, str]:
-    """Ask HiGHS for the dual, whose basis is as small as the unknowns are few; its multipliers are the answer."""
+    """Ask HiGHS for the dual, whose basis is as small as the unknowns are few; its multipliers are the answer.
+
+    By its primal simplex: the dual one takes seconds to minutes to tell that such a programme has no bound.
+    """
     above, below = np.isfinite(high), np.isfinite(low)
     columns = sparse(np.vstack([-matrix[above], matrix[below]]).T)
     prices = np.concatenate([high[above], -low[below]])
     answer, status = _ask(
-        "highs", {"highs": _HIGHS | {"presolve": "off"}}, prices, columns, (cost, cost), (0.0, np.inf)
+        "highs",
+        {"highs": _HIGHS | {"presolve": "off", "simplex_strategy": 4}},
+        prices,
+        columns,
+        (cost, cost),
+        (0.0, np.inf),
     )
     if answer is None:  # no answer of a programme is too much of its dual, and the other way round
         return None, {_UNBOUNDED: _INFEASIBLE, _INFEASIBLE: _UNBOUNDED}.get(status, status)

@@ -21,8 +21,7 @@ from camwright.profiles.returns import assemble, baseline
 from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
 from camwright.validation.bounds.zone_search import ZoneSearch
-from camwright.validation.servo.response import servo_response, sync_error
-from camwright.validation.servo.simulation import simulate
+from camwright.validation.servo.response import greatest_sync_error, servo_response
 
 Binding = Literal["speed", "acceleration", "jerk", "settling"]
 
@@ -213,10 +212,9 @@ class _Laws:
     def holds(self, shape: Cut) -> bool:
         """Whether the axis is within tolerance in the whole shear zone at every phase."""
         profile = self.cycle(shape)
-        run = simulate(profile, shape, self.servo)
         start = shape.shear_start + self.relief * shape.shear_zone_at
-        error = sync_error(run, profile, self.task.with_cut(shape), start, shape.length)[1]
-        return float(abs(error).max()) <= self.task.cut.sync_tolerance
+        error = greatest_sync_error(profile, self.task.with_cut(shape), self.servo, start, shape.length)
+        return error <= self.task.cut.sync_tolerance
 
 
 def _minimum(laws: _Laws) -> MinimumCutLength:

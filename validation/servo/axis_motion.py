@@ -7,12 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from camwright.profiles.cut import Cut
-from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.servo import Servo
 from camwright.validation.check import Check
 from camwright.validation.motion import require_period
 from camwright.validation.servo.lifting import lift
-from camwright.validation.servo.simulation import memory, simulate_part
+from camwright.validation.servo.simulation import PHASES, memory, simulate_part, slow_axis
+from camwright.validation.servo.slow_axis import decided, humps
 
 ALLOWANCE = 1e-3
 """What the axis may exceed a limit by, relative to the limit: it is looked at on points, not everywhere."""
@@ -53,14 +54,29 @@ def axis_peaks(profile: CamProfile, cut: Cut, servo: Servo) -> AxisPeaks:
     Raises
     ------
     InputError
-        The profile does not run over ``[0, x_c]``, the servo is unstable, or its memory too long to simulate.
+        The profile does not run over ``[0, x_c]``, or the servo is unstable.
     """
     require_period(profile, cut)
-    lifted = lift(servo.loop, memory(servo.loop), (2, 1))
     cycle = (cut.return_start, cut.return_start + cut.length)
+    slow = slow_axis(profile, cut, servo, (2, 1), cycle, phases=PHASES)
+    if slow is not None:
+        return decided(slow, lambda master, found: _with_places(master, found, cut.line_speed))
+    lifted = lift(servo.loop, memory(servo.loop), (2, 1))
     slope, ratio = simulate_part(profile, cut, (servo,), lifted, cycle)[1]
-    v = cut.line_speed
+    return _peaks(ratio, slope, cut.line_speed)
+
+
+def _peaks(ratio: FloatArray, slope: FloatArray, line_speed: float) -> AxisPeaks:
+    """Extremes of ratio and ratio slope, over time."""
+    v = line_speed
     return AxisPeaks(v * float(ratio.max()), v * float(ratio.min()), v**2 * float(np.abs(slope).max()))
+
+
+def _with_places(master: FloatArray, found: FloatArray, line_speed: float) -> tuple[AxisPeaks, list[float]]:
+    """Extremes of ratio slope and ratio, and where they may be (m)."""
+    slope, ratio = found
+    sizes = (ratio, -ratio, np.abs(slope))
+    return _peaks(ratio, slope, line_speed), [place for size in sizes for place in humps(master, size)]
 
 
 def axis_checks(peaks: AxisPeaks, speed: float, acceleration: float, least_velocity: float, unit: str) -> list[Check]:

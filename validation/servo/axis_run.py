@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from camwright.profiles.polynomial.profile import FloatArray
 
@@ -18,7 +19,7 @@ Number = TypeVar("Number", float, FloatArray)
 class AxisRun:
     """Axis of one or more servos in a part of the cycle, at one sampling phase a row.
 
-    All arrays have the shape ``(phases, points)``; the points of a row are equally spaced along the line.
+    All arrays have the shape ``(phases, points)``; the points of a row are equally spaced along the line, but on a slow line.
 
     Parameters
     ----------
@@ -28,11 +29,14 @@ class AxisRun:
         Slave position (m).
     axis_ratio
         Slave velocity divided by the line speed.
+    even
+        Whether the points are equally spaced; those of `camwright.validation.servo.slow_axis.SlowAxis` are not.
     """
 
     master: FloatArray
     axis: FloatArray
     axis_ratio: FloatArray
+    even: bool = field(default=True, kw_only=True)
 
     @property
     def phases(self) -> int:
@@ -56,10 +60,8 @@ class AxisRun:
         (master, axis, axis_ratio)
             Shapes ``(phases, n)``.
         """
-        step = self.master[:, 1:2] - self.master[:, :1]
         most = self.master.shape[1] - 1
-        first = np.floor((start - self.master[:, 0]) / step[:, 0]).astype(int)
-        last = np.ceil((end - self.master[:, 0]) / step[:, 0]).astype(int)
+        first, last = self._around(start, end)
         left, right = max(int(first.min()), 0), min(int(last.max()), most)
         x, y, k = (values[:, left : right + 1].copy() for values in (self.master, self.axis, self.axis_ratio))
         # the phases begin and end within a few columns of each other
@@ -68,9 +70,10 @@ class AxisRun:
         edges = ((start, first, head, x[:, head] <= start), (end, last, tail, x[:, tail] >= end))
         rows = np.arange(self.phases)
         for bound, point, columns, beyond in edges:
+            step = self.master[rows, point + 1] - self.master[rows, point]
             value, ratio = hermite(
-                (bound - self.master[rows, point]) / step[:, 0],
-                step[:, 0],
+                (bound - self.master[rows, point]) / step,
+                step,
                 (self.axis[rows, point], self.axis[rows, point + 1]),
                 (self.axis_ratio[rows, point], self.axis_ratio[rows, point + 1]),
             )
@@ -78,6 +81,15 @@ class AxisRun:
             np.copyto(y[:, columns], value[:, None], where=beyond)
             np.copyto(k[:, columns], ratio[:, None], where=beyond)
         return x, y, k
+
+    def _around(self, start: float, end: float) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """Last point that is not after a start, and first that is not before an end, of every row."""
+        if self.even:
+            step = self.master[:, 1] - self.master[:, 0]
+            first, last = np.floor((start - self.master[:, 0]) / step), np.ceil((end - self.master[:, 0]) / step)
+            return first.astype(np.intp), last.astype(np.intp)
+        first = np.array([row.searchsorted(start, side="right") for row in self.master]) - 1
+        return first, np.array([row.searchsorted(end) for row in self.master])
 
 
 @dataclass(frozen=True, eq=False)

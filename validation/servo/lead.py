@@ -6,13 +6,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.servo import Servo, mean_lag
 from camwright.profiles.task import Task
 from camwright.validation.motion import require_period
+from camwright.validation.servo.axis_run import AxisRun
 from camwright.validation.servo.lifting import lift_side_by_side, loops_of
 from camwright.validation.servo.response import shear_zone_error
-from camwright.validation.servo.simulation import PHASES, memory, shear_zone_run
+from camwright.validation.servo.simulation import PHASES, memory, shear_zone_run, slow_shear_zone_run
 
 SHARES = (0.1, 0.25, 0.5, 1.0)
 """Shares of the line speed at which the cut is looked at."""
@@ -64,7 +65,7 @@ def length_errors(profile: CamProfile, task: Task, servo: Servo) -> tuple[Length
     Raises
     ------
     InputError
-        The profile does not run over ``[0, x_c]``, or the servo is unstable or its memory too long to simulate.
+        The profile does not run over ``[0, x_c]``, or the servo is unstable.
     """
     cut = task.cut
     require_period(profile, cut)
@@ -73,14 +74,22 @@ def length_errors(profile: CamProfile, task: Task, servo: Servo) -> tuple[Length
     found = []
     for share in SHARES:
         slower = task.at_speed(share * cut.line_speed)
-        run = shear_zone_run(profile, slower.cut, servos, lifted)
-        master, error, slope = shear_zone_error(run, profile, slower)
-        # mean of the cubics between the points, 0 wide where a row is filled up
-        step = np.diff(master, axis=1)
-        area = 0.5 * step * (error[:, :-1] + error[:, 1:]) + step**2 / 12 * (slope[:, :-1] - slope[:, 1:])
-        width = master[:, -1] - master[:, 0]
-        mean = area.sum(axis=1) / width if cut.shear_zone > 0 else error[:, 0]
-        late = -mean.reshape(len(servos), PHASES)
+        closed = [slow_shear_zone_run(profile, slower.cut, each, PHASES) for each in servos]
+        runs = [run for run in closed if run is not None]
+        if len(runs) < len(servos):
+            runs = [shear_zone_run(profile, slower.cut, servos, lifted)]
+        late = np.concatenate([_late(run, profile, slower) for run in runs]).reshape(len(servos), PHASES)
         offset, with_lead = late.mean(axis=1).tolist()
         found.append(LengthError(share, slower.cut.line_speed, offset, float(np.ptp(late[0])), with_lead))
     return tuple(found)
+
+
+def _late(run: AxisRun, profile: CamProfile, task: Task) -> FloatArray:
+    """Mean distance of the tool behind the material in the shear zone at each sampling phase (m)."""
+    master, error, slope = shear_zone_error(run, profile, task)
+    if task.cut.shear_zone == 0:
+        return -error[:, 0]
+    # mean of the cubics between the points, 0 wide where a row is filled up
+    step = np.diff(master, axis=1)
+    area = 0.5 * step * (error[:, :-1] + error[:, 1:]) + step**2 / 12 * (slope[:, :-1] - slope[:, 1:])
+    return np.asarray(-area.sum(axis=1) / (master[:, -1] - master[:, 0]))

@@ -42,8 +42,7 @@ def line_speed_errors(
     Raises
     ------
     InputError
-        The profile does not run over ``[0, x_c]``, or memory and shear zone take more than 131072 samples, at a line speed that is too
-        low.
+        The profile does not run over ``[0, x_c]``.
     """
     shares = (np.asarray(line_speeds, dtype=np.float64) / task.cut.line_speed).tolist()
     scaled = [servo.at_speed(share) for servo in servos for share in shares]

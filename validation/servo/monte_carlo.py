@@ -12,8 +12,8 @@ from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
 from camwright.validation.motion import require_period
 from camwright.validation.servo.lifting import lift_side_by_side, loops_of
-from camwright.validation.servo.response import shear_zone_error
-from camwright.validation.servo.simulation import PHASES, memory_at, shear_zone_run
+from camwright.validation.servo.response import shear_zone_error, shear_zone_of, slow_sync_error
+from camwright.validation.servo.simulation import PHASES, WHOLE, memory_at, shear_zone_run
 
 _VALUES = 2**17
 """Command values that are held at a time."""
@@ -45,7 +45,7 @@ def shear_zone_errors(profile: CamProfile, task: Task, servos: Sequence[Servo], 
     Raises
     ------
     InputError
-        The profile does not run over ``[0, x_c]``, or the memory of a servo is too long to simulate.
+        The profile does not run over ``[0, x_c]``.
     """
     require_period(profile, task.cut)
     found = np.full(len(servos), np.inf)
@@ -56,6 +56,10 @@ def shear_zone_errors(profile: CamProfile, task: Task, servos: Sequence[Servo], 
     past = np.array([memory_at(radius) if radius < 1.0 else 0 for radius in radii.tolist()])
     travel = task.cut.line_speed * np.array([servo.sample_time for servo in servos])
     within = np.ceil(task.cut.shear_zone / travel).astype(np.intp)
+    for i in np.nonzero((past > 0) & (past + within > WHOLE))[0].tolist():
+        closed = slow_sync_error(profile, task, servos[i], *shear_zone_of(task.cut), phases)
+        if closed is not None:
+            found[i], past[i] = closed, 0
     for group in _groups(past, within, phases):
         lifted = lift_side_by_side(loops.take(group), int(past[group].max()), (1, 0))
         run = shear_zone_run(profile, task.cut, [servos[i] for i in group.tolist()], lifted, phases)
@@ -65,18 +69,18 @@ def shear_zone_errors(profile: CamProfile, task: Task, servos: Sequence[Servo], 
 
 
 def _groups(past: NDArray[np.intp], within: NDArray[np.intp], phases: int) -> Iterator[NDArray[np.intp]]:
-    """Divide the stable servos into groups that fit, those with the most samples first; gives their places.
+    """Divide servos into groups that fit, those with the most samples first; gives their places.
 
     Parameters
     ----------
     past, within
-        Samples that each servo remembers, 0 for one that is unstable, and samples in the shear zone.
+        Samples that each servo remembers, 0 for one that is left out, and samples in the shear zone.
     phases
         Sampling phases.
     """
     order = np.lexsort((-past, -within))
     order = order[past[order] > 0]
-    longest = int(past.max())
+    longest = int(past.max(initial=0))
     while len(order):
         size = max(1, _VALUES // (phases * (longest + int(within[order[0]]))))
         yield order[:size]

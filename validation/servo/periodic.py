@@ -21,7 +21,7 @@ def deviation(profile: CamProfile, master: FloatArray) -> FloatArray:
     master
         Master positions (m), any number of cycles, ascending along the last axis; shape ``(points,)`` or ``(rows, points)``.
     """
-    table = _straightened(profile)
+    table = straightened(profile)
     rows = master.reshape(-1, master.shape[-1])
     least, greatest = (rows[0, 0], rows[0, -1]) if len(rows) == 1 else (rows[:, 0].min(), rows[:, -1].max())
     first, last = (math.floor((float(x) - profile.start) / profile.length) for x in (least, greatest))
@@ -43,7 +43,7 @@ def deviation(profile: CamProfile, master: FloatArray) -> FloatArray:
 
 
 @lru_cache(maxsize=8)
-def _straightened(profile: CamProfile) -> FloatArray:
+def straightened(profile: CamProfile) -> FloatArray:
     """Coefficients of the profile minus the straight line, ascending powers, and last the start of each piece; a row each."""
     straight = profile.shift(slave=-float(profile.coefficients[0, 0])).add_line(-profile.mean_ratio)
     return np.concatenate([straight.coefficients.T, straight.breaks[None, :-1]])

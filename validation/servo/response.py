@@ -16,7 +16,9 @@ from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
 from camwright.validation.servo.axis_run import AxisRun, ServoRun, hermite
-from camwright.validation.servo.simulation import simulate
+from camwright.validation.servo.lifting import SUBSTEPS
+from camwright.validation.servo.simulation import simulate, slow_axis, slow_cycle, slow_run
+from camwright.validation.servo.slow_axis import decided, humps
 
 ON_THE_LINE = 1e-9
 """Part of the cut length within which the axis counts as lying on the ideal sync line; well above rounding, well
@@ -85,7 +87,11 @@ def servo_response(profile: CamProfile, task: Task, servo: Servo, tolerance: flo
     InputError
         As `camwright.validation.servo.simulation.simulate`.
     """
-    return measure_response(simulate(profile, task.cut, servo), profile, task, tolerance)
+    cut = task.cut
+    slow = slow_cycle(profile, cut, servo)
+    if slow is not None:
+        return decided(slow, lambda *known: _with_places(slow_run(profile, *known), profile, task, tolerance))
+    return measure_response(simulate(profile, cut, servo), profile, task, tolerance)
 
 
 def measure_response(run: ServoRun, profile: CamProfile, task: Task, tolerance: float | None = None) -> ServoResponse:
@@ -101,9 +107,28 @@ def measure_response(run: ServoRun, profile: CamProfile, task: Task, tolerance: 
         settling=settling,
         overshoot=overshoot,
         peak_following_error=_peak_following_error(run, profile, task),
-        shear_zone_error=peak_shear_zone_error(run, profile, task),
+        shear_zone_error=float(np.abs(_in_sync(run, profile, task, *shear_zone_of(cut)).error()).max()),
         phases=run.phases,
     )
+
+
+def _with_places(
+    run: ServoRun, profile: CamProfile, task: Task, tolerance: float | None
+) -> tuple[ServoResponse, list[float]]:
+    """Measure a response at some of its samples; gives the master positions (m), too, that decided it."""
+    response, cut = measure_response(run, profile, task, tolerance), task.cut
+    start = cut.return_start + cut.return_zone
+    part = _in_sync(run, profile, task, start, start + cut.sync_zone)
+    shear = _in_sync(run, profile, task, *shear_zone_of(cut))
+    error = part.error()
+    greatest = (
+        (part, error),
+        (part, -error),
+        (run, _following_error(run, profile, task)(...)),
+        (shear, np.abs(shear.error())),
+    )
+    met = [start + place for place in (response.crossing, response.settling) if place is not None]
+    return response, [*met, *(place for where, size in greatest for place in humps(where.master, size))]
 
 
 def sync_error(
@@ -179,15 +204,49 @@ def _in_sync(run: AxisRun, profile: CamProfile, task: Task, start: float, end: f
 
 def shear_zone_error(run: AxisRun, profile: CamProfile, task: Task) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Sync error in the shear zone; as `sync_error`."""
-    return sync_error(run, profile, task, *_shear_zone(task.cut))
+    return sync_error(run, profile, task, *shear_zone_of(task.cut))
 
 
-def peak_shear_zone_error(run: AxisRun, profile: CamProfile, task: Task) -> float:
-    """Greatest magnitude of the sync error in the shear zone, at every sampling phase (m); arguments as in `sync_error`."""
-    return float(np.abs(_in_sync(run, profile, task, *_shear_zone(task.cut)).error()).max())
+def greatest_sync_error(profile: CamProfile, task: Task, servo: Servo, start: float, end: float) -> float:
+    """Greatest magnitude of the sync error in a part of the sync zone, at every sampling phase (m).
+
+    Parameters
+    ----------
+    profile, task, servo
+        As in `servo_response`.
+    start, end
+        The part (m), counted like `camwright.validation.servo.axis_run.AxisRun.master`.
+    """
+    found = slow_sync_error(profile, task, servo, start, end, SUBSTEPS)
+    if found is None:
+        error = _in_sync(simulate(profile, task.cut, servo), profile, task, start, end).error()
+        return float(np.abs(error).max())
+    return found
 
 
-def _shear_zone(cut: Cut) -> tuple[float, float]:
+def slow_sync_error(
+    profile: CamProfile, task: Task, servo: Servo, start: float, end: float, phases: int
+) -> float | None:
+    """Greatest sync error in closed form: as `greatest_sync_error`; ``None`` where there is none."""
+    slow = slow_axis(profile, task.cut, servo, (1, 0), (start, end), phases=phases)
+    if slow is None:
+        return None
+
+    def measure(master: FloatArray, found: FloatArray) -> tuple[float, list[float]]:
+        ratio, axis = found
+        part = _in_sync(AxisRun(master, axis, ratio, even=False), profile, task, start, end)
+        size = np.abs(part.error())
+        return float(size.max()), humps(part.master, size)
+
+    return decided(slow, measure)
+
+
+def greatest_shear_zone_error(profile: CamProfile, task: Task, servo: Servo) -> float:
+    """Greatest magnitude of the sync error in the shear zone, at every sampling phase (m); arguments as in `servo_response`."""
+    return greatest_sync_error(profile, task, servo, *shear_zone_of(task.cut))
+
+
+def shear_zone_of(cut: Cut) -> tuple[float, float]:
     """Start and end of the shear zone, counted on like `AxisRun.master`."""
     zone = cut.return_start + cut.return_zone
     start = zone + cut.shear_zone_at
@@ -204,13 +263,18 @@ def _peak_following_error(run: ServoRun, profile: CamProfile, task: Task) -> flo
     off = np.abs(run.command - run.axis)
     if machine.slave_unit == "m":
         return float(off.max())
-    start = task.slave_zero(profile)
-
-    def at_tool(at: _Index) -> FloatArray:
-        return np.asarray(np.abs(machine.tool(start + run.command[at]) - machine.tool(start + run.axis[at])))
-
+    at_tool = _following_error(run, profile, task)
     found = float(at_tool(np.unravel_index(off.argmax(), off.shape)))
     return float(at_tool(off * _lever(machine) >= found).max(initial=found))
+
+
+def _following_error(run: ServoRun, profile: CamProfile, task: Task) -> Callable[[_Index], FloatArray]:
+    """Give the magnitude of command minus axis (m) at points of a run; for a slave in rad at the tool."""
+    machine = task.machine
+    if machine.slave_unit == "m":
+        return lambda at: np.abs(run.command[at] - run.axis[at])
+    start = task.slave_zero(profile)
+    return lambda at: np.abs(machine.tool(start + run.command[at]) - machine.tool(start + run.axis[at]))
 
 
 @lru_cache(maxsize=64)

@@ -29,6 +29,7 @@ from camwright.validation.motion import require_period
 from camwright.validation.servo.axis_run import AxisRun, ServoRun
 from camwright.validation.servo.lifting import SUBSTEPS, Lifted, follow, lift
 from camwright.validation.servo.periodic import deviation
+from camwright.validation.servo.slow_axis import SlowAxis
 
 PHASES = 16
 """Sampling phases simulated: shifts of the servo's clock by a 16th of the sample time. A multiple of `SUBSTEPS`, so that all
@@ -44,8 +45,11 @@ moves the axis by less than 1e-12 of its size, over all of S1's ranges."""
 _MOST_VALUES = 2**17
 """Command values of one simulation above which fewer phases are taken (never fewer than `SUBSTEPS`)."""
 
+WHOLE = 2**13
+"""Samples of one phase, memory and simulated part together, up to which all of them are simulated one after another."""
+
 _MOST_SAMPLES = 2**17
-"""Most samples of one phase, memory and cycle together; more would need gigabytes."""
+"""Most samples of one phase where there is no closed form."""
 
 
 @lru_cache(maxsize=32)
@@ -72,21 +76,57 @@ def memory_at(radius: float) -> int:
     return max(2, math.ceil(math.log(_FORGOTTEN / _TRANSIENT_GROWTH) / math.log(max(radius, 1e-3))))
 
 
-def require_samples(cut: Cut, servo: Servo, past: int, samples: int) -> None:
-    """Refuse a simulation of more samples than fit.
+def slow_axis(
+    profile: CamProfile,
+    cut: Cut,
+    servo: Servo,
+    orders: tuple[int, ...],
+    part: tuple[float, float],
+    places: Sequence[float] = (),
+    phases: int = SUBSTEPS,
+) -> SlowAxis | None:
+    """Put the axis of one servo in a part of the cycle into closed form; ``None`` where its samples are simulated one by one.
 
-    Raises
-    ------
-    InputError
-        The samples that are remembered and those of the simulated part are more than 131072 together.
+    Parameters
+    ----------
+    profile, cut, servo
+        As in `simulate`.
+    orders
+        Derivatives of the axis that are asked for.
+    part
+        Master positions (m), counted on from the start of the return zone.
+    places
+        Master positions in it whose neighbours are asked for: ends of zones.
+    phases
+        Sampling phases.
     """
-    if past + samples > _MOST_SAMPLES:
+    require_period(profile, cut)
+    past, sample = memory(servo.loop), cut.line_speed * servo.sample_time
+    first, last = (part[0] - cut.return_start) / sample, (part[1] - cut.return_start) / sample
+    if past + last - first <= WHOLE:
+        return None
+    slow = SlowAxis(
+        profile=profile,
+        servo=servo.loop,
+        line_speed=cut.line_speed,
+        origin=cut.return_start,
+        shift=_shift(cut, servo),
+        behind=steady_following_error(profile.mean_ratio * cut.line_speed, servo),
+        first=math.floor(first),
+        last=math.ceil(last) + 1,
+        phases=phases,
+        past=past,
+        orders=orders,
+        places=(*part, *places),
+    )
+    if slow.tells:
+        return slow
+    if past + last - first > _MOST_SAMPLES:
         raise InputError(
-            f"the servo simulation takes {past + samples} samples: {samples} for a cycle of {cut.period:.6g} s and "
-            f"{past} that the servo remembers; the limit is {_MOST_SAMPLES}; raise the line speed "
-            f"({cut.line_speed:g} m/s), the sample time ({servo.sample_time:g} s) or the position gain "
-            f"({servo.position_gain:g} 1/s)"
+            f"the servo remembers {past} samples of {servo.sample_time:g} s and is far slower than the motion, whose "
+            f"cycle takes {cut.period:.6g} s: it cannot follow; raise the position gain ({servo.position_gain:g} 1/s)"
         )
+    return None
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,13 +176,12 @@ class _Clocks:
         return spread
 
 
-def _clocks(cut: Cut, servos: Sequence[Servo], lifted: Lifted, part: tuple[float, float], phases: int) -> _Clocks:
-    """Lay the samples of servos about a part of the cycle; refuse more than fit."""
+def _clocks(cut: Cut, lifted: Lifted, part: tuple[float, float], phases: int) -> _Clocks:
+    """Lay the samples of servos about a part of the cycle."""
     sample = cut.line_speed * lifted.loops.sample_time
     first = np.floor((part[0] - cut.return_start) / sample) - 1.0
     samples = int(np.ceil((part[1] - cut.return_start) / sample - first).max()) + 1
     past = lifted.history.shape[2]
-    require_samples(cut, servos[0], past, samples)
     return _Clocks(cut.return_start, sample / phases, first * phases, past, samples, phases)
 
 
@@ -153,7 +192,7 @@ def whole_cycle(cut: Cut, servo: Servo) -> tuple[Lifted, _Clocks, FloatArray]:
     while phases > SUBSTEPS and phases * (past + math.ceil(cut.period / servo.sample_time)) > _MOST_VALUES:
         phases //= 2
     lifted = lift(servo.loop, past, (1, 0))
-    clocks = _clocks(cut, (servo,), lifted, (cut.return_start, cut.return_start + cut.length), phases)
+    clocks = _clocks(cut, lifted, (cut.return_start, cut.return_start + cut.length), phases)
     grid = clocks.grid(more=1)
     grid.setflags(write=False)
     return lifted, clocks, grid
@@ -174,10 +213,13 @@ def simulate(profile: CamProfile, cut: Cut, servo: Servo) -> ServoRun:
     Raises
     ------
     InputError
-        The profile does not run over ``[0, x_c]``, the servo is unstable, or cycle and memory take more than 131072
-        samples.
+        The profile does not run over ``[0, x_c]``, the servo is unstable, or it is far slower than the motion and remembers more than
+        131072 samples.
     """
     require_period(profile, cut)
+    slow = slow_cycle(profile, cut, servo)
+    if slow is not None:
+        return slow_run(profile, *slow.at(slow.samples()))
     lifted, clocks, grid = whole_cycle(cut, servo)
     periodic = deviation(profile, grid)
     shift = _shift(cut, servo)
@@ -191,6 +233,22 @@ def simulate(profile: CamProfile, cut: Cut, servo: Servo) -> ServoRun:
     command += zero
     command += periodic
     return ServoRun(clocks.by_phase(master), axis, ratio, clocks.by_phase(command))
+
+
+def slow_cycle(profile: CamProfile, cut: Cut, servo: Servo) -> SlowAxis | None:
+    """Put a whole cycle into closed form, to be looked at about the ends of sync zone and shear zone; ``None`` as `slow_axis`."""
+    zone = cut.return_start + cut.return_zone
+    shear = zone + cut.shear_zone_at
+    places = (zone, shear, min(shear + cut.shear_zone, zone + cut.sync_zone))
+    end = cut.return_start + cut.length
+    return slow_axis(profile, cut, servo, (1, 0), (cut.return_start, end), places)
+
+
+def slow_run(profile: CamProfile, master: FloatArray, found: FloatArray) -> ServoRun:
+    """Put what a `slow_cycle` gives at some of its samples beside the command, as `simulate` does at all of them."""
+    ratio, axis = found
+    zero, slope = _mean_line(profile)
+    return ServoRun(master, axis, ratio, deviation(profile, master) + (slope * master + zero), even=False)
 
 
 def simulate_part(
@@ -221,13 +279,8 @@ def simulate_part(
     (master, found)
         Master positions, shape ``(servos phases, points)``, and there the derivatives of the axes over the master of the lifted orders,
         shape ``(orders, servos phases, points)``.
-
-    Raises
-    ------
-    InputError
-        They remember too many samples.
     """
-    clocks = _clocks(cut, servos, lifted, part, phases)
+    clocks = _clocks(cut, lifted, part, phases)
     grid = clocks.grid()
     shift = np.array([_shift(cut, servo) for servo in servos])
     alike = clocks.step.min() == clocks.step.max() and shift.min() == shift.max()  # one grid for all
@@ -245,6 +298,16 @@ def shear_zone_run(
     start = cut.return_start + cut.return_zone + cut.shear_zone_at
     master, (ratio, axis) = simulate_part(profile, cut, servos, lifted, (start, start + cut.shear_zone), phases)
     return AxisRun(master, axis, ratio)
+
+
+def slow_shear_zone_run(profile: CamProfile, cut: Cut, servo: Servo, phases: int) -> AxisRun | None:
+    """Give one servo's axis about the shear zone in closed form, at the samples of a first round; ``None`` as `slow_axis`."""
+    start = cut.return_start + cut.return_zone + cut.shear_zone_at
+    slow = slow_axis(profile, cut, servo, (1, 0), (start, start + cut.shear_zone), phases=phases)
+    if slow is None:
+        return None
+    master, (ratio, axis) = slow.at(slow.samples())
+    return AxisRun(master, axis, ratio, even=False)
 
 
 def _axes(

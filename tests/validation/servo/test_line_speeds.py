@@ -10,7 +10,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from camwright.profiles.cut import Cut
-from camwright.profiles.errors import InputError
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import CrankSlider, LinearCarriage, Machine, RotaryKnife
 from camwright.profiles.returns import baseline
@@ -92,6 +91,6 @@ def test_a_servo_that_is_unstable_is_infinitely_far_off_at_every_speed() -> None
     assert np.isfinite(found[1]).all()
 
 
-def test_a_line_that_hardly_moves_is_refused() -> None:
-    with pytest.raises(InputError, match=r"takes \d+ samples: .* the limit is 131072"):
-        line_speed_errors(baseline("cycloid", Task(KNIFE, CUT, FREE)), TASK, [PAPER], np.array([1e-6]))
+def test_a_line_that_hardly_moves_is_followed() -> None:
+    found = line_speed_errors(baseline("cycloid", Task(KNIFE, CUT, FREE)), TASK, [PAPER], np.array([1e-6, 1e-3]))
+    assert (found < 1e-9).all()

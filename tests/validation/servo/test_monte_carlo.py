@@ -98,7 +98,7 @@ def test_no_servos_have_no_errors() -> None:
 
 
 def test_a_servo_that_hardly_forgets_is_refused() -> None:
-    with pytest.raises(InputError, match=r"takes \d+ samples: .* the limit is 131072"):
+    with pytest.raises(InputError, match=r"remembers \d+ samples .* cannot follow; raise the position gain"):
         shear_zone_errors(
             baseline("cycloid", Task(KNIFE, CUT, FREE)), Task(KNIFE, CUT, FREE), [replace(PAPER, position_gain=0.01)]
         )

@@ -1,0 +1,43 @@
+"""Servo-aware designs that took minutes or gigabytes: answered or refused at once."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+
+import pytest
+
+from camwright.design.optimise_axis import MOST_SAMPLES, solve_axis
+from camwright.profiles.cut import Cut
+from camwright.profiles.errors import InfeasibleError, InputError
+from camwright.profiles.limits import Limits
+from camwright.profiles.machines import RotaryKnife
+from camwright.profiles.servo import Servo
+from camwright.profiles.task import Task
+
+SERVO = Servo(120.0, 0.7, 35.0, 0.00276, 0.5)
+CUT = Cut(0.267, 80 / 60, 0.126, 0.04, 0.086, 0.25e-3, shaped=True)
+TASK = Task(RotaryKnife(0.4), CUT, Limits(200 / 60, 100.0, 20_000.0))
+
+
+def test_a_crawling_line_is_refused_at_once_with_the_slowest_that_is_taken() -> None:
+    slow = replace(CUT, line_speed=1e-5)
+    began = time.process_time()
+    with pytest.raises(InputError, match=r"\d+ here, the limit is 32768; raise the line speed above 0.177 m/min"):
+        solve_axis(TASK.with_cut(slow), "peak_acceleration", "shaped", (SERVO,))
+    assert time.process_time() - began < 0.5
+    assert MOST_SAMPLES == 32768
+
+
+def test_a_job_that_no_shaped_command_does_is_refused_in_seconds() -> None:
+    """The corners of the ranges leave no command; to see that took the dual simplex over 90 s."""
+    corners = tuple(
+        replace(SERVO, bandwidth=120 * b, damping=0.7 * d, position_gain=35 * k)
+        for b in (0.9, 1.1)
+        for d in (0.9, 1.1)
+        for k in (0.95, 1.05)
+    )
+    began = time.process_time()
+    with pytest.raises(InfeasibleError, match=r"no shaped command within the limits holds the axis"):
+        solve_axis(TASK, "rms_jerk", "shaped", (SERVO, *corners))
+    assert time.process_time() - began < 20.0
