@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -93,9 +93,15 @@ def servo_figure(comparison: Comparison, runs: Mapping[str, ServoRun]) -> Figure
     return figure
 
 
-def _phase(name: str, phase: int) -> dict[str, Any]:
-    """Line style of a sampling phase: the first in the profile's own, the others thin beside it."""
-    return LINES[name] if phase == 0 else {**LINES[name], "linestyle": "-", "linewidth": 0.4}
+def _phases(axes: Axes, name: str, curves: Sequence[tuple[FloatArray, FloatArray]]) -> None:
+    """Draw the curve of each sampling phase: the first in the profile's own line, the others thin beside it.
+
+    The others are one line with gaps: every line is clipped by itself, which costs more than to draw it.
+    """
+    axes.plot(*map(_stride, curves[0]), **LINES[name])
+    gap = np.array([np.nan])
+    parts = [np.concatenate([part for curve in curves[1:] for part in (_stride(curve[i]), gap)]) for i in (0, 1)]
+    axes.plot(*parts, **{**LINES[name], "linestyle": "-", "linewidth": 0.4})
 
 
 def _meeting(axes: Axes, row: Measured, comparison: Comparison, run: ServoRun) -> None:
@@ -114,9 +120,14 @@ def _meeting(axes: Axes, row: Measured, comparison: Comparison, run: ServoRun) -
     pieces = [np.nonzero(row_shown)[0] for row_shown in shown]
     line = cut.sync_ratio * 1e3
     axes.plot([first * 1e3, last * 1e3], [first * line, last * line], color="black", linewidth=0.9, zorder=1)
-    for phase, index in enumerate(pieces):
-        master, axis = (run.master[phase, index] - start) * 1e3, tool(run.axis[phase, index])
-        axes.plot(_stride(master), _stride(axis), **_phase(row.name, phase))
+    _phases(
+        axes,
+        row.name,
+        [
+            ((run.master[phase, index] - start) * 1e3, tool(run.axis[phase, index]))
+            for phase, index in enumerate(pieces)
+        ],
+    )
     index = pieces[0]  # the command is the same at every phase
     axes.plot(
         _stride((run.master[0, index] - start) * 1e3),
@@ -145,8 +156,7 @@ def _errors(axes: Axes, row: Measured, comparison: Comparison, run: ServoRun) ->
     job = comparison.job
     start = job.cut.return_start + job.cut.return_zone
     master, error, _ = sync_error(run, row.profile, job.task, start, start + job.cut.sync_zone)
-    for phase in range(run.phases):
-        axes.plot(_stride(master[phase] - start) * 1e3, _stride(error[phase]) * 1e3, **_phase(row.name, phase))
+    _phases(axes, row.name, [((master[phase] - start) * 1e3, error[phase] * 1e3) for phase in range(run.phases)])
     colour = LINES[row.name]["color"]
     crossing, settling = row.response.crossing, row.response.settling
     if crossing is not None:
