@@ -34,6 +34,8 @@ class FoundArc:
         The arc (m, rad).
     distance
         Largest distance between the arc and the chords (m).
+    bent
+        Whether the arc is bent; else the chords as they are drawn, since they lie farther from it than is allowed.
     """
 
     name: str
@@ -41,12 +43,18 @@ class FoundArc:
     radius: float
     included: float
     distance: float
+    bent: bool
 
     def __str__(self) -> str:
+        arc = f"an arc of radius {1e3 * self.radius:.3f} mm and {math.degrees(self.included):.2f}°"
+        if self.bent:
+            return (
+                f"{self.chords} chords of {self.name} lie on {arc} within {1e3 * self.distance:.4f} mm and are bent as that arc; "
+                "--arcs keep bends them as drawn"
+            )
         return (
-            f"{self.chords} chords of {self.name} lie on an arc of radius {1e3 * self.radius:.3f} mm and "
-            f"{math.degrees(self.included):.2f}° within {1e3 * self.distance:.4f} mm and are bent as that arc; --arcs keep bends "
-            "them as drawn"
+            f"{self.chords} chords of {self.name} have their ends on {arc}, but lie up to {1e3 * self.distance:.4f} mm from it, "
+            "farther than the arc rule allows, and are bent as drawn; draw the arc, or allow more under [arcs] of the bender job"
         )
 
 
@@ -76,7 +84,8 @@ def with_arcs(piece: Piece, allowed: Callable[[float], float], gap: float) -> tu
     Returns
     -------
     (piece, arcs)
-        The line, and what was found in it. Lines that stand for curves are left as they are.
+        The line, and what was found in it; first what was replaced, then what lies too far from its arc to be. Lines
+        that stand for curves are left as they are.
     """
     if piece.flattening > 0:
         return piece, ()
@@ -90,13 +99,17 @@ def with_arcs(piece: Piece, allowed: Callable[[float], float], gap: float) -> tu
             points.append(_middle(piece.points[start], arc))
         points.append(piece.points[stop : stop + 1])
         bulges.append(np.full(halves, math.tan(arc.included / halves / 4)))
-        found.append(FoundArc(piece.name, stop - start, arc.radius, abs(arc.included), arc.off + arc.sagitta))
+        found.append(_found(piece, start, stop, arc, bent=True))
         off, done = max(off, arc.off), stop
-    if not found:
-        return piece, ()
     points.append(piece.points[done + 1 :])
     bulges.append(piece.bulges[done:])
-    return replace(piece, points=np.vstack(points), bulges=np.concatenate(bulges), flattening=off), tuple(found)
+    line = replace(piece, points=np.vstack(points), bulges=np.concatenate(bulges), flattening=off) if found else piece
+    found += [_found(line, start, stop, arc, bent=False) for start, stop, arc in _arcs(line, lambda _: math.inf, gap)]
+    return line, tuple(found)
+
+
+def _found(piece: Piece, start: int, stop: int, arc: _Arc, *, bent: bool) -> FoundArc:
+    return FoundArc(piece.name, stop - start, arc.radius, abs(arc.included), arc.off + arc.sagitta, bent)
 
 
 def _middle(start: FloatArray, arc: _Arc) -> FloatArray:

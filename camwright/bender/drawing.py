@@ -145,7 +145,7 @@ def read_drawing(path: Path, reading: Reading) -> Drawing:
         *(f"left out {count} × {what}" for what, count in sorted((+left_out).items())),
         *_few([f"{overlap}; it is bent once" for overlap in overlaps], "entities lie on others"),
         *_few([str(ends) for ends in near], "pairs of ends nearly meet"),
-        *_few([str(arc) for one in lines for arc in one.arcs], "runs of chords are bent as arcs"),
+        *_few([str(arc) for one in lines for arc in one.arcs], "runs of chords lie on arcs"),
     ]
     warnings += (*doubts, *(f"{path.name}: {text}" for text in told))
     return Drawing(tuple(outlines), tuple(styles), unit, _size(outlines), overlaps, near, warnings)

@@ -83,17 +83,23 @@ def _walk(layout: Any, layers: Layers, left_out: Counter[str], around: Style | N
         style = layers.style_of(entity, around)
         why = layers.hidden(style.layer) or ("invisible" if entity.dxf.get("invisible", 0) else "")
         if why:
-            what = f"block reference #{origin or entity.dxf.handle}" if entity.dxftype() == "INSERT" else "entity"
-            within = "" if not origin or entity.dxftype() == "INSERT" else f" in block reference #{origin}"
+            what = "entity" if entity.dxftype() != "INSERT" else f"block reference #{_handle(entity)}"
+            within = f" in block reference {origin}" if origin else ""
             left_out[f"{what}{within} on layer {style.layer} ({why})"] += 1
         elif entity.dxftype() != "INSERT":
             yield Seen(entity, style, title(entity, origin, style.layer))
         else:
-            inside = origin or str(entity.dxf.handle)
-            for cell in entity.multi_insert() if entity.mcount > 1 else (entity,):
+            cells = list(entity.multi_insert()) if entity.mcount > 1 else [entity]
+            for number, cell in enumerate(cells, start=1):
+                inside = origin or f"#{_handle(entity)}{f' ({number})' if len(cells) > 1 else ''}"
                 yield from _walk(
                     cell.virtual_entities(skipped_entity_callback=_not_placed), layers, left_out, style, inside
                 )
+
+
+def _handle(entity: Any) -> str:
+    """Handle of an entity, of a copy its original's."""
+    return str((entity if entity.dxf.handle else entity.source_of_copy).dxf.handle)
 
 
 def _not_placed(entity: Any, reason: str) -> None:

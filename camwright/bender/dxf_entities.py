@@ -25,9 +25,11 @@ _PLANE = 1e-9
 
 
 def title(entity: Any, origin: str = "", layer: str | None = None) -> str:
-    """Kind, handle and layer of an entity, for messages; one inside a block by the handle of the block reference."""
-    handle = f"in block reference #{origin}" if origin else f"#{entity.dxf.handle}"
-    return f"{entity.dxftype()} {handle} on layer {entity.dxf.layer if layer is None else layer}"
+    """Kind, handle and layer of an entity, for messages; of one inside a block also where it is placed."""
+    source = entity if entity.dxf.handle else entity.source_of_copy
+    handle = "" if source is None else f" #{source.dxf.handle}"
+    where = f" in block reference {origin}" if origin else ""
+    return f"{entity.dxftype()}{handle}{where} on layer {entity.dxf.layer if layer is None else layer}"
 
 
 def is_line_work(entity: Any) -> bool:

@@ -71,6 +71,15 @@ def test_what_is_no_arc():
         assert line.points == pytest.approx(1e-3 * points)
 
 
+def test_chords_that_are_too_long_are_told_and_left():
+    line, (found,) = with_arcs(piece(chords(20, 0, 90, 9)), ERROR, GAP)
+    assert len(line.bulges) == 9
+    assert not found.bent
+    assert found.distance == pytest.approx(20e-3 * (1 - math.cos(math.radians(5))))
+    assert "9 chords of LWPOLYLINE #1 on layer 0 have their ends on an arc of radius 20.000 mm and 90.00°" in str(found)
+    assert "lie up to 0.0761 mm from it" in str(found)
+
+
 def test_one_vertex_off_the_arc_parts_it():
     points = chords(20, 0, 90, 18)
     points[9] *= 1 + 0.1 / 20  # 0.1 mm outside

@@ -1,6 +1,7 @@
 """What is drawn twice, wholly or in part: found, named and used once."""
 
 import math
+import re
 from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
@@ -104,9 +105,19 @@ def test_common_cuts_of_step_and_repeat_are_named_by_their_references(drawing: M
 
     boxes: list[str] = []
     found = read(drawing(draw))
-    names = [f"LWPOLYLINE in block reference #{handle} on layer 0" for handle in boxes]
+    names = [f"LWPOLYLINE #32 in block reference #{handle} on layer 0" for handle in boxes]
     assert [(o.first, o.second) for o in found.overlaps] == list(pairwise(names))
     assert [outline.closed for outline in found.outlines] == [True, False, False]
+
+
+def test_cells_of_one_reference_are_told_apart(drawing: Make):
+    def draw(m, d):
+        rectangle(d.blocks.new("BOX"), 0, 0)
+        m.add_blockref("BOX", (0, 0), dxfattribs={"column_count": 2, "column_spacing": 100})
+
+    (overlap,) = read(drawing(draw)).overlaps
+    assert re.fullmatch(r"LWPOLYLINE #32 in block reference #[0-9A-F]+ \(1\) on layer 0", overlap.first)
+    assert re.fullmatch(r"LWPOLYLINE #32 in block reference #[0-9A-F]+ \(2\) on layer 0", overlap.second)
 
 
 def test_what_is_left_of_a_partly_doubled_frame_joins_on(drawing: Make):
