@@ -62,6 +62,11 @@ COMMANDS: dict[str, Command] = {
         CAM,
         "camwright compare board.toml --objectives",
     ),
+    "workbench": Command(
+        "Open the workbench: see the cam, drag it, prove it, in the browser of this machine.",
+        CAM,
+        "camwright workbench board.toml",
+    ),
     "limits": Command(
         "Say how fast and how short the machine of a job can cut, and which limit binds.",
         CAM,

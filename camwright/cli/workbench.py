@@ -1,0 +1,66 @@
+"""The command ``camwright workbench``."""
+
+from __future__ import annotations
+
+import secrets
+import socket
+import sys
+import webbrowser
+from pathlib import Path
+from typing import Annotated
+
+import typer
+import uvicorn
+
+from camwright.cli.main import main
+from camwright.cli.options import JobOrPaper, Json
+from camwright.house.files import read_text
+from camwright.house.json_text import to_json
+from camwright.jobs.job import BUNDLED_JOB, MOST_BYTES, parse_job
+from camwright.profiles.errors import InputError
+from camwright.workbench.server import application
+
+
+def run(
+    job: JobOrPaper = None,
+    port: Annotated[int, typer.Option("--port", metavar="N", min=0, max=65535, help="Port; a free one if 0.")] = 0,
+    no_browser: Annotated[bool, typer.Option("--no-browser", help="Open no browser; print the address.")] = False,
+    as_json: Json = False,
+) -> int:
+    """Open the workbench: see the cam, drag it, prove it, in the browser of this machine."""
+    file = BUNDLED_JOB if job is None else job
+    text = read_text(file, "job file", MOST_BYTES)
+    parse_job(text, str(file))
+    listening = _listen(port)
+    token = secrets.token_urlsafe(32)
+    url = f"http://127.0.0.1:{listening.getsockname()[1]}/?token={token}"
+    server = uvicorn.Server(
+        uvicorn.Config(application(text, Path(), token, main), log_level="error", timeout_graceful_shutdown=1)
+    )
+    sys.stdout.write(to_json({"url": url}) if as_json else f"{url}\nCtrl-C ends the workbench.\n")
+    sys.stdout.flush()
+    if not no_browser:
+        webbrowser.open(url)
+    server.run(sockets=[listening])
+    return 0
+
+
+def _listen(port: int) -> socket.socket:
+    """Listen on this machine alone.
+
+    Raises
+    ------
+    InputError
+        The port is taken, or not for everybody.
+    """
+    listening = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+    listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        listening.bind(("127.0.0.1", port))
+    except OSError as error:
+        listening.close()
+        raise InputError(
+            f"--port {port}: cannot be listened on: {error.strerror}; leave it out for a free one"
+        ) from error
+    listening.listen(64)
+    return listening

@@ -1,0 +1,196 @@
+"""The workbench's server: the page, and the calls that it makes."""
+
+from __future__ import annotations
+
+import base64
+import contextlib
+import json
+import re
+from collections.abc import AsyncIterator
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from starlette.applications import Starlette
+from starlette.concurrency import run_in_threadpool
+from starlette.requests import Request
+from starlette.responses import FileResponse, JSONResponse, Response
+from starlette.routing import Mount, Route
+from starlette.staticfiles import StaticFiles
+
+from camwright.answers.error import error_answer
+from camwright.house.files import staged
+from camwright.jobs.job import parse_job
+from camwright.jobs.keys import job_keys
+from camwright.jobs.wording import error_words
+from camwright.profiles.errors import CamwrightError, InputError
+from camwright.profiles.tables.targets import TARGETS
+from camwright.workbench.calls import LANGUAGES, NAMES, call_of, job_text, laws_of
+from camwright.workbench.guard import Guard
+from camwright.workbench.preview import preview
+from camwright.workbench.runner import JOB_FILE, CommandLine, Ran, Runner, StaleError
+
+PAGE = Path(__file__).parent / "page"
+"""The page's files."""
+
+_NO_CALL = 422
+"""Status of a call that is not what it should be; what a command refuses is an answer like any other."""
+
+_STALE = JSONResponse({"status": "stale", "message": "a newer call took its place"})
+
+_PLACE = re.compile(r"\[([a-z_.]+)\] ([a-z_]+)")
+
+
+class Workbench:
+    """The page and its calls.
+
+    Parameters
+    ----------
+    text
+        The job that the page begins with.
+    folder
+        Where the page saves: ``job.toml`` and ``design.json``, nothing else.
+    runner
+        What runs commands.
+    """
+
+    def __init__(self, text: str, folder: Path, runner: Runner) -> None:
+        self._text, self._folder, self._runner = text, folder, runner
+
+    async def page(self, _: Request) -> Response:
+        """Give the page."""
+        return FileResponse(PAGE / "index.html")
+
+    async def job(self, _: Request) -> Response:
+        """Give what the page begins with: the job, the keys that its form is made from, targets and languages."""
+        return JSONResponse(
+            {
+                "toml": self._text,
+                "name": parse_job(self._text, JOB_FILE).name,
+                "keys": [{"path": key.path, **asdict(key)} for key in job_keys()],
+                "targets": list(TARGETS),
+                "languages": list(LANGUAGES),
+            }
+        )
+
+    async def preview(self, request: Request) -> Response:
+        """Draw a job at once."""
+        try:
+            body = await _body(request)
+            text, laws = job_text(body), laws_of(body)
+        except InputError as error:
+            return _refusal(error, _NO_CALL)
+        try:
+            return JSONResponse(await run_in_threadpool(preview, text, laws))
+        except CamwrightError as error:
+            return _refusal(error)
+
+    async def call(self, request: Request) -> Response:
+        """Run the command that the path names."""
+        name = request.url.path.rpartition("/")[2]
+        try:
+            call = call_of(name, await _body(request))
+        except InputError as error:
+            return _refusal(error, _NO_CALL)
+        try:
+            return _answered(await self._runner.run(call.commands, call.inputs))
+        except StaleError:
+            return _STALE
+
+    async def save(self, request: Request) -> Response:
+        """Design a job, and write both where the workbench was started."""
+        try:
+            body = await _body(request)
+            text, call = job_text(body), call_of("design", body)
+        except InputError as error:
+            return _refusal(error, _NO_CALL)
+        try:
+            ran = await self._runner.run(call.commands, call.inputs)
+            if ran.exit_code > 1:
+                return _answered(ran)
+            with staged(self._folder) as aside:
+                (aside / JOB_FILE).write_bytes(text.encode())
+                (aside / "design.json").write_bytes(ran.files["out/design.json"])
+        except InputError as error:
+            return _refusal(error)
+        except StaleError:
+            return _STALE
+        return JSONResponse({"files": [JOB_FILE, "design.json"]})
+
+
+def application(text: str, folder: Path, token: str, command_line: CommandLine) -> Guard:
+    """Make the application.
+
+    Parameters
+    ----------
+    text, folder
+        As of `Workbench`.
+    token
+        What callers must know.
+    command_line
+        What answers their calls.
+    """
+    runner = Runner(command_line)
+    bench = Workbench(text, folder, runner)
+
+    @contextlib.asynccontextmanager
+    async def living(_: Starlette) -> AsyncIterator[None]:
+        yield
+        runner.close()
+
+    routes = [
+        Route("/", bench.page),
+        Route("/api/job", bench.job),
+        Route("/api/preview", bench.preview, methods=["POST"]),
+        Route("/api/save", bench.save, methods=["POST"]),
+        *(Route(f"/api/{name}", bench.call, methods=["POST"]) for name in NAMES),
+        Mount("/page", StaticFiles(directory=PAGE)),
+    ]
+    return Guard(Starlette(routes=routes, lifespan=living), token)
+
+
+async def _body(request: Request) -> dict[str, Any]:
+    """Read the body of a call.
+
+    Raises
+    ------
+    InputError
+        It is no JSON object.
+    """
+    try:
+        body = json.loads(await request.body())
+    except ValueError as error:
+        raise InputError("the body is no JSON") from error
+    if not isinstance(body, dict):
+        raise InputError('the body is no JSON object; send {"toml": "…"}')
+    return body
+
+
+def _answered(ran: Ran) -> Response:
+    """Answer with what the command line answered, a failure with the faults by their fields."""
+    answer = json.loads(ran.answer) if ran.answer else {}
+    if ran.exit_code > 1:
+        return JSONResponse({**answer, "faults": faults(str(answer.get("message", "")))})
+    files = {path: base64.b64encode(data).decode() for path, data in ran.files.items()}
+    return JSONResponse({"exit_code": ran.exit_code, **answer, "contents": files})
+
+
+def _refusal(error: CamwrightError, status: int = 200) -> Response:
+    """Answer with a refusal as the command line words it; the status is that of a good call unless the call itself is no good."""
+    message = "\n".join(error_words(error))
+    return JSONResponse({**error_answer(error.exit_code, message, error), "faults": faults(message)}, status)
+
+
+def faults(message: str) -> list[dict[str, str | None]]:
+    """Split a refusal into its faults, each with the field of the form that it is about.
+
+    Examples
+    --------
+    >>> faults("job.toml: [cut] length = 5: a number without a unit")
+    [{'field': 'cut.length', 'message': 'job.toml: [cut] length = 5: a number without a unit'}]
+    """
+    found: list[dict[str, str | None]] = []
+    for line in message.splitlines():
+        place = _PLACE.search(line)
+        found.append({"field": ".".join(place.groups()) if place else None, "message": line})
+    return found

@@ -1,0 +1,199 @@
+"""The calls of the workbench: what the command line answers, and nothing for those who should not ask."""
+
+from __future__ import annotations
+
+import base64
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from starlette.testclient import TestClient
+
+from camwright.cli.main import main
+from camwright.jobs.job import BUNDLED_JOB
+from camwright.workbench.guard import MOST_BYTES
+from camwright.workbench.preview import preview
+
+PAPER = BUNDLED_JOB.read_text(encoding="utf-8")
+EXAMPLES = Path(__file__).parents[2] / "examples"
+SHORT = PAPER.replace('"600 mm"', '"300 mm"')
+
+
+def said(capsys: pytest.CaptureFixture[str], *arguments: str) -> Any:
+    main(arguments)
+    return json.loads(capsys.readouterr().out)
+
+
+def test_the_page_begins_with_the_job_and_its_keys(bench: TestClient) -> None:
+    answer = bench.get("/api/job").json()
+    assert (answer["toml"], answer["name"]) == (PAPER, "paper-600")
+    assert {"cut.length", "servo.damping"} <= {key["path"] for key in answer["keys"]}
+    assert "workbench" in bench.get("/", params={"token": "t0ken"}).text
+
+
+@pytest.mark.parametrize("call", ["check", "compare", "limits"])
+def test_an_answer_is_the_command_lines(
+    call: str, bench: TestClient, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("job.toml").write_text(PAPER)
+    options = ["--no-figures"] if call == "compare" else []
+    answer = bench.post(f"/api/{call}", json={"toml": PAPER})
+    assert answer.status_code == 200
+    expected = said(capsys, call, "job.toml", "--json", *options)
+    assert {key: value for key, value in answer.json().items() if key not in ("exit_code", "contents")} == expected
+
+
+def test_what_is_exported_is_byte_for_byte_the_command_lines(
+    bench: TestClient, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("job.toml").write_text(PAPER)
+    assert main(["design", "job.toml", "--no-figures", "--quiet", "--out", "out"]) == 0
+    assert main(["export", "out/design.json", "--to", "codesys,logix", "--quiet", "--out", "tables"]) == 0
+    answer = bench.post("/api/export", json={"toml": PAPER, "targets": ["codesys", "LOGIX"]}).json()
+    expected = {path.as_posix(): path.read_bytes() for place in ("out", "tables") for path in Path(place).iterdir()}
+    assert {path: base64.b64decode(data) for path, data in answer["contents"].items()} == expected
+
+
+def test_a_recipe_and_an_audit(bench: TestClient) -> None:
+    answer = bench.post("/api/recipe", json={"toml": PAPER, "targets": ["csv"], "language": "zh"}).json()
+    assert base64.b64decode(answer["contents"]["recipe/recipe.pdf"]).startswith(b"%PDF")
+    table = next(data for path, data in answer["contents"].items() if path.endswith("_cam.csv"))
+    judged = bench.post("/api/audit", json={"toml": PAPER, "name": "../../running.csv", "base64": table})
+    assert judged.status_code == 200
+    assert judged.json()["exit_code"] == 0
+
+
+@pytest.mark.parametrize("name", sorted(path.stem for path in EXAMPLES.glob("*.toml")))
+def test_every_example_has_a_preview(name: str) -> None:
+    shown = preview((EXAMPLES / f"{name}.toml").read_text(encoding="utf-8"), ("linear_return", "poly_3_4_5"))
+    assert set(shown["samples"]) == {"x_m", "y", "ratio", "speed", "acceleration", "jerk"}
+    assert len({len(values) for values in shown["samples"].values()}) == 1
+    for limit, values in (("speed", "speed"), ("acceleration", "acceleration"), ("jerk", "jerk")):
+        assert max(map(abs, shown["samples"][values])) <= shown["limits"][limit] * (1 + 1e-9)
+    assert shown["laws"].keys() == {"linear_return", "poly_3_4_5"}
+
+
+def test_a_preview_of_a_motion_objective_is_the_design(bench: TestClient) -> None:
+    shown = bench.post("/api/preview", json={"toml": PAPER}).json()
+    designed = bench.post("/api/design", json={"toml": PAPER}).json()
+    assert shown["exact"] is True
+    assert shown["objective"]["value"] == pytest.approx(designed["objective"]["value"], rel=1e-9)
+    assert shown["binding"] == ["reversal", "jerk"]
+    torque = (EXAMPLES / "flying-saw.toml").read_text(encoding="utf-8")
+    assert preview(torque)["exact"] is False
+
+
+def test_an_impossible_job_is_refused_with_its_ways_out(bench: TestClient) -> None:
+    for call in ("preview", "design"):
+        answer = bench.post(f"/api/{call}", json={"toml": SHORT})
+        assert answer.status_code == 200
+        assert answer.json()["exit_code"] == 3
+        assert answer.json()["binding"] == "jerk"
+    assert {"change": "length", "value": 337.0, "unit": "mm"} in bench.post("/api/design", json={"toml": SHORT}).json()[
+        "suggestions"
+    ]
+
+
+def test_faults_name_their_fields(bench: TestClient) -> None:
+    faulty = PAPER.replace('"600 mm"', "600").replace('"4 ms"', '"4 mm"')
+    answer = bench.post("/api/check", json={"toml": faulty})
+    assert (answer.status_code, answer.json()["exit_code"]) == (200, 2)
+    assert [fault["field"] for fault in answer.json()["faults"]] == ["cut.length", "servo.sample_time"]
+
+
+@pytest.mark.parametrize(
+    ("call", "body", "message"),
+    [
+        ("check", {}, 'the body has no "toml"'),
+        ("check", [1], "the body is no JSON object"),
+        ("preview", {"toml": PAPER, "laws": "all"}, '"laws" is a list'),
+        ("design", {"toml": PAPER, "figures": "yes"}, "\"figures\" is 'yes'; it is true or false"),
+        ("envelope", {"toml": PAPER, "points": 1000}, '"points" is 1000; it is a whole number from 2 to 40'),
+        ("export", {"toml": PAPER, "targets": ["../x"]}, "there is no target '../x'"),
+        ("export", {"toml": PAPER, "targets": "csv"}, '"targets" is a list of names'),
+        ("export", {"toml": PAPER, "units": "--force"}, "\"units\" is '--force'"),
+        ("recipe", {"toml": PAPER, "language": "fr"}, "\"language\" is 'fr'"),
+        ("audit", {"toml": PAPER, "name": "a.csv"}, 'an audit takes the file\'s "name" and its bytes'),
+        ("audit", {"toml": PAPER, "name": "a.csv", "base64": "?"}, '"base64" is no base64'),
+    ],
+)
+def test_what_cannot_be_asked_is_refused(call: str, body: Any, message: str, bench: TestClient) -> None:
+    answer = bench.post(f"/api/{call}", json=body)
+    assert answer.status_code == 422
+    assert message in answer.json()["message"]
+
+
+def test_no_json_and_no_such_call(bench: TestClient) -> None:
+    assert "the body is no JSON" in bench.post("/api/check", content=b"\xff").json()["message"]
+    assert bench.post("/api/bend", json={"toml": PAPER}).status_code == 404
+    assert bench.get("/api/design").status_code == 405
+
+
+@pytest.mark.parametrize(
+    ("headers", "status"),
+    [
+        ({"X-Camwright-Token": "wrong"}, 403),
+        ({"X-Camwright-Token": ""}, 403),
+        ({"Origin": "http://example.com"}, 403),
+        ({"Origin": "null"}, 403),
+        ({"Host": "example.com"}, 403),
+        ({"Host": "127.0.0.1:1"}, 403),
+        ({"Origin": "http://127.0.0.1:8765"}, 200),
+    ],
+)
+def test_only_the_page_itself_may_call(headers: dict[str, str], status: int, bench: TestClient) -> None:
+    assert bench.get("/api/job", headers=headers).status_code == status
+    assert bench.post("/api/check", json={"toml": PAPER}, headers=headers).status_code == status
+
+
+def test_large_calls_are_refused_before_they_are_read(bench: TestClient) -> None:
+    assert bench.post("/api/check", content=b" " * (MOST_BYTES + 1)).status_code == 413
+    pieces = (b" " * (1 << 20) for _ in range(MOST_BYTES // (1 << 20) + 1))  # of no stated length
+    assert bench.post("/api/check", content=pieces).status_code == 413
+
+
+@pytest.mark.parametrize(
+    "path", ["/page/../server.py", "/page/%2e%2e/server.py", "/page//etc/passwd", "/page/..%2fserver.py"]
+)
+def test_nothing_outside_the_page_is_served(path: str, bench: TestClient) -> None:
+    assert bench.get(path).status_code == 404
+
+
+def test_every_answer_has_the_policy(bench: TestClient) -> None:
+    for path in ("/", "/api/job", "/page/main.js", "/nowhere"):
+        headers = bench.get(path).headers
+        assert "default-src 'none'" in headers["content-security-policy"]
+        assert "unsafe" not in headers["content-security-policy"]
+        assert headers["x-content-type-options"] == "nosniff"
+
+
+def test_saving_writes_two_files_and_nothing_else(bench: TestClient, folder: Path) -> None:
+    before = {path.name for path in folder.iterdir()}
+    answer = bench.post("/api/save", json={"toml": PAPER})
+    assert answer.json() == {"files": ["job.toml", "design.json"]}
+    assert {path.name for path in folder.iterdir()} - before == {"job.toml", "design.json"}
+    assert (folder / "job.toml").read_text() == PAPER
+    refused = bench.post("/api/save", json={"toml": SHORT})
+    assert refused.json()["exit_code"] == 3
+    assert (folder / "job.toml").read_text() == PAPER
+
+
+def test_the_words_of_the_page_are_the_same_in_every_language() -> None:
+    words = Path(__file__).parents[2] / "camwright" / "workbench" / "page" / "words"
+    known = {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in words.glob("*.json")}
+    assert set(known) == {"en", "de", "zh"}
+    for language, catalogue in known.items():
+        assert catalogue.keys() == known["en"].keys(), language
+        assert all(catalogue.values())
+
+
+def test_the_command_says_where_it_listens_and_refuses_a_taken_port(
+    address: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    port = address.split(":")[2].partition("/")[0]
+    assert address.startswith("http://127.0.0.1:")
+    assert main(["workbench", "--port", port, "--no-browser"]) == 2
+    assert f"--port {port}: cannot be listened on" in capsys.readouterr().err
