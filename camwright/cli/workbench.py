@@ -16,7 +16,8 @@ from camwright.cli.main import main
 from camwright.cli.options import JobOrPaper, Json
 from camwright.house.files import read_text
 from camwright.house.json_text import to_json
-from camwright.jobs.job import BUNDLED_JOB, MOST_BYTES, parse_job
+from camwright.house.toml_file import MOST_BYTES
+from camwright.jobs.job import BUNDLED_JOB, parse_job
 from camwright.profiles.errors import InputError
 from camwright.workbench.server import application
 
