@@ -38,6 +38,9 @@ ROUNDING = 5e-6
 CLOSING = 10e-6
 """Greatest distance between the ends of a closed outline's rule (m)."""
 
+_LONGEST_NAME = 20
+"""Characters of a program's name: Fagor's header takes no more."""
+
 _MOST_FAULTS = 20
 _SETTLED = 200
 _NEAR = 1e-6
@@ -149,9 +152,10 @@ def bend_outlines(outlines: Sequence[Outline], job: BenderJob, stem: str) -> tup
 
 
 def program_name(stem: str, index: int, count: int) -> str:
-    """Name a program after its drawing: letters, digits, dashes, at most 24; numbered when there are several."""
-    plain = re.sub(r"[^A-Z0-9]+", "-", stem.upper()).strip("-")[:18] or "RULE"
-    return plain if count == 1 else f"{plain}-{index + 1}"
+    """Name a program after its drawing: letters, digits, dashes, at most 20; numbered when there are several."""
+    plain = re.sub(r"[^A-Z0-9]+", "-", stem.upper()).strip("-") or "RULE"
+    number = "" if count == 1 else f"-{index + 1}"
+    return plain[: min(18, _LONGEST_NAME - len(number))] + number
 
 
 def _planned(outline: Outline, job: BenderJob) -> tuple[BendPlan, list[str]]:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import math
+import sys
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -19,7 +21,7 @@ from camwright.bender.dxf_styles import style_choice
 from camwright.bender.figures import draw
 from camwright.bender.job import BenderJob, load_bender
 from camwright.bender.program_file import bend_outlines
-from camwright.bender.sending import send
+from camwright.bender.sending import End, Parity, SerialLine, send, transfer
 from camwright.bender.sheet import write_sheet
 from camwright.cli.options import Json, Quiet
 from camwright.cli.views.parts import new_table, new_text, stacked
@@ -75,6 +77,23 @@ def run(
     handshake: Annotated[
         Literal["xonxoff", "rtscts"], typer.Option("--handshake", help="How the machine holds the line up.")
     ] = "xonxoff",
+    data_bits: Annotated[int, typer.Option("--data-bits", min=7, max=8, help="Data bits of a character.")] = 8,
+    parity: Annotated[Parity, typer.Option("--parity", help="Parity of a character.")] = "none",
+    stop_bits: Annotated[int, typer.Option("--stop-bits", min=1, max=2, help="Stop bits of a character.")] = 1,
+    attributes: Annotated[
+        str | None,
+        typer.Option("--attributes", metavar="LETTERS", help="In the header of a Fagor program; MX if left out."),
+    ] = None,
+    end: Annotated[
+        End | None,
+        typer.Option(
+            "--end", help="Character that ends a program on the line; esc for Fagor and none for ISO if left out."
+        ),
+    ] = None,
+    wait: Annotated[
+        float | None,
+        typer.Option("--wait", metavar="SECONDS", min=0, max=3600, help="Wait between programs, instead of asking."),
+    ] = None,
     as_json: Json = False,
     no_figures: Annotated[bool, typer.Option("--no-figures", help="Write neither figures nor sheets.")] = False,
     quiet: Quiet = False,
@@ -101,13 +120,39 @@ def run(
     if port is not None and not result.passed:
         result = replace(result, notes=(*result.notes, f"nothing is sent to {port}: a check failed"))
     elif port is not None:
-        for outline in result.outlines:
-            lines = outline.text.count("\n")
-            with voice.progress(lines + 1) as step:
-                send(outline.text, port, handshake, baud, _counter(step, outline.program.name, lines))
-
+        line = SerialLine(port, baud, handshake, data_bits, parity, stop_bits)
+        _send(result, line, lambda text: transfer(text, bender.flavour, attributes, end), wait, voice)
     voice.answer(lambda: answer(result, programs, files), lambda: _drawing_view(result, files))
     return 0 if result.passed else 1
+
+
+def _send(
+    result: BentDrawing, line: SerialLine, framed: Callable[[str], list[bytes]], wait: float | None, voice: Voice
+) -> None:
+    """Send the programs one at a time: the machine must be told to receive each.
+
+    Raises
+    ------
+    InputError
+        There are several, and neither a time to wait nor anybody to ask.
+    """
+    count = len(result.outlines)
+    if count > 1 and wait is None and not sys.stdin.isatty():
+        raise InputError(
+            f"{count} programs are to be sent, and the machine takes one at a time: give the seconds between them with "
+            "--wait, or run the command in a terminal, where it asks"
+        )
+    for number, outline in enumerate(result.outlines):
+        name = outline.program.name
+        if number and wait is not None:
+            time.sleep(wait)
+        elif number:
+            typer.prompt(
+                f"start the reception of {name} on the machine, then press Enter", "", show_default=False, err=True
+            )
+        rows = framed(outline.text)
+        with voice.progress(len(rows) + 1) as step:
+            send(rows, line, _counter(step, name, len(rows)))
 
 
 def _counter(step: Step, name: str, lines: int) -> Callable[[int], None]:

@@ -303,7 +303,7 @@ def test_serial_line(drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixtur
     received, quiet, flags = bytearray(), [], []
 
     def listen() -> None:
-        while b"M30\r\n" not in received:
+        while b"M30\r\n\x1b" not in received:
             received.extend(os.read(machine, 16))
             if len(flags) == 0:
                 flags.append(termios.tcgetattr(port))
@@ -325,7 +325,8 @@ def test_serial_line(drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixtur
     os.close(port)
     os.close(machine)
     assert code == 0
-    assert bytes(received).replace(b"\r\n", b"\n").decode() == Path(answer["program"]).read_text()
+    written = Path(answer["program"]).read_text().replace("%DRAWING\n", "%DRAWING,MX,\n")
+    assert bytes(received).replace(b"\r\n", b"\n").decode() == written + "\x1b"
     software, hardware = bool(flags[0][0] & termios.IXON), bool(flags[0][2] & termios.CRTSCTS)
     assert (software, hardware) == (handshake == "xonxoff", handshake == "rtscts")
     assert quiet == ([True] if handshake == "xonxoff" else [])
