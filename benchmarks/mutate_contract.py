@@ -125,8 +125,8 @@ CHANGES = (
     Change("greatest jerk", "units.py", '"3000 m/s^3", "m/s^3", 1e-9, 1e15', '"3000 m/s^3", "m/s^3", 1e-9, 1e12'),
     Change("least angular rate", "units.py", '"120 rad/s", "rad/s", 1e-6, 1e9', '"120 rad/s", "rad/s", 1e-9, 1e9'),
     Change("greatest gain", "units.py", '"35 1/s", "1/s", 1e-6, 1e9', '"35 1/s", "1/s", 1e-6, 1e6'),
-    Change("greatest damping", "structure.py", "number_field(0.0, 100.0,", "number_field(0.0, 10.0,"),
-    Change("greatest feed-forward", "structure.py", "number_field(0.0, 1.0,", "number_field(0.0, 1.1,"),
+    Change("greatest damping", "servo_table.py", "number_field(0.0, 100.0,", "number_field(0.0, 10.0,"),
+    Change("greatest feed-forward", "servo_table.py", "number_field(0.0, 1.0,", "number_field(0.0, 1.1,"),
     Change("points of cam.csv", "structure.py", "whole_field(2, 100_000, 361)", "whole_field(2, 200_000, 361)"),
     # the numbers of the targets
     Change("wraps", "rebuilt.py", "\nLEAST_WRAPS = 3\n", "\nLEAST_WRAPS = 2\n"),
