@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -13,10 +14,12 @@ from camwright.answers.axis import (
 )
 from camwright.answers.measures import checks_answer, lengths_answer, profiles_answer
 from camwright.answers.objective import agreement_answer, objective_answer
+from camwright.answers.speed_band import band_answer
 from camwright.studies.design import Design
+from camwright.studies.remedies import Remedy
 
 
-def design_answer(design: Design, files: Sequence[Path]) -> dict[str, Any]:
+def design_answer(design: Design, ways: Sequence[Remedy], files: Sequence[Path]) -> dict[str, Any]:
     """Answer of ``camwright design``."""
     return {
         "job": design.job.name,
@@ -28,6 +31,8 @@ def design_answer(design: Design, files: Sequence[Path]) -> dict[str, Any]:
         "profiles": profiles_answer(design.comparison),
         "checks": checks_answer(design.report.checks),
         "passed": design.passed,
+        "remedies": [asdict(way) for way in ways],
+        **band_answer(design.band),
         "minimum_cut_length_mm": lengths_answer(design.lengths),
         "servo_aware": axis_answer(design.axis),
         "robust": robust_answer(design.robust),

@@ -13,6 +13,7 @@ from camwright.studies.measured import Measured
 from camwright.validation.check import Check
 from camwright.validation.motion import MotionMeasures
 from camwright.validation.motor import MotorMeasures
+from camwright.validation.report import ValidationReport
 from camwright.validation.servo.response import ServoResponse
 
 
@@ -69,6 +70,11 @@ def measures_answer(
         del own["sync_ratio_error"]
         measures["slave"] = {"unit": "rad", **own}
     return measures
+
+
+def report_answer(report: ValidationReport, unit: SlaveUnit) -> dict[str, Any]:
+    """Measures of the profile that was judged."""
+    return measures_answer(report.motion, report.tool, report.motor, report.servo, unit)
 
 
 def checks_answer(checks: Sequence[Check]) -> list[dict[str, Any]]:

@@ -2,26 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from camwright.answers.axis import (
     lead_answer,
 )
-from camwright.answers.measures import checks_answer, measures_answer
-from camwright.jobs.job import Job
-from camwright.validation.report import ValidationReport
+from camwright.answers.measures import checks_answer, report_answer
+from camwright.answers.speed_band import band_answer
+from camwright.stored.judge import Judged
+from camwright.studies.speed_band import SpeedBand
 
 
-def validate_answer(job: Job, file: Path, report: ValidationReport, notes: Sequence[str] = ()) -> dict[str, Any]:
+def validate_answer(judged: Judged, band: SpeedBand, file: Path) -> dict[str, Any]:
     """Answer of ``camwright validate``."""
+    job, report = judged.job, judged.report
     return {
         "job": job.name,
         "file": str(file),
-        "notes": list(notes),
-        "profile": measures_answer(report.motion, report.tool, report.motor, report.servo, job.machine.slave_unit),
+        "notes": list(judged.notes),
+        "profile": report_answer(report, job.machine.slave_unit),
         "checks": checks_answer(report.checks),
         "passed": report.passed,
+        **band_answer(band),
         **lead_answer(job, report.length_errors),
     }

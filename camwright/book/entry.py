@@ -53,6 +53,8 @@ class Entry:
         Why it is infeasible or failed, else empty.
     limit
         How fast the cut length can be run; with the first combination of each cut length only.
+    speed_band
+        Line speeds at which this very cam passes every check (m/s): lowest and highest of each part. Of passed ones only.
     files
         Names, SHA-256 of the files in its folder.
     """
@@ -73,6 +75,7 @@ class Entry:
     binding: str = ""
     reason: str = ""
     limit: Limit | None = None
+    speed_band: tuple[tuple[float, float], ...] = ()
     files: tuple[tuple[str, str], ...] = ()
 
     def to_json(self) -> str:
@@ -88,7 +91,7 @@ class Entry:
         values: dict[str, Any] = json.loads(text)
         if "limit" in values:
             values["limit"] = Limit(**values["limit"])
-        for name in ("failed_checks", "tables", "files"):
+        for name in ("failed_checks", "tables", "speed_band", "files"):
             if name in values:
                 values[name] = tuple(tuple(item) if isinstance(item, list) else item for item in values[name])
         return cls(**values)

@@ -45,6 +45,7 @@ _TITLES = {
     "following_error_mm": "following error mm",
     "settling_mm": "settling mm",
     "shear_zone_error_mm": "shear-zone error mm",
+    "released_m_per_min": "this cam released m/min",
     "failed_checks": "checks failed",
     "binding": "binds",
     "folder": "files",
@@ -55,7 +56,7 @@ _TITLES = {
     "physical_binding": "binds there",
 }
 
-_HEAD, _MIDDLE, _END = COLUMNS[:5], COLUMNS[5:16], ("binding", "folder")
+_HEAD, _MIDDLE, _END = COLUMNS[:5], COLUMNS[5:17], ("binding", "folder")
 
 _STATUS = {"passed": "passed", "check_failed": "check failed", "infeasible": "infeasible", "failed": "solver failed"}
 
@@ -71,8 +72,9 @@ def html_pieces(
         yield f"<dt>{escape(what)}</dt><dd>{escape(value)}</dd>\n"
     yield "</dl>\n<h2>Highest line speeds</h2>\n"
     yield (
-        "<p>The highest line speed of the book at which every check passed, and what forbids the next one. “Limits alone” is what the "
-        "limits of speed, acceleration, jerk and reversal allow; the servo may not settle there.</p>\n"
+        "<p>The highest line speed of the book at which every check passed, and what forbids the next one. “This cam released” is "
+        "where the cam of that line speed passes every check. “Limits alone” is what the limits of speed, acceleration, jerk and "
+        "reversal allow; the servo may not settle there.</p>\n"
     )
     yield from _table(LIMIT_COLUMNS, map(_limit, limits))
     yield "<h2>Designs</h2>\n"

@@ -26,6 +26,7 @@ from camwright.studies.axis_study import axis_study, solve_job
 from camwright.studies.comparison import Comparison
 from camwright.studies.design import Design
 from camwright.studies.measured import Measured
+from camwright.studies.speed_band import SpeedBand, job_band
 from camwright.validation.bounds.bound import Bound
 from camwright.validation.report import judge
 
@@ -153,6 +154,7 @@ def _designed(job: Job) -> Design:
         lengths=None,
         axis=axis_study(placed, solution),
         robust=None,
+        band=job_band(solution.profile, placed, report) if report.passed else SpeedBand((), ()),
     )
 
 
@@ -185,6 +187,7 @@ def _exported(number: int, design: Design, targets: Sequence[str], limit: Limit 
         tables=tuple((result.target.name, result.table.points) for result in results if result.passed),
         reason="; ".join(f"{name}: {fault}" for name, faults in refused.items() for fault in faults),
         limit=limit,
+        speed_band=design.band.parts,
         files=tuple((name, hashlib.sha256(text.encode()).hexdigest()) for name, text in sorted(texts.items())),
     )
     return entry, texts

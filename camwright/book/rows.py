@@ -28,18 +28,21 @@ COLUMNS = (
     "following_error_mm",
     "settling_mm",
     "shear_zone_error_mm",
+    "released_m_per_min",
     "tables",
     "failed_checks",
     "binding",
     "reason",
     "folder",
 )
-"""Columns of the index. ``tables`` names each target with the points of its table."""
+"""Columns of the index. ``released_m_per_min`` are the line speeds at which this very cam passes every check; ``tables`` names each
+target with the points of its table."""
 
 LIMIT_COLUMNS = (
     "length_mm",
     "objective",
     "highest_line_speed_m_per_min",
+    "released_m_per_min",
     "lower_that_fail",
     "next_line_speed_m_per_min",
     "binding",
@@ -87,6 +90,7 @@ def index_rows(book: Book, entries: Iterable[Entry]) -> Iterator[list[Cell]]:
             _mm(entry.following_error),
             _mm(entry.settling),
             _mm(entry.shear_zone_error),
+            _released(entry.speed_band),
             " ".join(f"{name}:{points}" for name, points in entry.tables) or None,
             "; ".join(entry.failed_checks) or None,
             entry.binding or None,
@@ -99,8 +103,10 @@ def limit_rows(book: Book, entries: Iterable[Entry]) -> Iterator[list[Cell]]:
     """Give a row of `LIMIT_COLUMNS` for every cut length and objective.
 
     The highest line speed is the highest of the book's own at which every check passed and every table was released; how many lower
-    ones of the book do not is said beside it. What binds is what forbids the next one of the book. The physical line speed is that of
-    the limits of speed, acceleration, jerk and reversal alone, as ``camwright limits`` finds it; the servo may not settle there.
+    ones of the book do not is said beside it. Beside it, too, stand the line speeds at which the cam of that highest speed passes every
+    check: it is released for no others, and starting up takes it through what lies below them. What binds is what forbids the next one
+    of the book. The physical line speed is that of the limits of speed, acceleration, jerk and reversal alone, as ``camwright limits``
+    finds it; the servo may not settle there.
     """
     for _, group in groupby(entries, key=lambda entry: book.indices(entry.number)[0]):
         at_length = list(group)
@@ -121,6 +127,7 @@ def _limit_row(book: Book, entries: list[Entry], objective: str, limit: Limit | 
         float(of.length * 1000),
         objective,
         None if highest is None else float(book.combination(entries[highest].number).line_speed * 60),
+        None if highest is None else _released(entries[highest].speed_band),
         0 if highest is None else highest + 1 - len(works),
         None if next_one is None else float(book.combination(next_one.number).line_speed * 60),
         None if next_one is None else _binding(next_one),
@@ -140,6 +147,20 @@ def _rounded_down(value: float) -> float:
     """Round to seven digits, downwards: a limit that is kept is below the one that was found."""
     scale = 10.0 ** (6 - math.floor(math.log10(value)))
     return math.floor(value * scale) / scale
+
+
+def _released(band: tuple[tuple[float, float], ...]) -> str | None:
+    """Write the line speeds at which a cam passes every check (m/min), each end rounded to its inside; nothing where there are none."""
+    parts = [(_rounded_up(60.0 * low), _rounded_down(60.0 * high)) for low, high in band]
+    return "; ".join(f"{low:.7g} to {high:.7g}" for low, high in parts) or None
+
+
+def _rounded_up(value: float) -> float:
+    """Round to seven digits, upwards."""
+    if value <= 0.0:
+        return 0.0
+    scale = 10.0 ** (6 - math.floor(math.log10(value)))
+    return math.ceil(value * scale) / scale
 
 
 def _mm(length: float | None) -> float | None:

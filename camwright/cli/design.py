@@ -15,6 +15,7 @@ from camwright.cli.views.lead import lead_view
 from camwright.cli.views.lengths import lengths_view
 from camwright.cli.views.parts import new_text, stacked
 from camwright.cli.views.profiles import profiles_view
+from camwright.cli.views.speed_band import band_view
 from camwright.figures.design import design_figures
 from camwright.house.files import staged
 from camwright.house.numbers import number, with_unit
@@ -23,6 +24,7 @@ from camwright.jobs.job import load_job
 from camwright.stored.save import design_files
 from camwright.studies.comparison import law_names
 from camwright.studies.design import STEPS, Design, optimise
+from camwright.studies.remedies import Remedy, remedies
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -39,7 +41,7 @@ def run(
     asked = load_job(job)
     directory = output_directory(out, asked)
     voice = Voice(as_json, quiet)
-    with voice.progress(STEPS + len(law_names(asked.task)) + 2) as step:
+    with voice.progress(STEPS + len(law_names(asked.task)) + 3) as step:
         result = optimise(asked, step)
         texts = design_files(result)
         step("writing files")
@@ -49,12 +51,14 @@ def run(
             if not no_figures:
                 design_figures(result, aside)
             files = final_paths(aside, directory)
+        step("looking for a way out")
+        ways = remedies(asked, result.report, result.band)
 
-    voice.answer(lambda: design_answer(result, files), lambda: _view(result, files))
+    voice.answer(lambda: design_answer(result, ways, files), lambda: _view(result, ways, files))
     return 0 if result.passed else 1
 
 
-def _view(design: Design, files: Sequence[Path]) -> RenderableType:
+def _view(design: Design, ways: Sequence[Remedy], files: Sequence[Path]) -> RenderableType:
     """Show a design: objective, comparison, checks, minimum cut lengths, files."""
     lengths = [] if design.lengths is None else [lengths_view(design.lengths, design.job.units)]
     return stacked(
@@ -65,7 +69,31 @@ def _view(design: Design, files: Sequence[Path]) -> RenderableType:
         lead_view(design.job, design.report.length_errors),
         *lengths,
         files_view(files),
+        band_view(design.band, design.job.units),
+        *_ways(design, ways),
+        new_text(_verdict(design), "bold" if design.passed else "bold red"),
     )
+
+
+def _ways(design: Design, ways: Sequence[Remedy]) -> list[RenderableType]:
+    """Show the changes with which the job passed, where it did not as it is."""
+    if design.passed:
+        return []
+    if not ways:
+        return [new_text("no change that was tried makes it pass")]
+    return [
+        new_text(
+            "\n".join(["what makes it pass, each alone, designed and checked:", *(f"  {way.words}" for way in ways)])
+        )
+    ]
+
+
+def _verdict(design: Design) -> str:
+    """Say in the last line whether the cam passed, or what failed."""
+    failed = [check.name for check in design.report.checks if not check.passed]
+    if failed:
+        return f"{design.job.name}: FAILED: {', '.join(failed)}"
+    return f"{design.job.name}: passed every check at {with_unit(design.job.cut.line_speed, 'm/s', units=design.job.units)}"
 
 
 def _head(design: Design) -> list[str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -13,10 +12,11 @@ from camwright.cli.options import Json, JudgedBy, Quiet
 from camwright.cli.views.checks import checks_view
 from camwright.cli.views.lead import lead_view
 from camwright.cli.views.parts import new_text, stacked
+from camwright.cli.views.speed_band import band_view
 from camwright.house.output import Voice
-from camwright.jobs.job import Job, load_job
-from camwright.stored.judge import validate_file
-from camwright.validation.report import ValidationReport
+from camwright.jobs.job import load_job
+from camwright.stored.judge import Judged, validate_file
+from camwright.studies.speed_band import SpeedBand, job_band
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -31,22 +31,26 @@ def run(
     """Judge a cam, camwright's or anyone's, by a job's machine, limits and servo."""
     asked = load_job(job)
     voice = Voice(as_json, quiet)
-    with voice.progress(1) as step:
+    with voice.progress(2) as step:
         step("checking")
-        report, notes = validate_file(file, asked)
+        found = validate_file(file, asked)
+        step("finding its line speeds")
+        band = job_band(found.profile, found.job, found.report)
 
-    voice.answer(lambda: validate_answer(asked, file, report, notes), lambda: _view(asked, file, report, notes))
-    return 0 if report.passed else 1
+    voice.answer(lambda: validate_answer(found, band, file), lambda: _view(found, band, file))
+    return 0 if found.report.passed else 1
 
 
-def _view(job: Job, file: Path, report: ValidationReport, notes: Sequence[str]) -> RenderableType:
-    """Show the checks on a file and the verdict."""
+def _view(found: Judged, band: SpeedBand, file: Path) -> RenderableType:
+    """Show the checks on a file, its line speeds and the verdict."""
+    job, report = found.job, found.report
     failed = [check.name for check in report.checks if not check.passed]
     verdict = f"{len(failed)} checks failed: {', '.join(failed)}" if failed else "every check passed"
-    told = [new_text(f"Note: {note}") for note in notes]
+    told = [new_text(f"Note: {note}") for note in found.notes]
     return stacked(
         checks_view(report.checks, job.units),
         lead_view(job, report.length_errors),
         *told,
+        band_view(band, job.units),
         new_text(f"{file}: {verdict}"),
     )

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from camwright.answers.validate import validate_answer
+from camwright.answers.measures import report_answer
 from camwright.drives.alignment import aligned
 from camwright.drives.options import with_slopes
 from camwright.house.progress import Step, ignore
@@ -229,8 +229,8 @@ def audit_answer(result: Audit, path: Path, files: Sequence[Path] = ()) -> dict[
         "target": result.target.name,
         "knots": result.table.points,
         "notes": list(result.notes),
-        "profile": validate_answer(job, path, result.report)["profile"],
-        "optimum": validate_answer(result.optimum_job, path, result.optimum_report)["profile"],
+        "profile": report_answer(result.report, job.machine.slave_unit),
+        "optimum": report_answer(result.optimum_report, result.optimum_job.machine.slave_unit),
         "saving": {f"{name}_rel": result.saving(name) for name in ("peak_acceleration", "rms_acceleration")},
         "saving_by": "differences at the sample time" if result.is_sampled("peak_acceleration") else "exact",
         "sampled": {

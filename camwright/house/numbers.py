@@ -185,3 +185,17 @@ def typed(value: float, unit: str, digits: int = 10, units: Units = METRIC) -> s
     """
     name = units.shown[unit].typed or units.shown[unit].printed
     return f"{converted(value, unit, units):.{digits}g}{'' if name == '1' else ' ' + name}"
+
+
+def inside(value: float, digits: int = 5, *, up: bool) -> float:
+    """Round the end of a range to so many digits, up or down: what is told lies inside what was found.
+
+    Examples
+    --------
+    >>> inside(81.67498, up=False), inside(81.67402, up=True), inside(80.0, up=False)
+    (81.674, 81.675, 80.0)
+    """
+    if value <= 0.0:
+        return 0.0
+    scale = 10.0 ** (digits - 1 - math.floor(math.log10(value)))
+    return (math.ceil(value * scale - 1e-4) if up else math.floor(value * scale + 1e-4)) / scale

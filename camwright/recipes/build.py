@@ -32,6 +32,7 @@ from camwright.recipes.model import (
     RecipeCheck,
     RecipeTable,
     Refusal,
+    SpeedPart,
     TableFile,
     TableUnit,
     Zones,
@@ -39,11 +40,13 @@ from camwright.recipes.model import (
 from camwright.recipes.speeds import at_speeds
 from camwright.recipes.working_range import working_range
 from camwright.stored.design_file import StoredDesign
-from camwright.studies.axis_study import solve_job, sync_error
+from camwright.studies.axis_study import sync_error
+from camwright.studies.remedies import solve_or_advise
+from camwright.studies.speed_band import job_band
 from camwright.validation.check import Check
 from camwright.validation.report import ValidationReport, judge
 
-STEPS = 4
+STEPS = 5
 """Steps that `make_recipe` tells beside one for each target."""
 
 NO_PARTICULARS = Particulars()
@@ -71,7 +74,7 @@ def designed(job: Job) -> StoredDesign:
     SolverError
         The solver failed.
     """
-    solution = solve_job(job)
+    solution = solve_or_advise(job)
     return StoredDesign(solution.profile, replace(job, machine=solution.machine))
 
 
@@ -114,6 +117,8 @@ def make_recipe(
     report = judge(profile, job.task, job.servo, servo_aware=job.servo_aware)
     step("simulating lower speeds")
     speeds = at_speeds(profile, job, report)
+    step("finding its line speeds")
+    band = job_band(profile, job, report)
     step("finding the working range")
     far = working_range(job)
     results, refused = export_possible(profile, job, targets, step=step)
@@ -127,7 +132,7 @@ def make_recipe(
         name=job.name,
         note=note,
         language=language,
-        released=report.passed and all(result.passed for result in results),
+        released=report.passed and bool(band.parts) and all(result.passed for result in results),
         job=JobRecord(job.text, job_numbers(job)),
         slave_unit=job.machine.slave_unit,
         slave_start=job.task.slave_at_start,
@@ -138,6 +143,7 @@ def make_recipe(
         checks=_checks(report.checks),
         speeds=speeds,
         lead_time=mean_lag(job.servo),
+        speed_band=tuple(SpeedPart(*part, *binds) for part, binds in zip(band.parts, band.binds, strict=True)),
         working_range=far,
         tables=tuple(_table(result) for result in results),
         refused=tuple(Refusal(name, faults) for name, faults in refused.items()),

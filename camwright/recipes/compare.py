@@ -169,6 +169,14 @@ def _range(before: Recipe, after: Recipe, shown_in: Units) -> Iterator[Change]:
         ends = [getattr(recipe.working_range, name) for recipe in (before, after)]
         yield _change("range", name, [unit], [end.value for end in ends], shown_in)
         yield Change("range", f"{name}: binding", "", *(end.binding for end in ends))
+    yield Change("range", "released at", "m/min", *(_released(recipe) for recipe in (before, after)))
+
+
+def _released(recipe: Recipe) -> str:
+    """Write the line speeds at which a cam is released (m/min)."""
+    return "; ".join(
+        f"{converted(part.low, 'm/s'):.5g} to {converted(part.high, 'm/s'):.5g}" for part in recipe.speed_band
+    )
 
 
 _SPEED_UNITS = {

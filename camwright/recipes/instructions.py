@@ -12,6 +12,7 @@ from camwright.jobs.numbers import stored_machine
 from camwright.recipes.blocks import Block, fixed_text, text_block
 from camwright.recipes.catalogue import Catalogue
 from camwright.recipes.model import AtSpeed, Recipe, RecipeTable
+from camwright.recipes.release import any_outside, marked
 
 _FINEST = 0.001
 """What an error is at least said to be within: micrometres, and percent of the acceleration."""
@@ -48,7 +49,10 @@ def before(recipe: Recipe, words: Catalogue) -> list[Block]:
         "readback",
         "run",
     )
-    return [{"kind": "checklist", "items": [words(f"before.{key}", **values) for key in keys]}]
+    items = [words(f"before.{key}", **values) for key in keys]
+    if any_outside(recipe):
+        items.append(words("before.outside"))
+    return [{"kind": "checklist", "items": items}]
 
 
 def _at_full_speed(recipe: Recipe) -> AtSpeed:
@@ -95,6 +99,13 @@ def _table_words(table: RecipeTable, words: Catalogue) -> str:
     return text
 
 
+def _record_name(key: str, recipe: Recipe, words: Catalogue) -> str:
+    """Name a row of the record; one of a line speed outside the release is marked."""
+    name, share = words(f"record.{key}"), key.removeprefix("length_")
+    full = recipe.job.si["cut"]["line_speed"]
+    return marked(name, recipe, 0.01 * int(share) * full) if share.isdigit() else name
+
+
 def record(recipe: Recipe, words: Catalogue) -> list[Block]:
     """Make the form for what was found and what was left."""
     servo = recipe.job.si["servo"]
@@ -112,7 +123,7 @@ def record(recipe: Recipe, words: Catalogue) -> list[Block]:
         {
             "kind": "record",
             "head": [words(f"column.{key}") for key in ("quantity", "value", "as_found", "as_left")],
-            "rows": [[words(f"record.{key}"), value] for key, value in designed.items()],
+            "rows": [[_record_name(key, recipe, words), value] for key, value in designed.items()],
             "fields": [words(f"record.{key}") for key in ("machine", "name", "date", "signature")],
         }
     ]

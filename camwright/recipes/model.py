@@ -146,6 +146,16 @@ class WorkingRange:
 
 
 @dataclass(frozen=True, config=_STRICT)
+class SpeedPart:
+    """Line speeds at which this cam passes every check, without a gap between (m/s), and what binds at both ends: names of checks."""
+
+    low: float
+    high: float
+    low_binding: str
+    high_binding: str
+
+
+@dataclass(frozen=True, config=_STRICT)
 class TableFile:
     """A file of a table: path inside the recipe folder, SHA-256 of its bytes."""
 
@@ -296,6 +306,8 @@ class Recipe:
         What to expect at shares of the line speed.
     lead_time
         Lead time of the master that makes up for the servo's mean lag (s).
+    speed_band
+        Line speeds at which this cam is released: parts with gaps between them, none for one that passes nowhere.
     working_range
         How far the machine can go.
     tables
@@ -324,6 +336,7 @@ class Recipe:
     checks: tuple[RecipeCheck, ...]
     speeds: tuple[AtSpeed, ...]
     lead_time: float
+    speed_band: tuple[SpeedPart, ...]
     working_range: WorkingRange
     tables: tuple[RecipeTable, ...]
     refused: tuple[Refusal, ...]

@@ -29,6 +29,7 @@ from camwright.recipes.judgements import (
     table_checks,
 )
 from camwright.recipes.model import Edge, Recipe
+from camwright.recipes.release import any_outside, boxed, marked, released_speeds, status_text, warnings
 from camwright.recipes.user_text import shortened, visible
 from camwright.recipes.working_range import LONGEST, NOT_FOUND
 
@@ -39,9 +40,9 @@ def sheet(recipe: Recipe, words: Catalogue) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``kind``, ``title``, ``short`` (the title on one line), ``language``, ``released``, ``status``, ``head`` (rows of two), ``groups``
-        (parameters in two columns), ``page`` and ``sections``: each a ``key``, a ``heading`` and ``blocks``, every one of a ``kind``. All
-        values are plain text.
+        ``kind``, ``title``, ``short`` (the title on one line), ``language``, ``released``, ``status``, ``boxed`` (whether the status
+        wants a thick frame), ``warnings`` (beside it), ``head`` (rows of two), ``groups`` (parameters in two columns), ``page`` and
+        ``sections``: each a ``key``, a ``heading`` and ``blocks``, every one of a ``kind``. All values are plain text.
     """
     makers: tuple[tuple[str, Callable[[Recipe, Catalogue], list[Block]]], ...] = (
         ("section.cam", _cam),
@@ -63,7 +64,9 @@ def sheet(recipe: Recipe, words: Catalogue) -> dict[str, Any]:
         "kind": words("recipe"),
         "language": recipe.language,
         "released": recipe.released,
-        "status": words("released" if recipe.released else "not_released"),
+        "status": status_text(recipe, words),
+        "boxed": boxed(recipe),
+        "warnings": warnings(recipe, words),
         "head": [
             *note,
             *particular_rows(recipe, words),
@@ -137,7 +140,10 @@ def speed_columns(recipe: Recipe) -> list[tuple[str, str, str]]:
 
 def _speeds(recipe: Recipe, words: Catalogue) -> list[Block]:
     """Set what to expect with one column a speed: four of them fit the page, twelve quantities do not."""
-    head = [words("column.share_of_speed"), *(number(100.0 * row.share) for row in recipe.speeds)]
+    head = [
+        words("column.share_of_speed"),
+        *(marked(number(100.0 * row.share), recipe, row.line_speed) for row in recipe.speeds),
+    ]
     rows = []
     for key, field, unit in speed_columns(recipe):
         values = [getattr(row, field) for row in recipe.speeds]
@@ -149,6 +155,7 @@ def _speeds(recipe: Recipe, words: Catalogue) -> list[Block]:
         )
     return [
         table_block(head, rows, widths=[2.6, *(1.0 for _ in recipe.speeds)]),
+        *([text_block(words("speeds.outside"), strong=True)] if any_outside(recipe) else []),
         text_block(words("speeds.law")),
         text_block(words("speeds.lead", lead=shown(recipe.lead_time, "s", 4, words.units))),
     ]
@@ -175,4 +182,5 @@ def _range(recipe: Recipe, words: Catalogue) -> list[Block]:
         for key, edge, unit, without in ends
     ]
     head = [words(key) for key in ("column.end", "column.value", "column.binding")]
-    return [table_block(head, rows, left=3, widths=[2.2, 1.7, 1.0]), text_block(words("range.note", line_speed=speed))]
+    note = words("range.note", released=released_speeds(recipe, words))
+    return [table_block(head, rows, left=3, widths=[2.2, 1.7, 1.0]), text_block(note)]

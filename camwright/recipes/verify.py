@@ -158,7 +158,8 @@ def _own_faults(recipe: Recipe, design: StoredDesign, content: bytes) -> Iterato
         yield f"job.si{path} is {stored!r}, the job's text says {again!r}"
     if recipe.name != design.job.name:
         yield f"name is {recipe.name!r}, the job's text says {design.job.name!r}"
-    released = all(check.passed for check in recipe.checks) and all(table.released for table in recipe.tables)
+    sound = all(check.passed for check in recipe.checks) and all(table.released for table in recipe.tables)
+    released = sound and bool(recipe.speed_band)
     if recipe.released is not released:
         yield f"released is {recipe.released}, its checks say {released}"
 

@@ -11,6 +11,7 @@ from camwright.house.numbers import converted, unit_shown
 from camwright.recipes.catalogue import Catalogue, catalogue_of
 from camwright.recipes.facts import GROUPS, Fact, fact_text
 from camwright.recipes.model import Recipe, RecipeCheck, RecipeTable
+from camwright.recipes.release import released_at, status_text
 from camwright.recipes.sheet import objective_text, particular_rows, speed_columns
 from camwright.recipes.user_text import visible
 
@@ -90,7 +91,7 @@ class _Page:
 def _parameters(page: _Page, recipe: Recipe, words: Catalogue) -> None:
     page.head(*(words(f"column.{key}") for key in ("quantity", "value", "unit")), fixed=True)
     page.row(words("head.job"), visible(recipe.name))
-    page.row(words("column.passed"), words("released" if recipe.released else "not_released"))
+    page.row(words("column.passed"), status_text(recipe, words))
     if recipe.note:
         page.row(words("note"), visible(recipe.note))
     for row in particular_rows(recipe, words):
@@ -135,6 +136,7 @@ def _speeds(page: _Page, recipe: Recipe, words: Catalogue) -> None:
     columns = speed_columns(recipe)
     page.head(
         words("column.share_of_speed"),
+        words("column.released"),
         *(words(key, unit=unit_shown(unit, words.units)) for key, _, unit in columns),
         fixed=True,
     )
@@ -142,6 +144,7 @@ def _speeds(page: _Page, recipe: Recipe, words: Catalogue) -> None:
         values = [(getattr(row, field), unit) for _, field, unit in columns]
         page.row(
             100.0 * row.share,
+            words("yes" if released_at(recipe, row.line_speed) else "no"),
             *(None if value is None else converted(value, unit, words.units) for value, unit in values),
         )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from camwright.jobs.job import Job
@@ -9,6 +10,28 @@ from camwright.jobs.wording import in_job_words
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.stored.profile_files import read_cycle
 from camwright.validation.report import ValidationReport, judge
+
+
+@dataclass(frozen=True, eq=False)
+class Judged:
+    """A cycle that was judged.
+
+    Parameters
+    ----------
+    profile
+        The cycle.
+    job
+        The job that it was judged by, its sync zone where the cycle has it.
+    report
+        What was found.
+    notes
+        What had to be assumed to read it, a sentence each.
+    """
+
+    profile: CamProfile
+    job: Job
+    report: ValidationReport
+    notes: tuple[str, ...]
 
 
 def validate(profile: CamProfile | str | Path, job: Job) -> ValidationReport:
@@ -38,11 +61,12 @@ def validate(profile: CamProfile | str | Path, job: Job) -> ValidationReport:
     with in_job_words(job.units):
         if isinstance(profile, CamProfile):
             return judge(profile, job.task, job.servo, servo_aware=job.servo_aware)
-    return validate_file(Path(profile), job)[0]
+    return validate_file(Path(profile), job).report
 
 
-def validate_file(path: Path, job: Job) -> tuple[ValidationReport, tuple[str, ...]]:
-    """Judge the cycle of a file like `validate`; with the report what had to be assumed to read it, a sentence each."""
+def validate_file(path: Path, job: Job) -> Judged:
+    """Judge the cycle of a file like `validate`, and keep what was judged."""
     with in_job_words(job.units):
         cycle, machine, notes = read_cycle(path, job)
-        return judge(cycle, job.task.with_machine(machine), job.servo, servo_aware=job.servo_aware), notes
+        placed = replace(job, machine=machine)
+        return Judged(cycle, placed, judge(cycle, placed.task, job.servo, servo_aware=job.servo_aware), notes)

@@ -11,9 +11,11 @@ from camwright.house.progress import Step, ignore
 from camwright.jobs.job import Job
 from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.polynomial.profile import CamProfile
-from camwright.studies.axis_study import AxisStudy, Robustness, axis_study, robustness, solve_job
+from camwright.studies.axis_study import AxisStudy, Robustness, axis_study, robustness
 from camwright.studies.comparison import Comparison, compare
 from camwright.studies.cut_lengths import CutLengths, cut_lengths
+from camwright.studies.remedies import solve_or_advise
+from camwright.studies.speed_band import SpeedBand, job_band
 from camwright.validation.bounds.bound import Bound
 from camwright.validation.bounds.optimality import lower_bound
 from camwright.validation.report import ValidationReport, judge
@@ -21,7 +23,7 @@ from camwright.validation.report import ValidationReport, judge
 PROVED = 1e-3
 """An objective within this share of its bound is proved to be optimal."""
 
-STEPS = 4
+STEPS = 5
 """Steps that `optimise` tells beside the measuring of each profile."""
 
 
@@ -47,6 +49,8 @@ class Design:
         What a servo-aware design promises of the axis; ``None`` for a servo-blind one.
     robust
         The sync error over the ranges of the servo's parameters; ``None`` if the job gives none.
+    band
+        Line speeds at which the cam passes every check.
 
     Examples
     --------
@@ -64,6 +68,7 @@ class Design:
     lengths: CutLengths | None
     axis: AxisStudy | None
     robust: Robustness | None
+    band: SpeedBand
 
     @property
     def profile(self) -> CamProfile:
@@ -116,7 +121,7 @@ def optimise(job: Job, step: Step = ignore) -> Design:
     (True, 9.07)
     """
     step("solving")
-    solution = solve_job(job)
+    solution = solve_or_advise(job)
     placed = replace(job, machine=solution.machine)
     step("bounding the objective from below")
     bound = Bound(math.nan, "none")
@@ -126,8 +131,10 @@ def optimise(job: Job, step: Step = ignore) -> Design:
     report = judge(solution.profile, placed.task, job.servo, servo_aware=job.servo_aware)
     aware, robust = axis_study(placed, solution), robustness(placed, solution.profile, solution)
     comparison = compare(placed, solution.profile, step=step)
+    step("finding its line speeds")
+    band = job_band(solution.profile, placed, report)
     step("finding minimum cut lengths")
-    design = Design(placed, solution, bound, report, comparison, cut_lengths(placed), aware, robust)
+    design = Design(placed, solution, bound, report, comparison, cut_lengths(placed), aware, robust, band)
     # a bound is that of the place which was chosen, so it proves nothing of other places
     if job.machine.placed and design.gap is not None and design.gap <= PROVED:
         return replace(design, solution=replace(solution, status=SolveStatus.OPTIMAL))

@@ -67,7 +67,11 @@ def test_design_prints_the_promised_object(designed: tuple[Path, dict[str, Any]]
         "job", "status", "objective", "lower_bound_method", "starts", "pieces", "profiles", "checks", "passed",
         "minimum_cut_length_mm", "tangential_mismatch", "files",
         "servo_aware", "robust", "lead_time_ms", "length_error_mm", "length_error_with_lead_mm", "length_variation_mm",
+        "speed_band", "speed_band_binds", "remedies",
     }  # fmt: skip
+    assert answer["speed_band"] == [[0.0, pytest.approx(80 / 60)]]
+    assert answer["speed_band_binds"] == ["none", "jerk"]
+    assert answer["remedies"] == []
     assert (answer["job"], answer["status"], answer["passed"]) == ("paper-600", "optimal", True)
     objective = answer["objective"]
     assert objective.keys() == {"name", "value", "unit", "lower_bound", "gap"}

@@ -7,10 +7,16 @@ from collections.abc import Sequence
 import numpy as np
 
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
-from camwright.profiles.servo import Servo
+from camwright.profiles.servo import Servo, spectral_radius
 from camwright.profiles.task import Task
+from camwright.validation.motion import require_period
+from camwright.validation.servo.lifting import BLOCK, lift, lift_side_by_side, loops_of
 from camwright.validation.servo.monte_carlo import shear_zone_errors
-from camwright.validation.servo.simulation import PHASES
+from camwright.validation.servo.response import shear_zone_peaks
+from camwright.validation.servo.simulation import PHASES, WHOLE, memory, shear_zone_run
+
+_SIDE_BY_SIDE = 8
+"""Servos that are run side by side; more of them save nothing."""
 
 
 def line_speed_errors(
@@ -18,8 +24,8 @@ def line_speed_errors(
 ) -> FloatArray:
     """Greatest sync error in the shear zone at each line speed, over all sampling phases.
 
-    The cam is fixed over the master, the servo in time. Only the shear zone is simulated, and before it what the servo remembers; all
-    line speeds side by side, each as the servo that `camwright.profiles.servo.Servo.at_speed` gives.
+    The cam is fixed over the master, the servo in time. Only the shear zone is simulated, and before it what the servo remembers. The
+    matrices of the servos are made once and serve every line speed.
 
     Parameters
     ----------
@@ -44,6 +50,30 @@ def line_speed_errors(
     InputError
         The profile does not run over ``[0, x_c]``.
     """
-    shares = (np.asarray(line_speeds, dtype=np.float64) / task.cut.line_speed).tolist()
-    scaled = [servo.at_speed(share) for servo in servos for share in shares]
-    return shear_zone_errors(profile, task, scaled, phases).reshape(len(servos), len(shares))
+    require_period(profile, task.cut)
+    speeds = np.asarray(line_speeds, dtype=np.float64).tolist()
+    found = np.full((len(servos), len(speeds)), np.inf)
+    stable = [row for row, servo in enumerate(servos) if spectral_radius(servo) < 1.0]
+    for first in range(0, len(stable), _SIDE_BY_SIDE):
+        rows = stable[first : first + _SIDE_BY_SIDE]
+        found[rows] = _side_by_side(profile, task, [servos[row] for row in rows], speeds, phases)
+    return found
+
+
+def _side_by_side(
+    profile: CamProfile, task: Task, servos: Sequence[Servo], speeds: Sequence[float], phases: int
+) -> FloatArray:
+    """Run a few stable servos at each line speed; as `line_speed_errors`."""
+    past = max(memory(servo.loop) for servo in servos)
+    alone = len(servos) == 1  # then another call may find it lifted
+    lifted = lift(servos[0].loop, past, (1, 0)) if alone else lift_side_by_side(loops_of(servos), past, (1, 0), BLOCK)
+    shortest = min(servo.sample_time for servo in servos)
+    found = np.empty((len(servos), len(speeds)))
+    for column, speed in enumerate(speeds):
+        if past + task.cut.shear_zone / (speed * shortest) > WHOLE:
+            slower = task.at_speed(speed)
+            found[:, column] = [shear_zone_errors(profile, slower, [servo], phases)[0] for servo in servos]
+        else:
+            run = shear_zone_run(profile, task.at_speed(speed).cut, servos, lifted, phases)
+            found[:, column] = shear_zone_peaks(run, profile, task, len(servos))  # where zones lie knows no speed
+    return found

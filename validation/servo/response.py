@@ -224,6 +224,12 @@ def greatest_sync_error(profile: CamProfile, task: Task, servo: Servo, start: fl
     return found
 
 
+def shear_zone_peaks(run: AxisRun, profile: CamProfile, task: Task, servos: int) -> FloatArray:
+    """Greatest magnitude of the sync error in the shear zone over the phases of each of several servos (m), shape ``(servos,)``."""
+    error = np.abs(_in_sync(run, profile, task, *shear_zone_of(task.cut)).error())
+    return np.asarray(error.reshape(servos, -1).max(axis=1))
+
+
 def slow_sync_error(
     profile: CamProfile, task: Task, servo: Servo, start: float, end: float, phases: int
 ) -> float | None:

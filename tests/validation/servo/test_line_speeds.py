@@ -79,7 +79,7 @@ def test_more_phases_see_at_least_what_fewer_see() -> None:
     profile = baseline("linear_return", Task(KNIFE, CUT, FREE))
     few, many = (line_speed_errors(profile, TASK, [PAPER], SPEEDS, phases)[0] for phases in (16, 64))
     assert (many >= few - 1e-12).all()
-    assert (many <= 1.05 * few).all()
+    assert (many <= 1.05 * few + 1e-12).all()
     assert (many > few + 1e-9).any()
 
 

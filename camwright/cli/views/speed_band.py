@@ -1,0 +1,33 @@
+"""The line speeds at which a cam is released."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camwright.cli.views.parts import new_text
+from camwright.house.numbers import Units, converted, inside, number, unit_shown
+from camwright.studies.speed_band import NO_END, SpeedBand
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+
+def band_view(band: SpeedBand, units: Units) -> RenderableType:
+    """Say at which line speeds a cam passes every check, and what ends them."""
+    return new_text(band_words(band, units))
+
+
+def band_words(band: SpeedBand, units: Units) -> str:
+    """Word a band: its parts, each end with the check that ends it."""
+    if not band.parts:
+        return f"no line speed passes every check: {', '.join(band.forbids)}"
+    parts = []
+    for (low, high), (below, above) in zip(band.parts, band.binds, strict=True):
+        first = "from 0" if below == NO_END else f"from {end_words(low, units, up=True)} ({below})"
+        parts.append(f"{first} to {end_words(high, units)} {unit_shown('m/s', units)} ({above})")
+    return f"passes every check at line speeds {', and '.join(parts)}"
+
+
+def end_words(speed: float, units: Units, *, up: bool = False) -> str:
+    """Write the end of a range of line speeds without its unit, rounded to the inside."""
+    return number(inside(converted(speed, "m/s", units), up=up))

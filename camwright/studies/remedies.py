@@ -1,0 +1,219 @@
+"""Ways out of a job that fails a check or cannot be done: single changes of the job file, each designed and judged before it is told."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator
+from copy import deepcopy
+from dataclasses import dataclass
+from time import process_time
+from typing import Any
+
+from camwright.design.optimise import Solution
+from camwright.house.numbers import Units, inside
+from camwright.jobs.job import Job, read_job
+from camwright.jobs.wording import place_of
+from camwright.profiles.errors import CamwrightError, InfeasibleError, Suggestion
+from camwright.studies.axis_study import solve_job, sync_error
+from camwright.studies.speed_band import SpeedBand
+from camwright.validation.report import ValidationReport, judge
+
+SECONDS = 5.0
+"""Processor time after which no more changes are tried; the one that is being tried is finished."""
+
+_SLOWER = (1.0, 0.97, 0.9, 0.8, 0.65, 0.5, 0.35, 0.25, 0.15, 0.1, 0.05)
+_ZONES = (1.1, 0.9, 1.25, 0.75, 1.5, 0.5, 1.75, 2.0, 0.3)
+_WIDER = (1.02, 1.1, 1.3, 1.7, 2.5, 4.0)
+"""Factors that are tried in turn on a line speed, a sync zone and a tolerance."""
+
+_FURTHER = (1.03, 1.1, 1.18, 1.27, 1.4, 1.6, 2.0)
+"""Factors by which a change is taken further that makes a motion possible but does not yet pass."""
+
+_DIGITS = 4
+"""Significant digits of a value that is told."""
+
+_TABLES = {"servo_aware": "objective", "command": "objective", "stroke": "machine"}
+"""Tables of a job file with keys that no message names."""
+
+
+@dataclass(frozen=True)
+class Remedy:
+    """A single change with which a job was designed and passed every check.
+
+    Parameters
+    ----------
+    change
+        Key of the job file. ``"command"`` goes with ``servo_aware = true``.
+    value, unit
+        What to write: a number and its unit, or a word, or true, without one.
+    """
+
+    change: str
+    value: float | str | bool
+    unit: str
+
+    @property
+    def words(self) -> str:
+        """The change as a line of a job file, its table before it."""
+        also = "servo_aware = true, " if self.change == "command" else ""
+        return f"{_place(self.change).replace(f'] {self.change}', f'] {also}{self.change}')} = {_written(self)}"
+
+
+class _Trial:
+    """A job whose changes are tried until time is up."""
+
+    def __init__(self, job: Job) -> None:
+        self._data = tomllib.loads(job.text.removeprefix("\ufeff"))
+        self._end = process_time() + SECONDS
+
+    def works(self, remedy: Remedy) -> bool:
+        """Whether the job with a change is designed and passes every check; false where there is no time left to see."""
+        if process_time() > self._end:
+            return False
+        data = deepcopy(self._data)
+        table = data.setdefault(_table(remedy.change), {})
+        table[remedy.change] = f"{remedy.value:.15g} {remedy.unit}" if remedy.unit else remedy.value
+        if remedy.change == "command":
+            table["servo_aware"] = True
+        try:
+            return _passes(read_job(data, None, "job"))
+        except CamwrightError:
+            return False
+
+    def first(self, remedies: Iterator[Remedy]) -> Iterator[Remedy]:
+        """Give the first of some changes that works, if any."""
+        for remedy in remedies:
+            if self.works(remedy):
+                yield remedy
+                return
+
+
+def _passes(job: Job) -> bool:
+    """Whether a job is designed, passes every check, and keeps the tolerance over the ranges of its servo."""
+    solution = solve_job(job, suggest=False)
+    task = job.task.with_machine(solution.machine)
+    if not judge(solution.profile, task, job.servo, sweep=False, servo_aware=job.servo_aware).passed:
+        return False
+    if not job.servo_aware or job.servo_tolerance is None:
+        return True
+    worst = sync_error(solution.profile, job)
+    return worst is not None and worst <= job.cut.sync_tolerance * (1 + 1e-6)
+
+
+def remedies(job: Job, report: ValidationReport, band: SpeedBand) -> tuple[Remedy, ...]:
+    """Try what may make a job pass of whose cam a check failed.
+
+    A lower line speed, a wider tolerance, a command for the servo, in sync or shaped, least RMS jerk and another sync zone, each alone and
+    in this order; of a number the nearest of some values. What was not tried in `SECONDS` is not told.
+
+    Parameters
+    ----------
+    job
+        The job.
+    report
+        The validation of its cam.
+    band
+        The line speeds at which that cam passes.
+
+    Returns
+    -------
+    tuple
+        Changes that were designed and passed; none where every check passed.
+    """
+    if report.passed:
+        return ()
+    trial, cut = _Trial(job), job.cut
+    error = next((check.value for check in report.checks if check.name == "shear_zone_error"), None)
+    lower = [high for _, high in band.parts if high < cut.line_speed]
+    start = lower[-1] if lower else cut.line_speed
+    ways = [_values("line_speed", start, "m/s", _SLOWER if lower else _SLOWER[1:], job.units, up=False)]
+    if error is not None:
+        ways.append(_values("sync_tolerance", max(error, cut.sync_tolerance), "m", _WIDER, job.units, up=True))
+    if not job.servo_aware:
+        ways.append(iter([Remedy("servo_aware", True, "")]))
+    if job.command != "shaped":
+        ways.append(iter([Remedy("command", "shaped", "")]))
+    if job.objective != "rms_jerk":
+        ways.append(iter([Remedy("minimise", "rms_jerk", "")]))
+    ways.append(_values("sync_zone", cut.sync_zone, "m", _ZONES, job.units, up=False))
+    return tuple(remedy for way in ways for remedy in trial.first(way))
+
+
+def solve_or_advise(job: Job) -> Solution:
+    """Design the cycle of a job; where that cannot be, say what would work, every change designed and judged first.
+
+    Raises
+    ------
+    InfeasibleError
+        No motion keeps the limits, or none brings the axis into the tolerance; its suggestions are designed and pass every check.
+    SolverError
+        The solver failed.
+    """
+    try:
+        return solve_job(job, suggest=False)
+    except InfeasibleError as error:
+        reason = error
+    try:
+        return solve_job(job)
+    except InfeasibleError as error:
+        offered = error.suggestions
+    trial = _Trial(job)
+    found = [remedy for suggestion in offered for remedy in trial.first(_taken_further(suggestion))]
+    if job.servo_aware and job.command != "shaped":
+        found += trial.first(iter([Remedy("command", "shaped", "")]))
+    offers = "; ".join(remedy.words for remedy in found)
+    works = (
+        f"What works, each alone, designed and checked: {offers}" if offers else "No single change that was tried works"
+    )
+    kept = tuple(Suggestion(each.change, _number(each), each.unit) for each in found)
+    raise InfeasibleError(f"{reason.message}. {works}", reason.binding, reason.excess, reason.unit, kept) from reason
+
+
+def _taken_further(suggestion: Suggestion) -> Iterator[Remedy]:
+    """Give a suggestion, and if that does not pass yet, more of it."""
+    if suggestion.change == "reversal":
+        yield Remedy("reversal", True, "")
+        return
+    if suggestion.change == "motor":
+        return  # a curve of many numbers: no single value to write
+    yield Remedy(suggestion.change, suggestion.value, suggestion.unit)
+    up = suggestion.change != "line_speed"
+    for factor in _FURTHER:
+        yield Remedy(
+            suggestion.change,
+            inside(suggestion.value * (factor if up else 1.0 / factor), _DIGITS, up=up),
+            suggestion.unit,
+        )
+
+
+def _values(
+    change: str, value: float, unit: str, factors: tuple[float, ...], units: Units, *, up: bool
+) -> Iterator[Remedy]:
+    """Give multiples of an SI value in the unit that the job is written in, rounded to the safe side."""
+    shown = units.shown[unit]
+    for factor in factors:
+        yield Remedy(change, inside(factor * value * shown.factor, _DIGITS, up=up), shown.typed or shown.printed)
+
+
+def _number(remedy: Remedy) -> float:
+    """Give the number of a suggestion: 1 for a word or a truth."""
+    return float(remedy.value) if isinstance(remedy.value, float) else 1.0
+
+
+def _table(change: str) -> str:
+    """Name the table of a job file that holds a key."""
+    return _place(change).partition("]")[0].removeprefix("[")
+
+
+def _place(change: str) -> str:
+    """Say where in a job file a key stands."""
+    table = _TABLES.get(change)
+    return place_of(change) if table is None else f"[{table}] {change}"
+
+
+def _written(remedy: Remedy) -> str:
+    """Write the value as TOML."""
+    value: Any = remedy.value
+    if isinstance(value, bool):
+        return "true"
+    return f'"{value}"' if isinstance(value, str) else f'"{value:.15g} {remedy.unit}"'

@@ -1,0 +1,71 @@
+"""The line speeds of a recipe's release: the status line, its frame, marks in tables, and the scrap on the way up."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from camwright.recipes.build import MadeRecipe
+from camwright.recipes.catalogue import catalogue
+from camwright.recipes.model import Language, Recipe, SpeedPart
+from camwright.recipes.release import boxed, marked, status_text, warnings
+from camwright.recipes.sheet import sheet
+
+OWN = 80 / 60
+
+
+def of(made: MadeRecipe, *parts: SpeedPart) -> Recipe:
+    return replace(made.recipe, speed_band=parts)
+
+
+@pytest.mark.parametrize(
+    ("language", "status"),
+    [
+        ("en", "Released from 0 to 80 m/min: every check passed at these line speeds"),
+        ("de", "Freigegeben von 0 bis 80 m/min: alle Prüfungen bei diesen Bandgeschwindigkeiten bestanden"),
+        ("zh", "已放行，线速度 0 至 80 m/min：在这些线速度下所有检查均通过"),
+    ],
+)
+def test_the_status_names_both_ends(made: MadeRecipe, language: Language, status: str) -> None:
+    assert status_text(made.recipe, catalogue(language)) == status
+    assert not boxed(made.recipe)
+    assert warnings(made.recipe, catalogue(language)) == []
+
+
+def test_a_gap_below_is_boxed_and_its_scrap_told(made: MadeRecipe) -> None:
+    words = catalogue("en")
+    recipe = of(made, SpeedPart(1.0, OWN, "shear_zone_error", "jerk"))
+    assert status_text(recipe, words).startswith("Released from 60 to 80 m/min")
+    assert boxed(recipe)
+    below, scrap = warnings(recipe, words)
+    assert below == "Below 60 m/min a check fails: Sync error in the shear zone."
+    assert "go through 0 to 60 m/min: what is cut there is scrap, 500 mm each time" in scrap  # v²/(2 a)
+    shown = sheet(recipe, words)
+    assert shown["boxed"]
+    heads = next(each for each in shown["sections"] if each["key"] == "section.speeds")["blocks"][0]["head"]
+    assert heads[1:] == ["✗ 10", "✗ 25", "✗ 50", "100"]
+    record = next(each for each in shown["sections"] if each["key"] == "section.record")["blocks"][0]["rows"]
+    assert [row[0].startswith("✗") for row in record][-3:] == [True, True, False]
+
+
+def test_several_parts_and_an_end_beyond_the_job(made: MadeRecipe) -> None:
+    words = catalogue("en")
+    recipe = of(made, SpeedPart(0.0, 0.5, "none", "settling"), SpeedPart(1.0, 2.0, "settling", "jerk"))
+    assert status_text(recipe, words).startswith("Released from 0 to 30 and from 60 to 120 m/min")
+    assert boxed(recipe)
+    assert [line for line in warnings(recipe, words) if "scrap" in line] == [
+        line for line in warnings(recipe, words) if "30 to 60 m/min" in line
+    ]
+    assert marked("x", recipe, 0.7) == "✗ x"
+    assert marked("x", recipe, 1.5) == "x"
+
+
+def test_a_job_whose_own_speed_is_outside_says_so(made: MadeRecipe) -> None:
+    recipe = of(made, SpeedPart(0.0, 1.0, "none", "servo_tolerance"))
+    assert "Not released at the job's own line speed of 80 m/min." in warnings(recipe, catalogue("en"))
+
+
+def test_ends_are_rounded_to_the_inside(made: MadeRecipe) -> None:
+    recipe = of(made, SpeedPart(1.0000049, 1.2999951, "settling", "settling"))
+    assert "from 60.001 to 77.999 m/min" in status_text(recipe, catalogue("en"))

@@ -1,0 +1,144 @@
+"""Ways out that are told: each is written into the job and must then be designed and pass."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from camwright.book.job_text import job_text
+
+from camwright.cli.main import main
+from camwright.jobs.job import BUNDLED_JOB, parse_job
+from camwright.profiles.errors import InfeasibleError
+from camwright.studies import remedies as module
+from camwright.studies.axis_study import solve_job
+from camwright.studies.design import optimise
+from camwright.studies.remedies import Remedy, remedies, solve_or_advise
+from camwright.studies.speed_band import job_band
+from camwright.validation.report import judge
+
+PAPER = BUNDLED_JOB.read_text(encoding="utf-8")
+LAZY = PAPER.replace("120 rad/s", "10 rad/s").replace("35 1/s", "3 1/s")
+FAST = """
+name = "fast"
+[machine]
+kind = "rotary_knife"
+circumference = "400 mm"
+[cut]
+length = "900 mm"
+line_speed = "170 m/min"
+sync_zone = "200 mm"
+shear_zone = "20 mm"
+shear_zone_at = "90 mm"
+sync_tolerance = "0.1 mm"
+[limits]
+speed = "200 m/min"
+acceleration = "30 m/s^2"
+jerk = "3000 m/s^3"
+[servo]
+bandwidth = "120 rad/s"
+damping = 0.7
+position_gain = "35 1/s"
+sample_time = "4 ms"
+velocity_feedforward = 1.0
+[objective]
+minimise = "peak_acceleration"
+servo_aware = true
+[output]
+origin = "cut"
+"""
+
+
+def changed(text: str, change: str, value: object, unit: str) -> str:
+    """Write a change into a job as a user would."""
+    data: dict[str, Any] = tomllib.loads(text)
+    homes = {"minimise": "objective", "servo_aware": "objective", "command": "objective", "acceleration": "limits"}
+    table = data.setdefault(homes.get(change, "cut"), {})
+    table[change] = f"{value} {unit}" if unit else value
+    if change == "command":
+        table["servo_aware"] = True
+    return job_text(data)
+
+
+def passes(text: str) -> bool:
+    job = parse_job(text, "job.toml")
+    solution = solve_job(job)
+    task = job.task.with_machine(solution.machine)
+    return judge(solution.profile, task, job.servo, sweep=False, servo_aware=job.servo_aware).passed
+
+
+def found(text: str) -> tuple[Remedy, ...]:
+    job = parse_job(text, "job.toml")
+    profile = solve_job(job).profile
+    report = judge(profile, job.task, job.servo, sweep=False)
+    return remedies(job, report, job_band(profile, job, report))
+
+
+@pytest.mark.parametrize("text", [LAZY, PAPER.replace("0.1 mm", "0.002 mm")], ids=["lazy servo", "narrow tolerance"])
+def test_each_way_out_of_a_failed_check_passes(text: str) -> None:
+    assert not passes(text)
+    ways = found(text)
+    assert {"line_speed", "sync_tolerance"} <= {way.change for way in ways}
+    for way in ways:
+        assert passes(changed(text, way.change, way.value, way.unit)), way
+
+
+def test_a_job_that_passes_needs_no_way_out() -> None:
+    assert found(PAPER) == ()
+
+
+def test_without_time_nothing_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "SECONDS", -1.0)
+    assert found(LAZY) == ()
+
+
+def test_each_suggestion_of_an_infeasible_job_is_designed_and_passes() -> None:
+    job = parse_job(FAST, "fast.toml")
+    with pytest.raises(InfeasibleError, match="designed and checked") as caught:
+        solve_or_advise(job)
+    assert caught.value.suggestions
+    for each in caught.value.suggestions:
+        value = "shaped" if each.change == "command" else each.value
+        assert passes(changed(FAST, each.change, value, each.unit)), each
+
+
+def test_a_job_that_can_be_designed_is_designed() -> None:
+    job = parse_job(PAPER, "paper.toml")
+    assert solve_or_advise(job).minimised == optimise(job).solution.minimised
+
+
+@pytest.mark.parametrize(
+    ("remedy", "line"),
+    [
+        (Remedy("line_speed", 63.2, "m/min"), '[cut] line_speed = "63.2 m/min"'),
+        (Remedy("servo_aware", True, ""), "[objective] servo_aware = true"),
+        (Remedy("command", "shaped", ""), '[objective] servo_aware = true, command = "shaped"'),
+        (Remedy("minimise", "rms_jerk", ""), '[objective] minimise = "rms_jerk"'),
+    ],
+)
+def test_a_remedy_is_told_as_it_is_written(remedy: Remedy, line: str) -> None:
+    assert remedy.words == line
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "last"),
+    [
+        (PAPER, 0, r"paper-600: passed every check at 80 m/min"),
+        (LAZY, 1, r"paper-600: FAILED: crossing, settling, shear_zone_error, minimum_cut_length"),
+    ],
+    ids=["passed", "failed"],
+)
+def test_the_last_line_is_the_verdict(
+    text: str, code: int, last: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("job.toml").write_text(text, encoding="utf-8")
+    assert main(["design", "job.toml", "--no-figures"]) == code
+    lines = capsys.readouterr().out.rstrip().splitlines()
+    assert re.fullmatch(last, lines[-1].strip())
+    advice: Callable[[str], bool] = lambda line: line.startswith("  [")  # noqa: E731
+    assert any(map(advice, lines)) is bool(code)
