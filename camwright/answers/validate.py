@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -10,17 +11,19 @@ from camwright.answers.axis import (
 )
 from camwright.answers.measures import checks_answer, report_answer
 from camwright.answers.speed_band import band_answer
-from camwright.stored.judge import Judged
+from camwright.jobs.job import Job
 from camwright.studies.speed_band import SpeedBand
+from camwright.validation.report import ValidationReport
 
 
-def validate_answer(judged: Judged, band: SpeedBand, file: Path) -> dict[str, Any]:
+def validate_answer(
+    job: Job, file: Path, report: ValidationReport, band: SpeedBand, notes: Sequence[str]
+) -> dict[str, Any]:
     """Answer of ``camwright validate``."""
-    job, report = judged.job, judged.report
     return {
         "job": job.name,
         "file": str(file),
-        "notes": list(judged.notes),
+        "notes": list(notes),
         "profile": report_answer(report, job.machine.slave_unit),
         "checks": checks_answer(report.checks),
         "passed": report.passed,

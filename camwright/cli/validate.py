@@ -37,7 +37,9 @@ def run(
         step("finding its line speeds")
         band = job_band(found.profile, found.job, found.report)
 
-    voice.answer(lambda: validate_answer(found, band, file), lambda: _view(found, band, file))
+    voice.answer(
+        lambda: validate_answer(found.job, file, found.report, band, found.notes), lambda: _view(found, band, file)
+    )
     return 0 if found.report.passed else 1
 
 

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from camwright.book.job_text import job_text
 
 from camwright.cli.main import main
 from camwright.jobs.job import BUNDLED_JOB, parse_job
+from camwright.jobs.toml_text import toml_text
 from camwright.profiles.errors import InfeasibleError
 from camwright.studies import remedies as module
 from camwright.studies.axis_study import solve_job
@@ -61,7 +61,7 @@ def changed(text: str, change: str, value: object, unit: str) -> str:
     table[change] = f"{value} {unit}" if unit else value
     if change == "command":
         table["servo_aware"] = True
-    return job_text(data)
+    return toml_text(data)
 
 
 def passes(text: str) -> bool:
