@@ -19,7 +19,7 @@ import numpy as np
 
 from camwright.design.returns.ipopt import QUIET
 from camwright.design.torque.task import Pattern, TorqueTask
-from camwright.design.torque.zone import Zone
+from camwright.design.torque.zone import Zone, available_torque
 from camwright.profiles.objective import MOTION_OBJECTIVES
 from camwright.profiles.polynomial.profile import FloatArray
 
@@ -199,7 +199,7 @@ class TorqueProgramme:
         if zone is not None:
             joined = zone.join(ends[0], ends[1], task)
             if limited:
-                allowed = _available(task, joined.velocity, zone.points + 2) * (1 - CURVE_DRAWN_IN)
+                allowed = joined.available * (1 - CURVE_DRAWN_IN)
                 peaks += [(allowed - joined.torque) / strongest, (allowed + joined.torque) / strongest]
             equations += [
                 joined.closure,
@@ -238,7 +238,7 @@ class TorqueProgramme:
         velocity = task.scale / task.duration * (v + h * s * (a + rise * s / 2))
         acceleration = task.scale / task.duration**2 * (a + rise * s)
         force = machine.inertia(y) * acceleration + machine.inertia_slope(y) * velocity**2 / 2 + machine.friction * sign
-        available = _available(task, velocity, len(LOBATTO[0]))
+        available = available_torque(task, velocity, len(LOBATTO[0]))
         return ca.Function("interval", [a, rise, v, q, h, sign, start], [force, force * velocity, available])
 
     def _state(self, guess: Guess) -> FloatArray:
@@ -423,12 +423,3 @@ class TorqueProgramme:
             lower[part.start] = upper[part.start] = first
             lower[part.stop - 1] = upper[part.stop - 1] = last
         return lower, upper
-
-
-def _available(task: TorqueTask, velocity: Any, count: int) -> Any:
-    """Give what the motor gives at the slave's velocities, in symbols."""
-    if task.curve is None:
-        return ca.DM.inf(count)
-    speeds, torques = (ca.DM(list(column)) for column in zip(*task.curve.points, strict=True))
-    motor = ca.vertsplit(ca.fabs(velocity) * task.machine.motor_ratio)
-    return ca.vertcat(*[ca.pw_lin(each, speeds, torques) for each in motor]) * task.machine.motor_ratio

@@ -12,6 +12,15 @@ from camwright.design.torque.task import TorqueTask
 from camwright.profiles.polynomial.profile import FloatArray
 
 
+def available_torque(task: TorqueTask, velocity: Any, count: int) -> Any:
+    """Give the torque of the motor at a number of the slave's velocities, seen at the slave, in scalar symbols (`casadi.SX`)."""
+    if task.curve is None:
+        return ca.DM.inf(count)
+    speeds, torques = (ca.DM(list(column)) for column in zip(*task.curve.points, strict=True))
+    motor = ca.vertsplit(ca.fabs(velocity) * task.machine.motor_ratio)
+    return ca.vertcat(*[ca.pw_lin(each, speeds, torques) for each in motor]) * task.machine.motor_ratio
+
+
 @dataclass(frozen=True, eq=False)
 class Joined:
     """What a sync zone between two slave coordinates means to a programme, scaled as there.
@@ -24,8 +33,8 @@ class Joined:
         Acceleration and velocity at the start of the return, and at its end.
     travel
         Travel of the return.
-    torque, power, velocity
-        Of the zone at its points, at the slave.
+    torque, power, available
+        Of the zone at its points, at the slave; the last is what the motor gives there.
     weights
         Of these points in a mean over time, the return counting as 1.
     shares
@@ -39,7 +48,7 @@ class Joined:
     travel: Any
     torque: Any
     power: Any
-    velocity: Any
+    available: Any
     weights: Any
     shares: Any
     accelerations: Any
@@ -92,7 +101,7 @@ class Zone:
                 (machine.pitch - (other - one)) / scale,
                 torque,
                 torque * velocity,
-                velocity,
+                available_torque(task, velocity, self.points + 2),
                 weights,
                 shares,
                 slopes * length * unit,

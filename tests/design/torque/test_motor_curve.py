@@ -1,5 +1,6 @@
 """The motor's torque-speed curve, and designs that keep it."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -148,3 +149,11 @@ def test_low_speeds_have_rectangles_where_the_torque_grows_with_the_speed() -> N
 def test_a_motor_that_cannot_overcome_friction_leaves_no_limits() -> None:
     weak = replace(LIMITS, motor=MotorCurve(((0.0, 0.1), (200.0, 0.1))))
     assert motor_limits(KNIFE, weak) == ()
+
+
+def test_an_open_place_on_the_crank_is_chosen_within_the_curve() -> None:
+    limits = Limits(40.0, 400.0, 40000.0, motor=MotorCurve(((0.0, 30.0), (40.0, 20.0), (80.0, 7.0), (150.0, 4.0))))
+    task = Task(replace(CRANK, sync_at=math.nan), SHEAR, limits)
+    found = solve(task, "rms_torque")
+    assert limits.motor is not None
+    assert keeps_curve(found.profile, task.with_machine(found.machine), limits.motor)
