@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from camwright.drives.audit import audit
     from camwright.drives.table_files import export
     from camwright.jobs.job import Job, load_job
+    from camwright.notebook.result import Result, optimise
     from camwright.profiles.cut import Cut
     from camwright.profiles.errors import CamwrightError, InfeasibleError, InputError, MissingExtraError, SolverError
     from camwright.profiles.limits import Limits
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
     from camwright.stored.judge import validate
     from camwright.stored.save import save
     from camwright.studies.comparison import compare
-    from camwright.studies.design import Design, optimise
+    from camwright.studies.design import Design
     from camwright.studies.limits import limits
 
 _HOMES = {
@@ -49,6 +50,7 @@ _HOMES = {
     "Machine": "camwright.profiles.machines",
     "MissingExtraError": "camwright.profiles.errors",
     "Objective": "camwright.profiles.objective",
+    "Result": "camwright.notebook.result",
     "RotaryKnife": "camwright.profiles.machines",
     "Servo": "camwright.profiles.servo",
     "SolverError": "camwright.profiles.errors",
@@ -59,7 +61,7 @@ _HOMES = {
     "export": "camwright.drives.table_files",
     "limits": "camwright.studies.limits",
     "load_job": "camwright.jobs.job",
-    "optimise": "camwright.studies.design",
+    "optimise": "camwright.notebook.result",
     "read_design": "camwright.stored.design_file",
     "recipe": "camwright.recipes.write",
     "save": "camwright.stored.save",
@@ -67,9 +69,9 @@ _HOMES = {
 }
 
 __all__ = [
-    "CamwrightError", "CrankSlider", "Cut", "Design", "InfeasibleError", "InputError", "Job", "Limits", "LinearCarriage", "Machine",
-    "MissingExtraError", "Objective", "RotaryKnife", "Servo", "SolverError", "Task", "audit", "baseline", "compare", "export", "limits",
-    "load_job", "optimise", "read_design", "recipe", "save", "validate",
+    "CamwrightError", "CrankSlider", "Cut", "Design", "InfeasibleError", "InputError", "Job", "Limits", "LinearCarriage",
+    "Machine", "MissingExtraError", "Objective", "Result", "RotaryKnife", "Servo", "SolverError", "Task", "audit",
+    "baseline", "compare", "export", "limits", "load_job", "optimise", "read_design", "recipe", "save", "validate",
 ]  # fmt: skip
 
 

@@ -15,22 +15,31 @@ if TYPE_CHECKING:
 
 
 def written(draw: Callable[[], Figure], directory: Path, name: str) -> list[Path]:
-    """Draw a figure in the house's style, whatever the user's settings of matplotlib, and save it twice.
+    """Draw a figure in the house's style and save it twice.
 
     It is drawn once, as SVG with its text as outlines; the PNG is made of that.
     """
     from matplotlib import style as matplotlib_style
-    from matplotlib.layout_engine import ConstrainedLayoutEngine
 
     vector, pixels = directory / f"{name}.svg", directory / f"{name}.png"
+    figure = drawn(draw)
     with matplotlib_style.context(["default", RC]):
-        figure = draw()
-        ConstrainedLayoutEngine().execute(figure)
-        figure.set_layout_engine("none")  # laid out once: saving would do it again
         figure.savefig(vector, metadata={"Date": None, "Creator": None})
         width, height = figure.get_size_inches()
     _to_pixels(vector, pixels, float(width), float(height))
     return [vector, pixels]
+
+
+def drawn(draw: Callable[[], Figure]) -> Figure:
+    """Draw a figure in the house's style, whatever the user's settings of matplotlib."""
+    from matplotlib import style as matplotlib_style
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
+
+    with matplotlib_style.context(["default", RC]):
+        figure = draw()
+        ConstrainedLayoutEngine().execute(figure)
+        figure.set_layout_engine("none")  # laid out once: saving would do it again
+    return figure
 
 
 def _to_pixels(vector: Path, pixels: Path, width: float, height: float) -> None:

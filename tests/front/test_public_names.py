@@ -61,6 +61,7 @@ PROMISED = [
         "Objective",
         "Task",
         "Design",
+        "Result",
     ),
     *("CamwrightError", "InputError", "InfeasibleError", "SolverError", "MissingExtraError"),
 ]
