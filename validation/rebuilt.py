@@ -91,6 +91,8 @@ def judge_table(
     task: Task,
     servo: Servo,
     wraps: int = LEAST_WRAPS,
+    *,
+    count: float = 0.0,
 ) -> TableJudgement:
     """Judge the motion that a drive makes of a table.
 
@@ -109,6 +111,9 @@ def judge_table(
         What it is judged by.
     wraps
         Number of cycles to run, at least `LEAST_WRAPS`.
+    count
+        Size of the counts that the positions are given in (slave unit), if that is coarse: then acceleration and speed in
+        sync are judged by differences at the sample time, the speed beyond what one count makes of it.
 
     Raises
     ------
@@ -121,8 +126,8 @@ def judge_table(
     run = rebuilt.shift(-rebuilt.start).repeat(wraps)
     checks = (
         *_closing(rebuilt, task, wraps),
-        *_sync(run, task, wraps),
-        *_limits(cycle, run, task, servo),
+        *_sync(run, task, wraps, count, servo.sample_time),
+        *_limits(cycle, run, task, servo, count > 0.0),
         *_stroke(cycle, task),
         _shear_zone(cycle, task, servo),
     )
@@ -168,7 +173,7 @@ def _closing(rebuilt: CamProfile, task: Task, wraps: int) -> list[Check]:
     ]
 
 
-def _sync(run: CamProfile, task: Task, wraps: int) -> list[Check]:
+def _sync(run: CamProfile, task: Task, wraps: int, count: float, sample_time: float) -> list[Check]:
     """Tool against material in the sync zones of all wraps: position, and speed.
 
     Where the slave is off by ``e`` from its coordinate ``c`` in sync, the tool is off by ``X(c + e) - X(c)``.
@@ -203,15 +208,28 @@ def _sync(run: CamProfile, task: Task, wraps: int) -> list[Check]:
         return x, cycle, meant, meant + run(x) - (began + along + turns)
 
     def greatest(size: FloatArray, x: FloatArray, cycle: FloatArray) -> tuple[float, float | None]:
-        if not size.any():
+        if not size.size or not size.any():
             return 0.0, None
         worst = int(size.argmax())
         return float(size[worst]), float(x[worst] - cycle[worst])
 
     x, cycle, meant, found = off(points)
     worst, at = greatest(np.abs(machine.tool(found) - machine.tool(meant)), x, cycle)
-    x, cycle, _, found = off(middles)
-    slip = np.abs(machine.tool_ratio(found) * run(x, 1) / cut.sync_ratio - 1.0)
+    if count > 0.0:
+        step = cut.line_speed * sample_time
+        starts = [
+            np.linspace(part[0], part[-1] - step, len(part)) if part[-1] - part[0] > step else part[:0]
+            for part in points
+        ]
+        ends = [part + step for part in starts]
+        x, cycle, before, found = off(starts)
+        _, _, after, moved = off(ends)
+        error = np.abs((machine.tool(moved) - machine.tool(after)) - (machine.tool(found) - machine.tool(before)))
+        excess = np.maximum(0.0, error - count * np.abs(machine.tool_ratio(found)))
+        slip = excess / step
+    else:
+        x, cycle, _, found = off(middles)
+        slip = np.abs(machine.tool_ratio(found) * run(x, 1) / cut.sync_ratio - 1.0)
     ratio, ratio_at = greatest(slip, x, cycle)
     return [
         _at_most("sync_position", worst, cut.sync_tolerance, "m", at, f"tool against material, {wraps} wraps"),
@@ -222,6 +240,7 @@ def _sync(run: CamProfile, task: Task, wraps: int) -> list[Check]:
             "1",
             ratio_at,
             "speed of the tool in the sync zone (S1), against the sync tolerance over the sync zone"
+            + ("; over a sample time, beyond one count" if count > 0.0 else "")
             + ("; not beside ends of the zone that are no points of the table" if any(margins) else ""),
         ),
     ]
@@ -253,14 +272,14 @@ def _places(run: CamProfile, start: float, end: float) -> FloatArray:
     return np.unique(np.concatenate([(breaks[:-1, None] + np.diff(breaks)[:, None] * _NODES).ravel(), [end]]))
 
 
-def _limits(cycle: CamProfile, run: CamProfile, task: Task, servo: Servo) -> list[Check]:
+def _limits(cycle: CamProfile, run: CamProfile, task: Task, servo: Servo, counted: bool) -> list[Check]:
     """Speed, acceleration and reversal of the cycle; differences over all wraps."""
     machine, limits = task.machine, task.limits
     v = task.cut.line_speed
     speed, least = _extremes(cycle, 1)
     sampled = sampled_peaks(run, task.cut, servo)
     scale, unit = ratio_scale(cycle, machine), machine.slave_unit
-    if greatest_jump(run, 1).value <= RATIO_JUMP * scale:
+    if not counted and greatest_jump(run, 1).value <= RATIO_JUMP * scale:
         found, _ = _extremes(cycle, 2)
         acceleration, at = v * v * found.value, found.at
         how = "exact"
@@ -296,16 +315,16 @@ def _stroke(cycle: CamProfile, task: Task) -> list[Check]:
     if task.machine.guide is None:
         return []
     low, high = task.machine.guide
-    x = _places(cycle, cycle.start, cycle.end)
-    inside = task.slave_at_start - low + cycle(x)
-    over = np.maximum(-inside, inside - (high - low))
+    least, greatest = cycle.extrema(0)
+    below, above = low - task.slave_at_start - least.value, task.slave_at_start + greatest.value - high
+    over, at = (below, least.at) if below >= above else (above, greatest.at)
     return [
         _at_most(
             "stroke",
-            float(over.max()),
+            float(over),
             task.cut.sync_tolerance,
             "m",
-            float(x[over.argmax()]),
+            at,
             "how far the carriage goes beyond its stroke, negative inside",
         )
     ]

@@ -88,7 +88,9 @@ def _view(result: Audit, file: Path, files: list[Path]) -> RenderableType:
     notes = [new_text(f"Note: {note}") for note in result.notes]
     if any(result.is_sampled(measure) for measure in MEASURES):
         time = result.job.servo.sample_time * 1e3
+        why = "in counts" if result.counted else "unbounded"
         notes.insert(
-            0, new_text(f"* unbounded; by differences of the positions at the sample time of {time:g} ms, for both")
+            0,
+            new_text(f"* {why}; by differences of the positions at the sample time of {time:g} ms, for both"),
         )
     return stacked(table, checks_view(result.judgement.checks, result.job.units), *notes, files_view(files))

@@ -82,4 +82,5 @@ def _view(path: Path, trace: Trace, found: Identified, files: Sequence[Path]) ->
         words = name.replace("_", " ")
         table.add_row(words if symbol == words else f"{words} {symbol}", rounded(value, spread), written, note)
     ending = f"fit {found.fit:.6f}, residual {found.residual * scale:.3g} {unit} rms over {found.rows} rows"
-    return stacked(table, new_text(ending), *([files_view(files)] if files else []))
+    notes = [new_text(f"Note: {note}") for note in found.notes]
+    return stacked(table, new_text(ending), *notes, *([files_view(files)] if files else []))

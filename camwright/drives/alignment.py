@@ -18,7 +18,9 @@ _IN_ZONE = 65
 _CHUNK = 4096
 _EVENLY = 3600
 """Beginnings that are tried beside those at the cam's own points, where these stand far apart."""
-_EXACT = 1e-6
+_EDGE = 1e-6
+"""Part of the cut length beside the ends of the zone where the ratio may be the return's."""
+_EXACT = 1e-8
 """Misfit, as a part of what is allowed, that is rounding: beginnings below it are as good as each other."""
 _TOLD = 1e-6
 """Shift of the zero, as a part of the cut length, from which on it is told."""
@@ -26,7 +28,7 @@ _ROUNDS = 60
 """Steps of the golden section: the last is far below a nanometre."""
 
 
-def aligned(rebuilt: CamProfile, job: Job) -> tuple[CamProfile, tuple[str, ...]]:
+def aligned(rebuilt: CamProfile, job: Job, *, count: float = 0.0) -> tuple[CamProfile, tuple[str, ...]]:
     """Begin the cycle where it fits the job's sync zone best, and put the slave's zero where the job has it.
 
     The zero is found from the cam alone: the beginnings tried are those at which an end of the zone falls on a point of
@@ -37,6 +39,9 @@ def aligned(rebuilt: CamProfile, job: Job) -> tuple[CamProfile, tuple[str, ...]]
     ----------
     rebuilt
         One cycle from master 0 on, in SI units.
+    count
+        Size of the counts that its positions are in (slave unit), if that is coarse: its exact ratio is noise then, and
+        chords between the places take its part; beginnings that differ by what a count does are as good as each other.
 
     Returns
     -------
@@ -46,7 +51,7 @@ def aligned(rebuilt: CamProfile, job: Job) -> tuple[CamProfile, tuple[str, ...]]
     task, cut, machine = job.task, job.cut, job.machine
     sync = task.sync
     in_zone = np.linspace(0.0, cut.sync_zone, _IN_ZONE)
-    inside = np.linspace(0.0, cut.sync_zone, _IN_ZONE + 2)[1:-1]
+    inside = np.clip(in_zone, _EDGE * cut.length, cut.sync_zone - _EDGE * cut.length)
     meant, slope = sync(in_zone), sync(inside, 1)
     zone = (cut.return_start + cut.return_zone) % cut.length
     stretch = rebuilt.length / cut.length
@@ -59,15 +64,20 @@ def aligned(rebuilt: CamProfile, job: Job) -> tuple[CamProfile, tuple[str, ...]]
         for part in np.array_split(begin, len(begin) // _CHUNK + 1):
             at = (part[:, None] + zone) * stretch
             off = rebuilt(at + in_zone * stretch, outside="repeat") - meant
-            slip = (rebuilt(at + inside * stretch, 1, outside="repeat") * stretch - slope) * speed
+            if count > 0.0:
+                slip = np.diff(off, axis=1) * (lever / (in_zone[1] - in_zone[0]))
+            else:
+                slip = (rebuilt(at + inside * stretch, 1, outside="repeat") * stretch - slope) * speed
             position = 0.5 * np.ptp(off, axis=1) * lever / cut.sync_tolerance
             found.append(np.maximum(position, np.abs(slip).max(axis=1) * cut.sync_zone / cut.sync_tolerance))
         return np.concatenate(found)
 
-    begin = _best(_beginnings(rebuilt, stretch, zone, cut.sync_zone, cut.length), misfit, cut.length)
+    slack = count * lever / cut.sync_tolerance * (_IN_ZONE - 1)  # a chord that is off by one count
+    begins = _beginnings(rebuilt, stretch, zone, cut.sync_zone, cut.length)
+    begin = _best(begins, misfit, cut.length, max(_EXACT, slack))
     notes: tuple[str, ...] = ()
     here, there = misfit(np.array([0.0, begin])).tolist()
-    if there < here and here > _EXACT:
+    if there + slack < here and here > _EXACT:
         rebuilt = rebuilt.roll(begin * stretch)
         if _TOLD * cut.length < begin < (1.0 - _TOLD) * cut.length:
             note = (
@@ -92,16 +102,17 @@ def _beginnings(rebuilt: CamProfile, stretch: float, zone: float, width: float, 
     return np.unique(np.mod(tried, length))
 
 
-def _best(begins: FloatArray, misfit: Misfit, length: float) -> float:
+def _best(begins: FloatArray, misfit: Misfit, length: float, slack: float) -> float:
     """Find the best beginning: the middle of those that fit exactly, or the best between neighbours."""
     found = misfit(begins)
     least = int(found.argmin())
-    good = found <= max(_EXACT, float(found[least]) * (1.0 + 1e-9))
-    if float(found[least]) <= _EXACT and int(good.sum()) > 1:
+    bound = slack if slack <= _EXACT else float(found[least]) + slack
+    good = found <= bound
+    if int(good.sum()) > 1:
         first, last = _run(good, least)
         width = (begins[last] - begins[first]) % length
         middle = (begins[first] + 0.5 * width) % length
-        if float(misfit(np.array([middle]))[0]) <= _EXACT:
+        if float(misfit(np.array([middle]))[0]) <= bound:
             return float(middle)
     low = begins[least - 1] - (length if least == 0 else 0.0)
     high = begins[(least + 1) % len(begins)] + (length if least == len(begins) - 1 else 0.0)

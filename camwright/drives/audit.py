@@ -20,6 +20,7 @@ from camwright.profiles.errors import InputError
 from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.tables.cam_table import CamTable
+from camwright.profiles.tables.count_grid import without_rounding
 from camwright.profiles.tables.target import Target
 from camwright.profiles.tables.targets import detect, read_table, target_of
 from camwright.profiles.tables.text import read_text
@@ -75,6 +76,8 @@ class Audit:
         What the drive is commanded.
     optimum_job, optimum, optimum_report, optimum_sampled
         The optimal cycle of the job, alike.
+    counted
+        Whether the file's positions are counts whose rounding shows in the exact derivatives.
     """
 
     target: Target
@@ -89,11 +92,13 @@ class Audit:
     optimum: CamProfile
     optimum_report: ValidationReport
     optimum_sampled: Sampled
+    counted: bool = False
 
     def is_sampled(self, measure: str) -> bool:
-        """Whether a measure is compared by differences: where straight lines or steps leave the exact one unbounded."""
-        return hasattr(self.sampled, measure) and any(
-            getattr(report.motion, measure) is None for report in (self.report, self.optimum_report)
+        """Whether a measure is compared by differences: where straight lines, steps or counts leave the exact one unbounded."""
+        return hasattr(self.sampled, measure) and (
+            self.counted
+            or any(getattr(report.motion, measure) is None for report in (self.report, self.optimum_report))
         )
 
     def pair(self, measure: str) -> tuple[float, float]:
@@ -163,13 +168,14 @@ def audit(
     layout = detect(text, str(path)) if target is None else target_of(target)
     placed = replace(job, machine=_with_place(job.machine, text, str(path)))
     whole = whole_cycle(with_slopes(read_table(layout, text, str(path)), slopes), placed, str(path), units, travel)
-    table = whole.table
-    rebuilt = whole.units.to_si(layout.rebuild(table))
+    table, counted = whole.table, without_rounding(whole.table)
+    rebuilt = whole.units.to_si(layout.rebuild(table if counted is None else counted.table))
     one_cycle(rebuilt, job.cut)  # refuses another period
-    rebuilt, notes = aligned(rebuilt.shift(-rebuilt.start), placed)
+    count = 0.0 if counted is None else counted.count * whole.units.slave.size
+    rebuilt, notes = aligned(rebuilt.shift(-rebuilt.start), placed, count=count)
     cycle = one_cycle(rebuilt, job.cut)
     step("judging")
-    judgement = judge_table(rebuilt, placed.task, job.servo)
+    judgement = judge_table(rebuilt, placed.task, job.servo, count=count)
     report = judge(cycle, placed.task, job.servo)
     step("solving")
     solution = solve_job(job)
@@ -178,7 +184,7 @@ def audit(
     return Audit(
         layout,
         table,
-        (*table.notes, *whole.notes, *notes),
+        (*table.notes, *whole.notes, *((counted.note,) if counted else ()), *notes),
         placed,
         cycle,
         judgement,
@@ -188,6 +194,7 @@ def audit(
         solution.profile,
         best_report,
         _sampled(solution.profile, job),
+        counted is not None,
     )
 
 

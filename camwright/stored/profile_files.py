@@ -18,6 +18,7 @@ from camwright.profiles.machines.machine import SlaveUnit
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.tables import csv_target
 from camwright.profiles.tables.cam_csv import write_cam_csv
+from camwright.profiles.tables.count_grid import without_rounding
 from camwright.profiles.tables.text import decode
 from camwright.stored.design_file import MOST_BYTES, parse_design
 from camwright.studies.design import Design
@@ -80,8 +81,10 @@ def read_cycle(path: Path, job: Job) -> tuple[CamProfile, Machine, tuple[str, ..
     if table.units is not None:
         _require_unit(table.units.slave.si, job, path)
     whole = whole_cycle(table, replace(job, machine=machine), str(path))
-    profile = whole.units.to_si(csv_target.rebuild(whole.table))
-    return _one_cycle(profile, job.cut.length, str(path)), machine, (*whole.table.notes, *whole.notes)
+    counted = without_rounding(whole.table)
+    profile = whole.units.to_si(csv_target.rebuild(whole.table if counted is None else counted.table))
+    notes = (*whole.table.notes, *whole.notes, *((counted.note,) if counted else ()))
+    return _one_cycle(profile, job.cut.length, str(path)), machine, notes
 
 
 def _require_unit(unit: SlaveUnit, job: Job, path: Path) -> None:

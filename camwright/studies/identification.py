@@ -81,6 +81,7 @@ def identify_answer(path: Path, trace: Trace, found: Identified, files: Sequence
             for name, bounds in found.confidence.items()
         },
         "rows": found.rows,
+        "notes": list(found.notes),
         "files": [str(file) for file in files],
     }
 

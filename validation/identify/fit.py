@@ -97,6 +97,8 @@ class TraceFit:
         Time between two rows of the trace (s).
     noise
         Noise of the actual position (rms).
+    level
+        Whether a constant between command and actual position is fitted too: zeros that differ.
     """
 
     times: FloatArray
@@ -108,6 +110,7 @@ class TraceFit:
     rows: NDArray[np.intp]
     step: float
     noise: float
+    level: bool = False
 
     @classmethod
     def of(cls, trace: Trace) -> TraceFit:
@@ -150,7 +153,10 @@ class TraceFit:
         ahead = 1e-3
         command = self.command(self.times)
         velocity = (command - self.command(self.times - ahead)) / ahead
-        return float(velocity @ (command - self.actual) / (velocity @ velocity))
+        behind = command - self.actual
+        if self.level:
+            behind, velocity = behind - behind.mean(), velocity - velocity.mean()
+        return float(velocity @ behind / (velocity @ velocity))
 
     def residual(self, values: dict[str, float], clock: float | None) -> FloatArray:
         """Take the model and its best beginning off the actual position; without clock the model is the mean over all phases.
@@ -166,6 +172,8 @@ class TraceFit:
             position, free = axis_response(
                 servo, float(self.times[0]) + clock * servo.sample_time, self.command, self.times
             )
+        if self.level:
+            free = np.vstack([free, np.ones(len(self.times))])
         return without(self.actual - position, free)
 
     def mean(self, servo: Servo) -> FloatArray:

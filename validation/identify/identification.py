@@ -20,6 +20,8 @@ from camwright.validation.identify.fit import (
     Minimum,
     TraceFit,
 )
+from camwright.validation.identify.level import with_level
+from camwright.validation.identify.preparation import unwrapped
 from camwright.validation.identify.quality import require_usable
 
 Origin = Literal["trace", "assumed", "given"]
@@ -34,6 +36,10 @@ _UNITS = {
     "velocity_feedforward": (1.0, ""),
 }
 _WORST_FIT = 0.5
+_ROUNDED = 1e-5
+"""Dead time below which a negative one is the fit's own error (s)."""
+_AHEAD = 2e-4
+"""Time by which the axis cannot run ahead of its command (s): noise may make it seem a little."""
 _LIVELIER = "record a livelier motion, e.g. a sweep up to the bandwidth of the axis, or a longer one"
 
 
@@ -55,6 +61,8 @@ class Identified:
         Rms of what the model leaves over (unit of the trace).
     rows
         Rows that were judged.
+    notes
+        What was taken off the trace before, or fitted beside.
     """
 
     servo: Servo
@@ -63,6 +71,7 @@ class Identified:
     fit: float
     residual: float
     rows: int
+    notes: tuple[str, ...] = ()
 
 
 def identify(trace: Trace, place: str, velocity_feedforward: float | None = None) -> Identified:
@@ -90,8 +99,9 @@ def identify(trace: Trace, place: str, velocity_feedforward: float | None = None
         this kind does what it
         shows.
     """
+    trace = unwrapped(trace, place)
     require_usable(trace, place)
-    fit = TraceFit.of(trace)
+    fit = with_level(TraceFit.of(trace), velocity_feedforward)
     origin: Origin = "given"
     if velocity_feedforward is None:
         solution, origin = _choose(fit)
@@ -99,7 +109,7 @@ def identify(trace: Trace, place: str, velocity_feedforward: float | None = None
         solution = with_clock(fit, fit.solve(velocity_feedforward))
     solution = _with_doubt(fit, solution)
     share = 1.0 - math.sqrt(solution.cost / float(np.sum((fit.actual - fit.actual.mean()) ** 2)))
-    faults = list(_faults(solution, share))
+    faults = list(_faults(solution, share, fit.lag))
     if faults:
         raise InputError(*(f"{place}: {fault}" for fault in faults))
     values, spread = solution.values, solution.spreads
@@ -117,7 +127,18 @@ def identify(trace: Trace, place: str, velocity_feedforward: float | None = None
         fit=share,
         residual=math.sqrt(solution.cost / len(fit.times)),
         rows=len(fit.times),
+        notes=(*trace.notes, *_level_note(fit, solution, trace)),
     )
+
+
+def _level_note(fit: TraceFit, solution: Minimum, trace: Trace) -> tuple[str, ...]:
+    """Say what the zeros of command and actual position differ by."""
+    if not fit.level:
+        return ()
+    servo = Servo(**solution.values)
+    apart = float(np.mean(fit.actual - fit.mean(servo)))
+    shown, unit = (apart * 1e3, "mm") if trace.unit == "m" else (math.degrees(apart), "deg")
+    return (f"the actual position has another zero than the command: {shown:.6g} {unit} were taken off",)
 
 
 def _choose(fit: TraceFit) -> tuple[Minimum, Origin]:
@@ -158,12 +179,18 @@ def _with_doubt(fit: TraceFit, found: Minimum) -> Minimum:
     return replace(found, spreads={name: wider * spread for name, spread in found.spreads.items()})
 
 
-def _faults(solution: Minimum, fit: float) -> Iterator[str]:
+def _faults(solution: Minimum, fit: float, lag: float) -> Iterator[str]:
     """Say what the trace does not tell, or tells of no servo of this kind."""
     if not fit > _WORST_FIT:
         yield (
             f"no servo of this kind does what the trace shows: the best leaves {100 * (1 - fit):.3g} % of the motion over; check the "
             "units and the columns, and that it is one axis in position control"
+        )
+        return
+    if lag < -_AHEAD:
+        yield (
+            f"the actual position runs ahead of the command by {-1e3 * lag:.3g} ms on average: command and actual are swapped, or the "
+            "controller leads; give them in their own columns, and switch a lead off for the recording"
         )
         return
     values = solution.values
@@ -173,7 +200,7 @@ def _faults(solution: Minimum, fit: float) -> Iterator[str]:
         low, high = RANGES[name]
         about = f"{value * factor:.4g}{unit}, give or take {spread * factor:.2g}{unit} (95 %)"
         known = max(value, values["sample_time"]) if name == "dead_time" else abs(value)
-        if name == "dead_time" and value + spread < 0.0:
+        if name == "dead_time" and value + spread < -_ROUNDED:
             yield (
                 f"the actual position runs ahead of the command: {words} {about}; switch the controller's lead off for the recording, and "
                 "give command and actual in their own columns"

@@ -162,7 +162,7 @@ SWEEP = recorded(PAPER, sweep(0.02, 15.0), 8)
         (stairs(SWEEP), "t: the command is recorded in stairs of 4 ms, as a sampled loop holds it; record the command before"),
         (replace(SWEEP, actual=25.4 * SWEEP.actual), "times as far as the command; give both in their true units"),
         (recorded(replace(PAPER, lead_time=0.006), cam("poly_3_4_5"), 1),
-         "t: the actual position runs ahead of the command: dead time -4 ms, give or take"),
+         "t: the actual position runs ahead of the command by 3.64 ms on average: command and actual are swapped, or"),
         (recorded(PAPER, sweep(0.05, 0.7), 1), "t: the trace does not tell the sample time: "),
     ],
 )  # fmt: skip

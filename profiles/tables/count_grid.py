@@ -1,0 +1,134 @@
+"""Positions that are whole counts of an encoder: the grid is found, and the cam that rounds to it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from camwright.profiles.polynomial.profile import FloatArray
+from camwright.profiles.tables.cam_table import CamTable
+
+_FEWEST = 60
+"""Points from which on rounding can be told from motion."""
+_TRIED = 400
+_OFF_GRID = 0.05
+"""Part of a count by which positions may miss the grid: they are printed with so many digits."""
+_TELLS = 0.01
+"""Part of the greatest second difference that the rounding may make up before it counts."""
+_STRIDES = 90
+"""Parts of the cycle over which the cam's own second difference is seen through the rounding."""
+_EVEN = 0.02
+"""Part of a step by which the points may miss even spacing: the master is counted too."""
+_ROUNDS = 50
+
+
+@dataclass(frozen=True)
+class Counted:
+    """A table whose positions are whole counts.
+
+    Parameters
+    ----------
+    table
+        The smoothest table that misses the counts by no more than rounding does.
+    count
+        Size of a count in the table's unit.
+    note
+        A sentence about it.
+    """
+
+    table: CamTable
+    count: float
+    note: str
+
+
+def without_rounding(table: CamTable) -> Counted | None:
+    """Take the rounding to counts off a table of positions, where it would drown the acceleration.
+
+    A count of size ``q`` moves a second difference over a step ``h`` by up to ``2 q / h²``. The smoothed positions have
+    the least sum of squared third differences among those that miss the counts by ``q / √12`` (rms), as rounding does.
+    Only tables of splines through evenly spaced positions are smoothed; ``None`` where there is nothing to take off.
+    """
+    if set(table.laws) != {"spline"} or not np.isnan(table.ratio).all() or table.points < _FEWEST:
+        return None
+    steps = np.diff(table.x)
+    h = table.period / (table.points - 1)
+    if np.abs(steps - h).max() > _EVEN * h:
+        return None
+    count = grid_of(table.y)
+    if count is None or 2.0 * count / h**2 <= _TELLS * _bend(table.y, h):
+        return None
+    smooth = _smoothed(table.y, count)
+    note = (
+        f"the slave's positions are whole counts of {count:.6g} ({table.advance / count:.6g} a cycle): their rounding is taken off, "
+        "and the cam is compared by differences at the sample time (more digits in the file show more)"
+    )
+    return Counted(replace(table, y=smooth), count, note)
+
+
+def grid_of(y: FloatArray) -> float | None:
+    """Find the greatest number of which all positions are whole multiples apart; ``None`` if there is none.
+
+    The steps between positions are whole multiples too, and sorted they lie so close that their gaps are few counts: from
+    the gaps the count is known roughly, from the range of the steps better, from the sum of all steps best.
+    """
+    steps = np.diff(y)
+    span = float(np.ptp(y))
+    if not span > 0.0:
+        return None
+    ordered = np.sort(np.abs(steps))
+    gaps = np.diff(ordered)
+    usable = np.unique(gaps[gaps > 1e-10 * span])
+    if not len(usable):
+        return None
+    for rough in usable[:_TRIED][::-1]:
+        count = _refined(ordered, float(rough))
+        if count is not None and _fits(y, steps, count):
+            return count
+    return None
+
+
+def _refined(ordered: FloatArray, rough: float) -> float | None:
+    """Improve a count by the range of the steps, then by their sum."""
+    total = float(np.rint(np.diff(ordered) / rough).sum())
+    if total < 1.0:
+        return None
+    better = float(ordered[-1] - ordered[0]) / total
+    if abs(better / rough - 1.0) > 0.25:
+        return None
+    whole = float(np.rint(ordered / better).sum())
+    return float(ordered.sum()) / whole if whole else None
+
+
+def _fits(y: FloatArray, steps: FloatArray, count: float) -> bool:
+    """Whether all positions lie on the grid."""
+    off = y[1:] - y[0] - count * np.cumsum(np.rint(steps / count))
+    return bool(np.abs(off).max() <= _OFF_GRID * count)
+
+
+def _bend(y: FloatArray, h: float) -> float:
+    """Greatest second difference over a stride so wide that rounding does not show."""
+    stride = max(1, (len(y) - 1) // _STRIDES)
+    far = y[2 * stride :] - 2.0 * y[stride:-stride] + y[: -2 * stride]
+    return float(np.abs(far).max()) / (stride * h) ** 2
+
+
+def _smoothed(y: FloatArray, count: float) -> FloatArray:
+    """Smooth periodic positions until they miss the given ones by as much as rounding does."""
+    n = len(y) - 1
+    line = (y[-1] - y[0]) * np.arange(n) / n
+    rest = y[:-1] - line
+    spectrum = np.fft.rfft(rest)
+    weight = (2.0 * np.sin(np.pi * np.arange(len(spectrum)) / n)) ** 6
+    allowed = count / 12.0**0.5
+
+    def at(power: float) -> FloatArray:
+        return np.asarray(np.fft.irfft(spectrum / (1.0 + 10.0**power * weight), n))
+
+    low, high = -8.0, 24.0
+    for _ in range(_ROUNDS):
+        middle = 0.5 * (low + high)
+        missed = float(np.sqrt(np.mean((at(middle) - rest) ** 2)))
+        low, high = (low, middle) if missed > allowed else (middle, high)
+    smooth = at(low) + line
+    return np.append(smooth, smooth[0] + (y[-1] - y[0]))
