@@ -45,11 +45,6 @@ def cam_text(design: Design) -> str:
     return write_cam_csv(design.profile, design.job.output.points, comments, machine.slave_unit)
 
 
-def read_profile(path: Path, job: Job) -> CamProfile:
-    """Read one cycle like `read_cycle`, without the machine."""
-    return read_cycle(path, job)[0]
-
-
 def read_cycle(path: Path, job: Job) -> tuple[CamProfile, Machine, tuple[str, ...]]:
     """Read one cycle from a design.json or a table, told apart by the first character, the machine to judge it by, and notes.
 

@@ -167,12 +167,6 @@ class Axis:
             np.asarray(self.task.machine.tool(found) - self.task.machine.tool(zone.coordinate)),
         )
 
-    def zone_ratios(self, profile: CamProfile) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Error of the tool's ratio in the shear zone at every phase; as `zone_errors`."""
-        zone = self._zone
-        off = (self._in_zone(profile, 1) - zone.ratio) * self.task.machine.tool_ratio(zone.coordinate)
-        return zone.places, zone.times, np.asarray(off)
-
     @cached_property
     def _zone(self) -> _Zone:
         """Where the shear zone is looked at: on the common grid, and at its ends at the times that occur there."""

@@ -26,7 +26,7 @@ from camwright.stored.design_file import (
     parse_design,
     read_design,
 )
-from camwright.stored.profile_files import cam_text, read_profile
+from camwright.stored.profile_files import cam_text, read_cycle
 from camwright.studies.design import Design, optimise
 
 FULL = OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
@@ -146,7 +146,7 @@ def test_a_design_is_read_back_bit_by_bit(paper: Design, tmp_path: Path) -> None
     np.testing.assert_array_equal(stored.profile.breaks, paper.profile.breaks)
     np.testing.assert_array_equal(stored.profile.coefficients, paper.profile.coefficients)
     assert stored.job == paper.job
-    np.testing.assert_array_equal(read_profile(file, paper.job).coefficients, paper.profile.coefficients)
+    np.testing.assert_array_equal(read_cycle(file, paper.job)[0].coefficients, paper.profile.coefficients)
 
 
 def test_a_design_keeps_the_shipped_schema(paper: Design) -> None:
@@ -189,7 +189,7 @@ def test_a_table_rounded_to_micrometres_is_still_this_cycle(tmp_path: Path) -> N
     file.write_text(
         "x [mm],y [mm]\n" + "".join(f"{a:.4f},{b:.4f}\n" for a, b in zip(x * 1e3, profile(x) * 1e3, strict=True))
     )
-    read = read_profile(file, job)
+    read = read_cycle(file, job)[0]
     assert (read.start, read.end) == (0.0, 0.6)
     assert np.abs(read(x) - profile(x)).max() < 1e-7
 
@@ -198,7 +198,7 @@ def test_a_table_of_another_cut_length_is_refused(tmp_path: Path) -> None:
     file = tmp_path / "cam.csv"
     file.write_text("x [mm],y [mm]\n" + "".join(f"{i},{i}\n" for i in range(0, 591, 10)))
     with pytest.raises(InputError, match=r"from 0 mm to 590 mm, but a cycle of the job from 0 mm to 600 mm"):
-        read_profile(file, load_job())
+        read_cycle(file, load_job())
 
 
 def damaged(paper: Design, **changes: object) -> str:

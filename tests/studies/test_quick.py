@@ -13,7 +13,7 @@ import pytest
 from camwright.cli.main import main
 from camwright.jobs.job import load_job
 from camwright.profiles.cross_cutter import CrossCut
-from camwright.stored.profile_files import read_profile
+from camwright.stored.profile_files import read_cycle
 from camwright.studies.quick import quick_answer, quick_cam_text, read_cross_cut
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "cross-cutter.toml"
@@ -86,7 +86,7 @@ def test_the_file_holds_the_cycle(length: str, tmp_path: Path, capsys: pytest.Ca
     assert file.read_text() == quick_cam_text(cut)
     assert f"# completed: {str(cut.completed).lower()}\n" in file.read_text()
     job = load_job(EXAMPLE)
-    read = read_profile(file, replace(job, cut=replace(job.cut, length=cut.cut_length)))
+    read = read_cycle(file, replace(job, cut=replace(job.cut, length=cut.cut_length)))[0]
     x = np.linspace(0.0, cut.cut_length, 500)
     np.testing.assert_allclose(read(x), cut.cycle()(x), atol=1e-12)
 

@@ -72,17 +72,6 @@ def required_sync_zone(transition: float, shear_zone: float) -> float:
     return transition + shear_zone
 
 
-def cut_length_eq9(transition: float, pitch: float, line_speed: float, speed: float) -> float:
-    """Minimum cut length for a cut of no width: ``x_c = l_t + (v / v_max) (y_c - l_t)`` (S1, eq. 9).
-
-    Examples
-    --------
-    >>> round(cut_length_eq9(transition=0.080, pitch=0.400, line_speed=80 / 60, speed=200 / 60), 6)
-    0.208
-    """
-    return cut_length_eq10(transition, 0.0, pitch, line_speed, speed)
-
-
 def cut_length_eq10(transition: float, shear_zone: float, pitch: float, line_speed: float, speed: float) -> float:
     """Minimum cut length with a shear zone: ``x_c = l_j + l_t + (v / v_max) (y_c - l_t - l_j)`` (S1, eq. 10).
 

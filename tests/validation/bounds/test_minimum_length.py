@@ -23,7 +23,6 @@ from camwright.profiles.returns import assemble, baseline
 from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
 from camwright.validation.bounds.minimum_length import (
-    cut_length_eq9,
     cut_length_eq10,
     linear_return_to_tolerance,
     optimised_to_tolerance,
@@ -43,7 +42,7 @@ PAPER = Servo(120.0, 0.7, 35.0, 0.004, 1.0)
 
 
 def test_figure_of_the_paper() -> None:
-    assert cut_length_eq9(0.080, 0.400, 80 / 60, 200 / 60) == pytest.approx(0.208, abs=1e-12)
+    assert cut_length_eq10(0.080, 0.0, 0.400, 80 / 60, 200 / 60) == pytest.approx(0.208, abs=1e-12)
 
 
 def test_eq10_with_the_crossing_and_a_shear_zone() -> None:
@@ -58,7 +57,8 @@ def test_eqs_9_and_10_are_eqs_7_and_8_solved(
     sync = required_sync_zone(transition, shear)
     back = cut_length_eq10(transition, shear, pitch, v, top) - sync  # eq. 7
     assert (pitch - sync) / top == pytest.approx(back / v, rel=1e-9)  # eq. 8
-    assert cut_length_eq9(transition, pitch, v, top) == cut_length_eq10(transition, 0.0, pitch, v, top)
+    no_width = transition + v / top * (pitch - transition)  # eq. 9
+    assert cut_length_eq10(transition, 0.0, pitch, v, top) == pytest.approx(no_width, rel=1e-12)
 
 
 def test_required_sync_zone_is_eq5_without_a_shear_zone_and_eq6_with_one() -> None:
