@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import groupby
 
+from camwright.answers.measures import millimetres
 from camwright.book.entry import Entry, Limit
 from camwright.book.plan import Book
 
@@ -87,9 +88,9 @@ def index_rows(book: Book, entries: Iterable[Entry]) -> Iterator[list[Cell]]:
             entry.peak_acceleration,
             entry.rms_acceleration,
             entry.peak_jerk,
-            _mm(entry.following_error),
-            _mm(entry.settling),
-            _mm(entry.shear_zone_error),
+            millimetres(entry.following_error),
+            millimetres(entry.settling),
+            millimetres(entry.shear_zone_error),
             _released(entry.speed_band),
             " ".join(f"{name}:{points}" for name, points in entry.tables) or None,
             "; ".join(entry.failed_checks) or None,
@@ -161,8 +162,3 @@ def _rounded_up(value: float) -> float:
         return 0.0
     scale = 10.0 ** (6 - math.floor(math.log10(value)))
     return math.ceil(value * scale) / scale
-
-
-def _mm(length: float | None) -> float | None:
-    """Turn metres into millimetres."""
-    return None if length is None else length * 1e3
