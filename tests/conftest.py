@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from pathlib import Path
 
 import pytest
@@ -13,8 +14,13 @@ ROOT = Path(__file__).resolve().parents[1]
 settings.register_profile("camwright", deadline=None, derandomize=True)
 settings.load_profile("camwright")
 
-# Processes that a test starts see this checkout first, as the tests themselves do (pythonpath of pytest), not a copy installed earlier.
-os.environ["PYTHONPATH"] = os.pathsep.join([str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])])
+if (ROOT / "camwright" / "design").is_dir():
+    # Processes that a test starts see this checkout first, as the tests themselves do (pythonpath of pytest), not a copy installed earlier.
+    os.environ["PYTHONPATH"] = os.pathsep.join([str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])])
+else:
+    # A source archive has no links to its floors, so it is no package by itself: what was installed of it is tested.
+    sys.path[:] = [place for place in sys.path if Path(place).resolve() != ROOT]
+    os.environ["PYTHONSAFEPATH"] = "1"  # nor do processes that a test starts look into the archive
 
 
 @pytest.fixture(autouse=True)

@@ -159,6 +159,23 @@ def test_the_source_archive_installs(plain: Path, crowded: Path, tmp_path: Path)
     assert "paper-600" in said
 
 
+def test_the_source_archive_passes_its_tests_on_its_own(plain: Path, tmp_path: Path):
+    """Tests of several rooms, from the unpacked archive, with what was built of it installed."""
+    with tarfile.open(built("sdist", plain, tmp_path)) as opened:
+        opened.extractall(tmp_path / "unpacked", filter="data")
+    (unpacked,) = (tmp_path / "unpacked").iterdir()
+    python = fresh(tmp_path / "environment", unpacked)
+    chosen = (
+        "tests/house/test_units.py",
+        "tests/jobs/test_job.py",
+        "tests/profiles/test_laws.py",
+        "tests/house/test_release.py",
+    )
+    said = run([python, "-m", "pytest", "-q", "-p", "no:cacheprovider", *chosen], cwd=unpacked)
+    assert " passed" in said
+    assert "failed" not in said
+
+
 def test_an_editable_install_is_the_checkout_and_leaves_no_copy(linked: Path, crowded: Path, tmp_path: Path):
     python = fresh(tmp_path / "environment", "-e", linked)
     code = "import camwright.cli.main as c, camwright.design.optimise as d; print(c.__file__); print(d.__file__)"
