@@ -15,10 +15,14 @@ import traceback
 
 from camwright import load_job
 from camwright.drives.export import export_possible
+from camwright.jobs.table_cycle import whole_cycle
 from camwright.profiles.errors import InputError
 from camwright.profiles.returns import baseline
+from camwright.profiles.tables.count_grid import without_rounding
 from camwright.profiles.tables.targets import TARGETS, detect, read_table
 from camwright.profiles.tables.text import decode
+from camwright.profiles.tables.trace_csv import read_trace_csv
+from camwright.validation.identify.preparation import unwrapped
 
 LONGEST = 1.0
 """Processor time that one file may take (s)."""
@@ -76,41 +80,74 @@ def sources() -> dict[str, str]:
     return {result.target.name: next(iter(result.files.values())) for result in results}
 
 
+def foreign() -> dict[str, str]:
+    """Write tables and recordings as spreadsheets, scopes and engineering tools have them; a recording's name begins with trace."""
+    profile = baseline("double_s", load_job().task)
+    x = [profile.length * k / 120 for k in range(121)]
+    y = [float(profile(at)) for at in x]
+    pairs = [(f"{a * 1e3:.4f}", f"{b * 1e3:.4f}") for a, b in zip(x, y, strict=True)]
+    comma = [(a.replace(".", ","), b.replace(".", ",")) for a, b in pairs]
+    values = ", ".join(str(round(b * 1e6)) for b in y)
+    points = "".join(
+        f"p[{k + 1}].PointIndex := {k + 1};\np[{k + 1}].FunctionType := 15;\np[{k + 1}].MasterPos := {a};\n"
+        f"p[{k + 1}].SlavePos := {b};\n"
+        for k, (a, b) in enumerate(pairs[:6])
+    )
+    times = [(f"{k},{a};{b}\n") for k, (a, b) in enumerate(comma)]
+    scope = "Name\tScope\nFile\tx\n\nName\tAxis.SetPos\tName\tAxis.ActPos\nUnit\t(none)\tUnit\t(none)\n\n"
+    return {
+        "semicolons": "Leit [mm];Folge [mm]\n" + "".join(f"{a};{b}\n" for a, b in comma),
+        "quoted": 'sep=;\n"No";"Theta (deg)";"S (Pos)";\n'
+        + "".join(f'"{k}";"{a}";"{b}";\n' for k, (a, b) in enumerate(comma)),
+        "units": "Knife 3\nMaster\tSlave\n[mm]\t[mm]\n" + "".join(f"{a}\t{b}\n" for a, b in pairs),
+        "program": f"' knife\nBASE(1)\nTABLE(10, {values})\nCAMBOX(10, 130, 1, 600, 0, 4)\n",
+        "tcpou": '<?xml version="1.0"?>\n<TcPlcObject><POU><Declaration><![CDATA[PROGRAM A\nVAR p : ARRAY[1..6] OF '
+        f"MC_MotionFunctionPoint; END_VAR]]></Declaration><ST><![CDATA[{points}]]></ST></POU></TcPlcObject>",
+        "trace commas": "Zeit [ms];Soll [mm];Ist [mm]\n" + "".join(row.replace(",", ";", 1) for row in times),
+        "trace scope": scope + "".join(f"{k}\t{a}\t{k}\t{b}\n" for k, (a, b) in enumerate(comma)) + "EOF\n",
+    }
+
+
 def main() -> int:
     """Fuzz, and print the counts."""
     seconds = float(sys.argv[1]) if len(sys.argv) > 1 else 300.0
-    texts = sources()
+    texts = {**sources(), **foreign()}
     counts: collections.Counter[str] = collections.Counter()
+    job = load_job()
     end, number, slowest, size = time.monotonic() + seconds, 0, 0.0, 0
     while time.monotonic() < end:
         number += 1
         dice = random.Random(number)  # noqa: S311 - the number makes the same file again
-        target = TARGETS[dice.choice(list(texts))]
-        data = damaged(texts[target.name], dice)
+        name = dice.choice(list(texts))
+        data = damaged(texts[name], dice)
         begin = time.process_time()
         try:
             text = decode(data, "cam")
-            if dice.random() < 0.3:
-                target = detect(text, "cam")
+            if name.startswith("trace"):
+                unwrapped(read_trace_csv(text, "trace"), "trace")
+                counts["recordings"] += 1
+                continue
+            target = TARGETS[name] if name in TARGETS and dice.random() < 0.7 else detect(text, "cam")
             table = read_table(target, text, "cam")
             counts["read"] += 1
-            target.rebuild(table)
+            counted = without_rounding(whole_cycle(table, job, "cam").table)
+            target.rebuild(table if counted is None else counted.table)
             counts["rebuilt"] += 1
         except InputError as error:
             counts["refused"] += 1
             if not str(error) or len(str(error)) > 1000:
-                print(f"file {number} ({target.name}): a refusal without reason or end: {str(error)[:200]!r}")
+                print(f"file {number} ({name}): a refusal without reason or end: {str(error)[:200]!r}")
                 return 1
         except Exception:  # noqa: BLE001 - whatever else it is, it is what is looked for
             traceback.print_exc()
-            print(f"file {number} ({target.name}) raised: {data[:200]!r}")
+            print(f"file {number} ({name}) raised: {data[:200]!r}")
             return 1
         took = time.process_time() - begin
         slowest = max(slowest, took)
         now = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
         size = now if number == 1000 else size
         if took > LONGEST or (size and now - size > GROWTH):
-            print(f"file {number} ({target.name}) took {took:.2f} s, the process {now} kB")
+            print(f"file {number} ({name}) took {took:.2f} s, the process {now} kB")
             return 1
     print(f"{number} files in {seconds:g} s: {dict(counts)}; the slowest took {slowest:.3f} s")
     return 0

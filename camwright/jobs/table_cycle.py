@@ -95,15 +95,17 @@ def _unwrapped(
     steps = np.diff(y)
     meant = np.array([_beside(steps, k) for k in jumps.tolist()]) - steps[jumps]
     modulus = float(np.median(np.abs(meant)))
+    named = "" if units is None else f" {units.slave.symbol}"
     slack = 2.0 * float(max(abs(_beside(steps, k)) for k in jumps.tolist()))
     if units is not None:
         ways = [way for way in (asked, job.machine.pitch, job.machine.slave_turn) if way]
         sizes = [way / units.slave.size for way in ways]
         fits = [size for size in sizes if abs(size - modulus) <= slack]
         if not fits:
+            turns = " or ".join(sorted({f"{size:.6g}{named}" for size in sizes}))
             raise InputError(
-                f"{place}: the slave jumps by {float(steps[jumps[0]]):.6g} at point {int(jumps[0]) + 2}, which is no whole "
-                f"turn of {', '.join(f'{size:.6g}' for size in sizes)}; say the travel of a cycle with --travel, or mend the row"
+                f"{place}: the slave jumps by {float(steps[jumps[0]]):.6g}{named} at point {int(jumps[0]) + 2}, which is no whole "
+                f"turn of {turns}; say the travel of a cycle with --travel, or mend the row"
             )
         modulus = min(fits, key=lambda size: abs(size - modulus))
     else:
@@ -113,9 +115,9 @@ def _unwrapped(
         turned[jump + 1 :] += modulus if by > 0 else -modulus
     rows = ", ".join(str(int(jump) + 2) for jump in jumps[:3])
     note = (
-        f"the slave turns over at point {rows}: it is counted modulo {modulus:.6g} and was unwrapped by that"
+        f"the slave turns over at point {rows}: it is counted modulo {modulus:.6g}{named} and was unwrapped by that"
         if len(jumps) > 1 or jumps[0] != len(y) - 2
-        else f"the last row wraps: the slave starts anew there; it was unwrapped by {modulus:.6g}"
+        else f"the last row wraps: the slave starts anew there; it was unwrapped by {modulus:.6g}{named}"
     )
     return replace(table, y=y + turned), (note,)
 
@@ -175,7 +177,7 @@ def _with_end(table: CamTable, job: Job, units: Units, asked: float | None) -> t
     )
     note = (
         "the row that ends the cycle is missing: it was added one step behind the last, "
-        f"{travel:.6g} beyond the first row's slave (--travel says another)"
+        f"{travel:.6g} {units.slave.symbol} beyond the first row's slave (--travel says another)"
     )
     return longer, (note,)
 

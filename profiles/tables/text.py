@@ -92,7 +92,11 @@ def _wide(data: bytes) -> str | None:
         return "utf-16"
     head = data[:400]
     for name, first in (("utf-16-le", 1), ("utf-16-be", 0)):
-        if len(head) >= 8 and head[first::2].count(0) > 0.4 * len(head) and not head[1 - first :: 2].count(0):
+        if (
+            len(head) >= 8
+            and head[first::2].count(0) > 0.2 * len(head)
+            and head[1 - first :: 2].count(0) < 0.02 * len(head)
+        ):
             return name
     return None
 

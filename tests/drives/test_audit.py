@@ -12,8 +12,10 @@ import pytest
 
 from camwright import load_job
 from camwright.cli.main import main
+from camwright.drives.alignment import aligned
 from camwright.drives.audit import Audit, audit, audit_answer
 from camwright.drives.export import export
+from camwright.drives.options import with_slopes
 from camwright.figures.audit import audit_figures
 from camwright.jobs.job import Job
 from camwright.profiles.cut import Origin
@@ -22,7 +24,8 @@ from camwright.profiles.machines import CrankSlider
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import baseline
 from camwright.profiles.servo import Servo
-from camwright.profiles.tables.cam_table import Unit, Units
+from camwright.profiles.tables.cam_table import Unit, Units, make_table
+from camwright.validation.rebuilt import judge_table
 
 JOB = load_job()
 PROFILE = baseline("double_s", JOB.task)
@@ -198,3 +201,137 @@ def test_the_figure_is_the_same_each_time(tmp_path: Path) -> None:
     for words in (b"running cam", b"peak jerk"):
         assert len(pictures[0][0]) > 10_000
         assert words in pictures[0][0]
+
+
+def trio_of(profile: CamProfile, place: Path, size: float, digits: int) -> Path:
+    y = [float(profile(at)) for at in np.linspace(0.0, profile.length, 361)]
+    place.write_text("".join(f"TABLE({k},{b / size:.{digits}f})\n" for k, b in enumerate(y)))
+    return place
+
+
+def test_reals_are_not_rounded(tmp_path: Path) -> None:
+    fine = audit(trio_of(PROFILE, tmp_path / "a.bas", 1e-7, 0), JOB)
+    real = audit(trio_of(PROFILE, tmp_path / "b.bas", 0.4, 9), JOB)
+    for measure in ("peak_acceleration", "rms_acceleration"):
+        assert real.pair(measure)[0] == pytest.approx(fine.pair(measure)[0], rel=2e-3)
+    assert real.judgement.passed == fine.judgement.passed
+
+
+def kernel(profile: CamProfile, size: float, place: Path) -> Path:
+    rows = [f"{10_000 * k} {round(float(profile(profile.length * k / 360)) / size)}" for k in range(360)]
+    head = "Tablename = K\nTable-ID = 7\nTabletype = 7\nFunctiontype = 1\nLines = 360\nBegintable\n"
+    place.write_text(head + "\n".join(rows) + "\nEndTable\n")
+    return place
+
+
+def test_the_travel_that_a_kernels_table_leaves_out(tmp_path: Path) -> None:
+    degrees = kernel(PROFILE, 0.4 / 3_600_000, tmp_path / "deg.txt")
+    for units in (None, "cycle,0.0001 deg"):
+        result = audit(degrees, JOB, units=units)
+        assert result.table.advance == pytest.approx(3_600_000)
+        assert of(result, "sync_position") < 1e-6
+        assert any("the pitch of the job, is taken" in note for note in result.notes)
+    assert any("kernel's own: 0.0001 deg, 0.0001 deg" in note for note in audit(degrees, JOB).notes)
+    with pytest.raises(
+        InputError, match=r"runs on to about 0.36 m, and the job's pitch is 0.4 m; say it with --travel"
+    ):
+        audit(degrees, JOB, units="cycle,0.1um")
+    wide = kernel(PROFILE, 1e-7, tmp_path / "mm.txt")
+    assert audit(wide, JOB).table.advance == pytest.approx(4_000_000)
+    with pytest.raises(InputError, match=r"--travel says 0.3 m a cycle, but the table's own ends are 0.4 m apart"):
+        audit(columns(tmp_path / "c.csv", PROFILE), JOB, travel="300 mm", units="m,m")
+
+
+def millimetres(place: Path, x: list[float], y: list[float]) -> Path:
+    place.write_text("x [mm];y [mm]\n" + "".join(f"{a:.6f};{b:.6f}\n" for a, b in zip(x, y, strict=True)))
+    return place
+
+
+@pytest.mark.parametrize(
+    ("kind", "told"),
+    [
+        ("wrapped", "the last row wraps"),
+        ("missing", "the row that ends the cycle is missing"),
+        ("beyond", "one step beyond the cycle"),
+        ("anywhere", "it is counted modulo 0.4 m"),
+        ("repeated", "rows that stand there twice"),
+    ],
+)
+def test_ends_that_files_have(kind: str, told: str, tmp_path: Path) -> None:
+    x = np.linspace(0.0, 0.6, 361)
+    y = PROFILE(x)
+    plain = audit(millimetres(tmp_path / "a.csv", (x * 1e3).tolist(), (y * 1e3).tolist()), JOB)
+    if kind == "wrapped":
+        y[-1] = y[0]
+    elif kind == "missing":
+        x, y = x[:-1], y[:-1]
+    elif kind == "beyond":
+        x, y = np.append(x, x[-1] + x[1]), np.append(y, y[0] + 0.4 + y[1] - y[0])
+    elif kind == "anywhere":
+        y = PROFILE(x + 0.17, outside="repeat") % 0.4
+    else:
+        x, y = np.append(x, x[-1]), np.append(y, y[-1])
+    result = audit(millimetres(tmp_path / "b.csv", (x * 1e3).tolist(), (y * 1e3).tolist()), JOB)
+    assert any(told in note for note in result.notes), result.notes
+    assert result.judgement.passed == plain.judgement.passed
+    assert result.pair("peak_acceleration")[0] == pytest.approx(plain.pair("peak_acceleration")[0], rel=0.02)
+
+
+def test_a_jump_that_is_no_turn_is_refused(tmp_path: Path) -> None:
+    x = np.linspace(0.0, 600.0, 121)
+    y = 1e3 * PROFILE(x * 1e-3)
+    y[60:] -= 310.0
+    with pytest.raises(
+        InputError, match=r"the slave jumps by -0.308214 m at point 61, which is no whole turn of 0.4 m;"
+    ):
+        audit(millimetres(tmp_path / "a.csv", x.tolist(), y.tolist()), JOB)
+
+
+@pytest.mark.parametrize(("turn", "within"), [(36_000, 0.15), (131_072, 0.05), (1_048_576, 0.01)])
+@pytest.mark.parametrize("points", [361, 3601])
+def test_counts_of_an_encoder(turn: int, within: float, points: int, tmp_path: Path) -> None:
+    x = np.linspace(0.0, 0.6, points)
+    counts = np.rint(PROFILE(x) / 0.4 * turn)
+    (tmp_path / "c.csv").write_text("".join(f"{k};{c:.0f}\n" for k, c in enumerate(counts)))
+    result = audit(tmp_path / "c.csv", JOB, target="csv")
+    true = JOB.cut.line_speed**2 * float(np.abs(PROFILE(np.linspace(0, 0.6, 20_001), 2)).max())
+    assert result.counted
+    assert result.pair("peak_acceleration")[0] == pytest.approx(true, rel=within)
+    saving = 1.0 - result.pair("peak_acceleration")[1] / true
+    assert result.saving("peak_acceleration") == pytest.approx(saving, abs=within)
+    assert any("whole counts of 1 " in note for note in result.notes)
+
+
+def test_the_zero_of_a_file_does_not_matter() -> None:
+    best = baseline("double_s", JOB.task)
+    wanted = [check.value for check in judge_table(aligned(best, JOB)[0], JOB.task, JOB.servo).checks[3:]]
+    dice = np.random.default_rng(4)
+    for shift in [*dice.uniform(0.0, 0.6, 15), 1e-6, 2e-5, 3e-4, 0.6 - 1e-5]:
+        moved = aligned(best.roll(float(shift)), JOB)[0]
+        found = judge_table(moved, JOB.task, JOB.servo)
+        assert found.passed
+        assert [check.value for check in found.checks[3:]] == pytest.approx(wanted, rel=1e-6, abs=1e-12)
+
+
+@pytest.mark.parametrize("shift", [0.0, 0.0004, 0.13733, 0.4441])
+def test_the_verdict_of_sampled_rows_does_not_depend_on_the_zero(shift: float, tmp_path: Path) -> None:
+    profile = baseline("cycloid", JOB.task)
+    x = np.linspace(0.0, 0.6, 1201)
+    y = profile(x + shift, outside="repeat")
+    result = audit(millimetres(tmp_path / "a.csv", (x * 1e3).tolist(), (y * 1e3).tolist()), JOB)
+    assert result.judgement.passed == judge_table(profile, JOB.task, JOB.servo).passed
+    assert of(result, "sync_position") < 0.1 * JOB.cut.sync_tolerance
+    told = [note for note in result.notes if "master zero" in note]
+    if shift:
+        assert float(told[0].split(" begins ")[1].split(" mm")[0]) == pytest.approx((0.6 - shift) * 1e3, abs=0.25)
+
+
+@pytest.mark.parametrize(
+    ("slopes", "message"),
+    [("1", "--slopes takes the start slope and the end slope"), ("a,b", "--slopes takes"), ("1e9,1", "are no ratios")],
+)
+def test_slopes_that_are_none(slopes: str, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        with_slopes(make_table([0, 1, 2], [0, 1, 2], law="spline"), slopes)
+    with pytest.raises(InputError, match="this table has its slopes, or needs none"):
+        with_slopes(make_table([0, 1, 2], [0, 1, 2], law="line"), "1,1")

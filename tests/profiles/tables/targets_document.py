@@ -40,11 +40,28 @@ motor for a carriage). Some targets count in units of their own. All files state
 
 ## Auditing a cam
 
-`camwright audit FILE --job JOB` reads a cam in the layout of any target, or two plain columns as CSV, rebuilds it as its
+`camwright audit FILE --job JOB` reads a cam in the layout of any target, or columns of numbers as CSV, rebuilds it as its
 drive does, judges it, and sets it beside the optimum of the same job: a table, `audit.svg` and `audit.png`. For files
-that state no units `--units` tells them, with `cycle` as the master's unit where it is counted in steps of the table;
-without it the table's period is taken for the cut length and its advance for the pitch. If the cam is not in sync where
-the job has its sync zone, its cycle is begun where it fits best, and a note says where.
+that state no units `--units` tells them, with `cycle` as the master's unit where it is counted in steps of the table, and
+quantities like `0.5 um` or `0.0001 deg`; without it the table's period is taken for the cut length and its advance for the
+pitch. The cycle is begun where the cam fits the job's sync zone best, wherever the file begins, and a note says where.
+Every assumption is a note, one sentence, with the option that gives the truth.
+
+Values are taken as stored: reals stay reals, whole numbers are made only where camwright writes. What files leave out or
+have twice is put right and told: a slave that is counted modulo its pitch or its turn is unwrapped (a wrapped last row
+too), a missing last row is added and one too many left out, a master that turns over is put in order. A kernel's table
+that leaves out where its cycle ends takes the pitch of the job if it runs on to that, else `--travel '400 mm'` says it.
+An L5X with a CAM and the CAM_PROFILE computed from it is judged by the profile; a CAM without slopes asks for
+`--slopes A,B`; a profile that was never calculated, and a tag whose two copies differ, are refused. TwinCAT sources
+(`.TcPOU`, `.TcGVL`) and whole Trio programs (`TABLE`, `BASE`, comments, `CAMBOX` with link distance and multiplier) are read.
+A number in structured text that is no plain number is refused with its line.
+
+Columns of numbers may be separated by commas, semicolons, tabs, bars or blanks, with a decimal point or comma, in quotes,
+with `sep=;`, with an index column, in UTF-8, UTF-16, GBK or code page 1252. Headings may take several lines; units stand
+in brackets, behind the name, or in a line of their own. Columns are known by words in English, German and Chinese.
+Velocity and acceleration in whatever unit are scaled to the positions, or left out with a note where they do not belong to
+them. Positions that are whole counts of an encoder are noticed where their rounding would drown the acceleration: it is
+taken off (the smoothest positions that miss the counts by no more than rounding does), and the cam compared by differences.
 
 Between straight lines the acceleration is unbounded in theory. What the drive is commanded is not: it knows the cam at
 its samples only. Such cams are compared, like the optimum beside them, by second and third differences of the positions

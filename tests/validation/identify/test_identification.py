@@ -23,6 +23,7 @@ from camwright.profiles.servo import Servo, sample_plant
 from camwright.profiles.task import Task
 from camwright.profiles.trace import Trace
 from camwright.validation.identify.identification import identify
+from camwright.validation.identify.preparation import unwrapped
 from camwright.validation.identify.quality import require_usable
 
 FREE = Limits(math.inf, math.inf, math.inf)
@@ -260,3 +261,61 @@ def test_nothing_is_written_where_the_trace_is_refused(
 def test_a_directory_is_no_file_to_write(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["identify", "none.csv", "--out", str(tmp_path)]) == 2
     assert "a directory; --out names the file to write, e.g. servo.toml" in capsys.readouterr().err
+
+
+# -- recordings as scopes have them: modulo axes, zeros that differ, swapped columns
+
+CUT_TRACE = recorded(PAPER, cam("poly_3_4_5"), 3)
+
+
+@pytest.mark.parametrize(("modulus", "told"), [(0.4, "400 mm"), (0.1, "100 mm"), (0.35, "350 mm")])
+@pytest.mark.parametrize("offset", [0.0, 0.37])
+def test_a_modulo_axis_is_unwrapped(modulus: float, told: str, offset: float) -> None:
+    jumping = replace(
+        CUT_TRACE, command=(CUT_TRACE.command + offset) % modulus, actual=(CUT_TRACE.actual + offset) % modulus
+    )
+    found = unwrapped(jumping, "t")
+    start = (found.command - CUT_TRACE.command)[0]
+    assert found.command - CUT_TRACE.command == pytest.approx(np.full(len(CUT_TRACE.command), start), abs=1e-12)
+    assert found.actual - CUT_TRACE.actual == pytest.approx(np.full(len(CUT_TRACE.command), start), abs=1e-12)
+    assert found.notes == (
+        f"the command is recorded modulo {told} and was unwrapped",
+        f"the actual position is recorded modulo {told} and was unwrapped",
+    )
+
+
+def test_a_turn_in_radians_may_fall() -> None:
+    command = -(CUT_TRACE.command / 0.4 * 2 * np.pi) % (2 * np.pi)
+    found = unwrapped(replace(CUT_TRACE, command=command, actual=-CUT_TRACE.actual, unit="rad"), "t")
+    assert float(np.ptp(found.command)) == pytest.approx(float(np.ptp(CUT_TRACE.command)) / 0.4 * 2 * np.pi)
+    assert found.notes == ("the command is recorded modulo 360 deg and was unwrapped",)
+
+
+def test_a_trace_without_jumps_is_left_alone() -> None:
+    found = unwrapped(CUT_TRACE, "t")
+    assert (found.command == CUT_TRACE.command).all()
+    assert found.notes == ()
+
+
+def test_a_jump_that_is_no_modulus_is_refused() -> None:
+    command = CUT_TRACE.command % 0.4
+    command[900:] += 0.2
+    with pytest.raises(InputError, match=r"the command jumps by .* mm at .* s, which is no modulus of an axis"):
+        unwrapped(replace(CUT_TRACE, command=command % 0.4, actual=CUT_TRACE.actual + 0.0), "t")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("offset", [1.2345, -0.004])
+def test_zeros_that_differ_are_taken_off(offset: float) -> None:
+    found = identify(replace(CUT_TRACE, actual=CUT_TRACE.actual + offset), "t", 1.0)
+    assert_found(found.servo, PAPER)
+    assert float(found.notes[0].split(": ")[1].split(" mm")[0]) == pytest.approx(offset * 1e3, abs=0.05)
+
+
+def test_equal_zeros_are_not_told() -> None:
+    assert identify(CUT_TRACE, "t", 1.0).notes == ()
+
+
+def test_swapped_columns_are_named() -> None:
+    with pytest.raises(InputError, match="command and actual are swapped, or the controller leads"):
+        identify(replace(CUT_TRACE, command=CUT_TRACE.actual, actual=CUT_TRACE.command), "t", 1.0)

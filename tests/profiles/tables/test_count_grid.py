@@ -1,0 +1,47 @@
+"""Positions in counts: the grid is found, and the rounding taken off."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from camwright.profiles.tables.cam_table import make_table
+from camwright.profiles.tables.count_grid import grid_of, without_rounding
+
+
+def cam(points: int) -> tuple[np.ndarray, np.ndarray]:
+    x = np.linspace(0.0, 1.0, points)
+    return x, x + 0.1 * np.sin(2 * np.pi * x) / (2 * np.pi)
+
+
+@pytest.mark.parametrize("turn", [36_000, 131_072, 1_048_576])
+@pytest.mark.parametrize("points", [361, 1000, 3601])
+def test_the_grid_is_found(turn: int, points: int) -> None:
+    _, y = cam(points)
+    counts = np.rint(y * turn)
+    assert grid_of(counts) == 1.0
+    printed = np.round(counts / turn * 360.0, 6)
+    assert grid_of(printed) == pytest.approx(360.0 / turn, rel=1e-6)
+    assert grid_of(y * np.sqrt(2.0)) is None
+
+
+def test_the_rounding_is_taken_off() -> None:
+    x, y = cam(721)
+    true = float(np.abs(np.diff(y, 2)).max())
+    counts = np.rint(y * 36_000)
+    found = without_rounding(make_table(x, counts, law="spline"))
+    assert found is not None
+    assert found.count == 1.0
+    assert np.abs(found.table.y - 36_000 * y).max() < 1.0
+    assert np.abs(np.diff(counts, 2)).max() / 36_000 > 5 * true
+    wide = found.table.y[::8] / 36_000
+    assert float(np.abs(np.diff(wide, 2)).max()) == pytest.approx(64 * true, rel=0.1)
+    assert "whole counts of 1 (36000 a cycle)" in found.note
+
+
+def test_what_is_fine_enough_is_left_alone() -> None:
+    x, y = cam(361)
+    assert without_rounding(make_table(x, np.round(y, 9), law="spline")) is None
+    assert without_rounding(make_table(x, np.rint(y * 36_000), law="line")) is None
+    uneven = x + 0.1 * x * (1 - x)
+    assert without_rounding(make_table(uneven, np.rint(y * 36_000), law="spline")) is None
