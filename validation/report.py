@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from camwright.profiles.cut import Cut
 from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile, Extremum
@@ -33,8 +35,9 @@ from camwright.validation.motor import (
     greatest_load,
     measure_motor,
 )
-from camwright.validation.servo.axis_motion import axis_checks, axis_peaks
+from camwright.validation.servo.axis_motion import axis_checks, axis_peaks, greatest_peaks
 from camwright.validation.servo.lead import LengthError, length_errors
+from camwright.validation.servo.line_speeds import line_speed_errors
 from camwright.validation.servo.response import ServoResponse, servo_response
 from camwright.validation.servo.sweep import Sweep, servo_sweep
 
@@ -46,6 +49,13 @@ SYNC_RATIO = 1e-9
 
 ALLOWANCE = 1e-9
 """What a limit may be exceeded by, relative to the limit (for the reversal: to the speed in sync): rounding."""
+
+
+_SPEEDS = 101
+"""Line speeds at which the sync error of a servo-aware design is judged."""
+
+_QUICK, _QUICK_SPEEDS = 0.5, 6
+"""Least share of the line speed at which the axis' own limits are judged, and at how many line speeds from there."""
 
 
 @dataclass(frozen=True)
@@ -93,6 +103,7 @@ def judge(
     *,
     sweep: bool = True,
     servo_aware: bool = False,
+    slowest: float = 1.0,
 ) -> ValidationReport:
     """Judge a profile, whoever made it.
 
@@ -110,6 +121,8 @@ def judge(
     servo_aware
         Whether to judge it as a servo-aware design: the axis, too, must keep the limits of speed, acceleration and reversal, and is in sync
         in the shear zone by design, so that there is no transition to judge.
+    slowest
+        Least line speed at which a servo-aware design must be in sync, as a share of the cut's.
 
     Raises
     ------
@@ -126,7 +139,7 @@ def judge(
         *_motor(profile, task, motor),
         Check("servo_stability", radius < 1.0, radius, 1.0, "1", None, "largest closed-loop pole in the z-plane (S1)"),
         *_servo(response, task.cut, transition=not servo_aware),
-        *(_axis(profile, task, servo) if servo_aware and response is not None else ()),
+        *(_axis(profile, task, servo, slowest) if servo_aware and response is not None else ()),
         *(_minimum_lengths(response, task) if not servo_aware else ()),
     )
     return ValidationReport(
@@ -345,16 +358,21 @@ def _servo(response: ServoResponse | None, cut: Cut, *, transition: bool) -> lis
     ]
 
 
-def _axis(profile: CamProfile, task: Task, servo: Servo) -> list[Check]:
-    """Check the limits on the axis itself."""
-    limits = task.limits
-    return axis_checks(
-        axis_peaks(profile, task.cut, servo),
-        limits.speed,
-        limits.acceleration,
-        task.least_velocity,
-        task.machine.slave_unit,
+def _axis(profile: CamProfile, task: Task, servo: Servo, slowest: float) -> list[Check]:
+    """Check the axis itself: its sync error and its limits, at all line speeds that it is for."""
+    limits, v = task.limits, task.cut.line_speed
+    speeds = np.linspace(slowest, 1.0, _SPEEDS) * v
+    # an axis at half the line speed has a quarter of the acceleration: limits are looked at above
+    quick = [v] if slowest == 1.0 else np.linspace(max(slowest, _QUICK), 1.0, _QUICK_SPEEDS) * v
+    peaks = [axis_peaks(profile, task.at_speed(float(speed)).cut, servo) for speed in quick]
+    found = axis_checks(
+        greatest_peaks(peaks), limits.speed, limits.acceleration, task.least_velocity, task.machine.slave_unit
     )
+    if slowest == 1.0:
+        return found
+    worst = float(line_speed_errors(profile, task, [servo], speeds).max())
+    source = f"tool against material in the shear zone at {_SPEEDS} line speeds from {slowest * v:.4g} m/s, at every sampling phase"
+    return [_at_most("sync_over_line_speeds", worst, task.cut.sync_tolerance, 0.0, "m", None, source), *found]
 
 
 def _minimum_lengths(response: ServoResponse | None, task: Task) -> list[Check]:

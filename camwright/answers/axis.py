@@ -21,6 +21,8 @@ def axis_answer(axis: AxisStudy | None) -> dict[str, Any] | None:
         "simulated_error_mm": axis.simulated_error * 1e3,
         "phases": axis.phases,
         "axis_limits": axis.axis_limits,
+        "line_speeds_m_per_s": list(axis.line_speeds),
+        "line_speeds_used_m_per_s": list(axis.used),
     }
 
 

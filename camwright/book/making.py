@@ -141,7 +141,9 @@ def _designed(job: Job) -> Design:
     """
     solution = solve_job(job, suggest=False)
     placed = replace(job, machine=solution.machine)
-    report = judge(solution.profile, placed.task, job.servo, sweep=False, servo_aware=job.servo_aware)
+    report = judge(
+        solution.profile, placed.task, job.servo, sweep=False, servo_aware=job.servo_aware, slowest=job.slowest
+    )
     if report.servo is None:
         raise InputError("the servo is unstable")
     row = Measured("optimised", solution.profile, report.motion, report.tool, report.motor, report.servo)

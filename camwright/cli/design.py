@@ -22,6 +22,7 @@ from camwright.house.numbers import number, with_unit
 from camwright.house.output import Voice
 from camwright.jobs.job import load_job
 from camwright.stored.save import design_files
+from camwright.studies.axis_study import AxisStudy
 from camwright.studies.comparison import law_names
 from camwright.studies.design import STEPS, Design, optimise
 from camwright.studies.remedies import Remedy, remedies
@@ -134,7 +135,7 @@ def _axis(design: Design) -> list[RenderableType]:
         )
         lines.append(
             f"servo-aware, command {axis.mode}: sync error of the axis {_um(axis.designed_error)} µm designed, "
-            f"{_um(axis.simulated_error)} µm simulated, over {axis.phases} sampling phases; the axis {held}"
+            f"{_um(axis.simulated_error)} µm simulated, over {axis.phases} sampling phases, {_line_speeds(axis)}; the axis {held}"
         )
     if robust is not None:
         designed = (
@@ -151,3 +152,11 @@ def _axis(design: Design) -> list[RenderableType]:
 def _um(length: float) -> str:
     """Write a length in micrometres."""
     return f"{length * 1e6:.4g}"
+
+
+def _line_speeds(axis: AxisStudy) -> str:
+    """Say for which line speeds a servo-aware design is made."""
+    low, high = (f"{speed * 60:.4g}" for speed in axis.line_speeds)
+    if low == high:
+        return f"at {high} m/min only"
+    return f"at every line speed from {low} to {high} m/min ({len(axis.used)} of them carry it)"

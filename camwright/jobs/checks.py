@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from camwright.house.numbers import typed
 from camwright.jobs.fields import Known
+from camwright.jobs.line_speeds import line_speed_conflicts
 from camwright.jobs.machine_checks import machine_conflicts
 from camwright.jobs.machine_tables import machine_of
 from camwright.jobs.servo_checks import servo_conflicts
@@ -25,7 +26,7 @@ def conflicts(known: Known) -> list[str]:
         One message for each conflict: quantity, value, limit, place, way out.
     """
     machine = machine_of(known)
-    return [*_zones(known), *machine_conflicts(known, machine), *servo_conflicts(known)]
+    return [*_zones(known), *machine_conflicts(known, machine), *servo_conflicts(known), *line_speed_conflicts(known)]
 
 
 def _zones(known: Known) -> Iterator[str]:

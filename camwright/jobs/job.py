@@ -14,6 +14,7 @@ from camwright.house.numbers import METRIC, Units
 from camwright.house.toml_file import MOST_BYTES, toml_data
 from camwright.jobs.checks import conflicts
 from camwright.jobs.fields import Known
+from camwright.jobs.line_speeds import line_speeds_text, slowest_share
 from camwright.jobs.machine_checks import moved_by_nothing
 from camwright.jobs.machine_tables import machine_of
 from camwright.jobs.servo_checks import tolerance_of
@@ -75,6 +76,8 @@ class Job:
         What is made least, a key of `camwright.profiles.objective.OBJECTIVES`; ``"sync_error"`` only of servo-aware designs.
     servo_aware
         Whether the axis, not only its command, keeps the sync tolerance in the shear zone.
+    slowest
+        Least line speed at which the cam of a servo-aware design must be in sync, as a share of the cut's; 1 if that is the only one.
     servo_tolerance
         Ranges of the servo's parameters, nothing where the job file gives none.
     output
@@ -103,6 +106,7 @@ class Job:
     servo: Servo
     objective: ObjectiveName
     servo_aware: bool
+    slowest: float
     servo_tolerance: ServoTolerance | None
     output: Output
     source: Source | None = field(default=None, compare=False, repr=False)
@@ -192,6 +196,8 @@ class Job:
         objective: dict[str, Any] = {"minimise": self.objective}
         if self.servo_aware or self.cut.shaped:
             objective |= {"servo_aware": self.servo_aware, "command": self.command}
+        if self.servo_aware:
+            objective["line_speeds"] = line_speeds_text(self.slowest)
         return {
             "name": self.name,
             "machine": machine_table(self.machine),
@@ -205,6 +211,11 @@ class Job:
                 **({"targets": list(self.output.targets)} if self.output.targets else {}),
             },
         }
+
+    @property
+    def line_speeds(self) -> tuple[float, float]:
+        """Least and greatest line speed at which the axis of a servo-aware design must be in sync (m/s)."""
+        return self.slowest * self.cut.line_speed, self.cut.line_speed
 
     @property
     def task(self) -> Task:
@@ -334,6 +345,7 @@ def _job(file: JobFile, known: Known, machine: Machine) -> Job:
         servo=servo,
         objective=objective.minimise,
         servo_aware=objective.servo_aware,
+        slowest=slowest_share(known, cut.line_speed),
         servo_tolerance=None if file.servo.tolerance is None else tolerance_of(known, servo),
         output=Output(file.output.points, file.output.targets),
         units=known.units,

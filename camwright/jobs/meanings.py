@@ -43,6 +43,10 @@ MEANINGS: dict[str, tuple[str, str]] = {
         "whether a servo-aware design keeps its command in sync in the whole sync zone, or only its axis in the shear zone",
         "servo-aware design",
     ),
+    "objective.line_speeds": (
+        "line speeds at which the axis of a servo-aware design must be in sync: the ends of a range, or the job's alone",
+        "servo-aware design, checks",
+    ),
     "output.origin": ("master zero: start of the return zone, or mid sync zone", "cam tables, master positions"),
     "output.points": ("rows of cam.csv", "cam.csv"),
     "output.targets": ("drives that tables are written for where no option names them", "export, recipe, book"),

@@ -43,6 +43,7 @@ def job_numbers(job: Job) -> dict[str, Any]:
         "objective": job.objective,
         "servo_aware": job.servo_aware,
         "command": job.command,
+        "slowest": job.slowest,
         "servo_tolerance": None if job.servo_tolerance is None else asdict(job.servo_tolerance),
         "points": job.output.points,
     }

@@ -14,7 +14,9 @@ from camwright.house.units import KINDS, quantity, shown
 from camwright.jobs.fields import Known, Spread
 from camwright.profiles.errors import InputError
 
-_PERCENT = re.compile(r"\s*([0-9]+\.?[0-9]*|\.[0-9]+)\s*%\s*")
+PERCENT = re.compile(r"\s*([0-9]+\.?[0-9]*|\.[0-9]+)\s*%\s*")
+"""A percentage; its number is the first group."""
+
 _PERCENT_SCHEMA = {"type": "string", "pattern": r"^\s*([0-9]+\.?[0-9]*|\.[0-9]+)\s*%\s*$", "maxLength": 100}
 
 
@@ -107,7 +109,7 @@ def _spread(
         return found
 
     def _share(value: str) -> float:
-        text = _PERCENT.fullmatch(value)
+        text = PERCENT.fullmatch(value)
         share = float(text.group(1)) / 100 if text else math.nan
         if not 0.0 < share < 1.0:
             raise refusal(

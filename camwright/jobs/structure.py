@@ -14,6 +14,7 @@ from camwright.house.settings import read_settings
 from camwright.house.units import shown
 from camwright.jobs.angles import settle_angles
 from camwright.jobs.fields import Known, Spread, curve_field, slave_field, targets_field, zone_field
+from camwright.jobs.line_speeds import line_speeds_field
 from camwright.jobs.machine_tables import either_faults, either_of, machine_of, machine_tables, table_of
 from camwright.jobs.spread_fields import aware_only, number_spread, quantity_spread
 from camwright.profiles.machines import MACHINES, Machine
@@ -118,6 +119,7 @@ class ObjectiveTable(Table):
             json_schema_extra={"default": "in_sync"},
         ),
     ] = None
+    line_speeds: Annotated[tuple[str, ...] | None, *line_speeds_field(), aware_only("leave line_speeds out")] = None
 
 
 class OutputTable(Table):

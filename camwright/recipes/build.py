@@ -114,7 +114,7 @@ def make_recipe(
     """
     job, profile = design.job, design.profile
     step("checking")
-    report = judge(profile, job.task, job.servo, servo_aware=job.servo_aware)
+    report = judge(profile, job.task, job.servo, servo_aware=job.servo_aware, slowest=job.slowest)
     step("simulating lower speeds")
     speeds = at_speeds(profile, job, report)
     step("finding its line speeds")

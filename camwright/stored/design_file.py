@@ -191,6 +191,8 @@ def design_schema() -> dict[str, Any]:
                     simulated_error_mm=number,
                     phases=whole,
                     axis_limits={"type": "boolean"},
+                    line_speeds_m_per_s=ends,
+                    line_speeds_used_m_per_s=numbers,
                 ),
             ],
             "description": "sync error of the axis in the shear zone; null for a servo-blind design",
@@ -240,6 +242,7 @@ def design_schema() -> dict[str, Any]:
                 objective={"enum": objectives},
                 servo_aware={"type": "boolean"},
                 command={"enum": ["in_sync", "shaped"]},
+                slowest={**number, "description": "least line speed to be in sync at over that of the cut"},
                 servo_tolerance={
                     "oneOf": [
                         {"type": "null"},

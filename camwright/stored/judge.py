@@ -60,7 +60,7 @@ def validate(profile: CamProfile | str | Path, job: Job) -> ValidationReport:
     """
     with in_job_words(job.units):
         if isinstance(profile, CamProfile):
-            return judge(profile, job.task, job.servo, servo_aware=job.servo_aware)
+            return judge(profile, job.task, job.servo, servo_aware=job.servo_aware, slowest=job.slowest)
     return validate_file(Path(profile), job).report
 
 
@@ -69,4 +69,6 @@ def validate_file(path: Path, job: Job) -> Judged:
     with in_job_words(job.units):
         cycle, machine, notes = read_cycle(path, job)
         placed = replace(job, machine=machine)
-        return Judged(cycle, placed, judge(cycle, placed.task, job.servo, servo_aware=job.servo_aware), notes)
+        return Judged(
+            cycle, placed, judge(cycle, placed.task, job.servo, servo_aware=job.servo_aware, slowest=job.slowest), notes
+        )

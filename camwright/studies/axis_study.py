@@ -14,8 +14,9 @@ from camwright.jobs.wording import in_job_words
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.servo import Servo
+from camwright.validation.servo.line_speeds import line_speed_errors
 from camwright.validation.servo.monte_carlo import shear_zone_errors
-from camwright.validation.servo.response import servo_response, shear_zone_error
+from camwright.validation.servo.response import shear_zone_error
 from camwright.validation.servo.simulation import simulate
 
 DRAWS = 10_000
@@ -23,6 +24,9 @@ DRAWS = 10_000
 
 SEED = 20160
 """Seed of the draws: the same job, the same servos."""
+
+_LOOKED = 42
+"""Line speeds that a design looks at first, over a band from standstill to the job's; half as far apart where that matters."""
 
 _BAND_DRAWS, _BAND_POINTS = 200, 81
 """Servos drawn for a `RobustBand`, and its places."""
@@ -39,7 +43,7 @@ class Robustness:
     designed_worst
         Greatest sync error over the corners and the nominal servo that the design predicts (m); ``None`` where it did not look.
     worst
-        Greatest sync error over the draws (m).
+        Greatest sync error over the draws (m), each at a line speed of its own where the job has a band of them.
     draws
         Number of servos drawn uniformly from the ranges.
     """
@@ -59,13 +63,18 @@ class AxisStudy:
     mode
         ``"in_sync"`` or ``"shaped"``.
     designed_error
-        Sync error of the nominal servo in the shear zone that the design's linear rows predict (m).
+        Greatest sync error of the nominal servo in the shear zone that the design's linear rows predict (m), over the line speeds that it
+        looked at.
     simulated_error
-        The same by the validation's own simulation (m).
+        The same by the validation's own simulation (m), at the same line speeds.
     phases
         Sampling phases for which both hold.
     axis_limits
         Whether the axis, too, keeps the limits of speed, acceleration and reversal.
+    line_speeds
+        Least and greatest line speed (m/s).
+    used
+        Line speeds that carry the design (m/s), ascending.
     """
 
     mode: str
@@ -73,6 +82,8 @@ class AxisStudy:
     simulated_error: float
     phases: int
     axis_limits: bool
+    line_speeds: tuple[float, float]
+    used: tuple[float, ...]
 
 
 def servos_of(job: Job) -> tuple[Servo, ...]:
@@ -80,6 +91,15 @@ def servos_of(job: Job) -> tuple[Servo, ...]:
     if job.servo_tolerance is None or not job.servo_tolerance.varying:
         return (job.servo,)
     return (job.servo, *job.servo_tolerance.vertices(job.servo))
+
+
+def shares_of(slowest: float) -> tuple[float, ...]:
+    """Line speeds that a servo-aware design looks at first, as shares of the job's, from the full one down."""
+    return (
+        (1.0,)
+        if slowest == 1.0
+        else tuple(np.linspace(1.0, slowest, 3 + math.ceil(_LOOKED * (1.0 - slowest))).tolist())
+    )
 
 
 def between_of(job: Job) -> tuple[Servo, ...]:
@@ -106,8 +126,8 @@ def solve_job(job: Job, *, suggest: bool = True) -> Solution:
     """
     with in_job_words(job.units):
         if job.servo_aware:
-            servos, between = servos_of(job), between_of(job)
-            return solve_axis(job.task, job.objective, job.command, servos, between, suggest=suggest)
+            servos, between, shares = servos_of(job), between_of(job), shares_of(job.slowest)
+            return solve_axis(job.task, job.objective, job.command, servos, between, shares, suggest=suggest)
         if job.objective == "sync_error":
             raise InputError(
                 '[objective] minimise = "sync_error": for servo-aware designs only; add servo_aware = true or minimise '
@@ -117,8 +137,12 @@ def solve_job(job: Job, *, suggest: bool = True) -> Solution:
 
 
 def sync_error(profile: CamProfile, job: Job) -> float | None:
-    """Greatest sync error of the axis in the shear zone (m) with a job's servo and at the corners of its ranges; ``None`` without bound."""
-    worst = float(shear_zone_errors(profile, job.task, servos_of(job)).max())
+    """Greatest sync error of the axis in the shear zone (m) with a job's servo and at the corners of its ranges; ``None`` without bound.
+
+    A servo-aware job's line speeds count too.
+    """
+    speeds = np.array(shares_of(job.slowest)) * job.cut.line_speed
+    worst = float(line_speed_errors(profile, job.task, servos_of(job), speeds).max())
     return worst if math.isfinite(worst) else None
 
 
@@ -126,9 +150,12 @@ def axis_study(job: Job, solution: Solution) -> AxisStudy | None:
     """Compare what a servo-aware design predicts with an independent simulation; ``None`` for other designs."""
     if solution.axis is None:
         return None
-    response = servo_response(solution.profile, job.task.with_machine(solution.machine), job.servo)
-    axis = solution.axis
-    return AxisStudy(job.command, axis.errors[0], response.shear_zone_error, response.phases, axis.axis_limits)
+    axis, v = solution.axis, job.cut.line_speed
+    speeds = np.array(list(axis.by_speed)) * v
+    task = job.task.with_machine(solution.machine)
+    simulated = float(line_speed_errors(solution.profile, task, [job.servo], speeds, axis.phases).max())
+    used = tuple(sorted(share * v for share in axis.shares))
+    return AxisStudy(job.command, axis.errors[0], simulated, axis.phases, axis.axis_limits, job.line_speeds, used)
 
 
 def robustness(job: Job, profile: CamProfile, solution: Solution | None = None) -> Robustness | None:
@@ -137,6 +164,9 @@ def robustness(job: Job, profile: CamProfile, solution: Solution | None = None) 
     if ranges is None or not ranges.varying:
         return None
     drawn = ranges.draw(job.servo, DRAWS, SEED)
+    if job.slowest < 1.0:  # each at a line speed of its own
+        shares = np.random.default_rng(SEED).uniform(job.slowest, 1.0, DRAWS).tolist()
+        drawn = tuple(servo.at_speed(share) for servo, share in zip(drawn, shares, strict=True))
     worst = float(shear_zone_errors(profile, job.task, drawn).max())
     designed = solution.axis.error if solution is not None and solution.axis is not None else None
     return Robustness(len(ranges.vertices(job.servo)), designed, worst, DRAWS)

@@ -128,7 +128,7 @@ def optimise(job: Job, step: Step = ignore) -> Design:
     if not job.cut.shaped:  # what bounds a return does not bound the whole cycle
         bound = lower_bound(solution.profile, placed.task, job.objective)
     step("checking")
-    report = judge(solution.profile, placed.task, job.servo, servo_aware=job.servo_aware)
+    report = judge(solution.profile, placed.task, job.servo, servo_aware=job.servo_aware, slowest=job.slowest)
     aware, robust = axis_study(placed, solution), robustness(placed, solution.profile, solution)
     comparison = compare(placed, solution.profile, step=step)
     step("finding its line speeds")

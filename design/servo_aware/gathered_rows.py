@@ -137,12 +137,12 @@ class GatheredRows:
         return tuple(sorted(begun | self._between.shares, reverse=True)) or (1.0,)
 
     def _add_ratio(self, command: FloatArray | CamProfile, band: float) -> bool:
-        """Add rows where the ratio of the nominal axis leaves its band, widened to a share of itself."""
-        cut, tables = self.problem.task.cut, self._tables[0]
-        limit = band * RATIO * cut.sync_tolerance / cut.shear_zone
-        worst = _worst(tables, [np.abs(each.ratios(command)) - limit for each in tables])
-        self.ratios += [table.ratio_rows(worst_places(excess)) for table, excess in worst]
-        return bool(worst)
+        """Add rows where the ratio of the nominal axis at full line speed leaves its band, widened to a share of itself."""
+        cut, table = self.problem.task.cut, self._tables[0][0]
+        worst = worst_places(np.abs(table.ratios(command)) - band * RATIO * cut.sync_tolerance / cut.shear_zone)
+        if len(worst):
+            self.ratios.append(table.ratio_rows(worst))
+        return bool(len(worst))
 
 
 class OwnRows:

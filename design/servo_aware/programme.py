@@ -39,11 +39,15 @@ class AxisProgramme:
         self.problem = problem
         self.rows = GatheredRows(problem)
         self.solved = 0
-        self.margin = BAND_MARGIN if len(problem.shares) == 1 else SPEED_MARGIN
         # a return alone comes near to its limits, a whole cycle has room: rows of its limits come when they matter
         self._tight = set(range(4)) if problem.command == "in_sync" else set[int]()
         self._turned: FloatArray | None = None
         self._answer: tuple[FloatArray, CamProfile] | None = None
+
+    @property
+    def margin(self) -> float:
+        """Share by which the band in the shear zone is drawn in."""
+        return BAND_MARGIN if len(self.problem.shares) == 1 else SPEED_MARGIN
 
     def solve(
         self, cost: ObjectiveName, band: float | None, caps: dict[int, float] | None = None, rounds: int = ROUNDS

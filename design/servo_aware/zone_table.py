@@ -7,6 +7,7 @@ unknowns. Times after the instant only combine these four. One table serves all 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -22,6 +23,38 @@ from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 MOST_INSTANTS = 128
 # Most places in the shear zone that have rows from the start.
 MOST_PLACES = 24
+
+
+@dataclass(frozen=True, eq=False)
+class _Points:
+    """Points of a table: their places (m), their times since the sampling instant before (s), the instants (m), and which one each has."""
+
+    places: FloatArray
+    times: FloatArray
+    instants: FloatArray
+    of: NDArray[np.intp]
+
+
+def _points(axis: Axis) -> _Points:
+    """Lay points over the shear zone of an axis: on a grid of sampling instants, and at the ends at all phases."""
+    start, end = axis.shear_zone
+    v, after = axis.task.cut.line_speed, np.arange(SUBSTEPS) * (axis.servo.sample_time / SUBSTEPS)
+    step = axis.sample / PHASES
+    stride = max(1, math.ceil((end - start) / (step * MOST_INSTANTS)))
+    first = math.ceil((start - axis.sample) / step)
+    regular = np.arange(first, math.floor(end / step) + 1, stride) * step
+    places = regular + v * after[:, None]
+    inside = (places >= start) & (places <= end)
+    edges = np.repeat(list(dict.fromkeys((start, end))), PHASES)
+    edge_times = (edges / v) % (axis.servo.sample_time / PHASES)
+    edge_times += np.tile(np.arange(PHASES), len(edges) // PHASES) * (axis.servo.sample_time / PHASES)
+    sub, index = np.nonzero(inside)
+    return _Points(
+        np.concatenate([places[inside], edges]),
+        np.concatenate([after[sub], edge_times]),
+        np.concatenate([regular, edges - v * edge_times]),
+        np.concatenate([index, len(regular) + np.arange(len(edges))]),
+    )
 
 
 class ZoneTable:
@@ -41,30 +74,25 @@ class ZoneTable:
     def __init__(self, axis: Axis, basis: CommandBasis) -> None:
         self.axis, self._basis = axis, basis
         self.begun = False
-        start, end = axis.shear_zone
-        v, after = axis.task.cut.line_speed, np.arange(SUBSTEPS) * (axis.servo.sample_time / SUBSTEPS)
-        step = axis.sample / PHASES
-        stride = max(1, math.ceil((end - start) / (step * MOST_INSTANTS)))
-        first = math.ceil((start - axis.sample) / step)
-        regular = np.arange(first, math.floor(end / step) + 1, stride) * step
-        places = regular + v * after[:, None]
-        inside = (places >= start) & (places <= end)
-        edges = np.repeat(list(dict.fromkeys((start, end))), PHASES)
-        edge_times = (edges / v) % (axis.servo.sample_time / PHASES)
-        edge_times += np.tile(np.arange(PHASES), len(edges) // PHASES) * (axis.servo.sample_time / PHASES)
-        sub, index = np.nonzero(inside)
-        self.places: FloatArray = np.concatenate([places[inside], edges])
-        self.times: FloatArray = np.concatenate([after[sub], edge_times])
-        self._instants: FloatArray = np.concatenate([regular, edges - v * edge_times])
-        self._of: NDArray[np.intp] = np.concatenate([index, len(regular) + np.arange(len(edges))])
-        self._ideal = axis.ideal(self.places)
+        self._points = _points(axis)
+        self._ideal = axis.ideal(self._points.places)
+
+    @property
+    def places(self) -> FloatArray:
+        """Master positions of the points (m)."""
+        return self._points.places
+
+    @property
+    def times(self) -> FloatArray:
+        """Times of the points since the sampling instant before (s)."""
+        return self._points.times
 
     @property
     def _samples(self) -> FloatArray:
         """Master positions that the loop sees at each instant, newest first."""
         cut, servo = self.axis.task.cut, self.axis.servo
         past = np.arange(memory(servo.loop) + 1) * servo.sample_time
-        return self._instants[:, None] - cut.line_speed * (servo.delay + past)
+        return self._points.instants[:, None] - cut.line_speed * (servo.delay + past)
 
     @cached_property
     def _weights(self) -> FloatArray:
@@ -94,7 +122,7 @@ class ZoneTable:
         else:
             matrix, constant = self._rows
             states = matrix @ command + constant
-        found: FloatArray = np.einsum("pa,pa->p", self._combined[order], states[self._of])
+        found: FloatArray = np.einsum("pa,pa->p", self._combined[order], states[self._points.of])
         return found
 
     def errors(self, command: FloatArray | CamProfile) -> FloatArray:
@@ -126,7 +154,7 @@ class ZoneTable:
     def _at(self, points: NDArray[np.intp], order: int) -> tuple[FloatArray, FloatArray]:
         """Axis or its ratio at some of the points, as rows over the unknowns."""
         matrix, constant = self._rows
-        weights, of = self._combined[order][points], self._of[points]
+        weights, of = self._combined[order][points], self._points.of[points]
         return np.einsum("pa,pan->pn", weights, matrix[of]), np.einsum("pa,pa->p", weights, constant[of])
 
     def spread(self, least: int, instants: int) -> NDArray[np.intp]:

@@ -29,7 +29,8 @@ SHORT = (
     .replace('jerk = "3000 m/s^3"', 'jerk = "20000 m/s^3"')
     .replace('minimise = "peak_acceleration"', 'minimise = "sync_error"\nservo_aware = true\ncommand = "shaped"')
 )
-ROBUST = f'{SHORT}\n[servo.tolerance]\nposition_gain = "2 %"\n'.replace('"0.25 mm"', '"1 mm"')
+ALONE = SHORT.replace("servo_aware = true", 'servo_aware = true\nline_speeds = "100 %"').replace('"0.25 mm"', '"1 mm"')
+ROBUST = f'{ALONE}\n[servo.tolerance]\nposition_gain = "2 %"\n'
 
 
 @pytest.fixture(scope="module", params=[SHORT, ROBUST], ids=["one servo", "a range of servos"])

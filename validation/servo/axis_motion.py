@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -77,6 +78,15 @@ def _with_places(master: FloatArray, found: FloatArray, line_speed: float) -> tu
     slope, ratio = found
     sizes = (ratio, -ratio, np.abs(slope))
     return _peaks(ratio, slope, line_speed), [place for size in sizes for place in humps(master, size)]
+
+
+def greatest_peaks(peaks: Sequence[AxisPeaks]) -> AxisPeaks:
+    """Take the extremes of several motions of the axis."""
+    return AxisPeaks(
+        max(each.greatest_velocity for each in peaks),
+        min(each.least_velocity for each in peaks),
+        max(each.peak_acceleration for each in peaks),
+    )
 
 
 def axis_checks(peaks: AxisPeaks, speed: float, acceleration: float, least_velocity: float, unit: str) -> list[Check]:
