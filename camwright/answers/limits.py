@@ -12,12 +12,18 @@ from camwright.studies.limits import MachineLimits
 
 def limits_answer(found: MachineLimits) -> dict[str, Any]:
     """Answer of ``camwright limits``; null where nothing works, or where the published equations are not about the machine."""
-    far, lengths = found.far, found.lengths
+    far, within, lengths = found.far, found.within, found.lengths
     return {
         "job": found.job.name,
         "max_line_speed_m_per_min": None if far.max_line_speed is None else far.max_line_speed * 60,
         "min_cut_length_mm": millimetres(far.min_cut_length),
         "binding": {"line_speed": far.line_speed_binding, "cut_length": far.cut_length_binding},
+        "highest_line_speed_m_per_s": {"perfect_axis": far.max_line_speed, "axis_in_tolerance": within.max_line_speed},
+        "shortest_cut_mm": {
+            "perfect_axis": millimetres(far.min_cut_length),
+            "axis_in_tolerance": millimetres(within.min_cut_length),
+        },
+        "axis_in_tolerance_binding": {"line_speed": within.line_speed_binding, "cut_length": within.cut_length_binding},
         "minimum_cut_length_mm": lengths_answer(lengths),
         "physical_bound_binding": lengths.binding if lengths else None,
         "eq10_with_settling_mm": millimetres(lengths.eq10_settling) if lengths else None,

@@ -18,13 +18,19 @@ class Limit:
     Parameters
     ----------
     line_speed
-        Highest line speed that the limits allow (m/s); None if none works.
+        Highest line speed that the limits allow, with a perfect axis (m/s); None if none works.
     binding
         What binds there.
+    in_tolerance
+        Highest line speed with the axis in tolerance, designed anew there (m/s); None if none was found.
+    failing
+        What binds or fails beyond that.
     """
 
     line_speed: float | None
     binding: str
+    in_tolerance: float | None
+    failing: str
 
 
 @dataclass(frozen=True)

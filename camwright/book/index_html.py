@@ -54,6 +54,8 @@ _TITLES = {
     "next_line_speed_m_per_min": "next of the book m/min",
     "physical_line_speed_m_per_min": "limits alone m/min",
     "physical_binding": "binds there",
+    "axis_in_tolerance_line_speed_m_per_min": "axis in tolerance m/min",
+    "axis_in_tolerance_binding": "fails beyond",
 }
 
 _HEAD, _MIDDLE, _END = COLUMNS[:5], COLUMNS[5:17], ("binding", "folder")

@@ -26,6 +26,7 @@ from camwright.studies.axis_study import axis_study, solve_job
 from camwright.studies.comparison import Comparison
 from camwright.studies.design import Design
 from camwright.studies.measured import Measured
+from camwright.studies.reach import highest_speed
 from camwright.studies.speed_band import SpeedBand, job_band
 from camwright.validation.bounds.bound import Bound
 from camwright.validation.report import judge
@@ -130,7 +131,9 @@ def _limit(job: Job) -> Limit | None:
     """Find how fast a cut length can be run; left out where each design places the sync zone anew, which would take minutes."""
     if not job.machine.placed:
         return None
-    return Limit(*fastest_line(job.task))
+    perfect, binding = fastest_line(job.task)
+    speed, failed = highest_speed(job, perfect)
+    return Limit(perfect, binding, speed, failed or binding)
 
 
 def _designed(job: Job) -> Design:

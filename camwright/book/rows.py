@@ -49,6 +49,8 @@ LIMIT_COLUMNS = (
     "binding",
     "physical_line_speed_m_per_min",
     "physical_binding",
+    "axis_in_tolerance_line_speed_m_per_min",
+    "axis_in_tolerance_binding",
 )
 """Columns of the limit table, see `limit_rows`."""
 
@@ -107,7 +109,8 @@ def limit_rows(book: Book, entries: Iterable[Entry]) -> Iterator[list[Cell]]:
     ones of the book do not is said beside it. Beside it, too, stand the line speeds at which the cam of that highest speed passes every
     check: it is released for no others, and starting up takes it through what lies below them. What binds is what forbids the next one
     of the book. The physical line speed is that of the limits of speed, acceleration, jerk and reversal alone, as ``camwright limits``
-    finds it; the servo may not settle there.
+    finds it; the servo may not settle there. That with the axis in tolerance is the one to which a PLC may let an operator go, with a cam
+    designed for it.
     """
     for _, group in groupby(entries, key=lambda entry: book.indices(entry.number)[0]):
         at_length = list(group)
@@ -134,6 +137,8 @@ def _limit_row(book: Book, entries: list[Entry], objective: str, limit: Limit | 
         None if next_one is None else _binding(next_one),
         None if limit is None or limit.line_speed is None else _rounded_down(limit.line_speed * 60),
         None if limit is None else limit.binding,
+        None if limit is None or limit.in_tolerance is None else _rounded_down(limit.in_tolerance * 60),
+        None if limit is None else limit.failing,
     ]
 
 

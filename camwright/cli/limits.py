@@ -34,21 +34,17 @@ def _view(found: MachineLimits) -> RenderableType:
     job, far, lengths, axis = found.job, found.far, found.lengths, found.axis
     units = job.units
     zone = with_unit(job.cut.sync_zone, "m", 4, units)
-    speed = with_unit(far.max_line_speed, "m/s", units=units) if far.max_line_speed else "none works"
-    length = with_unit(far.min_cut_length, "m", 4, units) if far.min_cut_length else "none works"
     table = new_table(title="How fast, how short", title_justify="left")
-    for name in ("", "", "binds"):
+    for name in ("", "axis", "", "binds"):
         table.add_column(name)
-    table.add_row(
-        f"highest line speed at a cut length of {with_unit(job.cut.length, 'm', 4, units)}",
-        speed,
-        far.line_speed_binding,
-    )
-    table.add_row(
-        f"shortest cut length at {with_unit(job.cut.line_speed, 'm/s', units=units)} with a sync zone of {zone}",
-        length,
-        far.cut_length_binding,
-    )
+    fast = f"highest line speed at a cut length of {with_unit(job.cut.length, 'm', 4, units)}"
+    short = f"shortest cut at {with_unit(job.cut.line_speed, 'm/s', units=units)} with a sync zone of {zone}"
+    for axis_name, reached in (("perfect", far), ("in tolerance", found.within)):
+        speed = with_unit(reached.max_line_speed, "m/s", units=units) if reached.max_line_speed else "none works"
+        table.add_row(fast, axis_name, speed, reached.line_speed_binding)
+    for axis_name, reached in (("perfect", far), ("in tolerance", found.within)):
+        length = with_unit(reached.min_cut_length, "m", 4, units) if reached.min_cut_length else "none works"
+        table.add_row(short, axis_name, length, reached.cut_length_binding)
     views: list[RenderableType] = [table]
     if lengths is not None:
         views.append(lengths_view(lengths, units))

@@ -127,8 +127,8 @@ class Edge:
     value
         The end.
     binding
-        A limit, ``"reversal"``, ``"stroke"``, ``"sync_zone"``, ``"motor"``; ``"none"`` where nothing ends the range, ``"not_found"``
-        where no end was found.
+        A limit, ``"reversal"``, ``"stroke"``, ``"sync_zone"``, ``"motor"``; ``"axis"`` where it leaves its tolerance; ``"none"`` where
+        nothing ends the range, ``"not_found"`` where no end was found.
     """
 
     value: float | None

@@ -11,6 +11,7 @@ from camwright.jobs.job import Job
 from camwright.profiles.limits import Limits
 from camwright.profiles.task import Task
 from camwright.recipes.model import Edge, WorkingRange
+from camwright.studies.reach import reach
 
 LONGEST = 4.0
 """Cut lengths up to this multiple of the job's are looked at where the slave cannot wait at rest."""
@@ -20,6 +21,10 @@ NO_END = "none"
 
 NOT_FOUND = "not_found"
 """What binds where no end was found up to `LONGEST`."""
+
+LIMITS = ("speed", "acceleration", "jerk", "reversal", "stroke", "sync_zone", "motor")
+AXIS = "axis"
+"""What binds by the limits, and the name of what binds where the axis leaves its tolerance."""
 
 _ACCURACY = 1e-6
 """Accuracy of a greatest cut length, relative to it."""
@@ -31,20 +36,26 @@ _BEYOND = 1e-3
 def working_range(job: Job) -> WorkingRange:
     """Find the shortest and longest cut at the job's line speed, and the highest line speed at its cut length.
 
-    There is no lowest line speed: the same cam over the master asks for less of everything the slower the line runs.
+    Both with the axis in tolerance, for a cam designed anew: what `camwright design` would pass. There is no lowest line speed: slower
+    asks for less of everything.
 
     Parameters
     ----------
     job
         The job, a crank's sync zone where the design chose it.
     """
-    far = extremes(job.task)
+    within = reach(job, extremes(job.task))
     return WorkingRange(
-        min_length=Edge(far.min_cut_length, far.cut_length_binding),
+        min_length=Edge(within.min_cut_length, _binding(within.cut_length_binding)),
         max_length=longest_cut(job.task),
         min_line_speed=Edge(None, NO_END),
-        max_line_speed=Edge(far.max_line_speed, far.line_speed_binding),
+        max_line_speed=Edge(within.max_line_speed, _binding(within.line_speed_binding)),
     )
+
+
+def _binding(name: str) -> str:
+    """Name what binds as a sheet does: a limit, or the axis, whatever check of it fails."""
+    return name if name in LIMITS else AXIS
 
 
 def longest_cut(task: Task) -> Edge:

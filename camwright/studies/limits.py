@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from camwright.design.feasible.extremes import Extremes, extremes
+from camwright.design.feasible.extremes import Extremes, extremes, placed_fastest
 from camwright.house.progress import Step, ignore
 from camwright.jobs.job import Job
 from camwright.studies.axis_lengths import AxisLengths, axis_lengths
 from camwright.studies.cut_lengths import CutLengths, cut_lengths
+from camwright.studies.reach import Reach, placed_as, reach
 
-LIMITS_STEPS = 3
+LIMITS_STEPS = 4
 """Steps that `limits` tells."""
 
 
@@ -25,6 +26,9 @@ class MachineLimits:
     far
         Highest line speed at the job's cut length and shortest cut at its line speed that the limits of the command allow, and which
         limit binds there. The axis is not looked at.
+    within
+        The same with the axis in tolerance: what `design` would pass, designed anew at each line speed and cut length. A crank whose sync
+        zone is free has it where the line can run fastest.
     lengths
         Published minimum cut lengths, by which the axis settles; ``None`` for machines that the equations are not about.
     axis
@@ -33,6 +37,7 @@ class MachineLimits:
 
     job: Job
     far: Extremes
+    within: Reach
     lengths: CutLengths | None
     axis: AxisLengths | None
 
@@ -53,12 +58,16 @@ def limits(job: Job, step: Step = ignore) -> MachineLimits:
     >>> found = limits(load_job())
     >>> round(found.far.max_line_speed * 60, 1), found.far.line_speed_binding     # m/min
     (138.2, 'acceleration')
+    >>> round(found.within.max_line_speed * 60, 1), found.within.line_speed_binding
+    (116.7, 'settling')
     >>> round(found.lengths.eq10 * 1e3, 1)                                        # mm
     232.9
     """
     step("finding the highest line speed and the shortest cut")
     far = extremes(job.task)
+    step("finding them with the axis in tolerance")
+    within = reach(placed_as(job, placed_fastest(job.task)), far)
     step("finding minimum cut lengths")
     lengths = cut_lengths(job)
     step("finding minimum cut lengths with the axis in sync")
-    return MachineLimits(job, far, lengths, axis_lengths(job))
+    return MachineLimits(job, far, within, lengths, axis_lengths(job))

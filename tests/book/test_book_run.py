@@ -121,6 +121,7 @@ def test_the_limit_table_gives_the_highest_speed_and_what_forbids_the_next(done:
         found = float(row["physical_line_speed_m_per_min"])
         assert far.max_line_speed * 60 * (1 - 1e-6) <= found <= far.max_line_speed * 60
         assert row["physical_binding"] == far.line_speed_binding
+        assert highest is None or highest <= float(row["axis_in_tolerance_line_speed_m_per_min"]) <= found
 
 
 def test_all_three_indexes_say_the_same(done: Path) -> None:
