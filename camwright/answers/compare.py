@@ -11,9 +11,10 @@ from camwright.studies.comparison import Comparison
 
 
 def compare_answer(comparison: Comparison, files: Sequence[Path]) -> dict[str, Any]:
-    """Answer of ``camwright compare``: the profiles sorted by peak acceleration."""
+    """Answer of ``camwright compare``: the profiles sorted by the job's objective, those that break a limit last."""
     return {
         "job": comparison.job.name,
+        "sorted_by": comparison.job.objective,
         "profiles": profiles_answer(comparison),
         "files": [str(file) for file in files],
     }

@@ -32,7 +32,9 @@ def profiles_answer(comparison: Comparison) -> dict[str, Any]:
 
 def _row(row: Measured, unit: SlaveUnit) -> dict[str, Any]:
     """Measures of one profile of a comparison."""
-    return measures_answer(row.motion, row.tool, row.motor, row.response, unit)
+    worst = None if row.worst_error is None else row.worst_error * 1e3
+    found = measures_answer(row.motion, row.tool, row.motor, row.response, unit)
+    return {**found, "within_limits": row.within_limits, "worst_shear_zone_error_mm": worst}
 
 
 def measures_answer(

@@ -28,6 +28,7 @@ from camwright.studies.design import Design
 from camwright.studies.measured import Measured
 from camwright.studies.reach import highest_speed
 from camwright.studies.speed_band import SpeedBand, job_band
+from camwright.studies.within_limits import keeps_limits
 from camwright.validation.bounds.bound import Bound
 from camwright.validation.report import judge
 
@@ -149,7 +150,8 @@ def _designed(job: Job) -> Design:
     )
     if report.servo is None:
         raise InputError("the servo is unstable")
-    row = Measured("optimised", solution.profile, report.motion, report.tool, report.motor, report.servo)
+    kept = keeps_limits(solution.profile, report.motion, placed)
+    row = Measured("optimised", solution.profile, report.motion, report.tool, report.motor, report.servo, kept, None)
     return Design(
         job=placed,
         solution=solution,

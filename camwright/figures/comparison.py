@@ -13,7 +13,9 @@ from camwright.figures.style import (
     LINES,
     title,
 )
+from camwright.profiles.objective import OBJECTIVES
 from camwright.studies.comparison import Comparison
+from camwright.studies.measured import Measured
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,7 +40,7 @@ def comparison_figure(comparison: Comparison, directory: Path) -> list[Path]:
 
 
 def bars_figure(comparison: Comparison) -> Figure:
-    """Draw the measures of all profiles side by side, the least peak acceleration on top.
+    """Draw the measures of all profiles side by side by the job's objective, what breaks a limit marked and at the bottom.
 
     What is unbounded, and what does not exist, has a hatched bar over the whole panel and says so.
 
@@ -63,6 +65,11 @@ def bars_figure(comparison: Comparison) -> Figure:
             "not in zone",
         ),
     ]
+    if comparison.job.objective == "sync_error":
+        errors: list[float | None] = [
+            None if (error := row.value("sync_error")) is None else error * 1e3 for row in rows
+        ]
+        columns.append(("sync error\n(mm)", errors, comparison.job.cut.sync_tolerance * 1e3, "unbounded"))
     torques = [row.motor.rms_torque for row in rows]
     if any(torque is not None for torque in torques):
         columns.insert(2, ("RMS torque\n(N·m)", torques, None, "unbounded"))
@@ -71,13 +78,22 @@ def bars_figure(comparison: Comparison) -> Figure:
     for axes, (heading, values, limit, without) in zip(panels, columns, strict=True):
         limits_drawn |= _bars(axes, names, values, limit, without)
         axes.set_title(heading)
-    panels[0].set_yticks(range(len(rows)), [title(name).split(" (")[0].split(",")[0] for name in names])
+    panels[0].set_yticks(range(len(rows)), [_label(row) for row in rows])
     for label, name in zip(panels[0].get_yticklabels(), names, strict=True):
         label.set_fontweight("bold" if name == "optimised" else "normal")
     panels[0].invert_yaxis()
-    figure.suptitle(f"{comparison.job.name}: all profiles, by peak acceleration", fontsize=9.5)
+    note = "; † breaks a limit" if any(not row.within_limits for row in rows) else ""
+    figure.suptitle(
+        f"{comparison.job.name}: all profiles, by {OBJECTIVES[comparison.job.objective].words}{note}", fontsize=9.5
+    )
     figure.legend(handles=_handles(columns, limits_drawn), loc="outside lower center", ncols=5)
     return figure
+
+
+def _label(row: Measured) -> str:
+    """Name a profile, marked if it breaks a limit of the job."""
+    name = title(row.name).split(" (")[0].split(",")[0]
+    return name if row.within_limits else f"{name} †"
 
 
 def _handles(

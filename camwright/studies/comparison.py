@@ -38,7 +38,7 @@ class Comparison:
     job
         The job, its machine with everything that the design chose.
     rows
-        The profiles, sorted by peak acceleration, the unbounded ones last.
+        The profiles, sorted by the job's objective, those that break a limit of the job below those that keep all.
     screw
         The same cut by a carriage on a screw, another machine beside the rows; where it was asked for.
     """
@@ -135,8 +135,14 @@ def compare(
     for name, profile in profiles.items():
         step(f"measuring {name}")
         rows.append(measured(name, profile, job))
-    rows.sort(key=lambda row: math.inf if row.motion.peak_acceleration is None else row.motion.peak_acceleration)
+    rows.sort(key=lambda row: _rank(row, job))
     return Comparison(job, tuple(rows))
+
+
+def _rank(row: Measured, job: Job) -> tuple[bool, float, float]:
+    """Rank a profile by the job's objective: what keeps the limits first; by peak acceleration where they are alike."""
+    value, peak = row.value(job.objective), row.motion.peak_acceleration
+    return not row.within_limits, math.inf if value is None else value, math.inf if peak is None else peak
 
 
 def law_profile(name: str, task: Task) -> CamProfile:

@@ -5,7 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from camwright.jobs.job import Job
+from camwright.profiles.objective import OBJECTIVES, ObjectiveName
 from camwright.profiles.polynomial.profile import CamProfile
+from camwright.studies.axis_study import servos_of, sync_error
+from camwright.studies.within_limits import keeps_limits
 from camwright.validation.motion import MotionMeasures, measure_motion, measure_tool
 from camwright.validation.motor import MotorMeasures, measure_motor
 from camwright.validation.servo.response import ServoResponse, servo_response
@@ -29,6 +32,10 @@ class Measured:
         What the motor must give.
     response
         What the servo makes of it.
+    within_limits
+        Whether it keeps the limits of the job.
+    worst_error
+        Greatest sync error in the shear zone with the job's servo and at the corners of its ranges (m); ``None`` if the job gives none.
     """
 
     name: str
@@ -37,6 +44,16 @@ class Measured:
     tool: MotionMeasures
     motor: MotorMeasures
     response: ServoResponse
+    within_limits: bool
+    worst_error: float | None
+
+    def value(self, objective: ObjectiveName) -> float | None:
+        """Give what a job makes least, of this profile; ``None`` where it is unbounded."""
+        of = OBJECTIVES[objective].of
+        if of == "axis":
+            return self.response.shear_zone_error if self.worst_error is None else self.worst_error
+        found: float | None = getattr(self.motor if of == "motor" else self.motion, objective)
+        return found
 
 
 def measured(name: str, profile: CamProfile, job: Job) -> Measured:
@@ -59,4 +76,6 @@ def measured(name: str, profile: CamProfile, job: Job) -> Measured:
         measure_tool(profile, job.task, motion),
         measure_motor(profile, job.task),
         servo_response(profile, job.task, job.servo),
+        keeps_limits(profile, motion, job),
+        sync_error(profile, job) if len(servos_of(job)) > 1 else None,
     )

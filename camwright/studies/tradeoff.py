@@ -8,8 +8,6 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
-import numpy as np
-
 from camwright.design.optimise import solve
 from camwright.house.progress import Step, ignore
 from camwright.jobs.job import Job
@@ -17,19 +15,14 @@ from camwright.profiles.errors import SolverError
 from camwright.profiles.objective import COMMAND_OBJECTIVES, OBJECTIVES, CommandObjective, of_command
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.studies.comparison import law_names, law_profile
-from camwright.validation.motion import MotionMeasures, measure_motion
-from camwright.validation.motor import measure_motor, motor_torque
+from camwright.studies.within_limits import keeps_limits
+from camwright.validation.motion import measure_motion
+from camwright.validation.motor import measure_motor
 
 Kind = Literal["objective", "baseline"]
 
 _COLUMNS = (2, 0, 3)
 """Measures, which are the objectives of the command too, stand in the order of these orders: acceleration, motor, jerk."""
-
-_BEYOND = 1e-8
-"""Part of a limit by which the solver's accuracy may exceed it."""
-
-_POINTS = 20_001
-"""Points along the cycle at which torque and speed are held against the motor's curve."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -200,43 +193,7 @@ def _row(name: str, kind: Kind, profile: CamProfile, job: Job, measures: Sequenc
     motion = measure_motion(profile, job.task)
     motor = measure_motor(profile, job.task)
     values = {measure: getattr(motor if OBJECTIVES[measure].of == "motor" else motion, measure) for measure in measures}
-    able = _keeps_limits(motion, job) and _keeps_stroke(profile, job) and _keeps_curve(profile, job)
-    return Row(name, kind, profile, values, able)
-
-
-def _keeps_limits(motion: MotionMeasures, job: Job) -> bool:
-    """Whether a motion keeps speed, acceleration, jerk and, where it is forbidden, does not turn back."""
-    limits = job.limits
-    if motion.peak_acceleration is None or motion.peak_jerk is None:
-        return False
-    return (
-        motion.peak_speed <= limits.speed * (1 + _BEYOND)
-        and motion.min_speed >= job.task.least_velocity - _BEYOND * limits.speed
-        and motion.peak_acceleration <= limits.acceleration * (1 + _BEYOND)
-        and motion.peak_jerk <= limits.jerk * (1 + _BEYOND)
-    )
-
-
-def _keeps_stroke(profile: CamProfile, job: Job) -> bool:
-    """Whether the slave stays on its guide, if it has one."""
-    if job.machine.guide is None:
-        return True
-    low, high = job.machine.guide
-    start = job.task.slave_zero(profile) - low
-    least, greatest = profile.extrema(0)
-    rounding = _BEYOND * (high - low)
-    return start + least.value >= -rounding and start + greatest.value <= high - low + rounding
-
-
-def _keeps_curve(profile: CamProfile, job: Job) -> bool:
-    """Whether the motor can give the torque of a steady motion at each of its speeds; judged at points along the cycle."""
-    curve = job.limits.motor
-    if curve is None:
-        return True
-    torque = motor_torque(profile, job.task)
-    x = np.linspace(profile.start, profile.end, _POINTS)
-    available = curve.torque(job.cut.line_speed * job.machine.motor_ratio * profile(x, 1))
-    return bool(np.all(np.abs(torque(x)) <= available * (1 + _BEYOND)))
+    return Row(name, kind, profile, values, keeps_limits(profile, motion, job))
 
 
 def _order(value: float | None) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from camwright.cli.views.parts import new_table, new_text
+from camwright.cli.views.parts import fitting, new_table, new_text
 from camwright.house.numbers import Units, number, with_unit
 from camwright.validation.check import Check
 
@@ -13,11 +13,22 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
 
+_WIDE = 110
+"""Columns of a terminal from which the source of each check has room beside it."""
+
+
 def checks_view(checks: Sequence[Check], units: Units) -> RenderableType:
-    """Show checks with values, limits and the master position of the worst value."""
+    """Show checks with values, limits and the master position of the worst value; the sources only where there is room."""
+    return fitting(_table(checks, units, sources=True), _table(checks, units, sources=False), _WIDE)
+
+
+def _table(checks: Sequence[Check], units: Units, *, sources: bool) -> RenderableType:
+    """Lay out the checks."""
     table = new_table(title="Checks", title_justify="left")
-    for name in ("check", "", "value", "limit", "unit", "at", "source"):
-        table.add_column(name, justify="right" if name in ("value", "limit", "at") else "left")
+    for name in ("check", "", "value", "limit", "unit", "at"):
+        table.add_column(name, justify="right" if name in ("value", "limit", "at") else "left", no_wrap=True)
+    if sources:
+        table.add_column("source")
     for check in checks:
         measure = units.measure(check.unit)
         table.add_row(
@@ -27,6 +38,6 @@ def checks_view(checks: Sequence[Check], units: Units) -> RenderableType:
             number(None if check.limit is None else check.limit * measure.factor, without=""),
             check.unit if units.si_measures else measure.printed,
             "" if check.at is None else with_unit(check.at, "m", 4, units),
-            new_text(check.source),
+            *([new_text(check.source)] if sources else []),
         )
     return table

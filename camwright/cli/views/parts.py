@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from rich.console import Group, RenderableType
+    from rich.console import Console, ConsoleOptions, Group, RenderableType
     from rich.table import Table
     from rich.text import Text
 
@@ -29,3 +31,20 @@ def stacked(*views: RenderableType) -> Group:
     from rich.console import Group
 
     return Group(*views)
+
+
+@dataclass(frozen=True)
+class _Fitting:
+    """A view that is chosen when it is known how wide the terminal is."""
+
+    wide: RenderableType
+    narrow: RenderableType
+    least: int
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> Iterator[RenderableType]:
+        yield self.wide if options.max_width >= self.least else self.narrow
+
+
+def fitting(wide: RenderableType, narrow: RenderableType, least: int) -> RenderableType:
+    """Take the wide view on a terminal of so many columns at least, else the narrow one."""
+    return _Fitting(wide, narrow, least)
