@@ -11,6 +11,7 @@ from camwright.figures.crank import crank_figure
 from camwright.figures.profile import profile_figure
 from camwright.figures.saving import written
 from camwright.figures.servo import AXES, servo_figure
+from camwright.figures.speed_band import speed_band_figure
 from camwright.studies.axis_study import robust_band
 from camwright.studies.design import Design
 from camwright.validation.servo.simulation import simulate
@@ -19,7 +20,8 @@ from camwright.validation.servo.simulation import simulate
 def design_figures(design: Design, directory: Path) -> list[Path]:
     """Write the figures of a design, each as SVG and PNG.
 
-    They are ``profile``, ``servo`` and ``comparison``; for a tool that turns back also ``crank``, for a servo-aware design ``axis``.
+    They are ``profile``, ``servo``, ``comparison`` and ``speed_band``; for a tool that turns back also ``crank``, for a servo-aware design
+    ``axis``.
 
     Parameters
     ----------
@@ -39,6 +41,7 @@ def design_figures(design: Design, directory: Path) -> list[Path]:
         *written(lambda: profile_figure(comparison), directory, "profile"),
         *written(lambda: servo_figure(comparison, runs), directory, "servo"),
         *comparison_figure(comparison, directory),
+        *written(lambda: speed_band_figure(design), directory, "speed_band"),
         *(
             written(lambda: crank_figure(comparison), directory, "crank")
             if job.machine.dead_centres is not None

@@ -177,13 +177,21 @@ def test_a_figure_that_fails_leaves_nothing(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_compare_sorts_by_peak_acceleration(figures: None, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_compare_sorts_by_the_objective_and_puts_what_breaks_a_limit_last(
+    figures: None, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert main(["compare", JOB, "--json", "--out", str(tmp_path)]) == 0
     answer = strict(capsys.readouterr().out)
-    peaks = [measures["peak_acceleration_m_per_s2"] for measures in answer["profiles"].values()]
-    bounded = [peak for peak in peaks if peak is not None]
-    assert peaks == [*sorted(bounded), *[None] * (len(peaks) - len(bounded))]
-    assert len(peaks) == len(BASELINES) + 1
+    assert answer["sorted_by"] == "peak_acceleration"
+    profiles = list(answer["profiles"].values())
+    for kept in (True, False):
+        peaks = [each["peak_acceleration_m_per_s2"] for each in profiles if each["within_limits"] is kept]
+        bounded = [peak for peak in peaks if peak is not None]
+        assert peaks == [*sorted(bounded), *[None] * (len(peaks) - len(bounded))]
+    assert [each["within_limits"] for each in profiles] == sorted(
+        (each["within_limits"] for each in profiles), reverse=True
+    )
+    assert len(profiles) == len(BASELINES) + 1
     assert answer["files"] == [str(tmp_path / "figure.svg")]
 
 

@@ -28,7 +28,9 @@ from camwright.studies.design import Design, optimise
 from camwright.validation.servo.simulation import simulate
 
 PNG = b"\x89PNG\r\n\x1a\n"
-EVERY_FILE = ["comparison.png", "comparison.svg", "profile.png", "profile.svg", "servo.png", "servo.svg"]
+EVERY_FILE = [
+    f"{name}.{ending}" for name in ("comparison", "profile", "servo", "speed_band") for ending in ("png", "svg")
+]
 
 
 @pytest.fixture(scope="module")
@@ -188,7 +190,10 @@ def test_bars_are_the_measures_and_the_unbounded_ones_say_so(paper: Design) -> N
         whole = axes.get_xlim()[1]
         assert bars == pytest.approx([whole if value is None else value for value in values])
         assert [text.get_text() for text in axes.texts].count("unbounded") == values.count(None)
-    assert [label.get_text() for label in figure.axes[0].get_yticklabels()][:2] == ["parabolic", "optimised"]
+    labels = [label.get_text() for label in figure.axes[0].get_yticklabels()]
+    assert labels[0] == "optimised"
+    assert labels[-1] == "linear return †"
+    assert "parabolic †" in labels  # least of all peak accelerations, by a jerk without bound
 
 
 def test_bars_beyond_a_limit_are_hatched(paper: Design) -> None:
