@@ -18,6 +18,7 @@ _States = Callable[[FloatArray], tuple[FloatArray, ...]]
 # Points at which a profile is looked at for its mesh.
 LOOKS = 400
 ANYHOW: Pattern = ("any",)
+FORWARDS: Pattern = ("forth",)
 RESTING: Pattern = ("forth", "rest", "forth")
 TURNING: tuple[Pattern, ...] = (("forth", "back", "forth"), ("forth", "rest", "back", "rest", "forth"))
 # Shares of the return after which a slave that is to rest stands first, and before whose end it still does.

@@ -12,6 +12,7 @@ from camwright.design.returns.solver import ALLOWED_EXCESS, excess, solve_return
 from camwright.design.torque.finish import finish
 from camwright.design.torque.guesses import (
     ANYHOW,
+    FORWARDS,
     TURNING,
     family_of,
     from_path,
@@ -211,13 +212,13 @@ def _guesses(task: TorqueTask, starts: Sequence[CamProfile]) -> Iterator[tuple[P
     if not starts:
         profiles.append(solve_return(replace(problem, objective="rms_acceleration"))[0])
     rubs = task.machine.friction > 0
-    if not (rubs and task.may_turn):
-        for profile in profiles:
-            yield ANYHOW, from_profile(profile, task, FIRST)
-        family = family_of(task)
-        if family is not None:
-            for k in family.valleys()[:MOST_PATHS]:
-                yield ANYHOW, from_path(family, k, task, FIRST)
+    one_way = FORWARDS if rubs and task.may_turn else ANYHOW  # where friction counts its sign must be known
+    for profile in profiles:
+        yield one_way, from_profile(profile, task, FIRST)
+    family = family_of(task)
+    if family is not None:
+        for k in family.valleys()[:MOST_PATHS]:
+            yield one_way, from_path(family, k, task, FIRST)
     if rubs:
         yield from resting(task, FIRST // 2)
     if task.may_turn and rubs:

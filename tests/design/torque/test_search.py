@@ -210,3 +210,12 @@ def test_the_place_may_be_anything_where_the_return_asks_nothing_of_it() -> None
     solution = solve(task, "rms_torque")
     assert solution.machine.placed
     assert assemble(solution.back, task.with_machine(solution.machine)).length == 0.9
+
+
+@pytest.mark.parametrize("aim", ["rms_torque", "peak_torque", "energy"])
+def test_a_knife_that_rubs_and_may_turn_need_not(aim: CommandObjective) -> None:
+    """A short cut leaves no time to stop: what may run backwards runs forwards, as well as what may not."""
+    cut, limits = replace(CUT, length=0.4), Limits(4.4, 200.0, 60_000.0)
+    one_way = solve(Task(KNIFE, cut, limits), aim)
+    both = solve(Task(KNIFE, cut, replace(limits, reversal=True)), aim)
+    assert both.minimised == pytest.approx(one_way.minimised, rel=1e-3)
