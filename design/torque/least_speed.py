@@ -52,7 +52,7 @@ def least_speed(problem: ReturnProblem) -> tuple[CamProfile, int]:
 
 def drawn_power(back: CamProfile, task: Task) -> float:
     """Mean power that a return draws at the slave, where the inertia is constant and nothing rubs (W): the rises of the kinetic energy."""
-    turns = np.unique(np.concatenate([back.breaks, [extremum.at for extremum in back.extrema(1)]]))
+    turns = np.unique(np.concatenate([back.breaks, back.roots(1), back.roots(2)]))
     x = np.unique(np.concatenate([turns, np.linspace(back.start, back.end, LOOKS)]))
     speed = task.cut.line_speed * back(x, 1)
     energy = 0.5 * float(task.machine.inertia(task.slave_at_sync_end)) * speed**2
