@@ -124,7 +124,15 @@ def solve_axis(
         )
     if not motions:
         loosest = _within(replace(problem, axis_limits=False), motor_speed_limits(placed, limits))
-        raise _infeasible(loosest, (lambda cut: designs(task.with_cut(cut))) if suggest else None)
+
+        def narrower(fewer: tuple[float, ...]) -> bool:
+            try:
+                solve_axis(task, objective, command, servos, between, fewer, suggest=False)
+            except (InfeasibleError, InputError, SolverError):
+                return False
+            return True
+
+        raise _infeasible(loosest, (lambda cut: designs(task.with_cut(cut)), narrower) if suggest else None)
     motion = min(motions, key=lambda each: each.value)
     status = blind.status if blind is not None and not motion.programmes else SolveStatus.BEST_FOUND
     return _solution(motion, status, task.with_machine(placed), objective, order)
@@ -219,7 +227,11 @@ def _from_mid_sync(profile: CamProfile, task: Task) -> CamProfile:
     return profile.roll(at).shift(slave=float(profile(at)) - in_sync)
 
 
-def _infeasible(problem: AxisProblem, settles: Callable[[Cut], bool] | None) -> InfeasibleError:
+_Ways = tuple[Callable[[Cut], bool], Callable[[tuple[float, ...]], bool]]
+"""What tells whether another cut can be designed, and whether the cut can for fewer line speeds."""
+
+
+def _infeasible(problem: AxisProblem, settles: _Ways | None) -> InfeasibleError:
     """Say by how much the tolerance is missed, and, of a way to tell whether a cut can be designed, what would keep it."""
     cut = problem.task.cut
     tolerance = cut.sync_tolerance
@@ -233,7 +245,9 @@ def _infeasible(problem: AxisProblem, settles: Callable[[Cut], bool] | None) -> 
         only = assemble(problem.structure, problem.task.from_return())
         share = motion_of(AxisProgramme(problem), only, axis_limits=False).error / tolerance
     needed = max(1.0, share) * tolerance
-    suggestions = () if settles is None else tuple(_suggestions(problem, needed, settles))
+    suggestions = (
+        () if settles is None else (*_suggestions(problem, needed, settles[0]), *_narrower(problem, settles[1]))
+    )
     ways = "; ".join(f"{each.change} {{{each.change}}}" for each in suggestions)
     excess = (needed - tolerance) * 1e3
     text = (
@@ -288,6 +302,20 @@ def _suggestions(problem: AxisProblem, needed: float, settles: Callable[[Cut], b
             if settles(other):
                 yield Suggestion(name, getattr(other, name) * per, unit)
                 break
+
+
+def _narrower(problem: AxisProblem, settles: Callable[[tuple[float, ...]], bool]) -> Iterator[Suggestion]:
+    """Search the widest part of the band of line speeds, up to its upper end, that works; designed once."""
+    shares = problem.shares
+    low, high = 0, len(shares)  # so many work, or are not known to; so many do not
+    while high - low > 1:
+        middle = (low + high) // 2
+        if _works(replace(problem, shares=shares[:middle])):
+            low = middle
+        else:
+            high = middle
+    if low and len(shares) > 1 and settles(shares[:low]):
+        yield Suggestion("line_speeds_from", shares[low - 1] * problem.task.cut.line_speed * 60, "m/min")
 
 
 def _percent(cut: Cut, tolerance: float) -> str:

@@ -134,3 +134,17 @@ def test_a_band_that_no_command_keeps_is_infeasible() -> None:
     solve_axis(task, "rms_acceleration", "shaped", (PAPER,), suggest=False)
     with pytest.raises(InfeasibleError):
         solve_axis(task, "rms_acceleration", "shaped", (PAPER,), shares=BAND, suggest=False)
+
+
+@pytest.mark.slow
+def test_a_refusal_says_for_which_part_of_the_band_there_is_a_cam() -> None:
+    task = Task(KNIFE, replace(CUT, length=0.26, sync_tolerance=2e-5), LIMITS)
+    with pytest.raises(InfeasibleError, match=r"what works: .*line_speeds_from \d.* m/min") as refused:
+        solve_axis(task, "rms_acceleration", "shaped", (PAPER,), shares=BAND)
+    (part,) = [each for each in refused.value.suggestions if each.change == "line_speeds_from"]
+    slowest = part.value / 60 / CUT.line_speed
+    assert 0.1 < slowest < 1.0
+    narrow = tuple(share for share in BAND if share > slowest - 1e-9)
+    solution = solve_axis(task, "rms_acceleration", "shaped", (PAPER,), shares=narrow, suggest=False)
+    speeds = np.linspace(slowest, 1.0, 80) * CUT.line_speed
+    assert line_speed_errors(solution.profile, task, [PAPER], speeds).max() <= task.cut.sync_tolerance * (1 + 1e-3)
