@@ -22,8 +22,8 @@ _EDGE = 1e-6
 """Part of the cut length beside the ends of the zone where the ratio may be the return's."""
 _EXACT = 1e-8
 """Misfit, as a part of what is allowed, that is rounding: beginnings below it are as good as each other."""
-_TOLD = 1e-6
-"""Shift of the zero, as a part of the cut length, from which on it is told."""
+_TOLD = 0.1
+"""Misfit at the file's own zero, as a part of what is allowed, from which on another zero is told."""
 _ROUNDS = 60
 """Steps of the golden section: the last is far below a nanometre."""
 
@@ -79,7 +79,7 @@ def aligned(rebuilt: CamProfile, job: Job, *, count: float = 0.0) -> tuple[CamPr
     here, there = misfit(np.array([0.0, begin])).tolist()
     if there + slack < here and here > _EXACT:
         rebuilt = rebuilt.roll(begin * stretch)
-        if _TOLD * cut.length < begin < (1.0 - _TOLD) * cut.length:
+        if here > _TOLD:
             note = (
                 f"the file's master zero is not the job's: the job's cycle begins {begin * 1e3:.6g} mm into the file's, "
                 "where the cam fits the sync zone best ([output] origin says which zero is meant)"

@@ -185,9 +185,7 @@ def _with_end(table: CamTable, job: Job, units: Units, asked: float | None) -> t
 def _closed(table: CamTable, job: Job, place: str, units: str | None, asked: float | None) -> WholeCycle:
     """Find the travel of a table that leaves its end out: that of the job where the table runs on to it."""
     tried = (
-        [units_of(table, units, job, place)[0]]
-        if units or table.units
-        else kernel_units(table, job.machine, job.cut.length)
+        [units_of(table, units, job, place)[0]] if units or table.units else kernel_units(job.machine, job.cut.length)
     )
     x, y = table.x, table.y
     slope = 0.5 * ((y[-2] - y[-3]) / (x[-2] - x[-3]) + (y[1] - y[0]) / (x[1] - x[0])) if len(x) > 3 else 0.0
@@ -200,7 +198,10 @@ def _closed(table: CamTable, job: Job, place: str, units: str | None, asked: flo
         travels = [(each, job.machine.pitch / each.slave.size) for each in tried]
         fits = [entry for entry in travels if abs(y[0] + entry[1] - end) <= slack]
     if len(fits) != 1:
-        seems = " or ".join(f"{(end - float(y[0])) * each.slave.size:.6g} {job.machine.slave_unit}" for each in tried)
+        seems = " or ".join(
+            f"{(end - float(y[0])) * each.slave.size:.6g} {job.machine.slave_unit} ({each.slave.symbol})"
+            for each in tried
+        )
         raise InputError(
             f"{place}: the slave's travel per cycle is not in the file; it runs on to about {seems}, and the job's pitch is "
             f"{job.machine.pitch:.6g} {job.machine.slave_unit}; say it with --travel, for example --travel '400 mm', and the "

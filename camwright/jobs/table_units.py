@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 import re
 
-import numpy as np
-
 from camwright.house.units import quantity
 from camwright.jobs.job import Job
 from camwright.profiles.errors import InputError
@@ -49,7 +47,7 @@ def parse_units(text: str, task: Task, period: float | None = None) -> Units:
     names = [name.strip() for name in text.split(",")]
     if len(names) != 2:
         raise InputError(f"--units takes the master's unit and the slave's, for example mm,deg; got {text[:40]!r}")
-    master = {**_LENGTHS, "deg": cut.length / 360.0, "rev": cut.length}
+    master = {**_LENGTHS, "deg": cut.length / 360.0, "rad": 0.5 * cut.length / math.pi, "rev": cut.length}
     if period is not None:
         master["cycle"] = cut.length / period
     return Units(
@@ -73,13 +71,12 @@ def slave_length(text: str, machine: Machine) -> float:
     return quantity(plain, _kind(machine), signed=True) if size is None else size
 
 
-def kernel_units(table: CamTable, machine: Machine, length: float) -> list[Units]:
-    """Give the units that a kernel's own table may be in: 0.0001 deg and 0.0001 mm as integers, deg and mm as reals."""
-    whole = bool((table.y == np.rint(table.y)).all())
-    size, name = (1e-4, "0.0001 ") if whole else (1.0, "")
+def kernel_units(machine: Machine, length: float) -> list[Units]:
+    """Give the units that a kernel's own table may be in: 0.0001 deg or mm, as integers always; reals may be deg or mm."""
     master = Unit("0.0001 deg", length / 3_600_000)
     slaves = [
         Unit(f"{name}{word}", size * each, machine.slave_unit)
+        for name, size in (("0.0001 ", 1e-4), ("", 1.0))
         for word, each in _slave_units(machine).items()
         if word in ("deg", "mm")
     ]
@@ -118,7 +115,12 @@ def _from_words(table: CamTable, job: Job, place: str) -> tuple[Units, tuple[str
     master = Unit("master unit", cut.length / table.period)
     if master_word is not None:
         master = Unit(
-            *_unit(master_word, {**_LENGTHS, "deg": cut.length / 360.0, "rev": cut.length}, "length", cut.length)
+            *_unit(
+                master_word,
+                {**_LENGTHS, "deg": cut.length / 360.0, "rad": 0.5 * cut.length / math.pi, "rev": cut.length},
+                "length",
+                cut.length,
+            )
         )
     else:
         notes.append(

@@ -26,7 +26,7 @@ _DERIVATIVES: dict[str, dict[str, tuple[float, float]]] = {
 }
 # How a number in a unit becomes SI: multiplied by the first, divided by the second.
 _TURNS = ("deg", "rev")
-_X_UNITS = (*_LENGTHS, *_TURNS)
+_X_UNITS = (*_LENGTHS, "rad", *_TURNS)
 _Y_UNITS = (*_LENGTHS, "rad", *_TURNS)
 _NAMES = ("x", "y", *_DERIVATIVES)
 _EXAMPLE = "x [mm],y [mm]"
@@ -117,7 +117,7 @@ def read_cam_csv(text: str, place: str) -> CamRows:
         dy, d2y = _si(dy, exact["dy/dx"]), _si(d2y, exact["d2y/dx2"])
     elif dy is not None and d2y is not None:
         scaled = scaled_derivatives(columns["x"], columns["y"], dy, d2y)
-        dy, d2y = scaled if scaled is not None else (None, None)
+        columns["y"], dy, d2y = scaled if scaled is not None else (columns["y"], None, None)
         notes += (
             "velocity and acceleration are scaled so that they belong to the positions"
             if scaled is not None

@@ -66,15 +66,15 @@ def words_of(name: str) -> list[str]:
 
 _ROLES: tuple[tuple[str, frozenset[str], tuple[str, ...]], ...] = (
     ("d3y/dx3", frozenset({"d3y/dx3", "j", "y'''"}), ("jerk", "ruck", "跃度", "加加速")),
-    ("d2y/dx2", frozenset({"d2y/dx2", "a", "acc", "accel", "y''"}), ("accel", "beschl", "slaveacc", "加速度")),
+    ("d2y/dx2", frozenset({"d2y/dx2", "a", "acc", "accel", "y''"}), ("acc", "beschl", "slaveacc", "加速度")),
     ("dy/dx", frozenset({"dy/dx", "v", "vel", "velo", "speed", "ratio", "y'"}),
-     ("velo", "geschw", "speed", "vitesse", "速度", "drehzahl")),
+     ("vel", "geschw", "speed", "vitesse", "速度", "drehzahl")),
     ("other", frozenset({"torque", "current", "moment", "strom", "error", "lag"}),
      ("torque", "drehm", "schlepp", "电流", "转矩", "误差")),
-    ("x", frozenset({"x", "master", "leading", "lead", "phase", "theta", "phi", "angle", "winkel"}),
-     ("master", "leit", "theta", "phase", "angle", "winkel", "主轴")),
-    ("y", frozenset({"y", "slave", "s", "position", "pos", "displacement", "following", "follower", "hub", "weg", "lift"}),
-     ("slave", "folge", "follow", "displacement", "displ", "从轴", "位移")),
+    ("x", frozenset({"x", "master", "leading", "lead"}), ("master", "leit", "leading", "主轴")),
+    ("y", frozenset({"y", "slave", "following", "follower"}), ("slave", "folge", "follow", "从轴")),
+    ("x", frozenset({"phase", "theta", "phi", "angle", "winkel"}), ("theta", "phase", "angle", "winkel", "角度")),
+    ("y", frozenset({"s", "position", "pos", "displacement", "hub", "weg", "lift"}), ("displ", "位移", "位置")),
     ("index", frozenset({"index", "no", "nr", "n", "i", "point", "pt", "row", "id", "punkt", "nummer", "序号", "点"}),
      ("index",)),
 )  # fmt: skip

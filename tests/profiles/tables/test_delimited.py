@@ -79,6 +79,13 @@ def test_velocity_and_acceleration_are_scaled_to_the_positions() -> None:
     assert found.d2y is not None
     assert found.dy == pytest.approx(v, abs=5e-4)
     assert found.d2y == pytest.approx(a, abs=1e-2)
+    assert found.y == pytest.approx(y, abs=1e-4)
+    coarse = [
+        f"{p!r},{q:.3f},{7.5 * r!r},{0.02 * s!r}"
+        for p, q, r, s in zip(*(c.tolist() for c in (x, y, v, a)), strict=True)
+    ]
+    again = read_cam_csv("Theta (deg),S (Pos),Slave vel [m/s],A (Acc)\n" + "\n".join(coarse) + "\n", "t")
+    assert again.y == pytest.approx(y, abs=1e-3)
     lines = [
         f"{p!r},{q!r},{r!r},{s!r}" for p, q, r, s in zip(*(c.tolist() for c in (x, y, v[::-1] + x, a)), strict=True)
     ]
