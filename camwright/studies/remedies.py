@@ -10,7 +10,7 @@ from time import process_time
 from typing import Any
 
 from camwright.design.optimise import Solution
-from camwright.house.numbers import Units, inside
+from camwright.house.numbers import METRIC, Units, inside
 from camwright.jobs.job import Job, read_job
 from camwright.jobs.wording import place_of
 from camwright.profiles.errors import CamwrightError, InfeasibleError, Suggestion
@@ -31,6 +31,12 @@ _FURTHER = (1.03, 1.1, 1.18, 1.27, 1.4, 1.6, 2.0)
 
 _DIGITS = 4
 """Significant digits of a value that is told."""
+
+_FINE_DIGITS = 6
+"""Significant digits of a suggestion that is told in other units than it was found in."""
+
+_METRIC = {"mm": "m", "m/min": "m/s", "m/s^2": "m/s^2", "m/s^3": "m/s^3"}
+"""SI unit of the units of suggestions that a job in other units is not told in."""
 
 _TABLES = {"servo_aware": "objective", "command": "objective", "stroke": "machine"}
 """Tables of a job file with keys that no message names."""
@@ -160,7 +166,7 @@ def solve_or_advise(job: Job) -> Solution:
     except InfeasibleError as error:
         offered = error.suggestions
     trial = _Trial(job)
-    found = [remedy for suggestion in offered for remedy in trial.first(_taken_further(suggestion))]
+    found = [remedy for suggestion in offered for remedy in trial.first(_taken_further(suggestion, job.units))]
     if job.servo_aware and job.command != "shaped":
         found += trial.first(iter([Remedy("command", "shaped", "")]))
     offers = "; ".join(remedy.words for remedy in found)
@@ -171,21 +177,23 @@ def solve_or_advise(job: Job) -> Solution:
     raise InfeasibleError(f"{reason.message}. {works}", reason.binding, reason.excess, reason.unit, kept) from reason
 
 
-def _taken_further(suggestion: Suggestion) -> Iterator[Remedy]:
-    """Give a suggestion, and if that does not pass yet, more of it."""
+def _taken_further(suggestion: Suggestion, units: Units) -> Iterator[Remedy]:
+    """Give a suggestion in the units that the job is written in, and if that does not pass yet, more of it."""
     if suggestion.change == "reversal":
         yield Remedy("reversal", True, "")
         return
     if suggestion.change == "motor":
         return  # a curve of many numbers: no single value to write
-    yield Remedy(suggestion.change, suggestion.value, suggestion.unit)
     up = suggestion.change != "line_speed"
+    value, unit = suggestion.value, suggestion.unit
+    si = _METRIC.get(unit)
+    if si is not None and units is not METRIC:
+        shown = units.shown[si]
+        value = inside(value / METRIC.shown[si].factor * shown.factor, _FINE_DIGITS, up=up)
+        unit = shown.typed or shown.printed
+    yield Remedy(suggestion.change, value, unit)
     for factor in _FURTHER:
-        yield Remedy(
-            suggestion.change,
-            inside(suggestion.value * (factor if up else 1.0 / factor), _DIGITS, up=up),
-            suggestion.unit,
-        )
+        yield Remedy(suggestion.change, inside(value * (factor if up else 1.0 / factor), _DIGITS, up=up), unit)
 
 
 def _values(

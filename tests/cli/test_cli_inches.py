@@ -55,7 +55,7 @@ def test_a_refusal_offers_inches_that_work(job: Path, capsys: pytest.CaptureFixt
     job.write_text(short, encoding="utf-8")
     assert main(["design", str(job), "--json", "--no-figures"]) == 3
     answer = json.loads(capsys.readouterr().out)
-    assert {each["unit"] for each in answer["suggestions"]} <= {"mm", "m/min", "m/s^2", "m/s^3"}
+    assert {each["unit"] for each in answer["suggestions"]} <= {"in", "ft/min", "ft/s^2", "ft/s^3"}
 
 
 @pytest.mark.parametrize(
