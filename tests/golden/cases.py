@@ -31,7 +31,7 @@ BOOKS = {
 SUBCOMMANDS = (
     "new", "examples", "keys", "schema",
     "design", "compare", "limits", "validate", "check", "quick", "envelope", "identify", "book", "export", "audit", "targets",
-    "recipe", "verify", "bend",
+    "recipe", "verify", "bend", "workbench",
 )  # fmt: skip
 
 Prepare = Callable[[Path], None]
@@ -301,6 +301,8 @@ def single_cases() -> Iterator[Case]:
         yield Case(f"new/{machine}", ("new", machine, "--out", f"runs/new/{machine}.toml", "--json"))
     yield Case("new/length", ("new", "rotary_knife", "--length", "700 mm", "--out", "runs/new/length.toml", "--json"))
     yield Case("new/no-unit", ("new", "rotary_knife", "--length", "700", "--out", "runs/new/no-unit.toml", "--json"))
+    # it listens until it is ended, so only what it refuses can be asked
+    yield Case("workbench-no-job", ("workbench", "nowhere.toml", "--no-browser", "--json"))
     yield Case("targets-spoken", ("targets",))
     for length in ("300 mm", "600 mm", "628.6 mm", "900 mm", "40 in"):
         lengths = ("--circumference", "400 mm", "--sync", "200 mm", "--length", length)
