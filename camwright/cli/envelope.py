@@ -34,7 +34,7 @@ def run(
     asked = load_job(job)
     directory = output_directory(out, asked)
     voice = Voice(as_json, quiet)
-    with voice.progress(points * (points + 1)) as step:
+    with voice.progress((points + 2) * (points + 1) + 1) as step:
         answer = envelope_answer(asked, points, step)
     texts = answer.files()
     with staged(directory) as aside:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camwright.design.feasible.envelope import Envelope
 from camwright.figures.marks import blank_figure, patch_mark
 from camwright.figures.saving import written
 from camwright.figures.style import LINES, WIDTH
@@ -44,8 +43,8 @@ def draw_envelope(answer: EnvelopeAnswer) -> Figure:
     figure = blank_figure(0.72 * WIDTH)
     axes = figure.subplots()
     found = answer.envelope
-    _cells(axes, found)
-    _edges(axes, found)
+    _cells(axes, answer)
+    _edges(axes, answer)
     axes.set(xlabel="cut length (mm)", ylabel="line speed (m/min)")
     axes.set_title(f"{answer.job.name}: the limit that binds, in strong colour where a cut is possible")
     axes.grid(visible=False)
@@ -73,18 +72,18 @@ def draw_envelope(answer: EnvelopeAnswer) -> Figure:
         for name in names
     ]
     lines = axes.get_legend_handles_labels()[0]
-    figure.legend(handles=[*lines, *patches], loc="outside lower center", ncols=4)
+    figure.legend(handles=[*lines, *patches], loc="outside lower center", ncols=3)
     return figure
 
 
-def _cells(axes: Axes, found: Envelope) -> None:
+def _cells(axes: Axes, answer: EnvelopeAnswer) -> None:
     """Colour each cell by what forbids it, and below the highest line speed each cut length by what would bind first."""
+    found = answer.envelope
     lengths = np.array([row.length for row in found.rows]) * 1e3
     speeds = np.unique([point.line_speed for point in found.points]) * 60
     across, up = _borders(lengths), _borders(speeds)
     across[0], across[-1], up[0] = lengths[0], lengths[-1], 0.0
-    fastest = np.array([np.nan if row.optimised is None else row.optimised * 60 for row in found.rows])
-    possible = np.isfinite(fastest)
+    edge = np.array(answer.perfect) * [1e3, 60.0]
     for i, row in enumerate(found.rows):
         column = [point for point in found.points if point.length == row.length]
         lowest = 0.0  # the edge does not run along the cells: what forbids the lowest of them forbids all below it
@@ -94,11 +93,10 @@ def _cells(axes: Axes, found: Envelope) -> None:
             colour, hatch = BINDING[row.binding if point.optimised else point.binding]
             _fill(axes, across[i : i + 2], lowest, up[j + 1], _mixed(colour, BEYOND), 1, hatch)
             lowest = up[j + 1]
-        if possible[i]:
-            # straight from one cut length to the next, where there is one
-            x = np.array([across[i], lengths[i], across[i + 1]])
-            y = np.interp(x, lengths[possible], fastest[possible])
-            _fill(axes, x, 0.0, y, _mixed(BINDING[row.binding][0], POSSIBLE), 2, "")
+        inside = edge[(edge[:, 0] > across[i]) & (edge[:, 0] < across[i + 1]), 0]
+        x = np.array([across[i], *inside, across[i + 1]])
+        y = np.interp(x, edge[:, 0], edge[:, 1])  # straight between the nodes of the edge, which are close enough
+        _fill(axes, x, 0.0, y, _mixed(BINDING[row.binding][0], POSSIBLE), 2, "")
     axes.set(xlim=(lengths[0], lengths[-1]), ylim=(0.0, up[-1]))
 
 
@@ -125,14 +123,18 @@ def _mixed(colour: str, strength: float) -> tuple[float, float, float]:
     return red, green, blue
 
 
-def _edges(axes: Axes, found: Envelope) -> None:
-    labels = {"linear": ("linear_return", "linear return (speed limit only, eq. 8)"), "quintic": ("poly_3_4_5", "quintic return"),
-              "optimised": ("optimised", "optimised return")}  # fmt: skip
-    x = [row.length * 1e3 for row in found.rows]
-    for name, (style, label) in labels.items():
-        speeds = [getattr(row, name) for row in found.rows]
-        y = [np.nan if speed is None else speed * 60 for speed in speeds]
-        axes.plot(x, y, label=label, **{**LINES[style], "zorder": 5})
+def _edges(axes: Axes, answer: EnvelopeAnswer) -> None:
+    """Draw the highest line speeds, each with nodes so close that what is drawn is true everywhere."""
+    rows = answer.envelope.rows
+    linear = [(row.length, np.nan if row.linear is None else row.linear) for row in rows]
+    optimised = LINES["optimised"]
+    for edge, label, style in (
+        (linear, "linear (speed limit only, eq. 8)", LINES["linear_return"]),
+        (answer.quintic, "quintic, perfect axis", LINES["poly_3_4_5"]),
+        (answer.perfect, "optimised, perfect axis", optimised),
+        (answer.within, "optimised, axis in tolerance", {**optimised, "linestyle": "--"}),
+    ):
+        axes.plot(*(np.array(edge) * [1e3, 60.0]).T, label=label, **{**style, "zorder": 5})
 
 
 def _borders(centres: np.ndarray) -> np.ndarray:

@@ -3,21 +3,35 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from camwright.design.feasible.envelope import Envelope, envelope
+from camwright.design.feasible.envelope import Envelope, envelope, quintic_speed
+from camwright.design.feasible.extremes import max_line_speed
 from camwright.house.progress import Step, ignore
 from camwright.house.provenance import provenance
 from camwright.jobs.job import Job
 from camwright.profiles.machines import Machine
 from camwright.profiles.objective import OBJECTIVES, MotionObjective, of_motion
+from camwright.studies.reach import highest_speed
 
 SHORTEST, LONGEST = 0.5, 2.0
 """Cut lengths of the map as parts of the job's; none of them is shorter than `LEAST_ZONE` of the sync zone."""
 LEAST_ZONE = 1.05
+
+Edge = tuple[tuple[float, float], ...]
+"""Line speeds (m/s) over cut lengths (m), ascending."""
+
+STRAIGHT = 2e-3
+"""Share of the line speed by which the middle between two nodes of an edge may lie off the line."""
+
+FINEST, FINE, NO_FINER = 1e-4, 1e-2, math.inf
+"""Nodes of an edge are no closer, relative to the length: of a perfect axis, whose edge is a closed form; of the axis in tolerance, of
+which each node is a dozen designs; and where one of these takes a second, at the cut lengths of the map alone."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,11 +46,18 @@ class EnvelopeAnswer:
         What was made least at every point.
     envelope
         The map.
+    quintic, perfect, within
+        Highest line speeds (m/s) over cut lengths (m): with the quintic return, with a perfect axis, and with the axis in
+        tolerance, which is what `design` would pass, designed anew. Lines with nodes so close that what lies between is true
+        to `STRAIGHT`; NaN where no line speed works.
     """
 
     job: Job
     objective: MotionObjective
     envelope: Envelope
+    quintic: Edge
+    perfect: Edge
+    within: Edge
 
     @property
     def unit(self) -> str:
@@ -71,6 +92,17 @@ class EnvelopeAnswer:
                 }
                 for row in self.envelope.rows
             ],
+            "edges": {
+                name: [
+                    {"length_mm": length * 1e3, "line_speed_m_per_min": None if math.isnan(speed) else speed * 60}
+                    for length, speed in edge
+                ]
+                for name, edge in (
+                    ("quintic", self.quintic),
+                    ("perfect_axis", self.perfect),
+                    ("axis_in_tolerance", self.within),
+                )
+            },
         }
 
     def files(self) -> dict[str, str]:
@@ -95,7 +127,7 @@ def envelope_answer(job: Job, points: int, step: Step = ignore) -> EnvelopeAnswe
     job
         The job.
     points
-        Number of cut lengths, and of line speeds.
+        Number of cut lengths, beside the job's own and the pitch, and of line speeds.
     step
         Told what begins now.
 
@@ -105,12 +137,64 @@ def envelope_answer(job: Job, points: int, step: Step = ignore) -> EnvelopeAnswe
         The machine cannot be in sync over the zone.
     """
     shortest = max(SHORTEST * job.cut.length, LEAST_ZONE * job.cut.sync_zone)
-    lengths = np.linspace(shortest, LONGEST * job.cut.length, points).round(6)
+    longest = LONGEST * job.cut.length
+    nodes = (
+        {job.cut.length, job.machine.pitch / job.cut.sync_ratio} if job.machine.slave_unit == "m" else {job.cut.length}
+    )
+    even = np.linspace(shortest, longest, points).round(6)
+    lengths = np.union1d(even, [node for node in nodes if shortest < node < longest])
     fastest = job.limits.speed / job.machine.sync_pace(job.cut)
     speeds = np.linspace(fastest / points, fastest, points)
     objective = of_motion(job.objective)
     found = envelope(job.task, objective, lengths.tolist(), speeds.tolist(), step)
-    return EnvelopeAnswer(job, objective, found)
+    step("the edges between the cut lengths")
+    machines = [row.machine for row in found.rows]
+
+    def at(length: float) -> Job:
+        """Give the job at a cut length; a crank's free sync zone is where it is at the length beside it."""
+        beside = machines[int(np.abs(lengths - length).argmin())]
+        return replace(job, machine=beside, cut=replace(job.cut, length=length))
+
+    perfect = true_edge(lambda length: max_line_speed(at(length).task), lengths.tolist(), FINEST)
+    within = true_edge(
+        lambda length: highest_speed(at(length), max_line_speed(at(length).task))[0],
+        lengths.tolist(),
+        NO_FINER if job.servo_aware or not job.machine.placed else FINE,
+    )
+    quintic = true_edge(lambda length: quintic_speed(at(length).task), lengths.tolist(), FINEST)
+    return EnvelopeAnswer(job, objective, found, quintic, perfect, within)
+
+
+def true_edge(fastest: Callable[[float], float | None], lengths: list[float], finest: float) -> Edge:
+    """Follow a highest line speed over the cut length: nodes are added until the line between them is true.
+
+    Parameters
+    ----------
+    fastest
+        Highest line speed (m/s) at a cut length (m), ``None`` where none works.
+    lengths
+        First nodes, ascending.
+    finest
+        Nodes are no closer than this share of the length.
+    """
+
+    def node(length: float) -> tuple[float, float]:
+        speed = fastest(length)
+        return length, math.nan if speed is None else speed
+
+    def between(left: tuple[float, float], right: tuple[float, float]) -> list[tuple[float, float]]:
+        if right[0] - left[0] <= finest * right[0] or (math.isnan(left[1]) and math.isnan(right[1])):
+            return []
+        middle = node(0.5 * (left[0] + right[0]))
+        if abs(0.5 * (left[1] + right[1]) - middle[1]) <= STRAIGHT * middle[1]:
+            return [middle]
+        return [*between(left, middle), middle, *between(middle, right)]
+
+    first = [node(length) for length in lengths]
+    found = [first[0]]
+    for left, right in pairwise(first):
+        found += [*between(left, right), right]
+    return tuple(found)
 
 
 def _place(machine: Machine) -> dict[str, float]:

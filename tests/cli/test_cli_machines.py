@@ -237,8 +237,10 @@ def test_the_envelope_is_told_and_written(tmp_path: Path, capsys: pytest.Capture
     job = EXAMPLES / "paper-600.toml"
     assert main(["envelope", str(job), "--points", "4", "--json", "--out", str(tmp_path)]) == 0
     answer = answer_of(capsys)
-    assert len(answer["points"]) == 16
-    assert [row["length_mm"] for row in answer["max_line_speed"]] == pytest.approx([300, 600, 900, 1200], rel=1e-12)
+    assert len(answer["points"]) == 20
+    assert [row["length_mm"] for row in answer["max_line_speed"]] == pytest.approx(
+        [300, 400, 600, 900, 1200], rel=1e-12
+    )
     names = ["envelope.csv", "envelope.png", "envelope.svg", "max-line-speed.csv"]
     assert answer["files"] == [str(tmp_path / name) for name in names]
     for point in answer["points"]:

@@ -1,0 +1,93 @@
+"""Random envelopes against designs: what is drawn as possible must design, what lies a percent beyond must not.
+
+``python benchmarks/envelopes.py [COUNT]``: paper-like knives with random cuts, limits and servos (100 unless said). For each, points 1 %
+inside and 1 % beyond both edges are designed: inside the perfect axis' edge a motion exists, inside the other every check passes too.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+import time
+from dataclasses import replace
+
+import numpy as np
+
+from camwright import load_job
+from camwright.jobs.job import Job
+from camwright.profiles.errors import CamwrightError
+from camwright.profiles.machines import RotaryKnife
+from camwright.studies.envelope import Edge, envelope_answer
+from camwright.studies.reach import fails, stand_in
+
+SEED, LENGTHS, TRIED = 7, 7, 12
+"""Seed of the jobs, cut lengths of a map, and places tried on each edge."""
+
+ASIDE = 0.01
+"""Share of the line speed inside and beyond an edge."""
+
+
+def drawn(job: Job, random: np.random.Generator) -> Job:
+    """Draw a job."""
+    pitch = random.uniform(0.3, 0.8)
+    cut = replace(
+        job.cut,
+        length=pitch * random.uniform(0.85, 2.0),
+        line_speed=random.uniform(0.5, 1.2),
+        sync_zone=0.4 * pitch,
+        shear_zone=0.08 * pitch,
+        shear_zone_at=0.32 * pitch,
+        sync_tolerance=float(random.choice((1e-4, 3e-4, 1e-3))),
+    )
+    limits = replace(job.limits, acceleration=random.uniform(20.0, 80.0), jerk=random.uniform(2e3, 2e4))
+    servo = replace(
+        job.servo, position_gain=random.uniform(20.0, 45.0), sample_time=float(random.choice((1e-3, 2e-3, 4e-3)))
+    )
+    return replace(job, machine=RotaryKnife(pitch), cut=cut, limits=limits, servo=servo)
+
+
+def wrong(job: Job, edge: Edge, random: np.random.Generator, *, checked: bool) -> tuple[int, int]:
+    """Count the places beside an edge that are drawn wrongly, and those that were tried."""
+    found = tried = 0
+    for _ in range(TRIED):
+        at = int(random.integers(len(edge) - 1))
+        (left, low), (right, high) = edge[at], edge[at + 1]
+        if math.isnan(low + high):
+            continue
+        part = random.random()
+        length, speed = left + part * (right - left), low + part * (high - low)
+        for factor, possible in ((1 - ASIDE, True), (1 + ASIDE, False)):
+            task = job.task.with_length(length).at_speed(factor * speed)
+            failed = fails(job, task, stand_in(job))
+            limit = failed in ("speed", "acceleration", "jerk", "reversal", "sync_zone", "design")
+            tried += 1
+            found += (not failed if checked else not limit) != possible
+    return found, tried
+
+
+def main() -> None:
+    """Print what was tried and what was wrong."""
+    count = int(sys.argv[1]) if len(sys.argv) > 1 else 100
+    random, base = np.random.default_rng(SEED), load_job()
+    totals = {"perfect axis": [0, 0], "axis in tolerance": [0, 0]}
+    began = time.process_time()
+    for _ in range(count):
+        job = drawn(base, random)
+        try:
+            answer = envelope_answer(job, LENGTHS)
+        except CamwrightError as error:
+            print("skipped:", error)
+            continue
+        for name, edge, checked in (
+            ("perfect axis", answer.perfect, False),
+            ("axis in tolerance", answer.within, True),
+        ):
+            for total, more in enumerate(wrong(job, edge, random, checked=checked)):
+                totals[name][total] += more
+    for name, (bad, tried) in totals.items():
+        print(f"{name}: {bad} of {tried} places wrong")
+    print(f"{(time.process_time() - began) / count:.1f} s an envelope")
+
+
+if __name__ == "__main__":
+    main()
