@@ -21,6 +21,7 @@ from camwright.drives.options import chosen_targets
 from camwright.house.provenance import provenance
 from camwright.house.units import shown
 from camwright.jobs.job import Job, parse_job, read_job
+from camwright.jobs.line_speeds import line_speeds_text
 from camwright.jobs.toml_text import toml_text
 from camwright.profiles.errors import InputError
 from camwright.profiles.objective import OBJECTIVES
@@ -147,7 +148,7 @@ class Book:
                 "length": _written(of.length, 1000, "mm", "m"),
                 "line_speed": _written(of.line_speed, 60, "m/min", "m/s"),
             },
-            "objective": {**data.get("objective", {}), "minimise": of.objective},
+            "objective": {**data.get("objective", {}), **_line_speeds(self.toml), "minimise": of.objective},
         }
         return read_job(own, toml_text(own), self.name)  # what is written is read back as it was
 
@@ -242,6 +243,13 @@ def _objective_faults(job: Job, name: str) -> tuple[str, ...]:
     except InputError as error:
         return error.faults
     return ()
+
+
+@lru_cache(maxsize=16)
+def _line_speeds(text: str) -> dict[str, list[str] | str]:
+    """Line speeds of a job that states them, as shares of its own: a book changes that one."""
+    stated = "line_speeds" in _data(text).get("objective", {})
+    return {"line_speeds": line_speeds_text(parse_job(text, "job").slowest)} if stated else {}
 
 
 @lru_cache(maxsize=4)
