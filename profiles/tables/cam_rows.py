@@ -178,9 +178,7 @@ def _by_order(sheet: Sheet) -> tuple[dict[str, int], tuple[str, ...]]:
         numeric = list(range(len(sheet.columns)))  # the cell that is none is named when it is read
     notes: tuple[str, ...] = ()
     if len(numeric) > 2:
-        counted = (
-            np.array([float(row[numeric[0]].replace(",", ".")) for row in sheet.rows]) if sheet.rows else np.zeros(1)
-        )
+        counted = sheet.numbers(numeric[0])
         second = sheet.numbers(numeric[1])
         if (
             len(counted) > 1

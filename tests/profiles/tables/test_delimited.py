@@ -108,6 +108,7 @@ def test_a_master_that_turns_over_is_put_in_order() -> None:
         ("x [mm];y [mm]\n1;2\n2;3;4\n3;4\n5;6\n", "t, line 3: 3 cells where the header has 2"),
         ("Slave [mm];Torque [mm]\n1;2\n2;3\n3;4\n5;6\n", "t, line 1: column x is missing"),
         ("Master [mm];Slave [kg]\n1;2\n2;3\n3;4\n5;6\n", "t, line 1: column y cannot be in 'kg'; its unit is one of"),
+        ("1,2,3\n2,3,4\nTheta,S,V 1\n3,4,5\n", "t, line 3: 'Theta' is not a finite number"),
         ("just words\nand more\n", "there is no table of two columns in it"),
     ],
 )
