@@ -37,7 +37,7 @@ class Result(designing.Design):
     >>> from camwright import load_job, optimise
     >>> result = optimise(load_job())
     >>> "<table>" in result._repr_html_(), result.plot("comparison").get_suptitle()
-    (True, 'paper-600: all profiles, by peak acceleration')
+    (True, 'paper-600: all profiles, by peak acceleration; † breaks a limit')
     """
 
     def plot(self, what: What = "profile") -> Figure:

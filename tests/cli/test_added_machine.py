@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from camwright import load_job
-from camwright.book import workers
+from camwright.cli import book as book_command
 from camwright.cli.main import main
 from camwright.jobs.structure import job_schema
 from camwright.profiles.machines import MACHINES
@@ -118,7 +118,7 @@ def test_every_other_command_works_on_it(capsys: pytest.CaptureFixture[str], mon
     } <= LINES  # straight lines between points
     table = next(Path("tables").glob("*_cam.csv"))
     assert main(["audit", str(table), "--job", job, "--quiet"]) == 0
-    monkeypatch.setattr(workers, "local_crew", lambda _: inline_crew())
+    monkeypatch.setattr(book_command, "local_crew", lambda _: inline_crew())  # processes would not know the machine
     assert main(["book", job, "--length", "600:650:50", "--line-speed", "80", "--out", "book", "--quiet"]) == 0
 
 

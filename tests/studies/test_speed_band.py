@@ -58,6 +58,7 @@ velocity_feedforward = 1.0
 servo_aware = true
 command = "shaped"
 minimise = "sync_error"
+line_speeds = "100 %"
 """
 
 
