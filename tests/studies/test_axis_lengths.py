@@ -159,7 +159,11 @@ def test_a_tolerance_out_of_reach_ends_with_exit_code_3(capsys: pytest.CaptureFi
     assert code == 3
     assert (said["status"], said["binding"]) == ("infeasible", "sync_tolerance")
     assert said["excess"]["unit"] == "mm"
-    assert {each["change"] for each in said["suggestions"]} == {"command", "line_speed", "length"}  # each designs and passes
+    assert {each["change"] for each in said["suggestions"]} == {
+        "command",
+        "line_speed",
+        "length",
+    }  # each designs and passes
     assert not (tmp_path / "out").exists()
     with pytest.raises(InfeasibleError) as caught:  # a book does not search for ways out
         solve_job(load_job(Path(job_file(tmp_path, text))), suggest=False)
