@@ -85,7 +85,7 @@ def profile_figure(comparison: Comparison) -> Figure:
     figure.align_ylabels()
     figure.suptitle(
         f"{comparison.job.name}: {with_unit(cut.length, 'm')} at {with_unit(v, 'm/s')}, "
-        f"least {OBJECTIVES[comparison.job.objective].words}",
+        f"minimised: {OBJECTIVES[comparison.job.objective].words}",
         fontsize=9.5,
     )
     _legend(figure, shown)

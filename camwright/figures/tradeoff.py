@@ -97,7 +97,7 @@ def _marker(kind: str) -> dict[str, Any]:
 def _label(row: Row) -> str:
     """Name of a point: what is least in it, or the law."""
     if row.kind == "objective":
-        return f"least {words(row.name)}"
+        return f"minimised {words(row.name)}"
     return title(row.name).split(" (")[0].split(",")[0]
 
 

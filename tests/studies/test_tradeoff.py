@@ -144,7 +144,7 @@ def test_an_objective_that_fails_is_listed_and_the_rest_goes_on(
     assert answer["failed"][0] == {"name": "peak_acceleration", "reason": "no luck with peak_acceleration"}
     Voice(as_json=False, quiet=False).answer(lambda: answer, lambda: tradeoff_view(result))
     shown = capsys.readouterr().out
-    assert "least RMS jerk, failed: no luck with rms_jerk" in shown
+    assert "minimised RMS jerk, failed: no luck with rms_jerk" in shown
     assert isinstance(tradeoff_figure(result), Figure)
 
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 def tradeoff_view(result: TradeOff) -> RenderableType:
     """Show all profiles, each measure with its multiple of the best."""
     table = new_table(title=f"Objectives and laws, by {words(result.sorted_by)}; × the best", title_justify="left")
-    table.add_column("least …, or law")
+    table.add_column("minimised …, or law")
     for name in result.measures:
         unit = result.unit(name).replace("^2", "²").replace("^3", "³")
         table.add_column(f"{words(name).replace('acceleration', 'acc.')}\n{unit}", justify="right")
@@ -27,7 +27,7 @@ def tradeoff_view(result: TradeOff) -> RenderableType:
         table.add_row(words(failure.name), "failed", *[""] * (len(result.measures) - 1), style="bold")
     broken = any(not row.within_limits for row in result.rows)
     notes = [new_text("† breaks a limit of the job; not counted as the best")] if broken else []
-    notes += [new_text(f"least {words(failure.name)}, failed: {failure.reason}") for failure in result.failures]
+    notes += [new_text(f"minimised {words(failure.name)}, failed: {failure.reason}") for failure in result.failures]
     return stacked(table, *notes)
 
 
