@@ -19,7 +19,14 @@ ROOT = Path(__file__).parents[2]
 LINKED = ("design", "examples", "profiles", "validation")
 PAPERS = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "CITATION.cff", "LICENSE", "pyproject.toml")
 NOT_COPIED = shutil.ignore_patterns(".venv", ".git", "out", "dist", ".*_cache", ".hypothesis", "__pycache__")
-WITHOUT_INDEX = ("--no-deps", "--no-index", "--no-build-isolation", "--disable-pip-version-check", "--quiet")
+WITHOUT_INDEX = (
+    "--ignore-installed",
+    "--no-deps",
+    "--no-index",
+    "--no-build-isolation",
+    "--disable-pip-version-check",
+    "--quiet",
+)
 
 
 def copied(target: Path, links: bool) -> Path:
