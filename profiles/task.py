@@ -1,4 +1,4 @@
-"""`Task`: a machine, a cut and limits, and the facts that follow from these three."""
+"""`Task`: a machine, a cut, limits and what the line does, and the facts that follow from these."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from functools import cached_property
 
 from camwright.profiles.cut import Cut
 from camwright.profiles.limits import Limits
+from camwright.profiles.line import STEADY, Line
 from camwright.profiles.machines.machine import Machine
 from camwright.profiles.polynomial.profile import CamProfile
 
@@ -23,6 +24,8 @@ class Task:
         The cycle on the master.
     limits
         What the slave may do, in its own unit.
+    line
+        How the line ramps its speed, which the limits are to bear.
 
     Examples
     --------
@@ -35,6 +38,7 @@ class Task:
     machine: Machine
     cut: Cut
     limits: Limits
+    line: Line = STEADY
 
     @cached_property
     def sync(self) -> CamProfile:
@@ -145,12 +149,16 @@ class Task:
 
     def with_machine(self, machine: Machine) -> Task:
         """Return the task on another machine."""
-        return Task(machine, self.cut, self.limits)
+        return replace(self, machine=machine)
 
     def with_cut(self, cut: Cut) -> Task:
         """Return the task with another cut."""
-        return Task(self.machine, cut, self.limits)
+        return replace(self, cut=cut)
 
     def with_limits(self, limits: Limits) -> Task:
         """Return the task within other limits."""
-        return Task(self.machine, self.cut, limits)
+        return replace(self, limits=limits)
+
+    def with_line(self, line: Line) -> Task:
+        """Return the task on a line that ramps otherwise."""
+        return replace(self, line=line)

@@ -26,7 +26,23 @@ def conflicts(known: Known) -> list[str]:
         One message for each conflict: quantity, value, limit, place, way out.
     """
     machine = machine_of(known)
-    return [*_zones(known), *machine_conflicts(known, machine), *servo_conflicts(known), *line_speed_conflicts(known)]
+    return [
+        *_zones(known),
+        *machine_conflicts(known, machine),
+        *servo_conflicts(known),
+        *line_speed_conflicts(known),
+        *_line(known),
+    ]
+
+
+def _line(known: Known) -> Iterator[str]:
+    """Check that a jerk of the line has a ramp that it belongs to."""
+    jerk = known.numbers.get("line.jerk")
+    if jerk is not None and not known.numbers.keys() & {"line.acceleration", "line.stop"}:
+        yield (
+            f"[line] jerk = {typed(jerk, 'm/s^3', units=known.units)}: the line has no ramp whose jerk it could be; "
+            'add [line] acceleration or stop, e.g. acceleration = "1 m/s^2", or leave jerk out'
+        )
 
 
 def _zones(known: Known) -> Iterator[str]:

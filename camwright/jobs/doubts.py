@@ -35,6 +35,9 @@ USUAL: dict[str, tuple[str, float, float]] = {
     "cut.length": ("m", 0.005, 50.0),
     "cut.line_speed": ("m/s", 1 / 60, 1500 / 60),
     "cut.sync_tolerance": ("m", 1e-6, 5e-3),
+    "line.acceleration": ("m/s^2", 0.01, 50.0),
+    "line.stop": ("m/s^2", 0.05, 100.0),
+    "line.jerk": ("m/s^3", 0.01, 1e5),
     "servo.bandwidth": ("bandwidth", 16.0, 750.0),
     "servo.damping": ("1", 0.3, 2.0),
     "servo.position_gain": ("1/s", 2.0, 250.0),
@@ -75,8 +78,8 @@ def _implausible(job: Job, given: dict[str, object]) -> Iterator[str]:
             yield _far(f"machine.{each.key}", value, "m", _MACHINE_LENGTH, given, job.units)
     for place, (si, *ends) in USUAL.items():
         table, key = place.split(".")
-        value = numbers[table][key]
-        if not ends[0] <= value <= ends[1]:
+        value = numbers.get(table, {}).get(key)
+        if value is not None and not ends[0] <= value <= ends[1]:
             yield _far(place, value, si, (ends[0], ends[1]), given, job.units)
     for key, limits in _LIMITS[unit].items():
         value = numbers["limits"][key]
@@ -112,5 +115,7 @@ def _missing(job: Job, given: dict[str, Any]) -> Iterator[str]:
         yield f"[machine] {loads}: nothing to move, so no torque and no energy is told"
     elif job.limits.motor is None:
         yield "[limits] motor: no torque-speed curve, so torque is told but not limited"
+    if not job.line.ramps:
+        yield "[line] acceleration, stop: taken as a line that keeps its speed; what the cam does while it ramps is not checked"
     if "servo.dead_time" not in given:
         yield "[servo] dead_time: taken as 0 ms; where the cut falls depends on it"

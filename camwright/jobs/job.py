@@ -24,11 +24,12 @@ from camwright.jobs.structure import (
     JobFile,
     read_structure,
 )
-from camwright.jobs.tables import cut_table, limits_table, machine_table, servo_table
+from camwright.jobs.tables import cut_table, limits_table, line_table, machine_table, servo_table
 from camwright.jobs.toml_text import toml_text
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
 from camwright.profiles.limits import Limits
+from camwright.profiles.line import STEADY, Line
 from camwright.profiles.machines import MACHINES, Machine
 from camwright.profiles.motor import MotorCurve
 from camwright.profiles.objective import ObjectiveName
@@ -82,6 +83,8 @@ class Job:
         Ranges of the servo's parameters, nothing where the job file gives none.
     output
         How the cam is written.
+    line
+        How the line ramps its speed, which the slave's limits are to bear.
     source
         The file that it was read from, nothing where there is none; two jobs of the same numbers are equal whatever their files.
     units
@@ -109,6 +112,7 @@ class Job:
     slowest: float
     servo_tolerance: ServoTolerance | None
     output: Output
+    line: Line = STEADY
     source: Source | None = field(default=None, compare=False, repr=False)
     units: Units = field(default=METRIC, compare=False, repr=False)
 
@@ -121,6 +125,7 @@ class Job:
         servo: Mapping[str, Any] | Servo,
         objective: Mapping[str, Any] | ObjectiveName = "peak_acceleration",
         output: Mapping[str, Any] | None = None,
+        line: Mapping[str, Any] | Line | None = None,
     ) -> Job:
         """Make a job without a job file, checked as one from a file is.
 
@@ -133,6 +138,8 @@ class Job:
             units under a key that ends with the unit: ``length_m``, ``line_speed_m_per_s``, ``bandwidth_rad_per_s``, ``mass_kg``.
         objective, output
             Tables with the keys of a job file, as far as they differ from the defaults; the name of the objective will do.
+        line
+            How the line ramps its speed, a table or the object; nothing for a line that runs steadily.
 
         Raises
         ------
@@ -160,6 +167,7 @@ class Job:
             "limits": limits_table(limits, turning=turning) if isinstance(limits, Limits) else limits,
             "servo": servo_table(servo, None) if isinstance(servo, Servo) else servo,
             "objective": {"minimise": objective} if isinstance(objective, str) else objective,
+            "line": line_table(line) if isinstance(line, Line) else dict(line or {}),
             "output": dict(output or {}),
         }
         if isinstance(cut, Cut):
@@ -204,6 +212,7 @@ class Job:
             "cut": cut_table(self.cut),
             "limits": limits_table(self.limits, turning=self.machine.slave_unit == "rad"),
             "servo": servo_table(self.servo, self.servo_tolerance),
+            **({} if self.line == STEADY else {"line": line_table(self.line)}),
             "objective": objective,
             "output": {
                 "origin": self.cut.origin,
@@ -219,8 +228,8 @@ class Job:
 
     @property
     def task(self) -> Task:
-        """The job's machine, cut and limits."""
-        return Task(self.machine, self.cut, self.limits)
+        """The job's machine, cut and limits, and how the line ramps."""
+        return Task(self.machine, self.cut, self.limits, self.line)
 
 
 @dataclass(frozen=True)
@@ -348,5 +357,6 @@ def _job(file: JobFile, known: Known, machine: Machine) -> Job:
         slowest=slowest_share(known, cut.line_speed),
         servo_tolerance=None if file.servo.tolerance is None else tolerance_of(known, servo),
         output=Output(file.output.points, file.output.targets),
+        line=Line(**file.line.model_dump()),
         units=known.units,
     )

@@ -22,6 +22,18 @@ MEANINGS: dict[str, tuple[str, str]] = {
     "limits.jerk": ("greatest jerk of the slave", "design, limits, every check"),
     "limits.reversal": ("whether the slave may run backwards", "design, limits, every check"),
     "limits.motor": ("torque that the motor gives over its speed", "design, motor checks"),
+    "line.acceleration": (
+        "greatest acceleration with which the line speeds up and slows down; the cam keeps its limits meanwhile, at every phase",
+        "design, checks, limits",
+    ),
+    "line.stop": (
+        "deceleration of the line's emergency stop; the cam keeps its limits meanwhile; that of any ramp if left out",
+        "design, checks, limits",
+    ),
+    "line.jerk": (
+        "greatest jerk with which these come and go; if left out, the corners of a ramp are not looked at",
+        "design, checks, limits",
+    ),
     "servo.bandwidth": ("bandwidth of the velocity loop", "servo simulation"),
     "servo.damping": ("damping ratio of the velocity loop", "servo simulation"),
     "servo.position_gain": ("gain of the position loop", "servo simulation"),

@@ -7,6 +7,7 @@ from dataclasses import asdict
 from typing import Any
 
 from camwright.jobs.job import Job
+from camwright.profiles.line import STEADY
 from camwright.profiles.machines import MACHINES, Machine
 from camwright.profiles.machines.fields import fields_of
 
@@ -33,8 +34,8 @@ def stored_machine(numbers: dict[str, Any]) -> Machine:
 
 
 def job_numbers(job: Job) -> dict[str, Any]:
-    """Write a job as plain numbers in SI units."""
-    return {
+    """Write a job as plain numbers in SI units; what the line does is left out where nothing is said of it."""
+    numbers = {
         "name": job.name,
         "machine": machine_numbers(job.machine),
         "cut": asdict(job.cut),
@@ -47,3 +48,4 @@ def job_numbers(job: Job) -> dict[str, Any]:
         "servo_tolerance": None if job.servo_tolerance is None else asdict(job.servo_tolerance),
         "points": job.output.points,
     }
+    return numbers if job.line == STEADY else numbers | {"line": asdict(job.line)}

@@ -122,6 +122,16 @@ class ObjectiveTable(Table):
     line_speeds: Annotated[tuple[str, ...] | None, *line_speeds_field(), aware_only("leave line_speeds out")] = None
 
 
+class LineTable(Table):
+    """How the line ramps its speed."""
+
+    _place = "line"
+
+    acceleration: Annotated[float | None, *quantity_field("acceleration", example="1 m/s^2")] = None
+    stop: Annotated[float | None, *quantity_field("acceleration", example="5 m/s^2")] = None
+    jerk: Annotated[float | None, *quantity_field("jerk", example="50 m/s^3")] = None
+
+
 class OutputTable(Table):
     """How the cam is written."""
 
@@ -154,6 +164,7 @@ class JobFile(Table):
     cut: CutTable
     limits: LimitsTable
     servo: ServoTable
+    line: LineTable = LineTable()
     objective: ObjectiveTable = ObjectiveTable()
     output: OutputTable = OutputTable()
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Any
 
 from camwright.house.units import quantity_text
 from camwright.profiles.cut import Cut
 from camwright.profiles.limits import Limits
+from camwright.profiles.line import Line
 from camwright.profiles.machines import Machine
 from camwright.profiles.machines.fields import Quantity, fields_of
 from camwright.profiles.servo import Servo
@@ -62,6 +64,12 @@ def limits_table(limits: Limits, *, turning: bool) -> dict[str, Any]:
             for speed, torque in limits.motor.points
         ]
     return table
+
+
+def line_table(line: Line) -> dict[str, Any]:
+    """Write how the line ramps as the table of a job file, with what is known of it."""
+    kinds = {"acceleration": "acceleration", "stop": "acceleration", "jerk": "jerk"}
+    return {key: quantity_text(value, kinds[key]) for key, value in asdict(line).items() if value is not None}
 
 
 def servo_table(servo: Servo, tolerance: ServoTolerance | None) -> dict[str, Any]:

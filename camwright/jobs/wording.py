@@ -12,6 +12,7 @@ from camwright.profiles.message import HOLE, Message, Value
 TABLES: dict[str, tuple[str, ...]] = {
     "cut": ("length", "line_speed", "sync_zone", "shear_zone", "shear_zone_at", "sync_tolerance", "sync_ratio"),
     "limits": ("speed", "acceleration", "jerk", "reversal", "motor"),
+    "line": ("stop",),
     "servo": ("position_gain", "sample_time", "bandwidth", "damping"),
     "objective": ("minimise",),
     "output": ("points",),

@@ -260,5 +260,10 @@ def design_schema() -> dict[str, Any]:
             schema_version={"const": SCHEMA_VERSION},
         ),
     )
+    line = {
+        **table(acceleration=maybe, stop=maybe, jerk=maybe),
+        "description": "how the line ramps its speed, if it does",
+    }
+    root["properties"]["job"]["properties"]["si"]["properties"]["line"] = line
     head = {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "camwright design"}
     return {**head, **root}

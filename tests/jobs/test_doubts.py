@@ -53,10 +53,11 @@ def test_what_is_left_out_and_matters_is_listed() -> None:
         "[cut] sync_tolerance: taken as 0.1 mm",
         "[machine] inertia or friction",
         "[servo] dead_time",
+        "[line] acceleration, stop: taken as a line that keeps its speed",
     ):
         assert key in found
     full = PAPER.replace("[cut]", 'inertia = "0.05 kg m^2"\n\n[cut]', 1).replace(
-        "[servo]", '[servo]\ndead_time = "1 ms"', 1
+        "[servo]", '[line]\nacceleration = "1 m/s^2"\n\n[servo]\ndead_time = "1 ms"', 1
     )
     assert doubts(parse_job(full, "")).missing == (
         "[limits] motor: no torque-speed curve, so torque is told but not limited",

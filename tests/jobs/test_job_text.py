@@ -19,6 +19,7 @@ from camwright.jobs.numbers import job_numbers
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
 from camwright.profiles.limits import Limits
+from camwright.profiles.line import Line
 from camwright.profiles.machines import CrankSlider, LinearCarriage, RotaryKnife
 from camwright.profiles.motor import MotorCurve
 from camwright.profiles.servo import Servo
@@ -86,6 +87,8 @@ def test_a_place_that_the_design_chose_leaves_the_text_as_it_was() -> None:
         {"limits": replace(load_job().limits, motor=MotorCurve(((0.0, 12.0), (100 * math.pi, 8.0))))},
         {"machine": RotaryKnife(0.4, drum_inertia=0.1 + 0.2)},
         {"cut": replace(load_job().cut, origin="cut")},
+        {"line": Line(1.0, 5.0, 50.0)},
+        {"line": Line(stop=1 / 3)},
     ],
     ids=lambda change: next(iter(change)),
 )
