@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from camwright.cli.options import Json, NoFigures, Out, Quiet, output_directory
+from camwright.cli.options import Json, NoFigures, Out, Quiet, job_work, output_directory
 from camwright.cli.views.checks import checks_view
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.drives.audit import MEASURES, Audit, audit, audit_answer
 from camwright.figures.audit import audit_figures
-from camwright.house.files import staged
-from camwright.house.output import Voice
+from camwright.house.output import Voice, complain
+from camwright.house.owned import owned
 from camwright.jobs.job import load_job
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def run(
         if not no_figures:
             step("writing files")
             directory = output_directory(out, asked)
-            with staged(directory) as aside:
+            with owned(directory, job_work("audit", asked, job, out), complain) as aside:
                 files = [directory / figure.name for figure in audit_figures(result, aside)]
     voice.answer(lambda: audit_answer(result, file, files), lambda: _view(result, file, files))
     return 0 if result.judgement.passed else 1

@@ -25,8 +25,8 @@ from camwright.bender.sending import End, Parity, SerialLine, send, transfer
 from camwright.bender.sheet import write_sheet
 from camwright.cli.options import Json, Quiet
 from camwright.cli.views.parts import new_table, new_text, stacked
-from camwright.house.files import staged, write_files
-from camwright.house.output import Voice
+from camwright.house.output import Voice, complain
+from camwright.house.owned import Work, owned
 from camwright.house.progress import Step
 from camwright.profiles.errors import InputError
 
@@ -116,7 +116,8 @@ def run(
         result = _bent(drawing, bender, reading, place, reverse, step)
         names = _names(drawing.stem, len(result.outlines))
         programs = [directory / f"{name}.nc" for name in names]
-        files = _write(result, names, directory, figures=not no_figures, step=step)
+        work = Work("bend", drawing.stem, result.sha256)
+        files = _write(result, names, directory, work, figures=not no_figures, step=step)
     if port is not None and not result.passed:
         result = replace(result, notes=(*result.notes, f"nothing is sent to {port}: a check failed"))
     elif port is not None:
@@ -188,10 +189,12 @@ def _bent(
     return BentDrawing(drawing, hashlib.sha256(drawing.read_bytes()).hexdigest(), bender, found, bent)
 
 
-def _write(result: BentDrawing, names: list[str], directory: Path, *, figures: bool, step: Step) -> list[Path]:
+def _write(
+    result: BentDrawing, names: list[str], directory: Path, work: Work, *, figures: bool, step: Step
+) -> list[Path]:
     """Write programs, bend lists, figures and sheets, all or none."""
     step("writing files")
-    with staged(directory) as aside:
+    with owned(directory, work, complain) as aside:
         for name, outline in zip(names, result.outlines, strict=True):
             (aside / f"{name}.nc").write_bytes(outline.text.encode("ascii"))
             (aside / f"{name}-bends.csv").write_bytes(csv_text(outline, result.job).encode("ascii"))
@@ -210,7 +213,10 @@ def _calibrate(measurements: Path, bender: BenderJob, out: Path | None, voice: V
     result = calibrate(measurements, bender)
     directory = Path("out") / measurements.stem if out is None else out
     texts = {f"{measurements.stem}.toml": result.text, f"{measurements.stem}-residuals.csv": residuals_text(result)}
-    write_files(directory, texts)
+    work = Work("bend --calibrate", measurements.stem, hashlib.sha256(measurements.read_bytes()).hexdigest())
+    with owned(directory, work, complain) as aside:
+        for name, text in texts.items():
+            (aside / name).write_bytes(text.encode())
     files = [directory / name for name in texts]
     voice.answer(lambda: calibration_answer(result, files), lambda: _calibration_view(result, files))
     return 0

@@ -8,15 +8,15 @@ from typing import Annotated
 import typer
 
 from camwright.answers.compare import compare_answer
-from camwright.cli.options import GivenJob, Json, NoFigures, Out, Quiet, final_paths, output_directory
+from camwright.cli.options import GivenJob, Json, NoFigures, Out, Quiet, final_paths, job_work, output_directory
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import stacked
 from camwright.cli.views.profiles import profiles_view
 from camwright.cli.views.tradeoff import tradeoff_view
 from camwright.figures.comparison import comparison_figure
 from camwright.figures.tradeoff import tradeoff_figures
-from camwright.house.files import staged
-from camwright.house.output import Voice
+from camwright.house.output import Voice, complain
+from camwright.house.owned import Work, owned
 from camwright.jobs.job import Job, load_job
 from camwright.profiles.errors import InputError
 from camwright.studies.comparison import compare, law_names, require_laws, with_screw
@@ -49,7 +49,11 @@ def run(
                 f"--objectives compares all laws of one machine; leave out {'--with' if laws else '--screw'}"
             )
         return compare_objectives(
-            asked, output_directory(out, asked), figures=not no_figures, voice=Voice(as_json, quiet)
+            asked,
+            output_directory(out, asked),
+            job_work("compare --objectives", asked, job, out),
+            figures=not no_figures,
+            voice=Voice(as_json, quiet),
         )
     names = tuple(dict.fromkeys(laws)) if laws else law_names(asked.task)
     require_laws(names, asked.task)
@@ -66,7 +70,7 @@ def run(
         if not no_figures:
             step("writing files")
             directory = output_directory(out, asked)
-            with staged(directory) as aside:
+            with owned(directory, job_work("compare", asked, job, out), complain) as aside:
                 comparison_figure(result, aside)
                 files = final_paths(aside, directory)
 
@@ -74,7 +78,7 @@ def run(
     return 0
 
 
-def compare_objectives(asked: Job, directory: Path, *, figures: bool, voice: Voice) -> int:
+def compare_objectives(asked: Job, directory: Path, work: Work, *, figures: bool, voice: Voice) -> int:
     """Solve a job for every objective, print the trade-off, and draw it.
 
     Parameters
@@ -83,6 +87,8 @@ def compare_objectives(asked: Job, directory: Path, *, figures: bool, voice: Voi
         The job.
     directory
         Where the figure goes: ``tradeoff.svg`` and ``tradeoff.png``.
+    work
+        What these are made of.
     figures
         Whether to draw it.
     voice
@@ -98,7 +104,7 @@ def compare_objectives(asked: Job, directory: Path, *, figures: bool, voice: Voi
         result = trade_off(asked, step)
         if figures:
             step("writing files")
-            with staged(directory) as aside:
+            with owned(directory, work, complain) as aside:
                 files = [directory / file.name for file in sorted(tradeoff_figures(result, aside))]
 
     voice.answer(lambda: tradeoff_answer(result, files), lambda: stacked(tradeoff_view(result), files_view(files)))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from camwright.answers.design import design_answer
 from camwright.answers.objective import objective_unit
-from camwright.cli.options import JobOrPaper, Json, NoFigures, Out, Quiet, final_paths, output_directory
+from camwright.cli.options import JobOrPaper, Json, NoFigures, Out, Quiet, final_paths, job_work, output_directory
 from camwright.cli.views.checks import checks_view
 from camwright.cli.views.files import files_view
 from camwright.cli.views.lead import lead_view
@@ -17,9 +17,9 @@ from camwright.cli.views.parts import new_text, stacked
 from camwright.cli.views.profiles import profiles_view
 from camwright.cli.views.speed_band import band_view
 from camwright.figures.design import design_figures
-from camwright.house.files import staged
 from camwright.house.numbers import number, with_unit
-from camwright.house.output import Voice
+from camwright.house.output import Voice, complain
+from camwright.house.owned import owned
 from camwright.jobs.job import load_job
 from camwright.stored.save import design_files
 from camwright.studies.axis_study import AxisStudy
@@ -46,7 +46,7 @@ def run(
         result = optimise(asked, step)
         texts = design_files(result)
         step("writing files")
-        with staged(directory) as aside:
+        with owned(directory, job_work("design", asked, job, out), complain) as aside:
             for name, text in texts.items():
                 (aside / name).write_bytes(text.encode())
             if not no_figures:

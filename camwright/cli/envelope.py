@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from camwright.cli.options import GivenJob, Json, NoFigures, Out, Quiet, final_paths, output_directory
+from camwright.cli.options import GivenJob, Json, NoFigures, Out, Quiet, final_paths, job_work, output_directory
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import new_table, stacked
 from camwright.figures.envelope import envelope_figure
-from camwright.house.files import staged
 from camwright.house.numbers import converted, unit_shown
-from camwright.house.output import Voice
+from camwright.house.output import Voice, complain
+from camwright.house.owned import owned
 from camwright.jobs.job import load_job
 from camwright.studies.envelope import EnvelopeAnswer, envelope_answer
 
@@ -37,7 +37,7 @@ def run(
     with voice.progress((points + 2) * (points + 1) + 1) as step:
         answer = envelope_answer(asked, points, step)
     texts = answer.files()
-    with staged(directory) as aside:
+    with owned(directory, job_work("envelope", asked, job, out), complain) as aside:
         for name, text in texts.items():
             (aside / name).write_bytes(text.encode())
         if not no_figures:

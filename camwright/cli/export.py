@@ -13,7 +13,7 @@ from camwright.drives.export import export_answer
 from camwright.drives.options import chosen_targets, parse_targets
 from camwright.drives.table_files import TableFiles, export
 from camwright.house.files import read_text
-from camwright.house.output import Voice
+from camwright.house.output import Voice, complain
 from camwright.house.units import quantity
 from camwright.jobs.table_units import parse_units
 from camwright.profiles.errors import InputError
@@ -68,6 +68,7 @@ def run(
             points=points,
             force=force,
             step=step,
+            told=complain,
         )
     voice.answer(
         lambda: {**export_answer(written.results), "set_aside": written.older}, lambda: _view(written, directory)

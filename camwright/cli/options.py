@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from camwright.house.owned import Work
 from camwright.jobs.job import Job
 
 JobOrPaper = Annotated[
@@ -23,6 +24,11 @@ Quiet = Annotated[bool, typer.Option("--quiet", help="Print neither tables nor p
 def output_directory(out: Path | None, job: Job) -> Path:
     """Where the files of a job go."""
     return Path("out") / job.name if out is None else out
+
+
+def job_work(command: str, job: Job, file: Path | None, out: Path | None) -> Work:
+    """Say what a command makes of a job; where the user names no folder, another job of this name is told by its file."""
+    return Work(command, job.name, job.sha256, file if out is None else None)
 
 
 def final_paths(aside: Path, directory: Path) -> list[Path]:

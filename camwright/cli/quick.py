@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -10,8 +11,8 @@ import typer
 from camwright.cli.options import Json, Quiet
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import new_table, stacked
-from camwright.house.files import write_files
-from camwright.house.output import Voice
+from camwright.house.output import Voice, complain
+from camwright.house.owned import Work, owned
 from camwright.studies.quick import QuickAnswer, quick_answer, quick_cam_text, read_cross_cut
 
 if TYPE_CHECKING:
@@ -39,7 +40,10 @@ def run(
     file: Path | None = None
     if out is not None:
         file = out / "cam.csv"
-        write_files(out, {file.name: quick_cam_text(cut)})
+        text = quick_cam_text(cut)
+        work = Work("quick", "cross-cutter", hashlib.sha256(text.encode()).hexdigest())
+        with owned(out, work, complain) as aside:
+            (aside / file.name).write_bytes(text.encode())
 
     def data() -> dict[str, Any]:
         return answer.to_dict() if file is None else {**answer.to_dict(), "files": [str(file)]}

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import hashlib
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
@@ -10,8 +11,8 @@ from typing import Protocol
 from camwright.drives.export import Exported, export_possible, export_report
 from camwright.drives.options import parse_targets
 from camwright.drives.withheld import copy_aside, older_tables, remove
-from camwright.house.files import staged
 from camwright.house.json_text import to_json
+from camwright.house.owned import Work, owned
 from camwright.house.progress import Step, ignore
 from camwright.house.provenance import camwright_version
 from camwright.jobs.job import Job
@@ -72,6 +73,7 @@ def export(
     points: int | None = None,
     force: bool = False,
     step: Step = ignore,
+    told: Callable[[str], None] = ignore,
 ) -> TableFiles:
     """Write a cam for drives into a directory.
 
@@ -85,6 +87,8 @@ def export(
         Where the files shall stand; made if it is missing.
     units, accuracy, points, force, step
         As of `camwright.drives.export.export`.
+    told
+        Told of tables that are replaced and were not of this design.
 
     Raises
     ------
@@ -111,9 +115,19 @@ def export(
     older = older_tables(place, withheld, Header(job.name, camwright_version()))
     texts = {name: text for result in results for name, text in result.files.items()}
     texts["report.json"] = to_json({**export_report(results, job, refused), "set_aside": older})
-    with staged(place) as aside:
+    work, kept = (
+        Work("export", job.name, _sum(design), adds=True),
+        [new for names in older.values() for new in names.values()],
+    )
+    with owned(place, work, told, kept) as aside:
         for name, text in texts.items():
             (aside / name).write_bytes(text.encode())
         copy_aside(place, aside, older)
     remove(place, older)
     return TableFiles(tuple(results), refused, older, tuple(place / name for name in texts))
+
+
+def _sum(design: OfJob) -> str:
+    """SHA-256 of a cam and its job."""
+    numbers = (design.profile.breaks.tobytes(), design.profile.coefficients.tobytes())
+    return hashlib.sha256(b"".join((design.job.sha256.encode(), *numbers))).hexdigest()

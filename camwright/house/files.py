@@ -5,8 +5,10 @@ from __future__ import annotations
 import contextlib
 import os
 import shutil
+import stat
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from camwright.profiles.errors import InputError
@@ -60,17 +62,41 @@ def read_text(path: Path, what: str, limit: int) -> str:
         raise InputError(f"{path}: not UTF-8 text (byte {error.start}); save the {what} as UTF-8") from error
 
 
+@dataclass(frozen=True)
+class Changes:
+    """What else happens to a directory when files are moved into it.
+
+    Parameters
+    ----------
+    gone
+        Names of files that are removed.
+    renamed
+        New names of files that are kept under another one, by their old ones.
+    """
+
+    gone: tuple[str, ...] = ()
+    renamed: Mapping[str, str] = field(default_factory=dict)
+
+
+def no_changes(_new: Path) -> Changes:
+    """Leave all else in a directory as it is."""
+    return Changes()
+
+
 @contextlib.contextmanager
-def staged(directory: Path) -> Iterator[Path]:
+def staged(directory: Path, settle: Callable[[Path], Changes] = no_changes) -> Iterator[Path]:
     """Give a folder to write files into; at the end they are all moved into the directory, or none of them.
 
     The folder lies inside the directory, which is made when it is missing. When anything fails, the folder, what was
-    moved already and the directories made here are taken back; files that were there before are put back.
+    moved already and the directories made here are taken back; files that were there before are put back. Where a link, a device
+    or a directory has the name of a file, nothing is written.
 
     Parameters
     ----------
     directory
         Where the files shall stand.
+    settle
+        Asked when the folder is full: looks at it, may add to it, and says what else shall happen.
 
     Yields
     ------
@@ -98,7 +124,7 @@ def staged(directory: Path) -> Iterator[Path]:
         new = aside / "new"
         new.mkdir()
         yield new
-        _move_all(new, directory, aside / "old")
+        _move_all(new, directory, aside / "old", settle(new))
     except OSError as error:
         _take_back(aside, made)
         raise InputError(
@@ -249,28 +275,53 @@ def _make(directory: Path) -> list[Path]:
     return made
 
 
-def _move_all(new: Path, directory: Path, old: Path) -> None:
+def _move_all(new: Path, directory: Path, old: Path, changes: Changes) -> None:
     """Flush every file to the disk and move it into the directory; on failure put everything back."""
     names = sorted(file.name for file in new.iterdir())
-    for name in names:
-        if (directory / name).is_dir():
-            raise IsADirectoryError(21, f"a directory is in the way of the file {name}")
+    require_plain(directory, names)
     flush(new)
     old.mkdir()
-    moved: list[str] = []
+    added: list[str] = []
     try:
-        for name in names:
+        for name in sorted({*names, *changes.gone, *changes.renamed}):
             if os.path.lexists(directory / name):
                 shutil.copy2(directory / name, old / name, follow_symlinks=False)
+        for name, kept in changes.renamed.items():
+            os.rename(directory / name, directory / kept)
+            added.append(kept)
+        for name in names:
             os.replace(new / name, directory / name)
-            moved.append(name)
+            added.append(name)
+        for name in changes.gone:
+            (directory / name).unlink()
     except BaseException:
-        for name in moved:
-            if os.path.lexists(old / name):
-                os.replace(old / name, directory / name)
-            else:
-                (directory / name).unlink()
+        for name in added:
+            (directory / name).unlink()
+        for kept_copy in old.iterdir():
+            os.replace(kept_copy, directory / kept_copy.name)
         raise
+
+
+def require_plain(directory: Path, names: Iterable[str]) -> None:
+    """Refuse to put files where something stands that is no plain file.
+
+    Raises
+    ------
+    InputError
+        A directory, a link or a device has one of the names.
+    """
+    for name in names:
+        place = directory / name
+        if os.path.lexists(place) and not stat.S_ISREG(place.lstat().st_mode):
+            raise InputError(
+                f"{place}: {_kind_of(place)} is in the way of the file {name} and is left alone; move it away, or choose another --out"
+            )
+
+
+def _kind_of(place: Path) -> str:
+    if place.is_symlink():
+        return "a link"
+    return "a directory" if place.is_dir() else "a device"
 
 
 def _take_back(aside: Path | None, made: list[Path]) -> None:

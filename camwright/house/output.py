@@ -55,7 +55,7 @@ class Voice:
         from rich.console import Console
         from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
-        columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
+        columns = (TextColumn("{task.description}", markup=False), BarColumn(), TimeElapsedColumn())
         with Progress(*columns, console=Console(stderr=True), transient=True) as display:
             task = display.add_task("starting", total=steps)
             begun = False
@@ -105,7 +105,10 @@ def _rendered(view: RenderableType) -> str:
     """Render for the terminal, or as plain text of a fixed width."""
     from rich.console import Console
 
-    console = Console(file=sys.stdout, highlight=False, width=None if sys.stdout.isatty() else _PLAIN_WIDTH)
+    width = None if sys.stdout.isatty() else _PLAIN_WIDTH
+    console = Console(
+        file=sys.stdout, highlight=False, markup=False, emoji=False, width=width
+    )  # brackets in names are text
     with console.capture() as capture:
         console.print(view)
     return capture.get()

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 
-from camwright.house.files import staged
+from camwright.house.owned import Work, owned
 from camwright.stored.design_file import design_text
 from camwright.stored.profile_files import cam_text
 from camwright.studies.design import Design
@@ -19,6 +20,10 @@ def design_files(design: Design) -> dict[str, str]:
         The job asks for fewer points than the profile has ends of pieces.
     """
     return {"design.json": design_text(design), "cam.csv": cam_text(design)}
+
+
+def _warn(note: str) -> None:
+    warnings.warn(note, UserWarning, stacklevel=5)
 
 
 def save(design: Design, directory: str | Path) -> tuple[Path, ...]:
@@ -41,6 +46,11 @@ def save(design: Design, directory: str | Path) -> tuple[Path, ...]:
     InputError
         A file cannot be written; then none is.
 
+    Warns
+    -----
+    UserWarning
+        What was replaced was not of this job, or was changed since.
+
     Examples
     --------
     >>> import tempfile
@@ -51,7 +61,7 @@ def save(design: Design, directory: str | Path) -> tuple[Path, ...]:
     (['design.json', 'cam.csv'], True)
     """
     texts = design_files(design)
-    with staged(Path(directory)) as aside:
+    with owned(Path(directory), Work("design", design.job.name, design.job.sha256), _warn) as aside:
         for name, text in texts.items():
             (aside / name).write_bytes(text.encode())
     return tuple(Path(directory) / name for name in texts)

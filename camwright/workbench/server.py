@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import contextlib
+import hashlib
 import json
 import re
 from collections.abc import AsyncIterator
@@ -19,7 +20,7 @@ from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
 
 from camwright.answers.error import error_answer
-from camwright.house.files import staged
+from camwright.house.owned import Work, owned
 from camwright.jobs.job import parse_job
 from camwright.jobs.keys import job_keys
 from camwright.jobs.wording import error_words
@@ -108,7 +109,8 @@ class Workbench:
             ran = await self._runner.run(call.commands, call.inputs)
             if ran.exit_code > 1:
                 return _answered(ran)
-            with staged(self._folder) as aside:
+            work = Work("workbench", "the job of the page", hashlib.sha256(text.encode()).hexdigest())
+            with owned(self._folder, work) as aside:
                 (aside / JOB_FILE).write_bytes(text.encode())
                 (aside / "design.json").write_bytes(ran.files["out/design.json"])
         except InputError as error:

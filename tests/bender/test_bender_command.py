@@ -16,6 +16,7 @@ import pytest
 from camwright.bender.job import BUNDLED_BENDER, load_bender
 from camwright.bender.springback_file import BUNDLED
 from camwright.cli.main import main
+from camwright.house.owned import LIST
 from camwright.profiles.bender.nc_code import read_program
 from camwright.profiles.errors import InputError
 
@@ -55,7 +56,7 @@ def test_fragment_of_the_paper_from_a_drawing(drawing: Make, tmp_path: Path, cap
         "N010 G01 G91 X22.000\nN011 G01 G90 Y90.000\nN012 G01 G90 Y0.0\nN013 G01 G91 X22.000\n"
         "N014 G01 G90 Y270.000\nN015 G01 G90 Y0.0\nN016 G01 G91 X12.500\n"
     ) in Path(answer["program"]).read_text()
-    assert sorted(file.name for file in (tmp_path / "out").iterdir()) == ["drawing-bends.csv", "drawing.nc"]
+    assert sorted(file.name for file in (tmp_path / "out").iterdir()) == [LIST, "drawing-bends.csv", "drawing.nc"]
 
 
 def test_the_paper_s_arc_rule_by_job(drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]):

@@ -19,6 +19,7 @@ import pytest
 
 from camwright.cli.commands import COMMANDS
 from camwright.cli.main import main
+from camwright.house.owned import LIST
 from camwright.jobs.job import BUNDLED_JOB
 from camwright.profiles.errors import InfeasibleError, SolverError
 from camwright.profiles.returns import BASELINES
@@ -99,7 +100,7 @@ def test_design_prints_the_promised_object(designed: tuple[Path, dict[str, Any]]
 
 
 def test_design_writes_its_files_and_nothing_else(designed: tuple[Path, dict[str, Any]]) -> None:
-    assert sorted(entry.name for entry in designed[0].iterdir()) == ["cam.csv", "design.json"]
+    assert sorted(entry.name for entry in designed[0].iterdir()) == [LIST, "cam.csv", "design.json"]
 
 
 @pytest.mark.parametrize("name", ["cam.csv", "design.json"])
@@ -126,7 +127,7 @@ def test_the_files_go_to_out_and_the_jobs_name(tmp_path: Path, monkeypatch: pyte
     monkeypatch.chdir(tmp_path)
     assert main(["design", "--no-figures", "--quiet"]) == 0
     assert sorted(str(file) for file in Path("out").rglob("*.*")) == [
-        "out/paper-600/cam.csv", "out/paper-600/design.json"
+        f"out/paper-600/{LIST}", "out/paper-600/cam.csv", "out/paper-600/design.json"
     ]  # fmt: skip
 
 
@@ -162,7 +163,7 @@ def test_figures_are_written_with_the_other_files(
     assert main(["design", "--json", "--out", str(tmp_path)]) == 0
     names = ["cam.csv", "design.json", "figure.svg"]
     assert strict(capsys.readouterr().out)["files"] == [str(tmp_path / name) for name in names]
-    assert sorted(entry.name for entry in tmp_path.iterdir()) == names
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == [LIST, *names]
 
 
 def test_a_figure_that_fails_leaves_nothing(

@@ -19,6 +19,7 @@ from camwright.drives.withheld import (
     older_tables,
     remove,
 )
+from camwright.house.owned import LIST
 from camwright.profiles.errors import InputError
 from camwright.profiles.tables.target import Header
 from camwright.profiles.tables.targets import TARGETS
@@ -51,7 +52,7 @@ def export(
 
 
 def contents(place: Path) -> dict[str, bytes]:
-    return {file.name: file.read_bytes() for file in place.iterdir() if file.name != "report.json"}
+    return {file.name: file.read_bytes() for file in place.iterdir() if file.name not in ("report.json", LIST)}
 
 
 @pytest.mark.parametrize("target", TARGETS)

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from camwright.cli.main import main
+from camwright.house.owned import LIST
 from camwright.jobs.job import load_job
 from camwright.profiles.cross_cutter import CrossCut
 from camwright.stored.profile_files import read_cycle
@@ -81,7 +82,7 @@ def test_the_file_holds_the_cycle(length: str, tmp_path: Path, capsys: pytest.Ca
     file = tmp_path / "new" / "cam.csv"
     assert list(answer) == [*KEYS, "files"]
     assert answer["files"] == [str(file)]
-    assert [entry.name for entry in file.parent.iterdir()] == ["cam.csv"]
+    assert sorted(entry.name for entry in file.parent.iterdir()) == [LIST, "cam.csv"]
     cut = read_cross_cut("400mm", "200mm", length)
     assert file.read_text() == quick_cam_text(cut)
     assert f"# completed: {str(cut.completed).lower()}\n" in file.read_text()

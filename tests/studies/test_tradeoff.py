@@ -20,6 +20,7 @@ from camwright.design.optimise import (
 )
 from camwright.figures.tradeoff import tradeoff_figure
 from camwright.house.output import Voice
+from camwright.house.owned import LIST, Work
 from camwright.jobs.job import Job, load_job
 from camwright.profiles.errors import InfeasibleError, InputError, SolverError
 from camwright.profiles.limits import Limits
@@ -41,6 +42,8 @@ from camwright.studies.tradeoff import (
 )
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
+
+WORK = Work("compare --objectives", "paper-600", "0" * 64)
 
 
 @pytest.fixture(scope="module")
@@ -180,14 +183,16 @@ def test_the_command_prints_and_draws(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, paper: TradeOff
 ) -> None:
     monkeypatch.setattr("camwright.cli.compare.trade_off", lambda _job, _step: paper)
-    assert compare_objectives(paper.job, tmp_path, figures=True, voice=Voice(as_json=False, quiet=False)) == 0
+    assert compare_objectives(paper.job, tmp_path, WORK, figures=True, voice=Voice(as_json=False, quiet=False)) == 0
     said = capsys.readouterr().out
     assert any(line.split()[1:7] == ["peak", "acceleration", "│", "9.072", "×1.00", "│"] for line in said.splitlines())
     assert "parabolic †" in said
-    assert sorted(file.name for file in tmp_path.iterdir()) == ["tradeoff.png", "tradeoff.svg"]
+    assert sorted(file.name for file in tmp_path.iterdir()) == [LIST, "tradeoff.png", "tradeoff.svg"]
     first = {file.name: file.read_bytes() for file in tmp_path.iterdir()}
-    assert compare_objectives(paper.job, tmp_path, figures=True, voice=Voice(as_json=True, quiet=False)) == 0
-    assert json.loads(capsys.readouterr().out)["files"] == [str(tmp_path / name) for name in sorted(first)]
+    assert compare_objectives(paper.job, tmp_path, WORK, figures=True, voice=Voice(as_json=True, quiet=False)) == 0
+    assert json.loads(capsys.readouterr().out)["files"] == [
+        str(tmp_path / name) for name in sorted(first) if name != LIST
+    ]
     assert {file.name: file.read_bytes() for file in tmp_path.iterdir()} == first  # the same bytes
 
 

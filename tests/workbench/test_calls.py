@@ -11,6 +11,7 @@ import pytest
 from starlette.testclient import TestClient
 
 from camwright.cli.main import main
+from camwright.house.owned import LIST
 from camwright.jobs.job import BUNDLED_JOB
 from camwright.workbench.guard import MOST_BYTES
 from camwright.workbench.preview import preview
@@ -174,7 +175,7 @@ def test_saving_writes_two_files_and_nothing_else(bench: TestClient, folder: Pat
     before = {path.name for path in folder.iterdir()}
     answer = bench.post("/api/save", json={"toml": PAPER})
     assert answer.json() == {"files": ["job.toml", "design.json"]}
-    assert {path.name for path in folder.iterdir()} - before == {"job.toml", "design.json"}
+    assert {path.name for path in folder.iterdir()} - before == {"job.toml", "design.json", LIST}
     assert (folder / "job.toml").read_text() == PAPER
     refused = bench.post("/api/save", json={"toml": SHORT})
     assert refused.json()["exit_code"] == 3
