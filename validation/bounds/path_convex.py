@@ -13,7 +13,6 @@ points an interval.
 from __future__ import annotations
 
 import numpy as np
-from scipy.linalg import solveh_banded
 
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.validation.bounds.path_task import PathTask
@@ -91,6 +90,8 @@ class _Dual:
 
     def _climb(self, p: FloatArray, price: float) -> tuple[FloatArray, float, float]:
         """Newton's method for one price: ``p``, the value, and the time that the motion takes which the price asks for."""
+        from scipy.linalg import solveh_banded
+
         h, value = self._h, self._value(p, price)
         for _ in range(STEPS):
             z, _, curve, _ = self._parts(p, price)

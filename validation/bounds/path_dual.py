@@ -14,10 +14,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import clarabel
 import numpy as np
-from scipy.interpolate import BSpline
-from scipy.sparse import csc_array
 
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.validation.bounds.path_task import PathTask
@@ -189,6 +186,8 @@ _POWER = 0.5
 
 
 def _values(knots: FloatArray, x: FloatArray, order: int) -> FloatArray:
+    from scipy.interpolate import BSpline
+
     basis = BSpline(knots, np.eye(len(knots) - 4), 3)
     return np.asarray(basis(x, nu=order))
 
@@ -221,6 +220,9 @@ def _broken(
 
 def _best(spline: _Spline, x: FloatArray, energy: FloatArray, kind: str, level: float) -> FloatArray | None:
     """Solve the cone programme on given places; None where the solver does not end."""
+    import clarabel
+    from scipy.sparse import csc_array
+
     linear, slope = _parts(spline, x, energy)
     count, size = len(x), linear.shape[1]
     # the spline in units of the level, over time where the level is a torque
