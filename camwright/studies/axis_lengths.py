@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 from camwright.design.servo_aware.axis_problem import AxisProblem
@@ -64,18 +65,19 @@ def axis_lengths(job: Job) -> AxisLengths | None:
     )  # of a shaped command the sync zone is the shear zone; it has some width
 
     def search(command: Command, *, axis_limits: bool) -> ZoneSearch:
-        def holds(shape: Cut) -> bool:
+        def excess(shape: Cut) -> float:
             try:
-                return AxisProgramme(AxisProblem(job.task.with_cut(shape), command, servos, axis_limits)).reaches()
+                holds = AxisProgramme(AxisProblem(job.task.with_cut(shape), command, servos, axis_limits)).reaches()
             except SolverError:  # at the edge of what double precision resolves
-                return False
+                return math.inf
+            return -math.inf if holds else math.inf
 
         def lower(sync_zone: float) -> float:
             if command == "shaped":  # a mean speed beyond the limit is all that forbids it
                 return max(shear, pitch * cut.line_speed / limits.speed) * (1 + _LENGTH_RESOLUTION)
             return least.fastest_cut(pitch, cut.line_speed, limits, sync_zone)
 
-        return ZoneSearch(cut, pitch, lower, holds, _FINE, _LENGTH_RESOLUTION, _ZONE_RESOLUTION)
+        return ZoneSearch(cut, pitch, lower, excess, _FINE, _LENGTH_RESOLUTION, _ZONE_RESOLUTION)
 
     best, zone = search("in_sync", axis_limits=False).find()
     found = zone < pitch

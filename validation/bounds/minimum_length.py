@@ -8,6 +8,7 @@ in the return zone.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Literal
@@ -174,7 +175,7 @@ class _Laws:
         """Search for the minimum cut length."""
         task = self.task
         return ZoneSearch(
-            task.cut, task.machine.pitch, self.lower, self.holds, _FINE, _LENGTH_RESOLUTION, zone_resolution
+            task.cut, task.machine.pitch, self.lower, self.excess, _FINE, _LENGTH_RESOLUTION, zone_resolution
         )
 
     def lower(self, sync_zone: float) -> float:
@@ -186,9 +187,9 @@ class _Laws:
             return _fastest_quintic_cut(pitch, line_speed, limits, sync_zone)
         return fastest_cut(pitch, line_speed, limits, sync_zone)
 
-    def cycle(self, shape: Cut) -> CamProfile:
-        """Cycle with the return of this search."""
-        task = self.task.with_cut(shape)
+    def cycle(self, task: Task) -> CamProfile:
+        """Cycle of a task with the return of this search."""
+        shape = task.cut
         if self.law != "least_acceleration":
             return baseline(self.law, task)
         speed, acceleration, jerk = task.greatest_ratio, task.greatest_slope, task.greatest_jerk
@@ -198,12 +199,12 @@ class _Laws:
         motion = in_time(rise, length, speed - 1, least, jerk).profile()
         return assemble(motion.over(0.0, length).add_line(1.0), task)
 
-    def holds(self, shape: Cut) -> bool:
-        """Whether the axis is within tolerance in the whole shear zone at every phase."""
-        profile = self.cycle(shape)
+    def excess(self, shape: Cut) -> float:
+        """Logarithm of the greatest sync error in the shear zone, over all phases, by the tolerance: the error dies away like a power."""
+        task = self.task.with_cut(shape)
         start = shape.shear_start + self.relief * shape.shear_zone_at
-        error = greatest_sync_error(profile, self.task.with_cut(shape), self.servo, start, shape.length)
-        return error <= self.task.cut.sync_tolerance
+        error = greatest_sync_error(self.cycle(task), task, self.servo, start, shape.length)
+        return math.log(error / shape.sync_tolerance) if error > 0.0 else -math.inf
 
 
 def _minimum(laws: _Laws) -> MinimumCutLength:
@@ -217,7 +218,8 @@ def _minimum(laws: _Laws) -> MinimumCutLength:
     if zone == pitch:
         return MinimumCutLength(best, zone, 0.0, "settling")
     shape = search.shape(best, zone)
-    settling = servo_response(laws.cycle(shape), task.with_cut(shape), laws.servo).settling
+    shaped = task.with_cut(shape)
+    settling = servo_response(laws.cycle(shaped), shaped, laws.servo).settling
     eased = {name: replace(laws, task=task.with_limits(limits)) for name, limits in _eased(task.limits).items()}
     eased["settling"] = replace(laws, relief=_RELAXATION)
     gain: dict[Binding, float] = {}

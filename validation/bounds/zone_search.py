@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -9,6 +10,63 @@ from camwright.profiles.cut import Cut
 
 _COARSE = 8
 """Parts into which the room between shear zone and pitch is divided by the sync zones that are tried first."""
+
+_GUESSES = 3
+"""How often an edge is looked for by a straight line before the place itself that is asked about is looked at."""
+
+
+@dataclass
+class _Edge:
+    """Where a quantity that falls over a range reaches zero, as closely as it is known.
+
+    Parameters
+    ----------
+    excess
+        The quantity.
+    spare
+        Room left beside a guess, for it to lie on the other side of the edge than the last place did.
+    low, high
+        Place where the quantity is known to be above zero, and place where it is not.
+    above, below
+        What it is there; infinite if only its sign is known.
+    """
+
+    excess: Callable[[float], float]
+    spare: float
+    low: float
+    high: float
+    above: float
+    below: float
+    _low_moved: bool | None = None
+
+    def reached(self, place: float) -> bool:
+        """Whether the quantity is at most zero at a place; it is not looked at there if that is known from places beside it."""
+        guesses = _GUESSES
+        while self.low < place < self.high:
+            self._look(self._guess() if guesses and self._guessable else place)
+            guesses -= guesses > 0
+        return place >= self.high
+
+    @property
+    def _guessable(self) -> bool:
+        return self.high - self.low > 2 * self.spare and math.isfinite(self.above - self.below)
+
+    def _guess(self) -> float:
+        """Give the place where the straight line between both ends reaches zero, and a little on to the end that stayed."""
+        zero = self.low + (self.high - self.low) * self.above / (self.above - self.below)
+        zero += -self.spare if self._low_moved is False else self.spare
+        return min(max(zero, self.low + self.spare), self.high - self.spare)
+
+    def _look(self, place: float) -> None:
+        """Look at a place between the ends, and move one of them there; an end that stays twice counts half (Illinois)."""
+        found = self.excess(place)
+        if found > 0.0:
+            self.low, self.above = place, found
+            self.below *= 0.5 if self._low_moved else 1.0
+        else:
+            self.high, self.below = place, found
+            self.above *= 0.5 if self._low_moved is False else 1.0
+        self._low_moved = found > 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,8 +83,9 @@ class ZoneSearch:
         Slave travel per cycle ``y_c`` (m).
     lower
         Shortest cut length (m) beside a sync zone (m) that the return allows at all.
-    holds
-        Whether a cut holds. Its shear zone lies at the end of the sync zone.
+    excess
+        By how much a cut, its shear zone at the end of the sync zone, misses what it must hold: at most zero where it holds, infinite
+        where nothing but that is known.
     fine
         Parts into which the room is divided in the end; 8 times a power of two.
     length_resolution
@@ -38,7 +97,7 @@ class ZoneSearch:
     cut: Cut
     pitch: float
     lower: Callable[[float], float]
-    holds: Callable[[Cut], bool]
+    excess: Callable[[Cut], float]
     fine: int
     length_resolution: float
     zone_resolution: float
@@ -52,16 +111,18 @@ class ZoneSearch:
         """Shortest cut length of a sync zone, ``None`` if it is not below the best by the resolution."""
         resolution = self.length_resolution * self.pitch
         high, low = best - resolution, self.lower(sync_zone)
-        if low > high or not self.holds(self.shape(high, sync_zone)):
+
+        def excess(length: float) -> float:
+            return self.excess(self.shape(length, sync_zone))
+
+        if low > high or (below := excess(high)) > 0.0:
             return None
-        if self.holds(self.shape(low, sync_zone)):
+        if (above := excess(low)) <= 0.0:
             return low
-        while high - low > resolution:
+        edge = _Edge(excess, 0.25 * resolution, low, high, above, below)
+        while high - low > resolution:  # halved, so that the answer does not depend on how the edge was found
             middle = 0.5 * (low + high)
-            if self.holds(self.shape(middle, sync_zone)):
-                high = middle
-            else:
-                low = middle
+            low, high = (low, middle) if edge.reached(middle) else (middle, high)
         return high
 
     def find(self) -> tuple[float, float]:

@@ -17,7 +17,7 @@ from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
 from camwright.validation.servo.axis_run import AxisRun, ServoRun, hermite
 from camwright.validation.servo.lifting import SUBSTEPS
-from camwright.validation.servo.simulation import simulate, slow_axis, slow_cycle, slow_run
+from camwright.validation.servo.simulation import run_about, simulate, slow_axis, slow_cycle, slow_run
 from camwright.validation.servo.slow_axis import decided, humps
 
 ON_THE_LINE = 1e-9
@@ -219,7 +219,7 @@ def greatest_sync_error(profile: CamProfile, task: Task, servo: Servo, start: fl
     """
     found = slow_sync_error(profile, task, servo, start, end, SUBSTEPS)
     if found is None:
-        error = _in_sync(simulate(profile, task.cut, servo), profile, task, start, end).error()
+        error = _in_sync(run_about(profile, task.cut, servo, (start, end)), profile, task, start, end).error()
         return float(np.abs(error).max())
     return found
 

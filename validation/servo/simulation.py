@@ -188,14 +188,20 @@ def _clocks(cut: Cut, lifted: Lifted, part: tuple[float, float], phases: int) ->
 @lru_cache(maxsize=8)  # many profiles are simulated with one cut and servo
 def whole_cycle(cut: Cut, servo: Servo) -> tuple[Lifted, _Clocks, FloatArray]:
     """Lift a servo, and lay its samples over the whole cycle, a sample more at the end; fewer phases where there are too many samples."""
-    past, phases = memory(servo.loop), PHASES
-    while phases > SUBSTEPS and phases * (past + math.ceil(cut.period / servo.sample_time)) > _MOST_VALUES:
-        phases //= 2
-    lifted = lift(servo.loop, past, (1, 0))
+    phases = _phases(cut, servo)
+    lifted = lift(servo.loop, memory(servo.loop), (1, 0))
     clocks = _clocks(cut, lifted, (cut.return_start, cut.return_start + cut.length), phases)
     grid = clocks.grid(more=1)
     grid.setflags(write=False)
     return lifted, clocks, grid
+
+
+def _phases(cut: Cut, servo: Servo) -> int:
+    """Count the phases at which a cycle is simulated: fewer where there are too many samples."""
+    samples, phases = memory(servo.loop) + math.ceil(cut.period / servo.sample_time), PHASES
+    while phases > SUBSTEPS and phases * samples > _MOST_VALUES:
+        phases //= 2
+    return phases
 
 
 def simulate(profile: CamProfile, cut: Cut, servo: Servo) -> ServoRun:
@@ -289,6 +295,14 @@ def simulate_part(
     found = _axes(profile, cut, servos, lifted, starts, seen)
     spacing = np.repeat(clocks.step * (phases / SUBSTEPS), phases)[:, None]
     return starts.reshape(-1, 1) + spacing * np.arange(clocks.samples * SUBSTEPS), found
+
+
+def run_about(profile: CamProfile, cut: Cut, servo: Servo, part: tuple[float, float]) -> AxisRun:
+    """Simulate one servo about a part of the cycle, at the phases of `simulate`; arguments as in `simulate_part`."""
+    require_period(profile, cut)
+    lifted = lift(servo.loop, memory(servo.loop), (1, 0))
+    master, (ratio, axis) = simulate_part(profile, cut, (servo,), lifted, part, _phases(cut, servo))
+    return AxisRun(master, axis, ratio)
 
 
 def shear_zone_run(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import pytest
@@ -25,7 +26,7 @@ ANY = always(0.1)
 
 def search(least: Callable[[float], float], fine: int = 64, lower: Callable[[float], float] = ANY) -> ZoneSearch:
     """Search where a cut holds if it is no shorter than a given least length beside its sync zone."""
-    return ZoneSearch(CUT, PITCH, lower, lambda cut: cut.length >= least(cut.sync_zone), fine, 3e-6, 1e-5)
+    return ZoneSearch(CUT, PITCH, lower, lambda cut: least(cut.sync_zone) - cut.length, fine, 3e-6, 1e-5)
 
 
 @given(st.floats(0.06, 0.38), st.floats(0.2, 0.35), st.floats(0.2, 5.0))
@@ -69,3 +70,43 @@ def test_tried_cuts_have_their_shear_zone_at_the_end_of_the_sync_zone() -> None:
     assert (shape.length, shape.sync_zone, shape.shear_zone, shape.origin) == (0.3, 0.1, SHEAR, "return")
     assert shape.shear_zone_at == pytest.approx(0.06)
     assert (shape.line_speed, shape.sync_tolerance) == (CUT.line_speed, CUT.sync_tolerance)
+
+
+def bisected(excess: Callable[[float], float], low: float, high: float, resolution: float) -> float:
+    """Halve a range, whatever it costs: the naive twin."""
+    while high - low > resolution:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if excess(middle) <= 0.0 else (middle, high)
+    return high
+
+
+@given(
+    st.floats(0.1001, 0.3999),
+    st.sampled_from([1e-3, 1.0, 1e6]),
+    st.sampled_from(["line", "power", "bent", "cubic", "jump", "sign", "kink"]),
+)
+def test_the_edge_is_that_of_halving_bit_by_bit_at_fewer_looks(edge: float, size: float, form: str) -> None:
+    looks = 0
+
+    def excess(length: float) -> float:
+        nonlocal looks
+        looks += 1
+        off = edge - length
+        return {
+            "line": size * off,
+            "power": size * (edge**8 - length**8),
+            "bent": size * (off + off * off),
+            "cubic": size * off**3,
+            "jump": off + math.copysign(size, off),
+            "sign": math.copysign(math.inf, off),
+            "kink": off * (size if off > 0 else 1.0),
+        }[form]
+
+    one = ZoneSearch(CUT, PITCH, ANY, lambda cut: excess(cut.length), 64, 3e-6, 1e-5)
+    found = one.shorter(0.2, PITCH)
+    mine, resolution = looks, 3e-6 * PITCH
+    looks = 0
+    assert found == bisected(excess, 0.1, PITCH - resolution, resolution)
+    assert mine <= (looks if form == "sign" else 4 * looks) + 2  # the two ends
+    if form in ("line", "bent"):
+        assert mine <= 0.75 * looks
