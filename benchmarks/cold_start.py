@@ -12,6 +12,7 @@ from __future__ import annotations
 import argparse
 import csv
 import json
+import os
 import resource
 import statistics
 import subprocess
@@ -22,8 +23,11 @@ from time import perf_counter
 
 RESULTS = Path(__file__).parent / "results"
 
-MOST = 3.0
+MOST = 1.0
 """Greatest ratio that the project promises."""
+
+ENVIRONMENT = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+"""What the processes run in: an installed copy is compiled, so the checkout is too."""
 
 IMPORTS = [sys.executable, "-c", "import casadi, scipy.signal"]
 DESIGN = [
@@ -39,7 +43,7 @@ DESIGN = [
 def run(command: list[str], directory: str) -> tuple[float, float, str]:
     """Processor and wall time (s) of a process, and what it printed."""
     before, start = resource.getrusage(resource.RUSAGE_CHILDREN), perf_counter()
-    done = subprocess.run(command, cwd=directory, capture_output=True, text=True, check=True)
+    done = subprocess.run(command, cwd=directory, env=ENVIRONMENT, capture_output=True, text=True, check=True)
     wall, after = perf_counter() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, wall, done.stdout
 

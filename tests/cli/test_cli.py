@@ -475,6 +475,15 @@ def test_help_and_check_import_nothing_heavy() -> None:
         assert run.stdout.splitlines()[-1] == "set()"
 
 
+def test_a_design_without_figures_loads_the_solver_and_no_library_beside_it(tmp_path: Path) -> None:
+    heavy = "{'scipy', 'matplotlib', 'clarabel', 'pint', 'jinja2', 'typst', 'rich.table', 'ezdxf', 'starlette'}"
+    arguments = ["design", "--json", "--no-figures", "--out", str(tmp_path / "out")]
+    code = f"import sys; from camwright.cli.main import main; main({arguments!r});"
+    code += f"print('casadi' in sys.modules, ({heavy}) & sys.modules.keys())"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout.splitlines()[-1] == "True set()"
+
+
 def test_progress_is_shown_on_a_terminal(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.setattr("sys.stderr.isatty", lambda: True)
     monkeypatch.setenv("TERM", "xterm")
