@@ -25,6 +25,7 @@ from camwright.bender.sending import End, Parity, SerialLine, send, transfer
 from camwright.bender.sheet import write_sheet
 from camwright.cli.options import Json, Quiet
 from camwright.cli.views.parts import new_table, new_text, stacked
+from camwright.house.files import is_device_name
 from camwright.house.output import Voice, complain
 from camwright.house.owned import Work, owned
 from camwright.house.progress import Step
@@ -107,6 +108,7 @@ def run(
         return _calibrate(measurements, bender, out, voice)
     if drawing is None:
         raise InputError("no drawing is named; give a DXF file, or test bends with --calibrate")
+    _require_name(drawing)
     place = None if start is None else _place(start)
     choice = style_choice(style, layer, each=styles == "all")
     arc_error = bender.divide.allowed if arcs == "find" else None
@@ -125,6 +127,14 @@ def run(
         _send(result, line, lambda text: transfer(text, bender.flavour, attributes, end), wait, voice)
     voice.answer(lambda: answer(result, programs, files), lambda: _drawing_view(result, files))
     return 0 if result.passed else 1
+
+
+def _require_name(file: Path) -> None:
+    """Refuse a file whose name would name files that Windows takes for devices."""
+    if is_device_name(file.name):
+        raise InputError(
+            f"{file}: Windows takes {file.stem} for a device, and the files are called after it; rename the file"
+        )
 
 
 def _send(
@@ -210,6 +220,7 @@ def _write(
 
 def _calibrate(measurements: Path, bender: BenderJob, out: Path | None, voice: Voice) -> int:
     """Make a springback table from test bends."""
+    _require_name(measurements)
     result = calibrate(measurements, bender)
     directory = Path("out") / measurements.stem if out is None else out
     texts = {f"{measurements.stem}.toml": result.text, f"{measurements.stem}-residuals.csv": residuals_text(result)}

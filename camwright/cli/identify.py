@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -11,7 +12,7 @@ import typer
 from camwright.cli.options import Json, Quiet
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import new_table, new_text, stacked
-from camwright.house.files import write_files
+from camwright.house.files import read_bytes, require_plain, write_files
 from camwright.house.output import Voice
 from camwright.profiles.errors import InputError
 from camwright.profiles.trace import Trace
@@ -20,6 +21,7 @@ from camwright.studies.identification import (
     PARAMETERS,
     identify_answer,
     identify_file,
+    is_servo_text,
     one_line,
     range_text,
     residual_unit,
@@ -30,6 +32,9 @@ from camwright.validation.identify.identification import Identified
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
+
+
+_MOST_BYTES = 2**20
 
 
 def run(
@@ -57,6 +62,8 @@ def run(
     """Find the servo's parameters from a recorded trace."""
     if out is not None and (out.is_dir() or not out.name):
         raise InputError(f"{out}: a directory; --out names the file to write, e.g. servo.toml")
+    if out is not None:
+        _require_ours(out)
     voice = Voice(as_json, quiet)
     with voice.progress(1) as step:
         step("fitting the servo")
@@ -67,6 +74,21 @@ def run(
 
     voice.answer(lambda: identify_answer(trace, recorded, found, files), lambda: _view(trace, recorded, found, files))
     return 0
+
+
+def _require_ours(out: Path) -> None:
+    """Refuse to write over a file that identify did not write, or that was changed since.
+
+    Raises
+    ------
+    InputError
+        Such a file, a link or a device is there.
+    """
+    require_plain(out.parent, [out.name])
+    if os.path.lexists(out) and not is_servo_text(read_bytes(out, "servo file", _MOST_BYTES)):
+        raise InputError(
+            f"{out}: there already, and not as camwright identify wrote it; it is not overwritten: name another file with --out"
+        )
 
 
 def _view(path: Path, trace: Trace, found: Identified, files: Sequence[Path]) -> RenderableType:

@@ -10,7 +10,8 @@ import typer
 from camwright.cli.options import Json, Quiet
 from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.house.files import read_text, require_replaceable
-from camwright.house.output import Voice
+from camwright.house.output import Voice, complain
+from camwright.house.owned import Work
 from camwright.jobs.job import parse_job
 from camwright.profiles.errors import InputError
 from camwright.profiles.tables.targets import TARGETS, target_of
@@ -109,7 +110,10 @@ def _make(
         required = targets is None or targets.strip() != "all"
         made = make_recipe(design, names, language, note, particulars, required=required, step=step)
         files = recipe_files(made, step)
-        write_folder(files, folder)
+        work = Work(
+            "recipe", job.name, made.recipe.provenance.job_sha256, file if out is None and stored is None else None
+        )
+        write_folder(files, folder, work, complain)
     answer = {"files": [{"path": path, "sha256": sha256(data)} for path, data in sorted(files.items())]}
     voice.answer(lambda: answer, lambda: _recipe_view(made.recipe, answer, folder))
     return 0 if made.recipe.released else 1

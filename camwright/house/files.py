@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
 import shutil
 import stat
 import tempfile
@@ -12,6 +13,19 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from camwright.profiles.errors import InputError
+
+_DEVICES = re.compile(r"(?i)(con|prn|aux|nul|conin\$|conout\$|(com|lpt)[0-9¹²³])( *\.|:|$)")
+
+
+def is_device_name(name: str) -> bool:
+    """Whether Windows takes a name of a file or folder for a device, as it takes ``con`` and ``aux.csv``.
+
+    Examples
+    --------
+    >>> [name for name in ("con", "Aux.csv", "com1", "LPT¹.txt", "nul .txt", "control", "com10", "a.con") if is_device_name(name)]
+    ['con', 'Aux.csv', 'com1', 'LPT¹.txt', 'nul .txt']
+    """
+    return _DEVICES.match(name) is not None
 
 
 def read_bytes(path: Path, what: str, limit: int) -> bytes:
@@ -76,6 +90,11 @@ class Changes:
 
     gone: tuple[str, ...] = ()
     renamed: Mapping[str, str] = field(default_factory=dict)
+
+
+def nothing_else(_old: Path) -> Mapping[str, str]:
+    """Keep no file of a folder that is replaced."""
+    return {}
 
 
 def no_changes(_new: Path) -> Changes:
@@ -161,7 +180,9 @@ def put(new: Path, target: Path) -> None:
 
 
 @contextlib.contextmanager
-def replaced(directory: Path, ours: Callable[[Path], bool]) -> Iterator[Path]:
+def replaced(
+    directory: Path, ours: Callable[[Path], bool], theirs: Callable[[Path], Mapping[str, str]] = nothing_else
+) -> Iterator[Path]:
     """Give a folder to write into; at the end it takes the place of the directory, or nothing has changed.
 
     The folder lies beside the directory, on the same file system. What stands there already is replaced as a whole if it is ours
@@ -173,6 +194,8 @@ def replaced(directory: Path, ours: Callable[[Path], bool]) -> Iterator[Path]:
         Where the folder shall stand.
     ours
         Whether an existing directory may be replaced.
+    theirs
+        Paths of the files in such a directory that are to stay, and the paths that they get in the new one.
 
     Yields
     ------
@@ -198,12 +221,25 @@ def replaced(directory: Path, ours: Callable[[Path], bool]) -> Iterator[Path]:
         new = aside / "new"
         new.mkdir()
         yield new
+        if target.exists():
+            _carry(target, new, theirs(target))
         flush(new)
         _swap(new, target, aside / "old")
     except OSError as error:
         raise _refusal(directory, error) from error
     finally:
         shutil.rmtree(aside, ignore_errors=True)
+
+
+def _carry(old: Path, new: Path, theirs: Mapping[str, str]) -> None:
+    """Copy files that are to stay; one that would be written over one of the new ones is in the way."""
+    for path, kept in theirs.items():
+        if os.path.lexists(new / kept) or (not (old / path).is_symlink() and not (old / path).is_file()):
+            raise InputError(
+                f"{old / path}: not written by camwright, and in the way; nothing was changed: move it away, or choose another --out"
+            )
+        (new / kept).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy2(old / path, new / kept, follow_symlinks=False)
 
 
 def require_replaceable(directory: Path, ours: Callable[[Path], bool]) -> None:

@@ -130,7 +130,7 @@ def _settled(new: Path, directory: Path, work: Work, unlisted: frozenset[str], n
     before = [entry for entry in entries if entry.of(work)]
     for entry in before:
         if entry.sha256 != work.sha256:
-            _require_no_rival(directory, entry, work)
+            require_no_rival(directory, entry.sha256, work)
     ours = {name: digest for entry in entries for name, digest in entry.files.items()}
     _require_ours(directory, {name: digest for name, digest in fresh.items() if name not in ours})
     stale = [] if work.adds else [name for entry in before for name in entry.files if name not in fresh]
@@ -138,7 +138,10 @@ def _settled(new: Path, directory: Path, work: Work, unlisted: frozenset[str], n
         name: _digest(directory / name) for name in (*fresh, *stale) if name in ours and _is_plain(directory / name)
     }
     changed = [name for name, digest in there.items() if digest not in (ours[name], fresh.get(name))]
-    renamed = {name: _free(directory, name, new) for name in changed}
+    renamed = {
+        name: free_name(name, lambda other: os.path.lexists(directory / other) or (new / other).exists())
+        for name in changed
+    }
     notes += [_replaced(directory, entry, work, fresh) for entry in entries if _is_news(entry, work, fresh)]
     notes += [f"{directory / name}: changed since camwright wrote it; kept as {kept}" for name, kept in renamed.items()]
     (new / LIST).write_text(_text(_listed(entries, work, fresh, unlisted)), encoding="utf-8")
@@ -246,26 +249,32 @@ def _require_ours(directory: Path, files: Mapping[str, str]) -> None:
         )
 
 
-def _require_no_rival(directory: Path, before: Entry, work: Work) -> None:
-    """Refuse where the work that would be replaced is of another file that still stands beside the one that was read."""
+def require_no_rival(directory: Path, before: str, work: Work) -> None:
+    """Refuse where the work that would be replaced, of this SHA-256, is of another file that still stands beside the one that was read.
+
+    Raises
+    ------
+    InputError
+        There are two jobs of one name.
+    """
     if work.source is None:
         return
     folder, own = work.source.parent, work.source.name
     beside = (file for file in folder.glob(f"*{work.source.suffix}") if file.name != own and _is_plain(file))
     for file in sorted(beside)[:_MOST_RIVALS]:
-        if file.stat().st_size <= _MOST_BYTES and _digest(file) == before.sha256:
+        if file.stat().st_size <= _MOST_BYTES and _digest(file) == before:
             raise InputError(
                 f"{directory}: holds the {work.command} of {file}, which is called {work.name!r} too; give one of them another name, "
                 "or choose another --out"
             )
 
 
-def _free(directory: Path, name: str, new: Path) -> str:
+def free_name(name: str, taken: Callable[[str], bool]) -> str:
     """Give the first name for a changed file that no file has: nothing is lost."""
     stem, dot, ending = name.rpartition(".")
     head, tail = (stem, dot + ending) if stem else (name, "")
     wanted, number = f"{head}{_CHANGED}{tail}", 1
-    while os.path.lexists(directory / wanted) or (new / wanted).exists():
+    while taken(wanted):
         number += 1
         wanted = f"{head}{_CHANGED}-{number}{tail}"
     return wanted

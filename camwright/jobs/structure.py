@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, create_model
 
+from camwright.house.files import is_device_name
 from camwright.house.numbers import units_of
 from camwright.house.servo_table import ServoNumbers
 from camwright.house.setting_fields import Table, checked, number_field, quantity_field, whole_field
@@ -40,6 +41,8 @@ def _name(value: object) -> str | None:
         )
     if value[0] in ". " or value[-1] in ". ":
         return f"{shown(value)}: a name neither begins nor ends with a dot or a space; it names the output directory"
+    if is_device_name(value):
+        return f"{shown(value)}: Windows takes this name for a device; it names the output directory, so choose another"
     return None
 
 

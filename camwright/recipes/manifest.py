@@ -77,6 +77,12 @@ def read_manifest(data: bytes) -> tuple[dict[str, tuple[str, int]], list[str]]:
     return files, faults
 
 
+def job_of_manifest(data: bytes) -> str:
+    """SHA-256 of the job that a manifest, sound by `read_manifest`, is of; empty where it says none."""
+    origin = json.loads(data).get("provenance")
+    return str(origin.get("job_sha256", "")) if isinstance(origin, dict) else ""
+
+
 def canonical_bytes(content: dict[str, Any]) -> bytes:
     """Bytes of a manifest as this program writes it; none if it holds what it never writes."""
     return canonical(content).encode() if _writable(content) else b""

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import os
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from camwright.house.files import replaced, require_replaceable
+from camwright.house.owned import Work, free_name, require_no_rival
 from camwright.house.progress import Step, ignore
+from camwright.profiles.errors import InputError
 from camwright.recipes.build import NO_PARTICULARS, MadeRecipe, make_recipe
 from camwright.recipes.html import recipe_html
-from camwright.recipes.manifest import MANIFEST_FILE, manifest_text
+from camwright.recipes.manifest import MANIFEST_FILE, job_of_manifest, manifest_text, read_manifest, sha256
 from camwright.recipes.model import Language, Particulars, Recipe
 from camwright.recipes.pdf import recipe_pdf
 from camwright.recipes.recipe_file import RECIPE_FILE, recipe_text
@@ -57,7 +60,7 @@ def recipe(
     design
         What `camwright.optimise` or `camwright.read_design` gives.
     directory
-        The folder; a recipe that stands there already is replaced as a whole.
+        The folder; the files of a recipe that stands there already are replaced.
     targets
         Names of the targets that tables are written for; those of the job, else CSV, if none are named.
     language
@@ -94,19 +97,72 @@ def recipe(
     return made.recipe
 
 
-def write_folder(files: dict[str, bytes], directory: Path) -> None:
-    """Write a recipe folder; a recipe that stands there already is replaced as a whole.
+def write_folder(
+    files: dict[str, bytes], directory: Path, work: Work | None = None, told: Callable[[str], None] = ignore
+) -> None:
+    """Write a recipe folder; of a recipe that stands there already all files are replaced, what others put beside them stays.
+
+    A file of the older recipe that was changed since is kept under another name.
+
+    Parameters
+    ----------
+    files
+        Contents by path.
+    directory
+        The folder.
+    work
+        The job; the recipe of another one of this name is not replaced while that still lies beside it.
+    told
+        Told of what was kept, and of a recipe that was replaced and was of another job.
 
     Raises
     ------
     InputError
         Something else is in the way, or the folder cannot be written.
     """
-    with replaced(directory, is_recipe) as aside:
+    notes: list[str] = []
+
+    def theirs(old: Path) -> dict[str, str]:
+        return _theirs(old, set(files), work, notes)
+
+    with replaced(directory, is_recipe, theirs) as aside:
         for path, data in files.items():
             file = aside / path
             file.parent.mkdir(exist_ok=True)
             file.write_bytes(data)
+    for note in notes:
+        told(note)
+
+
+def _theirs(old: Path, taken: set[str], work: Work | None, notes: list[str]) -> dict[str, str]:
+    """Find what of an older folder is not as the recipe wrote it, and where it stands in the new one."""
+    if not any(old.iterdir()):
+        return {}
+    listed, faults = read_manifest((old / MANIFEST_FILE).read_bytes())
+    if faults:
+        raise InputError(
+            f"{old / MANIFEST_FILE}: damaged ({faults[0]}), so nothing here is overwritten; move the folder away, or choose another --out"
+        )
+    before = job_of_manifest((old / MANIFEST_FILE).read_bytes())
+    if work is not None and before != work.sha256:
+        require_no_rival(old, before, work)
+        notes.append(
+            f"{old}: the recipe of another job, or of an earlier state of it (SHA-256 {before[:12]}), is replaced"
+        )
+    kept = {}
+    for file in sorted(old.rglob("*")):
+        path = file.relative_to(old).as_posix()
+        if path == MANIFEST_FILE or (file.is_dir() and not file.is_symlink()):
+            continue
+        plain = file.is_file() and not file.is_symlink()
+        if plain and path in listed:
+            if sha256(file.read_bytes()) == listed[path][0]:
+                continue
+            kept[path] = free_name(path, lambda other: other in taken or os.path.lexists(old / other))
+            notes.append(f"{file}: changed since camwright wrote it; kept as {kept[path]}")
+        else:
+            kept[path] = path
+    return kept
 
 
 def is_recipe(directory: Path) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -43,6 +44,9 @@ def read_trace(path: Path) -> Trace:
         The file cannot be read, or is no trace with equally spaced rows.
     """
     return read_trace_csv(decode(read_bytes(path, "trace", _MOST_BYTES), str(path), _MOST_BYTES), str(path))
+
+
+_SUM = "# camwright identify, SHA-256 of the lines above: "
 
 
 def identify_file(path: Path, velocity_feedforward: float | None) -> tuple[Trace, Identified]:
@@ -102,7 +106,14 @@ def servo_text(path: Path, trace: Trace, found: Identified) -> str:
         text = f'{name} = "{number} {written}"' if written else f"{name} = {number}"
         note = ORIGINS[found.feedforward_from] if bounds is None else range_text(bounds, factor, written)
         lines.append(f"{text:40}# {note}")
-    return "\n".join(lines) + "\n"
+    text = "\n".join(lines) + "\n"
+    return f"{text}{_SUM}{hashlib.sha256(text.encode()).hexdigest()}\n"
+
+
+def is_servo_text(data: bytes) -> bool:
+    """Whether a file is what `servo_text` wrote, unchanged."""
+    head, mark, digest = data.rpartition(_SUM.encode())
+    return bool(mark) and digest.strip() == hashlib.sha256(head).hexdigest().encode()
 
 
 def residual_unit(trace: Trace) -> tuple[float, str]:

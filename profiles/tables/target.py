@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -20,6 +21,10 @@ SAFETY_NOTE = (
 )
 
 _POINTS = re.compile(r"(?m)^[-+0-9., \t]{0,80}[/#(*<!-]{0,4} ?points: ([0-9]{1,7}); period: ")
+_LONGEST = 24
+_DIGITS = 8
+_SIMPLE = re.compile(r"[a-z][a-z0-9]*(-[a-z0-9]+)*")
+_SUMMED = re.compile(rf"-[0-9a-f]{{{_DIGITS}}}$")
 _CONTROL = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029]+")
 _FACTS = re.compile(  # at the start of a comment only, so that no name of a user's can pass for it
     r"(?m)^[-+0-9., \t]{0,80}[/#(*<!-]{0,4} ?camwright units: "
@@ -72,9 +77,18 @@ class Header:
 
     @property
     def identifier(self) -> str:
-        """The name as an identifier of at most 24 letters, digits and single underscores, beginning with a letter."""
-        plain = re.sub(r"[^A-Za-z0-9]+", "_", self.name[:200]).strip("_")[:24].strip("_")
-        return plain if re.match(r"[A-Za-z]", plain) else f"Cam_{plain}".rstrip("_")
+        """The name as an identifier of at most 24 letters, digits and single underscores, beginning with a letter.
+
+        Two names have two identifiers, whatever their case. Words of small letters and digits joined by single hyphens become words
+        joined by underscores, which can be undone; any other name keeps what it has of letters and digits and gets eight digits of
+        its SHA-256.
+        """
+        if _SIMPLE.fullmatch(self.name) and len(self.name) <= _LONGEST and not _SUMMED.search(self.name):
+            return self.name.replace("-", "_")
+        digest = hashlib.sha256(self.name.encode("utf-8", "surrogatepass")).hexdigest()[:_DIGITS]
+        plain = re.sub(r"[^A-Za-z0-9]+", "_", self.name[:200]).strip("_")
+        plain = plain if re.match(r"[A-Za-z]", plain) else f"Cam_{plain}"
+        return f"{plain[: _LONGEST - _DIGITS - 1].rstrip('_')}_{digest}"
 
 
 def units_in(text: str) -> Units | None:

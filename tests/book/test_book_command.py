@@ -50,7 +50,7 @@ def test_the_answer_has_the_agreed_keys(inline: list[int], tmp_path: Path, capsy
     ]
     assert all(Path(file).exists() for file in answer["files"])
     names = {path.name for path in (tmp_path / "book/designs/600mm/80m-per-min/peak_acceleration").iterdir()}
-    assert {"design.json", "report.json", "C00001_L600_V80_paper_60_cam.csv"} < names
+    assert {"design.json", "report.json", "C00001_L600_V80_bdba6d61_cam.csv"} < names
     assert any(name.endswith((".st", ".xml")) for name in names)
     assert main([*ASKED, "--out", str(tmp_path / "book"), "--json", "--targets", "csv,codesys", "--resume"]) == 0
     answer = json.loads(capsys.readouterr().out)

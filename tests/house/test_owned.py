@@ -209,3 +209,24 @@ def test_the_list_is_read_by_people(tmp_path: Path) -> None:
     listed = json.loads((tmp_path / LIST).read_text())
     assert listed["kind"] == "camwright files"
     assert listed["written"][0].keys() == {"command", "name", "sha256", "files"}
+
+
+@pytest.mark.parametrize("name", ["con", "AUX", "nul.job", "Com1", "lpt9", "prn . x", "COM²"])
+def test_names_of_devices_are_no_names(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("job.toml").write_text(job_text("600 mm").replace('"paper-600"', f'"{name}"'), encoding="utf-8")
+    assert main(["check", "job.toml"]) == 2
+    assert "Windows takes this name for a device; it names the output directory" in capsys.readouterr().err
+    assert main(["new", name]) == 2
+    Path(f"{name}.dxf").write_text("")
+    assert main(["bend", f"{name}.dxf"]) == 2
+    assert "for a device, and the files are called after it; rename the file" in capsys.readouterr().err
+    assert not Path("out").exists()
+
+
+@pytest.mark.parametrize("name", ["control", "console-2", "com10", "lpt", "a con", "nullmotor"])
+def test_names_that_only_look_like_devices_are_names(name: str, tmp_path: Path) -> None:
+    (tmp_path / "job.toml").write_text(job_text("600 mm").replace('"paper-600"', f'"{name}"'), encoding="utf-8")
+    assert main(["check", str(tmp_path / "job.toml"), "--quiet"]) == 0

@@ -82,14 +82,58 @@ def test_a_job_its_design_and_a_second_run_give_the_same_bytes(say: Say, paper_j
     assert contents(tmp_path / "one") == contents(tmp_path / "two") == contents(tmp_path / "three")
 
 
-def test_a_recipe_is_replaced_as_a_whole(say: Say, paper_job: Path, tmp_path: Path) -> None:
+def test_all_files_of_an_older_recipe_are_replaced(say: Say, paper_job: Path, tmp_path: Path) -> None:
     out = tmp_path / "recipe"
     say("recipe", paper_job, "--targets", "codesys,logix", "--out", out)
-    (out / "tables" / "stray.txt").write_text("x")
     code, _, _ = say("recipe", paper_job, "--targets", "csv", "--out", out, "--note", "second")
     assert code == 0
     assert [path for path in contents(out) if path.startswith("tables/")] == ["tables/paper_600_cam.csv"]
     assert verify(out) == []
+
+
+def test_notes_and_photos_stay_and_changed_files_are_kept(
+    say: Say, paper_job: Path, folder: Path, tmp_path: Path
+) -> None:
+    notes = {"notes.txt": b"bearing warm", "photos/one.jpg": b"\xff\xd8", "tables/read me.txt": b"mine"}
+    (folder / "photos").mkdir()
+    for name, data in notes.items():
+        (folder / name).write_bytes(data)
+    (folder / "link").symlink_to("/nowhere")
+    (folder / "recipe.html").write_bytes(b"filled in by hand")
+    assert say("recipe", paper_job, "--targets", "csv", "--out", tmp_path / "fresh", "--quiet")[0] == 0
+    code, _, complaint = say("recipe", paper_job, "--targets", "csv", "--out", folder)
+    assert code == 0
+    assert "recipe.html: changed since camwright wrote it; kept as recipe.changed.html" in complaint
+    assert contents(folder) == {**contents(tmp_path / "fresh"), **notes, "recipe.changed.html": b"filled in by hand"}
+    assert (folder / "link").readlink() == Path("/nowhere")
+
+
+def test_what_is_in_the_way_of_a_new_file_is_not_overwritten(say: Say, paper_job: Path, folder: Path) -> None:
+    (folder / "tables" / "paper_600_trio.bas").write_bytes(b"mine")
+    before = contents(folder)
+    code, _, complaint = say("recipe", paper_job, "--targets", "trio", "--out", folder)
+    assert code == 2
+    assert "paper_600_trio.bas: not written by camwright, and in the way; nothing was changed" in complaint
+    (folder / "manifest.json").write_bytes(before["manifest.json"][:-3])
+    assert say("recipe", paper_job, "--targets", "csv", "--out", folder)[0] == 2
+    assert contents(folder) == {**before, "manifest.json": before["manifest.json"][:-3]}
+
+
+def test_recipes_of_two_jobs_of_one_name(
+    say: Say, paper_job: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    text = paper_job.read_text(encoding="utf-8")
+    Path("a.toml").write_text(text)
+    Path("b.toml").write_text(text + "# another\n")
+    assert say("recipe", "a.toml", "--quiet")[0] == 0
+    code, _, complaint = say("recipe", "b.toml", "--quiet")
+    assert code == 2
+    assert "holds the recipe of a.toml, which is called 'paper-600' too" in complaint
+    Path("a.toml").unlink()
+    code, _, complaint = say("recipe", "b.toml", "--quiet")
+    assert code == 0
+    assert "the recipe of another job, or of an earlier state of it" in complaint
 
 
 def test_anything_else_is_left_alone(say: Say, paper_job: Path, tmp_path: Path) -> None:

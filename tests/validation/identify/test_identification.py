@@ -319,3 +319,25 @@ def test_equal_zeros_are_not_told() -> None:
 def test_swapped_columns_are_named() -> None:
     with pytest.raises(InputError, match="command and actual are swapped, or the controller leads"):
         identify(replace(CUT_TRACE, command=CUT_TRACE.actual, actual=CUT_TRACE.command), "t", 1.0)
+
+
+def test_out_replaces_what_identify_wrote_and_nothing_else(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file, out = tmp_path / "trace.csv", tmp_path / "servo.toml"
+    file.write_text(csv(SWEEP), encoding="utf-8")
+    asked = ["identify", str(file), "--out", str(out), "--velocity-feedforward", "1", "--quiet"]
+    assert main(asked) == main(asked) == 0
+    written = out.read_text(encoding="utf-8")
+    changed = written.replace("[servo]", "[servo]  # as of the spring")
+    for text in (changed, "my notes\n", "", "# camwright identify, SHA-256 of the lines above: "):
+        out.write_text(text, encoding="utf-8")
+        assert main(asked) == 2
+        assert "servo.toml" in capsys.readouterr().err
+        assert out.read_text(encoding="utf-8") == text
+    out.unlink()
+    out.symlink_to(tmp_path / "elsewhere")
+    assert main(asked) == 2
+    assert "a link is in the way of the file servo.toml and is left alone" in capsys.readouterr().err
+    assert not (tmp_path / "elsewhere").exists()
+    assert main([*asked[:3], "/dev/null", *asked[4:]]) == 2
+    assert "a device is in the way of the file null" in capsys.readouterr().err
+    assert Path("/dev/null").is_char_device()
