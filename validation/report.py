@@ -5,6 +5,7 @@ Each check compares a value with a limit that it must not exceed, within the all
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -35,6 +36,7 @@ from camwright.validation.motor import (
     greatest_load,
     measure_motor,
 )
+from camwright.validation.production.line_ramp import line_ramp
 from camwright.validation.servo.axis_motion import axis_checks, axis_peaks, greatest_peaks
 from camwright.validation.servo.lead import LengthError, length_errors
 from camwright.validation.servo.line_speeds import line_speed_errors
@@ -137,6 +139,7 @@ def judge(
         *_motion(profile, task, motion),
         *_stroke(profile, task),
         *_motor(profile, task, motor),
+        *_line(profile, task),
         Check("servo_stability", radius < 1.0, radius, 1.0, "1", None, "largest closed-loop pole in the z-plane (S1)"),
         *_servo(response, task.cut, transition=not servo_aware),
         *(_axis(profile, task, servo, slowest) if servo_aware and response is not None else ()),
@@ -303,6 +306,20 @@ def _motor(profile: CamProfile, task: Task, motor: MotorMeasures) -> list[Check]
             Check("motor_torque", False, None, curve.points[0][1], "N m", greatest_jump(profile, 1).at, source)
         )
     return checks
+
+
+def _line(profile: CamProfile, task: Task) -> list[Check]:
+    """Whether the slave keeps its limits while the line ramps as hard as the job says, at any phase."""
+    line = task.line
+    if not line.ramps:
+        return []
+    allowed = line_ramp(profile, task)
+    asked = (line.speeding, allowed.speeding), (line.braking, allowed.braking)
+    worst, bound = max(asked, key=lambda each: each[0] / max(each[1].value, 1e-300))
+    limit = bound.value if math.isfinite(bound.value) else None
+    source = "ramp of the line against what the limits leave at every phase and every line speed up to the job's"
+    passed = limit is None or worst <= limit * (1 + ALLOWANCE)
+    return [Check("line_ramp", passed, worst, limit, "m/s^2", bound.at, source)]
 
 
 def _servo(response: ServoResponse | None, cut: Cut, *, transition: bool) -> list[Check]:

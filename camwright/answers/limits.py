@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
+from camwright.answers.line_ramps import line_ramps_answer
 from camwright.answers.measures import lengths_answer, millimetres
 from camwright.studies.axis_lengths import AxisLengths
 from camwright.studies.limits import MachineLimits
@@ -32,6 +33,7 @@ def limits_answer(found: MachineLimits) -> dict[str, Any]:
             "settling": millimetres(lengths.settling) if lengths else None,
         },
         **axis_lengths_answer(found.axis),
+        "line_ramp": line_ramps_answer(found.ramps),
     }
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from camwright.answers.limits import limits_answer
 from camwright.cli.options import GivenJob, Json, Quiet
 from camwright.cli.views.lengths import lengths_view
+from camwright.cli.views.line_ramps import line_ramps_view
 from camwright.cli.views.parts import new_table, stacked
 from camwright.house.numbers import Units, converted, unit_shown, with_unit
 from camwright.house.output import Voice
@@ -50,6 +51,8 @@ def _view(found: MachineLimits) -> RenderableType:
         views.append(lengths_view(lengths, units))
     if axis is not None:
         views.append(_axis_view(axis, units))
+    if found.ramps is not None:
+        views.append(line_ramps_view(found.ramps))
     return stacked(*views)
 
 

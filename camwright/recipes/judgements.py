@@ -14,7 +14,17 @@ from camwright.recipes.blocks import Block, table_block, text_block
 from camwright.recipes.catalogue import Catalogue
 from camwright.recipes.model import Recipe, RecipeCheck, RecipeTable
 
-REACHED = ("speed", "acceleration", "jerk", "reversal", "stroke", "motor_speed", "motor_torque", "shear_zone_error")
+REACHED = (
+    "speed",
+    "acceleration",
+    "jerk",
+    "reversal",
+    "stroke",
+    "motor_speed",
+    "motor_torque",
+    "line_ramp",
+    "shear_zone_error",
+)
 """Checks that compare a quantity of the machine with its limit."""
 
 _SHORT = 16

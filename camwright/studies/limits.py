@@ -9,9 +9,10 @@ from camwright.house.progress import Step, ignore
 from camwright.jobs.job import Job
 from camwright.studies.axis_lengths import AxisLengths, axis_lengths
 from camwright.studies.cut_lengths import CutLengths, cut_lengths
+from camwright.studies.line_ramps import LineRamps, designed_ramps
 from camwright.studies.reach import Reach, placed_as, reach
 
-LIMITS_STEPS = 4
+LIMITS_STEPS = 5
 """Steps that `limits` tells."""
 
 
@@ -33,6 +34,8 @@ class MachineLimits:
         Published minimum cut lengths, by which the axis settles; ``None`` for machines that the equations are not about.
     axis
         Minimum cut lengths with the axis in the sync tolerance; ``None`` for such machines.
+    ramps
+        How hard the line may ramp on the cam that the job's design is; ``None`` where there is none.
     """
 
     job: Job
@@ -40,6 +43,7 @@ class MachineLimits:
     within: Reach
     lengths: CutLengths | None
     axis: AxisLengths | None
+    ramps: LineRamps | None
 
 
 def limits(job: Job, step: Step = ignore) -> MachineLimits:
@@ -70,4 +74,6 @@ def limits(job: Job, step: Step = ignore) -> MachineLimits:
     step("finding minimum cut lengths")
     lengths = cut_lengths(job)
     step("finding minimum cut lengths with the axis in sync")
-    return MachineLimits(job, far, within, lengths, axis_lengths(job))
+    axis = axis_lengths(job)
+    step("finding how hard the line may ramp")
+    return MachineLimits(job, far, within, lengths, axis, designed_ramps(job))

@@ -13,6 +13,7 @@ from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
 from camwright.studies.axis_study import servos_of
 from camwright.studies.speed_scan import NAMES, SpeedScan
+from camwright.validation.production.line_ramp import line_ramp
 from camwright.validation.report import ALLOWANCE, ValidationReport
 from camwright.validation.servo.simulation import PHASES
 
@@ -39,6 +40,9 @@ _BY_SPEED = (
 )
 """Checks that must be made at every line speed. The lengths follow from others: who is within the limit of speed and settles in the zone is
 longer than both minimum lengths, and has crossed the line."""
+
+RAMP = "line_ramp"
+"""The check of a line that ramps: a slower line leaves more to its ramps."""
 
 _STEP, _SLOW_STEP, _FINER = 1.1, 1.3, 3
 """Steps of the scan above and below `_SLOW`, and the parts into which each is divided where the limit is not far."""
@@ -156,6 +160,8 @@ def speed_band(
     """
     forbids = tuple(check.name for check in report.checks if not check.passed and not _depends(check.name, task))
     top, at_top = _top(report, task)
+    if not forbids and top > 0.0:
+        top, at_top = _within_ramp(profile, task, top, at_top)
     if forbids or not top > 0.0:
         return SpeedBand((), (), forbids or (at_top,))
     own, scan = task.cut.line_speed, SpeedScan(profile, task, servos, servo_aware)
@@ -173,7 +179,7 @@ def speed_band(
 
 def _depends(name: str, task: Task) -> bool:
     """Whether a check depends on the line speed."""
-    return name in _POWERS or name in _BY_SPEED or (name == "reversal" and task.reverses)
+    return name in _POWERS or name in (*_BY_SPEED, RAMP) or (name == "reversal" and task.reverses)
 
 
 def _top(report: ValidationReport, task: Task) -> tuple[float, str]:
@@ -190,6 +196,27 @@ def _top(report: ValidationReport, task: Task) -> tuple[float, str]:
         if speed < top:
             top, binding = speed, check.name
     return (own if abs(top - own) <= ALLOWANCE * own else top), binding
+
+
+def _within_ramp(profile: CamProfile, task: Task, top: float, at_top: str) -> tuple[float, str]:
+    """Highest line speed (m/s) up to which the line may ramp as the job says, if it is below a top; and what binds there."""
+
+    def bears(speed: float) -> bool:
+        allowed = line_ramp(profile, task.at_speed(speed))
+        return task.line.speeding <= allowed.speeding.value * (
+            1 + ALLOWANCE
+        ) and task.line.braking <= allowed.braking.value * (1 + ALLOWANCE)
+
+    own = task.cut.line_speed
+    if not task.line.ramps or bears(top):
+        return top, at_top
+    if own <= top and bears(own) and not bears(own * (1 + ACCURACY)):
+        return own, RAMP
+    low, high = 0.0, top
+    while high - low > ACCURACY * high and high > _LEAST * own:
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if bears(middle) else (low, middle)
+    return low, RAMP
 
 
 def _nodes(own: float, sure: float, top: float) -> FloatArray:

@@ -1,0 +1,1 @@
+"""What production does to a cam: the line ramps."""
