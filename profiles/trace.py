@@ -26,6 +26,10 @@ class Trace:
         Whether positions are counted in m or in rad.
     notes
         What the reader found worth telling.
+    master
+        Position of the master (m or rad, a turn for each cycle), shape ``(n,)``; ``None`` where it was not recorded or not asked for.
+    master_unit
+        Whether the master is counted in m or in rad.
     """
 
     start: float
@@ -34,6 +38,8 @@ class Trace:
     actual: FloatArray
     unit: SlaveUnit
     notes: tuple[str, ...] = ()
+    master: FloatArray | None = None
+    master_unit: SlaveUnit = "m"
 
     @property
     def times(self) -> FloatArray:

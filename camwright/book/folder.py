@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import os
 import shutil
-import stat
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -65,8 +64,6 @@ class BookFolder:
         if not begun and not empty:
             advice = "leave out --resume and choose another --out" if resume else "choose another --out"
             raise InputError(f"{self.root}: not empty, and holds no book to go on with; {advice}")
-        if self.root.exists():
-            self.require_no_links()
         try:
             self.clear()
             self._aside.mkdir(parents=True)
@@ -74,23 +71,6 @@ class BookFolder:
             raise InputError(
                 f"{self.root}: the folder of the book cannot be made: {error.strerror}; choose another --out"
             ) from error
-
-    def require_no_links(self) -> None:
-        """Refuse a book in which a link or a device stands: what is written there would go elsewhere.
-
-        Raises
-        ------
-        InputError
-            The first of them.
-        """
-        for place, folders, names in os.walk(self.root):
-            for name in sorted((*folders, *names)):
-                mode = (Path(place) / name).lstat().st_mode
-                if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
-                    raise InputError(
-                        f"{Path(place) / name}: a link or a device, which no book holds; it is not followed: remove it, or choose "
-                        "another --out"
-                    )
 
     def clear(self) -> None:
         """Remove what is being written."""
@@ -105,15 +85,7 @@ class BookFolder:
         aside.mkdir()
         for name, text in texts.items():
             (aside / name).write_bytes(text.encode())
-        self._keep_others(target, aside)
         put(aside, target)  # a folder stands there where the journal did not come to know of it
-
-    @staticmethod
-    def _keep_others(target: Path, aside: Path) -> None:
-        """Take over what people put beside the files of a combination that is made again."""
-        for other in sorted(target.iterdir()) if target.is_dir() else []:
-            if not (aside / other.name).exists():
-                os.rename(other, aside / other.name)
 
     def write(self, name: str, pieces: Iterator[str]) -> str:
         """Write a file of the book's own, piece by piece, aside first; gives its SHA-256."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import hashlib
 import json
 import platform
 import sqlite3
@@ -19,7 +18,7 @@ from camwright.book.making import peak_rss
 from camwright.book.plan import Book
 from camwright.book.rows import Counts
 from camwright.book.workers import Crew, make_all
-from camwright.book.writing import INDEX, OWN_SUM, write_index
+from camwright.book.writing import INDEX, write_index
 from camwright.profiles.errors import InputError
 
 Told = Callable[[int], None]
@@ -155,23 +154,15 @@ def _complete(book: Book, folder: BookFolder, *, resume: bool) -> Counts:
     """Answer for a folder whose book is complete."""
     if not resume:
         raise InputError(f"{folder.root}: holds a complete book; choose another --out")
-    folder.require_no_links()
     try:
-        data = folder.manifest.read_bytes()
-        listed = json.loads(data.decode("utf-8"))
+        listed = json.loads(folder.manifest.read_text(encoding="utf-8"))
         fingerprint, parameters, files = listed["fingerprint"], listed["parameters"], listed["files"]
         counts = Counts(**listed["counts"])
-        head, _, digest = data.rpartition(OWN_SUM.encode())
-        whole = digest == f'{hashlib.sha256(head).hexdigest()}"\n}}\n'.encode()
-        differing = folder.differing(files) if whole else []
+        differing = folder.differing(files)
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise InputError(f"{folder.manifest}: not the list of a book's files; choose another --out") from error
     if fingerprint != book.fingerprint:
         raise other_book(folder.root, parameters, book)
-    if not whole:
-        raise InputError(
-            f"{folder.manifest}: this list of a book's files was changed or broke off; make the book anew in another --out"
-        )
     if differing:
         raise InputError(
             f"{folder.root}: the book is complete, but {len(differing)} of its files are missing or were changed, the first "

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Iterator
 from dataclasses import asdict
@@ -25,9 +24,6 @@ from camwright.book.rows import (
 INDEX = ("index.html", "index.xlsx", "index.csv", "limits.csv")
 """The files of a book's own, beside the list of all files."""
 
-OWN_SUM = ',\n "sha256": "'
-"""Before the SHA-256 of the list itself."""
-
 
 def write_index(book: Book, journal: Journal, folder: BookFolder) -> Counts:
     """Write a book's own files out of its journal, the list of all files last."""
@@ -49,16 +45,7 @@ def write_index(book: Book, journal: Journal, folder: BookFolder) -> Counts:
 
 
 def _manifest(book: Book, journal: Journal, counts: Counts, digests: dict[str, str]) -> Iterator[str]:
-    """Write the list of all files, and at its end the SHA-256 of all that stands before it."""
-    own = hashlib.sha256()
-    for piece in _listed(book, journal, counts, digests):
-        own.update(piece.encode())
-        yield piece
-    yield f'{OWN_SUM}{own.hexdigest()}"\n}}\n'
-
-
-def _listed(book: Book, journal: Journal, counts: Counts, digests: dict[str, str]) -> Iterator[str]:
-    """Write parameters, counts, then path and SHA-256 of every file, one a line."""
+    """Write the list of all files: parameters, counts, then path and SHA-256 of every file, one a line."""
     head = {
         "kind": "camwright book",
         "schema_version": 1,
@@ -72,7 +59,7 @@ def _listed(book: Book, journal: Journal, counts: Counts, digests: dict[str, str
     for path, digest in _files(book, journal, digests):
         yield ("" if first else ",\n") + f"  {json.dumps({'path': path, 'sha256': digest})}"
         first = False
-    yield "\n ]"
+    yield "\n ]\n}\n"
 
 
 def _files(book: Book, journal: Journal, digests: dict[str, str]) -> Iterator[tuple[str, str]]:

@@ -120,6 +120,11 @@ COMMANDS: dict[str, Command] = {
     "identify": Command(
         "Find the servo's parameters from a recorded trace.", SERVO, "camwright identify trace.csv --out servo.toml"
     ),
+    "trace": Command(
+        "Lay a recorded run over its design: sync error of each cut, lengths, and whether it is offset, drift or scatter.",
+        SERVO,
+        "camwright trace run.csv --job board.toml",
+    ),
     "bend": Command(
         "Turn a drawing of die lines into proved NC programs of a rule bender.", BENDER, "camwright bend carton.dxf"
     ),

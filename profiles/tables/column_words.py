@@ -84,6 +84,7 @@ _TRACED: tuple[tuple[str, tuple[str, ...], tuple[str, ...]], ...] = (
     ("other", (), ("velo", "vel", "speed", "geschw", "acc", "beschl", "torque", "drehm", "current", "strom", "error",
                    "err", "lag", "schlepp", "diff", "速度", "加速", "电流", "转矩", "误差")),
     ("time", ("t",), ("time", "zeit", "timestamp", "时间", "temps", "tempo")),
+    ("master", (), ("master", "leit", "leading", "web", "material", "conveyor", "主轴", "物料")),
     ("command", (), ("command", "cmd", "set", "soll", "demand", "reference", "ref", "target", "指令", "设定", "目标", "给定")),
     ("actual", (), ("actual", "act", "ist", "feedback", "fbk", "fb", "measured", "encoder", "实际", "反馈")),
 )  # fmt: skip
@@ -102,10 +103,16 @@ def cam_role(name: str) -> str | None:
 
 
 def trace_role(name: str) -> str | None:
-    """Say what a column of a recording is: ``time``, ``command``, ``actual``, ``other``; ``None`` if its name does not tell."""
+    """Say what a column of a recording is: ``time``, ``master``, ``command``, ``actual``, ``other``; ``None`` if its name does not tell."""
     plain = name.strip().lower()
     words = words_of(name)
     for role, names, beginnings in _TRACED:
         if plain in names or any(word.startswith(beginnings) for word in words):
             return role
     return None
+
+
+def is_measured(name: str) -> bool:
+    """Whether a name says that its column was measured, not commanded."""
+    beginnings = next(beginnings for role, _, beginnings in _TRACED if role == "actual")
+    return any(word.startswith(beginnings) for word in words_of(name))

@@ -1,4 +1,7 @@
-"""A drive's recording as text: time, command and actual position, each with its unit, as scopes and spreadsheets write them."""
+"""A drive's recording as text: time, command and actual position, each with its unit, as scopes and spreadsheets write them.
+
+The position of the master may stand beside them.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,7 @@ import numpy as np
 from camwright.profiles.errors import InputError
 from camwright.profiles.machines.machine import SlaveUnit
 from camwright.profiles.polynomial.profile import FloatArray
-from camwright.profiles.tables.column_words import trace_role
+from camwright.profiles.tables.column_words import is_measured, trace_role
 from camwright.profiles.tables.delimited import Sheet, read_sheet
 from camwright.profiles.trace import Trace
 
@@ -22,8 +25,11 @@ _UNITS: dict[str, dict[str, float]] = {
     "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6},
     "command": {**_LENGTHS, **_ANGLES},
     "actual": {**_LENGTHS, **_ANGLES},
+    "master": {**_LENGTHS, **_ANGLES},
 }
+_POSITIONS = ("command", "actual")
 _HEADER = "time [ms],command [mm],actual [mm]"
+_WITH_MASTER = "time [ms],master [mm],command [mm],actual [mm]"
 
 _UNEQUAL = 0.01
 """What a step of the time may differ from the others, as a part of it: times are rounded."""
@@ -32,7 +38,7 @@ _GAP = 1.5
 """Steps, of a usual length each, from which on rows are missing."""
 
 
-def read_trace_csv(text: str, place: str) -> Trace:
+def read_trace_csv(text: str, place: str, *, most_rows: int = MOST_ROWS, master: bool = False) -> Trace:
     """Read a recording: whatever separates its cells, with headings in one line or several.
 
     Parameters
@@ -43,23 +49,28 @@ def read_trace_csv(text: str, place: str) -> Trace:
         column of times; they must be one and the same.
     place
         What messages begin with.
+    most_rows
+        The most rows that are taken.
+    master
+        Whether the position of the master is read too, where it was recorded; a turn of it is one cycle.
 
     Raises
     ------
     InputError
         The header or a row is not as described, or the rows are not equally spaced in time; the message names the line.
     """
-    sheet = read_sheet(text, place, trace_role, _HEADER, "recording")
-    at = _roles(sheet)
+    sheet = read_sheet(text, place, trace_role, _WITH_MASTER if master else _HEADER, "recording")
+    at = _roles(sheet, master)
     factors, unit, notes = _factors(sheet, at)
     rows = len(sheet.rows)
     if rows < 2:
         raise InputError(f"{place}: {rows} rows below the header; a recording has hundreds")
-    if rows > MOST_ROWS:
+    if rows > most_rows:
         raise InputError(
-            f"{place}: {rows} rows, the limit is {MOST_ROWS}; cut out a part with lively motion, 2 s at 1 kHz are enough"
+            f"{place}: {rows} rows, the limit is {most_rows}; cut out a part with lively motion, 2 s at 1 kHz are enough"
         )
-    time, command, actual = (sheet.numbers(at[name][-1], name) * factors[name] for name in _UNITS)
+    signals = {name: sheet.numbers(found[-1], name) * factors[name] for name, found in at.items()}
+    time = signals["time"]
     _require_equal_steps(time, list(sheet.lines), place)
     step = (time[-1] - time[0]) / (rows - 1)
     for other in at["time"][:-1]:
@@ -68,11 +79,23 @@ def read_trace_csv(text: str, place: str) -> Trace:
                 f"{place}: the channels have times of their own, which differ; record all channels at one rate, or export "
                 "them interpolated to one"
             )
-    return Trace(float(time[0]), float(step), command, actual, unit, notes)
+    return Trace(
+        start=float(time[0]),
+        step=float(step),
+        command=signals["command"],
+        actual=signals["actual"],
+        unit=unit,
+        notes=notes,
+        master=signals.get("master"),
+        master_unit="rad" if "master" in at and sheet.columns[at["master"][-1]].unit in _ANGLES else "m",
+    )
 
 
-def _roles(sheet: Sheet) -> dict[str, list[int]]:
-    """Say which columns are what: one command and one actual position, and the times, the one before the command last."""
+def _roles(sheet: Sheet, master: bool) -> dict[str, list[int]]:
+    """Say which columns are what: one command and one actual position, and the times, the one before the command last.
+
+    One master, where it is asked for and there; where there are several, that whose name says that it was measured.
+    """
     where = f"{sheet.place}, line {sheet.heading}" if sheet.heading else sheet.place
     at: dict[str, list[int]] = {"time": [], "command": [], "actual": []}
     for number, column in enumerate(sheet.columns):
@@ -92,45 +115,55 @@ def _roles(sheet: Sheet) -> dict[str, list[int]]:
                 else (f"the columns are {', '.join(map(repr, names[:8]))}; " if any(names) else "")
             )
             raise InputError(f"{where}: there is no column {name}; {told}write a header like {_HEADER}")
+    if master and (masters := _masters(sheet)):
+        at["master"] = masters
     scope = all(sheet.columns[k].heading == "Name" for k in at["time"])
-    for name in ("time", "command", "actual"):
+    for name in at:
         if len(at[name]) > 1 and not (name == "time" and scope):
             exact = [k for k in at[name] if sheet.columns[k].name.strip().lower() == name]
             if len(exact) != 1:
                 both = " and ".join(repr(names[k]) for k in at[name][:2])
                 raise InputError(f"{where}: column {name} stands there twice; leave one out ({both})")
             at[name] = exact
-    if len(at["time"]) > 1:  # those that stand before the two positions
+    if len(at["time"]) > 1:  # those that stand before the positions
         used = sorted(
             {
-                max((k for k in at["time"] if k < other), default=at["time"][0])
-                for other in (at["command"][0], at["actual"][0])
+                max((k for k in at["time"] if k < found[0]), default=at["time"][0])
+                for name, found in at.items()
+                if name != "time"
             }
         )
         at["time"] = used
     return at
 
 
+def _masters(sheet: Sheet) -> list[int]:
+    """Find the columns of the master; where one of several is the measured one, that."""
+    found = [k for k, column in enumerate(sheet.columns) if column.name and trace_role(column.name) == "master"]
+    measured = [k for k in found if is_measured(sheet.columns[k].name)]
+    return measured if len(found) > 1 and len(measured) == 1 else found
+
+
 def _factors(sheet: Sheet, at: dict[str, list[int]]) -> tuple[dict[str, float], SlaveUnit, tuple[str, ...]]:
     """Give what makes the columns SI, and the unit of positions; a servo does not depend on how long that is."""
     where = f"{sheet.place}, line {sheet.heading}" if sheet.heading else sheet.place
     columns = {name: sheet.columns[found[-1]] for name, found in at.items()}
-    bare = all(columns[name].unit is None for name in ("command", "actual"))
+    bare = all(columns[name].unit is None for name in _POSITIONS)
     factors: dict[str, float] = {}
     for name, column in columns.items():
         units = _UNITS[name]
         if column.unit is None:
-            if name != "time" and bare:
+            if name in _POSITIONS and bare:
                 factors[name] = 1e-3
                 continue
-            example = next(cell for cell in _HEADER.split(",") if cell.startswith(name))
+            example = next(cell for cell in _WITH_MASTER.split(",") if cell.startswith(name))
             raise InputError(f"{where}: column {name} has no unit; write it in brackets, e.g. {example}")
         if not column.known or column.unit not in units:
             raise InputError(
                 f"{where}: column {name} cannot be in {column.unit[:50]!r}; its unit is one of {', '.join(units)}"
             )
         factors[name] = units[column.unit]
-    kinds = {columns[name].unit in _ANGLES for name in ("command", "actual")}
+    kinds = {columns[name].unit in _ANGLES for name in _POSITIONS}
     if len(kinds) > 1:
         raise InputError(f"{where}: command and actual are a length and an angle; give both as they are at one axis")
     note = "the positions have no unit in the file: mm is taken, on which the servo's parameters do not depend (name it in the header)"

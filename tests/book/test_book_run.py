@@ -32,7 +32,6 @@ from camwright.profiles.errors import (
     SolverError,
 )
 from camwright.profiles.objective import CommandObjective
-from camwright.profiles.tables.target import Header
 from camwright.profiles.task import Task
 from camwright.stored.design_file import read_design
 from camwright.validation.report import judge
@@ -92,7 +91,9 @@ def test_the_index_says_what_designs_made_one_by_one_say(done: Path) -> None:
         assert stored.job.cut == cut
         files = sorted(path.name for path in (done / row["folder"]).iterdir())
         assert [name for name in files if name not in ("design.json", "report.json")] == (
-            [Header(stored.job.name, "").identifier + "_cam.csv"] if table.passed else []
+            [f"C{number:05d}_L{row['length_mm'][:-2]}_V{row['line_speed_m_per_min'][:-2]}_paper_600"[:24] + "_cam.csv"]
+            if table.passed
+            else []
         )
     assert ends == {"passed", "check_failed", "infeasible"}
 

@@ -30,7 +30,7 @@ BOOKS = {
 
 SUBCOMMANDS = (
     "new", "examples", "keys", "schema",
-    "design", "compare", "limits", "validate", "check", "quick", "envelope", "identify", "book", "export", "audit", "targets",
+    "design", "compare", "limits", "validate", "check", "quick", "envelope", "identify", "trace", "book", "export", "audit", "targets",
     "recipe", "verify", "bend", "workbench",
 )  # fmt: skip
 
@@ -337,6 +337,15 @@ def identify_cases() -> Iterator[Case]:
     yield Case("identify/directory", ("identify", "traces/assumed.csv", "--out", "runs"))
 
 
+def trace_cases() -> Iterator[Case]:
+    """List the recorded runs."""
+    judged = ("--job", "examples/paper-600.toml", "--design", "traces/quintic.csv")
+    yield Case("trace/run", ("trace", "traces/run.csv", *judged, "--out", "runs/trace", "--json"))
+    yield Case("trace/without-master", ("trace", "traces/run-without-master.csv", *judged, "--no-figures", "--json"))
+    yield Case("trace/spoken", ("trace", "traces/run.csv", *judged, "--no-figures"))
+    yield Case("trace/other-cam", ("trace", "traces/assumed.csv", *judged, "--no-figures", "--json"))
+
+
 def bend_cases() -> Iterator[Case]:
     """List what the bender is asked."""
     carton, arcs = "examples/bender/carton.dxf", "examples/bender/paper-arcs.toml"
@@ -374,6 +383,7 @@ def all_cases(examples: dict[str, str]) -> list[Case]:
     cases += faulty_cases(examples)
     cases += misuse_cases()
     cases += identify_cases()
+    cases += trace_cases()
     cases += bend_cases()
     known: set[str] = set()
     for case in cases:

@@ -38,6 +38,24 @@ def sweep(time: float, size: float, last: float) -> float:
     return size * math.sin(2 * math.pi * (0.5 + (last - 0.5) * time / 4.0) * time) if time > 0 else 0.0
 
 
+def run_and_cam() -> tuple[str, str]:
+    """Record 12 cuts of the bundled job with the quintic return, the axis late by 0.2 ms and losing 4 µm a cut; and that cam as a table."""
+
+    def cam(master: float) -> float:
+        cycle, place = divmod(master, 0.6)
+        part = min(place / 0.4, 1.0)
+        return 0.4 * cycle + place - 0.2 * part**3 * (10 - 15 * part + 6 * part**2)
+
+    rows = ["time [ms],master [mm],command [mm],actual [mm]"]
+    for row in range(2700):
+        time = 2e-3 * row
+        master, late = (0.1 + 80 / 60 * (time - lag) for lag in (0.0, 2e-4))
+        actual = cam(late) - 4e-6 * ((master + 0.1) // 0.6)
+        rows.append(f"{time * 1e3:.1f},{master * 1e3:.5f},{cam(master) * 1e3:.5f},{actual * 1e3:.5f}")
+    points = [f"{600 * k / 1200:.4f},{cam(0.6 * k / 1200 if k < 1200 else 0.6 - 1e-15) * 1e3:.8f}" for k in range(1201)]
+    return "\n".join(rows) + "\n", "\n".join(["x [mm],y [mm]", *points]) + "\n"
+
+
 def trace(feedforward: float, last: float, unit: str = "mm", scale: float = 1e3) -> str:
     """Record a servo of 120 rad/s, damping 0.7, gain 35 1/s and 4 ms at 1 kHz over 2 s, with 2 ms of dead time and some noise.
 
@@ -210,10 +228,15 @@ def inputs(examples: dict[str, str]) -> dict[str, str | bytes]:
     for group, make in (("aware", aware_jobs), ("other", other_jobs), ("infeasible", infeasible_jobs)):
         files |= {f"jobs/{group}/{name}.toml": text for name, text in make(examples).items()}
     files |= {f"jobs/faulty/{name}.toml": content for name, content in faulty_jobs(examples).items()}
-    good = trace(1.0, 15.0)
+    good, (run, quintic) = trace(1.0, 15.0), run_and_cam()
     lines = good.splitlines(keepends=True)
     files |= {
         "traces/assumed.csv": good,
+        "traces/run.csv": run,
+        "traces/run-without-master.csv": "\n".join(
+            ",".join(line.split(",")[:1] + line.split(",")[2:]) for line in run.splitlines()
+        ),
+        "traces/quintic.csv": quintic,
         "traces/fitted.csv": trace(0.9, 30.0),
         "traces/turning.csv": trace(0.0, 20.0, "deg", 180 / math.pi),
         "traces/gap.csv": "".join(lines[:900] + lines[950:]),

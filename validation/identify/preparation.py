@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import FloatArray
@@ -17,33 +19,84 @@ _USUAL = 8.0
 """By how many times a jump exceeds the usual step."""
 _AROUND = 4
 """Rows on either side by which the step at a jump is estimated."""
+_SURE = 4.0
+"""Standard deviations of the jumps' mean within which a plain number is the modulus."""
+_ODD = 12.0
+"""Standard deviations of one jump beyond which it is none of the modulus."""
+_ROUNDING = 1e-9
+"""What rounding in the file may do to a modulus, as a part of it."""
 _SHOWN = {"m": (1e3, "mm"), "rad": (180.0 / math.pi, "deg")}
 
 
-def unwrapped(trace: Trace, place: str) -> Trace:
+def unwrapped(trace: Trace, place: str, known: Sequence[float] = (), known_master: Sequence[float] = ()) -> Trace:
     """Take out the jumps of an axis that is recorded modulo its turn or its pitch.
 
-    A jump is a step that covers `_JUMP` of the signal's range and is far beyond the usual step. All jumps must be one and
-    the same modulus, the plainest number (in mm or deg) within what the motion beside the jumps leaves open.
+    A jump is a step that covers `_JUMP` of the signal's range and is far beyond the usual step. The step that the motion makes there is
+    that of the parabola through the steps beside it; how well these tell it is found at all other rows. All jumps must be one and the
+    same modulus: one that is known, else the plainest number (in mm or deg), within what the jumps leave open.
+
+    Parameters
+    ----------
+    trace
+        The recording.
+    place
+        What messages begin with.
+    known
+        Moduli (unit of the trace) that the machine has.
+    known_master
+        The same of the master (its unit).
 
     Raises
     ------
     InputError
         Jumps that are no one modulus.
     """
-    command, first = _without_jumps(trace.command, trace, "command", place)
-    actual, second = _without_jumps(trace.actual, trace, "actual position", place)
-    notes = list(trace.notes)
-    factor, unit = _SHOWN[trace.unit]
-    for name, modulus in (("command", first), ("actual position", second)):
-        if modulus is not None:
-            notes.append(f"the {name} is recorded modulo {modulus * factor:.10g} {unit} and was unwrapped")
+    step = trace.step, trace.start
+    command, first = without_jumps(trace.command, trace.unit, step, f"{place}: the command", known)
+    actual, second = without_jumps(trace.actual, trace.unit, step, f"{place}: the actual position", known)
+    told = [("command", first, trace.unit), ("actual position", second, trace.unit)]
     if first is not None and first == second:  # both turn over by themselves, so whole turns between them mean nothing
         actual = actual - first * round(float(np.mean(actual - command)) / first)
-    return replace(trace, command=command, actual=actual, notes=tuple(notes))
+    master = trace.master
+    if master is not None:
+        master, third = without_jumps(master, trace.master_unit, step, f"{place}: the master", known_master)
+        told.append(("master", third, trace.master_unit))
+    notes = list(trace.notes)
+    for name, modulus, counted in told:
+        if modulus is not None:
+            factor, unit = _SHOWN[counted]
+            notes.append(f"the {name} is recorded modulo {modulus * factor:.10g} {unit} and was unwrapped")
+    return replace(trace, command=command, actual=actual, master=master, notes=tuple(notes))
 
 
-def _without_jumps(signal: FloatArray, trace: Trace, name: str, place: str) -> tuple[FloatArray, float | None]:
+def without_jumps(
+    signal: FloatArray, unit: str, clock: tuple[float, float], name: str, known: Sequence[float] = ()
+) -> tuple[FloatArray, float | None]:
+    """Unwrap one signal.
+
+    Parameters
+    ----------
+    signal
+        Positions (m or rad).
+    unit
+        Which of these.
+    clock
+        Time between two rows, and time of the first (s), for messages.
+    name
+        What messages call it.
+    known
+        Moduli that it may have.
+
+    Returns
+    -------
+    (signal, modulus)
+        The modulus is ``None`` where nothing jumps.
+
+    Raises
+    ------
+    InputError
+        Jumps that are no one modulus.
+    """
     steps = np.diff(signal)
     moving = np.abs(steps[steps != 0.0])
     if len(moving) < 2 * _AROUND:
@@ -54,30 +107,50 @@ def _without_jumps(signal: FloatArray, trace: Trace, name: str, place: str) -> t
         return signal, None
     smooth = np.ones(len(steps), dtype=bool)
     smooth[jumps] = False
-    sizes = []
-    for jump in jumps.tolist():
-        near = [k for k in range(max(jump - _AROUND, 0), min(jump + _AROUND + 1, len(steps))) if smooth[k]]
-        sizes.append(float(np.mean(steps[near])) - float(steps[jump]) if near else -float(steps[jump]))
+    expected, doubt = _expected(steps, smooth, jumps)
+    sizes = expected - steps[jumps]
     found = np.abs(sizes)
     middle = float(np.median(found))
-    odd = np.abs(found - middle) > max(2.0 * usual, 1e-6 * middle)
+    odd = np.abs(found - middle) > max(_ODD * doubt, 0.02 * usual, 1e-6 * middle)
     if odd.any():
         row = int(jumps[int(np.argmax(odd))])
-        factor, unit = _SHOWN[trace.unit]
+        factor, shown = _SHOWN[unit]
         raise InputError(
-            f"{place}: the {name} jumps by {steps[row] * factor:.6g} {unit} at {trace.start + row * trace.step:.6g} s, which is no "
-            f"modulus of an axis (others jump by {middle * factor:.6g} {unit}); record without a reset of the position"
+            f"{name} jumps by {steps[row] * factor:.6g} {shown} at {clock[1] + row * clock[0]:.6g} s, which is no "
+            f"modulus of an axis (others jump by {middle * factor:.6g} {shown}); record without a reset of the position"
         )
-    modulus = _plainest(middle, usual / max(1.0, math.sqrt(len(jumps))), trace)
+    mean = float(found.mean())
+    modulus = _plainest(mean, _SURE * doubt / math.sqrt(len(jumps)) + _ROUNDING * mean, unit, known)
     turns = np.zeros(len(signal))
     turns[jumps + 1] = np.sign(sizes)
     return signal + modulus * np.cumsum(turns), modulus
 
 
-def _plainest(value: float, slack: float, trace: Trace) -> float:
-    """Give the number of fewest digits in mm or deg, or the part of a turn in rad, within the slack."""
-    factor = _SHOWN[trace.unit][0]
-    if trace.unit == "rad":
+def _expected(steps: FloatArray, smooth: NDArray[np.bool_], jumps: NDArray[np.intp]) -> tuple[FloatArray, float]:
+    """Say what step the motion makes at the jumps, by the parabola through the steps beside it, and how far that is off (rms)."""
+    beside = np.array([k for k in range(-_AROUND, _AROUND + 1) if k], dtype=np.float64)
+    weights = np.linalg.pinv(np.stack([np.ones_like(beside), beside, beside**2], axis=1))[0]
+    taps = np.concatenate([weights[:_AROUND], [0.0], weights[_AROUND:]])  # symmetric: a convolution reads it either way
+    by_parabola = np.convolve(steps, taps, mode="same")
+    whole = np.convolve(smooth, np.abs(taps) > 0.0, mode="same") == 2 * _AROUND
+    sure = whole & smooth
+    # without rows beside it all there is are the nearest steps
+    doubt = float(np.sqrt(np.mean((by_parabola - steps)[sure] ** 2))) if sure.any() else float(np.std(steps[smooth]))
+    expected = np.empty(len(jumps))
+    for number, jump in enumerate(jumps.tolist()):
+        near = [k for k in range(max(jump - _AROUND, 0), min(jump + _AROUND + 1, len(steps))) if smooth[k]]
+        expected[number] = by_parabola[jump] if whole[jump] else float(np.mean(steps[near])) if near else 0.0
+        doubt = doubt if whole[jump] or len(jumps) > 1 else max(doubt, float(np.ptp(steps[near])) if near else 0.0)
+    return expected, doubt
+
+
+def _plainest(value: float, slack: float, unit: str, known: Sequence[float]) -> float:
+    """Give what is known, else the part of a turn in rad or the number of fewest digits in mm or deg, within the slack."""
+    near = [each for each in known if abs(each - value) <= slack]
+    if near:
+        return min(near, key=lambda each: abs(each - value))
+    factor = _SHOWN[unit][0]
+    if unit == "rad":
         parts = round(2.0 * math.pi / value) if value < 2.0 * math.pi * 1.01 else 0
         if parts and abs(2.0 * math.pi / parts - value) <= slack:
             return 2.0 * math.pi / parts

@@ -1,0 +1,1 @@
+"""A recorded run laid over the cam that it should have been."""
