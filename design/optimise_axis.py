@@ -286,7 +286,7 @@ def _suggestions(problem: AxisProblem, needed: float, settles: Callable[[Cut], b
             yield Suggestion("sync_tolerance", factor * needed * 1e3, "mm")
             break
     changes: tuple[tuple[str, str, float, float, Callable[[float], Cut]], ...] = (
-        ("line_speed", "m/min", 60.0, 1 / SLOWEST, lambda share: replace(cut, line_speed=cut.line_speed / share)),
+        ("line_speed", "m/min", 60.0, 1 / SLOWEST, lambda share: cut.designed_at(cut.line_speed / share)),
         ("length", "mm", 1e3, LONGEST, lambda share: replace(cut, length=share * cut.length)),
     )
     for name, unit, per, most, changed in changes:

@@ -22,6 +22,8 @@ PICTURES = {
     "flying-saw": ("profile",),
     "chasing-shear": ("profile", "crank"),
     "thick-product": ("profile",),
+    "cross-sealer": ("profile",),
+    "flying-punch": ("profile",),
 }
 """Figures of each example that the documents show; those of the paper's job bear no prefix."""
 

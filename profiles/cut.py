@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 Origin = Literal["return", "cut"]
@@ -33,6 +33,9 @@ class Cut:
     shaped
         Whether the command is shaped so that the axis, not the command itself, is in sync in the shear zone. A profile's slave zero is
         then the machine in sync at master zero, where the command may be elsewhere.
+    sync_time, shear_time
+        Times (s) that sync zone and shear zone last at the line speed, where these are given as times, as a press's stroke is;
+        another design at another line speed then has other zones (`designed_at`). Forgotten where the zone is not that long.
 
     Examples
     --------
@@ -51,6 +54,39 @@ class Cut:
     origin: Origin = "return"
     sync_ratio: float = 1.0
     shaped: bool = False
+    sync_time: float | None = None
+    shear_time: float | None = None
+
+    def __post_init__(self) -> None:
+        """Forget the time of a zone that is not that long."""
+        for name, zone in (("sync_time", self.sync_zone), ("shear_time", self.shear_zone)):
+            time = getattr(self, name)
+            if time is not None and zone != time * self.line_speed:
+                object.__setattr__(self, name, None)
+
+    @property
+    def timed(self) -> bool:
+        """Whether its zones depend on the line speed that it is designed at."""
+        return self.sync_time is not None or self.shear_time is not None
+
+    def designed_at(self, line_speed: float) -> Cut:
+        """Give the cut that another design has at a line speed (m/s): zones that last a time are as long as it takes there.
+
+        A cam that is there keeps its zones on the material at any line speed: that is the cut with another ``line_speed``. A shear zone at
+        the end of the sync zone stays there.
+
+        Examples
+        --------
+        >>> from camwright import Cut
+        >>> press = Cut(0.75, 2.0, sync_zone=0.08, shear_zone=0.08, shear_zone_at=0.0, sync_tolerance=1e-4, sync_time=0.04, shear_time=0.04)
+        >>> press.designed_at(1.0).sync_zone
+        0.04
+        """
+        sync = self.sync_zone if self.sync_time is None else self.sync_time * line_speed
+        shear = self.shear_zone if self.shear_time is None else self.shear_time * line_speed
+        at_end = self.shear_zone_at == self.sync_zone - self.shear_zone
+        at = sync - shear if at_end else min(self.shear_zone_at, sync - shear)
+        return replace(self, line_speed=line_speed, sync_zone=sync, shear_zone=shear, shear_zone_at=at)
 
     @property
     def return_zone(self) -> float:

@@ -121,8 +121,12 @@ class Task:
         return self.limits.jerk / self.cut.line_speed**3
 
     def at_speed(self, line_speed: float) -> Task:
-        """Return the task at another line speed (m/s)."""
+        """Return the task of the same cam at another line speed (m/s): its zones are the same on the material."""
         return self.with_cut(replace(self.cut, line_speed=line_speed))
+
+    def designed_at(self, line_speed: float) -> Task:
+        """Return the task of another design at a line speed (m/s), whose zones last as long there as they are to; as `Cut.designed_at`."""
+        return self.with_cut(self.cut.designed_at(line_speed))
 
     def with_length(self, length: float) -> Task:
         """Return the task with another cut length (m)."""

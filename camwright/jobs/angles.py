@@ -19,7 +19,7 @@ def settle_angles(known: Known, machine: Machine | None) -> None:
     """
     if machine is None or not machine.by_angle or machine.slave_turn is None:
         return
-    numbers, angles = known.numbers, known.angles
+    numbers, angles = known.numbers, known.indirect.angles
     for key in _LIMITS:
         if key in angles:
             numbers[key] = angles[key] * machine.slave_turn / (2.0 * math.pi)
@@ -35,7 +35,7 @@ def settle_angles(known: Known, machine: Machine | None) -> None:
 
 def _settle_shear_zone(known: Known, machine: Machine, cut: Cut) -> None:
     """Turn the angles of the shear zone and of its start into lengths on the master."""
-    numbers, angles = known.numbers, known.angles
+    numbers, angles = known.numbers, known.indirect.angles
     if "cut.shear_zone_at" in angles:
         numbers["cut.shear_zone_at"] = machine.master_of_angle(angles["cut.shear_zone_at"], cut)
     if "cut.shear_zone" not in angles:

@@ -23,6 +23,22 @@ Spread = float | tuple[float, float]
 _CURVE = '[["0 rpm", "12 N m"], ["3000 rpm", "8 N m"]]'
 
 
+@dataclass(frozen=True)
+class Indirect:
+    """What is written as something else than its number, by its place, until that something is known.
+
+    Parameters
+    ----------
+    angles
+        Angles (rad), or a speed, acceleration or jerk of one, until the machine is known.
+    times
+        Zones as the time that they last (s), until the line speed is known.
+    """
+
+    angles: dict[str, float] = field(default_factory=dict)
+    times: dict[str, float] = field(default_factory=dict)
+
+
 @dataclass
 class Known(Settings):
     """What is right in itself in a job file, whatever else is wrong; its numbers by their place.
@@ -31,8 +47,8 @@ class Known(Settings):
     ----------
     kind
         Kind of the machine; nothing if the file names none that is known.
-    angles
-        By its place what is written as an angle (rad) or a speed, acceleration or jerk of it, until the machine is known.
+    indirect
+        What has no number yet.
     choices
         Words of the machine by key, those that are known.
     spreads
@@ -44,7 +60,7 @@ class Known(Settings):
     """
 
     kind: str | None = None
-    angles: dict[str, float] = field(default_factory=dict)
+    indirect: Indirect = field(default_factory=Indirect)
     choices: dict[str, str] = field(default_factory=dict)
     spreads: dict[str, Spread] = field(default_factory=dict)
     servo_aware: bool = False
@@ -97,13 +113,18 @@ def slave_field(straight: str, turning: str, example: str) -> tuple[BeforeValida
     return BeforeValidator(read), quantity_schema(words, [KINDS[straight].example, example])
 
 
-def zone_field(kind: str, *, zero: bool = False) -> tuple[BeforeValidator, WithJsonSchema]:
-    """Make the parts of a length that may be written as an angle for machines that know what length it is.
+def zone_field(kind: str, *, zero: bool = False, timed: bool = True) -> tuple[BeforeValidator, WithJsonSchema]:
+    """Make the parts of a length that may be written as an angle for machines that know what length it is, or as the time that it lasts.
 
-    The angle is kept apart and the field is nothing: what length it is the machine says. ``zero`` is whether none is allowed.
+    Angle and time are kept apart and the field is nothing: what length it is machine and line speed say. ``zero`` is whether none is
+    allowed, ``timed`` whether a time is.
     """
 
     def read(value: object, info: ValidationInfo) -> float | None:
+        if timed and _is(value, "time", zero=False):
+            known = cast(Known, info.context)
+            known.indirect.times[known.path(cast(str, info.field_name))] = read_quantity(value, "time")
+            return None
         if not _is(value, "angle", zero=zero):
             return keep(read_quantity(value, kind, zero=zero), info)
         if cast(Known, info.context).machine is not None and not _by_angle(info):
@@ -114,8 +135,9 @@ def zone_field(kind: str, *, zero: bool = False) -> tuple[BeforeValidator, WithJ
         return None
 
     least = "zero or more" if zero else "greater than zero"
-    words = f"{KINDS[kind].name}, of a {_knowing()} also {KINDS['angle'].name}, {least}"
-    return BeforeValidator(read), quantity_schema(words, [KINDS[kind].example, "60 deg"])
+    lasting = f", or {KINDS['time'].name} that it lasts at the line speed" if timed else ""
+    words = f"{KINDS[kind].name}, of a {_knowing()} also {KINDS['angle'].name}{lasting}, {least}"
+    return BeforeValidator(read), quantity_schema(words, [KINDS[kind].example, "60 deg", *(["40 ms"] if timed else [])])
 
 
 def _knowing() -> str:
@@ -132,7 +154,7 @@ def _by_angle(info: ValidationInfo) -> bool:
 def _keep_angle(value: float, info: ValidationInfo) -> None:
     """Keep an angle under its place until the machine is known."""
     known = cast(Known, info.context)
-    known.angles[known.path(cast(str, info.field_name))] = value
+    known.indirect.angles[known.path(cast(str, info.field_name))] = value
 
 
 def curve_field() -> tuple[BeforeValidator, WithJsonSchema]:

@@ -343,6 +343,8 @@ def _job(file: JobFile, known: Known, machine: Machine) -> Job:
             origin=file.output.origin,
             sync_ratio=cut.sync_ratio,
             shaped=objective.servo_aware and objective.command == "shaped",
+            sync_time=known.indirect.times.get("cut.sync_zone"),
+            shear_time=known.indirect.times.get("cut.shear_zone"),
         ),
         limits=Limits(
             numbers["limits.speed"],

@@ -28,7 +28,9 @@ def machine_conflicts(known: Known, machine: Machine | None) -> list[str]:
     pace = None if known.turns else ratio  # at least; more where the tool does not move like its slave
     if machine is not None and zone is not None:
         cut = Cut(2.0 * zone, 1.0, zone, 0.0, 0.0, 1e-4, sync_ratio=ratio)
-        faults += [words(fault, known.units) for fault in machine.zone_faults(cut, known.angles.get("cut.sync_zone"))]
+        faults += [
+            words(fault, known.units) for fault in machine.zone_faults(cut, known.indirect.angles.get("cut.sync_zone"))
+        ]
         pace = pace if faults else machine.sync_pace(cut)
     if pace and line_speed and speed and pace * line_speed > speed * (1 + 1e-12):
         faults.append(_slow(known, pace, machine))
@@ -60,7 +62,7 @@ def _slow(known: Known, pace: float, made: Machine | None) -> str:
     way_out = f"run the line at {slower} at most or raise the limit"
     machine = known.machine
     noun, place = ("slave", "") if machine is None else (machine.noun, machine.place_name)
-    by_angle = made is not None and made.slave_turn is not None and "limits.speed" in known.angles
+    by_angle = made is not None and made.slave_turn is not None and "limits.speed" in known.indirect.angles
     if known.turns or by_angle:
         rpm = 60.0 / made.slave_turn if by_angle and made is not None and made.slave_turn else 30.0 / math.pi
         given = place and f"machine.{place}" in known.numbers

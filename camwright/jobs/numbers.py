@@ -34,11 +34,11 @@ def stored_machine(numbers: dict[str, Any]) -> Machine:
 
 
 def job_numbers(job: Job) -> dict[str, Any]:
-    """Write a job as plain numbers in SI units; what the line does is left out where nothing is said of it."""
+    """Write a job as plain numbers in SI units; what the line does, and times of zones, are left out where nothing is said of them."""
     numbers = {
         "name": job.name,
         "machine": machine_numbers(job.machine),
-        "cut": asdict(job.cut),
+        "cut": {key: value for key, value in asdict(job.cut).items() if value is not None},
         "limits": asdict(job.limits),
         "servo": asdict(job.servo),
         "objective": job.objective,

@@ -18,6 +18,7 @@ from camwright.jobs.fields import Known, Spread, curve_field, slave_field, targe
 from camwright.jobs.line_speeds import line_speeds_field
 from camwright.jobs.machine_tables import either_faults, either_of, machine_of, machine_tables, table_of
 from camwright.jobs.spread_fields import aware_only, number_spread, quantity_spread
+from camwright.jobs.times import settle_times
 from camwright.profiles.machines import MACHINES, Machine
 from camwright.profiles.machines.fields import Choice, fields_of
 from camwright.profiles.objective import ObjectiveName
@@ -57,7 +58,7 @@ class CutTable(Table):
     shear_zone: Annotated[
         float | None, *zone_field("length", zero=True), Field(json_schema_extra={"default": "0 mm"})
     ] = 0.0
-    shear_zone_at: Annotated[float | None, *zone_field("length", zero=True)] = None
+    shear_zone_at: Annotated[float | None, *zone_field("length", zero=True, timed=False)] = None
     sync_tolerance: Annotated[
         float, *quantity_field("length", example="0.1 mm"), Field(json_schema_extra={"default": "0.1 mm"})
     ] = 1e-4
@@ -216,16 +217,18 @@ def read_structure(data: dict[str, Any]) -> tuple[JobFile | None, Known, list[st
         The file, or nothing if it has faults; what is right in itself, defaults of what was left out included; one
         message for each fault, each with its place.
     """
-    known = Known(units=units_of(data))
-    machine = data.get("machine")
+    machine, objective = data.get("machine"), data.get("objective")
+    kind = machine.get("kind") if isinstance(machine, dict) else None
+    known = Known(
+        kind=kind if isinstance(kind, str) and kind in MACHINES else None,
+        servo_aware=isinstance(objective, dict) and objective.get("servo_aware", False) is not False,
+        units=units_of(data),
+    )
     if isinstance(machine, dict):
-        kind = machine.get("kind")
-        known.kind = kind if isinstance(kind, str) and kind in MACHINES else None
-        known.choices = _choices(machine, known)
-    objective = data.get("objective")
-    known.servo_aware = isinstance(objective, dict) and objective.get("servo_aware", False) is not False
+        known.choices.update(_choices(machine, known))
     own = [] if known.machine is None or not isinstance(machine, dict) else list(either_faults(known.machine, machine))
     file, faults = read_settings(job_model(), data, known)
+    settle_times(known)
     settle_angles(known, None if own else machine_of(known))
     return None if own else file, known, [*own, *faults]
 

@@ -42,12 +42,16 @@ def cut_table(cut: Cut) -> dict[str, Any]:
     return {
         "length": quantity_text(cut.length, "length"),
         "line_speed": quantity_text(cut.line_speed, "speed"),
-        "sync_zone": quantity_text(cut.sync_zone, "length"),
-        "shear_zone": quantity_text(cut.shear_zone, "length"),
+        "sync_zone": _zone_text(cut.sync_zone, cut.sync_time),
+        "shear_zone": _zone_text(cut.shear_zone, cut.shear_time),
         **at,
         "sync_tolerance": quantity_text(cut.sync_tolerance, "length"),
         "sync_ratio": cut.sync_ratio,
     }
+
+
+def _zone_text(length: float, time: float | None) -> str:
+    return quantity_text(length, "length") if time is None else quantity_text(time, "time")
 
 
 def limits_table(limits: Limits, *, turning: bool) -> dict[str, Any]:

@@ -47,6 +47,8 @@ PRODUCT = {
     "sync_zone": "m",
     "shear_zone": "m",
     "shear_zone_at": "m",
+    "sync_time": "s",
+    "shear_time": "s",
     "sync_tolerance": "m",
     "sync_ratio": "1",
     "origin": "word",

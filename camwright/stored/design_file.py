@@ -157,6 +157,9 @@ def design_schema() -> dict[str, Any]:
     def table(**entries: Any) -> dict[str, Any]:
         return {"type": "object", "properties": entries, "required": list(entries), "additionalProperties": False}
 
+    def lax(left_out: tuple[str, ...], **entries: Any) -> dict[str, Any]:
+        return table(**entries) | {"required": [key for key in entries if key not in left_out]}
+
     ends = {"type": "array", "items": number, "minItems": 2, "maxItems": 2}
     pairs = {"type": "array", "items": {"type": "array", "items": number, "minItems": 2, "maxItems": 2}}
     curve = {"oneOf": [{"type": "null"}, table(points=pairs)], "description": "motor speed (rad/s) and torque (N m)"}
@@ -218,7 +221,8 @@ def design_schema() -> dict[str, Any]:
             si=table(
                 name=text,
                 machine={"oneOf": machines},
-                cut=table(
+                cut=lax(
+                    ("sync_time", "shear_time"),
                     length=number,
                     line_speed=number,
                     sync_zone=number,
@@ -228,6 +232,8 @@ def design_schema() -> dict[str, Any]:
                     origin={"enum": ["return", "cut"]},
                     sync_ratio=number,
                     shaped={"type": "boolean"},
+                    sync_time=number,
+                    shear_time=number,
                 ),
                 limits=table(speed=number, acceleration=number, jerk=number, reversal={"type": "boolean"}, motor=curve),
                 servo=table(

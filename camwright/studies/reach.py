@@ -77,7 +77,7 @@ def highest_speed(job: Job, perfect: float | None) -> tuple[float | None, str]:
         return None, ""
     objective = stand_in(job)
     found, failed = _edge(
-        lambda share: fails(job, job.task.at_speed(perfect * share), objective), SLOWEST, _accuracy(job)
+        lambda share: fails(job, job.task.designed_at(perfect * share), objective), SLOWEST, _accuracy(job)
     )
     return (None if found is None else perfect if not failed else perfect * found), failed
 

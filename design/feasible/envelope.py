@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from camwright.design.feasible.extremes import BEYOND, max_line_speed, placed_fastest
-from camwright.design.feasible.feasibility import binding_limit, needed_limits
+from camwright.design.feasible.feasibility import binding_limit, least_factor, needed_limits
 from camwright.design.returns.problem import return_problem
 from camwright.design.returns.solver import objective_value, solve_return
 from camwright.profiles.cross_cutter import quintic_return
@@ -133,7 +133,7 @@ def envelope(
 def _row(task: Task) -> EnvelopeRow:
     cut = task.cut
     fastest = max_line_speed(task)
-    beyond = task.at_speed((fastest or cut.line_speed) * (1 + BEYOND))
+    beyond = task.designed_at((fastest or cut.line_speed) * (1 + BEYOND))
     binding = binding_limit(beyond, needed_limits(beyond))
     return EnvelopeRow(cut.length, task.machine, fastest, quintic_speed(task), linear_speed(task), binding)
 
@@ -150,7 +150,7 @@ def _points(
     straight = task.machine.slave_unit == "m" and task.straight
     for v in line_speeds:
         step(f"cut length {cut.length * 1e3:.4g} mm at {v * 60:.4g} m/min")
-        here = task.at_speed(v)
+        here = task.designed_at(v)
         possible = row.optimised is not None and v <= row.optimised
         value = _objective(here, objective) if possible else None
         binding = row.binding
@@ -172,8 +172,11 @@ def _objective(task: Task, objective: MotionObjective) -> float | None:
 def quintic_speed(task: Task) -> float | None:
     """Highest line speed at which the quintic return keeps all limits, exactly: its shape over the master does not depend on the speed.
 
-    None if it reverses where it may not, or leaves the stroke.
+    None if it reverses where it may not, or leaves the stroke. Where zones last a time the shape does depend on it, and the edge is
+    looked for.
     """
+    if task.cut.timed:
+        return _own_edge(task, quintic_speed)
     cut, limits = task.cut, task.limits
     problem = return_problem(task.at_speed(1.0), "peak_acceleration")
     straight = task.straight and cut.sync_ratio == 1.0
@@ -198,10 +201,26 @@ def quintic_speed(task: Task) -> float | None:
 
 def linear_speed(task: Task) -> float | None:
     """Highest line speed at which the linear return keeps the speed limit (S1, eq. 8); None if it would reverse where it may not."""
+    if task.cut.timed:
+        return _own_edge(task, linear_speed)
     ratio = task.height / task.cut.return_zone
     if ratio < 0 and not task.reverses:
         return None
     return task.limits.speed / max(abs(ratio), task.sync.extrema(1)[1].value)
+
+
+def _own_edge(task: Task, fastest: Callable[[Task], float | None]) -> float | None:
+    """Highest line speed at which a return made for it may run; None if none may."""
+
+    def works(slower: float) -> bool:
+        there = task.designed_at(task.cut.line_speed / slower)
+        if there.cut.return_zone <= 0.0 or there.machine.zone_faults(there.cut):
+            return False
+        zones = there.with_cut(replace(there.cut, sync_time=None, shear_time=None))
+        return (fastest(zones) or 0.0) >= there.cut.line_speed
+
+    factor = least_factor(works)
+    return task.cut.line_speed / factor if math.isfinite(factor) else None
 
 
 def _peak(profile: CamProfile, order: int) -> float:

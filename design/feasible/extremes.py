@@ -64,7 +64,7 @@ def fastest_line(task: Task) -> tuple[float | None, str]:
     """Highest line speed at the job's cut length (m/s), None if no line speed works, and what binds there."""
     placed = placed_fastest(task)
     speed = max_line_speed(placed)
-    return speed, _binding(placed.at_speed((speed or task.cut.line_speed) * (1 + BEYOND)))
+    return speed, _binding(placed.designed_at((speed or task.cut.line_speed) * (1 + BEYOND)))
 
 
 def placed_fastest(task: Task) -> Task:

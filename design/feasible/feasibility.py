@@ -82,8 +82,13 @@ class Demand:
 
 
 def demands(task: Task) -> tuple[Demand, ...]:
-    """Make a job's demand on each of the limits that its motor's curve stands for; none if the machine cannot be in sync at all."""
+    """Make a job's demand on each of the limits that its motor's curve stands for.
+
+    There is none where the machine cannot be in sync at all, or no return zone is left.
+    """
     found = []
+    if task.cut.return_zone <= 0.0:
+        return ()
     for each in motor_limits(task.machine, task.limits):
         try:
             problem = return_problem(task.with_limits(each), "peak_acceleration")
@@ -128,7 +133,13 @@ def least_limit(task: Task, name: str) -> float:
 
 
 def slowdown(task: Task, tolerance: float = EDGE) -> float:
-    """Greatest factor on the line speed with which the machine can do the cut; zero if it cannot at any speed."""
+    """Greatest factor on the line speed with which the machine can do the cut; zero if it cannot at any speed.
+
+    Zones that last a time grow with the line speed, so each factor is then a cut of its own; else it is a factor on the limits.
+    """
+    cut = task.cut
+    if cut.timed:
+        return 1.0 / least_factor(lambda f: is_feasible(task.designed_at(cut.line_speed / f)), tolerance)
     found = [
         least_factor(lambda f, each=demand: each.met(f, f**2, f**3), tolerance)  # type: ignore[misc]
         for demand in demands(task)

@@ -157,7 +157,7 @@ def _suggestions(
     works, further = (is_feasible, FURTHER[:1]) if designs is None else (designs, FURTHER)
 
     def at_speed(v: float) -> bool:
-        return works(task.at_speed(v))
+        return works(task.designed_at(v))
 
     def at_length(length: float) -> bool:
         return length > cut.sync_zone and is_feasible(task.with_length(length))

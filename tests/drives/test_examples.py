@@ -23,7 +23,7 @@ from camwright.profiles.tables.text import decode
 
 EXAMPLES = {path.stem: path for path in sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))}
 SOLVED = ("paper-600", "cross-cutter", "flying-saw")  # solved in a moment; of the others the quintic return is taken
-CANNOT = {("flying-saw", "kollmorgen-kas")}
+CANNOT = {("flying-saw", "kollmorgen-kas"), ("flying-punch", "kollmorgen-kas")}
 """Examples and targets that do not take their cams: a slave that goes below zero, for one."""
 
 PAIRS = [(name, target) for name in EXAMPLES for target in TARGETS]

@@ -86,7 +86,9 @@ def test_every_machine_is_named_and_has_its_instructions(kind: str) -> None:
     assert keys | words <= set(catalogue("en").messages)
 
 
-@pytest.mark.parametrize("name", ["paper-600", "flying-saw", "chasing-shear", "thick-product", "cross-cutter"])
+@pytest.mark.parametrize(
+    "name", ["paper-600", "flying-saw", "chasing-shear", "thick-product", "cross-cutter", "flying-punch"]
+)
 def test_every_number_of_a_job_has_a_name(name: str) -> None:
     numbers = job_numbers(load_job(ROOT / "examples" / f"{name}.toml"))
     assert set(numbers["cut"]) <= set(PRODUCT)
