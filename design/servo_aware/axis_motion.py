@@ -23,8 +23,8 @@ BETWEEN = 1.1
 # By this share a sync error may be above the least, and by this share a peak, for the sake of what comes after them.
 KEPT_ERROR = 1e-3
 KEPT_PEAK = 1e-5
-# Most rounds that a command of the least peak is smoothed in; it will do as it is.
-SMOOTHING = 8
+# Most rounds that a command of the least peak is smoothed in, and most times that this is begun; it will do as it is.
+SMOOTHING, AGAIN = 8, 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,22 +94,21 @@ def design_axis(problem: AxisProblem, objective: ObjectiveName) -> AxisMotion | 
         found = programme.solve(objective, 1.0)
         if found is None:
             return None
-        value = found[1]
         of = OBJECTIVES[objective]
         if of.form == "peak" and of.of == "motion":
-            found = _smoothest(programme, found, 1.0, of.order)
-        return _motion(programme, found[0], value)
+            found = _smoothest(programme, found, 1.0, objective)
+        return _motion(programme, found[0], found[1])
     band = LEAST_ERROR
     softer = _softest(programme, band) if not problem.several else None  # no command suits several servos so well
     if softer is not None:
-        return _motion(programme, _smoothest(programme, softer, band, 2)[0])
+        return _motion(programme, _smoothest(programme, softer, band, "peak_acceleration")[0])
     found = programme.solve("sync_error", None)
     if found is None:
         return None
     band = found[1] * (1.0 + KEPT_ERROR) / (1.0 - programme.margin)
     softer = _softest(programme, band)
     if softer is not None:
-        found = _smoothest(programme, softer, band, 2)
+        found = _smoothest(programme, softer, band, "peak_acceleration")
     return _motion(programme, found[0])
 
 
@@ -137,14 +136,25 @@ def _softest(programme: AxisProgramme, band: float) -> tuple[FloatArray, float] 
 
 
 def _smoothest(
-    programme: AxisProgramme, found: tuple[FloatArray, float], band: float, order: int
+    programme: AxisProgramme, found: tuple[FloatArray, float], band: float, objective: ObjectiveName
 ) -> tuple[FloatArray, float]:
-    """Of all commands with the least peak the one of least RMS jerk; the given one if the solver finds none, or not soon."""
-    try:
-        smooth = programme.solve("rms_jerk", band, {order: found[1] * (1.0 + KEPT_PEAK)}, SMOOTHING)
-    except SolverError:
-        return found
-    return found if smooth is None else smooth
+    """Of all commands with the least peak the one of least RMS jerk, and that peak; the given one if there is none, or not soon.
+
+    Rows that come while a command is smoothed may leave none with the peak that was least without them: then that is looked for again.
+    """
+    order = OBJECTIVES[objective].order
+    for _ in range(AGAIN):
+        try:
+            smooth = programme.solve("rms_jerk", band, {order: found[1] * (1.0 + KEPT_PEAK)}, SMOOTHING)
+            if smooth is not None:
+                return smooth[0], found[1]
+            again = programme.solve(objective, band)
+        except SolverError:
+            return found
+        if again is None:
+            return found
+        found = again
+    return found
 
 
 def motion_of(

@@ -14,6 +14,7 @@ from camwright.design.servo_aware.servo_weights import (
     memory,
     sampled_states,
     servo_weights,
+    state_weights,
 )
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.servo import Servo, sample_plant
@@ -232,12 +233,13 @@ def _grid_states(axis: Axis, profile: CamProfile, first: int, count: int) -> tup
     delay = axis.task.cut.line_speed * axis.servo.delay
     command = _on_steps(profile, axis.sample / PHASES, delay, first - ahead * PHASES, first + count)
     command = command[(ahead - past) * PHASES :]
-    windows = np.lib.stride_tricks.sliding_window_view(command, past * PHASES + 1)[:, ::-PHASES]  # newest first
-    states, reference = np.empty((count, 3)), np.empty(count)
-    step = max(1, _MOST_VALUES // (past + 1))
-    for part in (slice(start, start + step) for start in range(0, count, step)):
-        states[part], reference[part] = sampled_states(axis.servo, windows[part])
-    return states, reference
+    # the steps of one sampling phase are a sampled command of their own, of which the states are weighted sums: a convolution each
+    rows = -(-len(command) // PHASES)
+    phases = np.pad(command, (0, rows * PHASES - len(command))).reshape(rows, PHASES).T
+    size = rows + past
+    turned = np.fft.rfft(phases, size)[:, None] * np.fft.rfft(state_weights(axis.servo.loop, past).T, size)
+    found = np.fft.irfft(turned, size)[:, :, past:rows].transpose(2, 0, 1).reshape(-1, 4)[:count]
+    return found[:, :3], found[:, 3]
 
 
 @lru_cache(maxsize=4)

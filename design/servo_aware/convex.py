@@ -12,8 +12,9 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from camwright.design.servo_aware.interior_point import interior_point, least_excess
+from camwright.design.servo_aware.interior_point import interior_point
 from camwright.design.servo_aware.least_distance import least_distance
+from camwright.design.servo_aware.simplex import NoPoint, Vertex, dual_simplex
 from camwright.profiles.errors import SolverError
 from camwright.profiles.polynomial.profile import FloatArray
 
@@ -40,7 +41,8 @@ _QPOASES: dict[str, Any] = {
     "hessian_type": "posdef",
     "initialStatusBounds": "inactive",
 }
-# More rows than these are asked of the interior-point method first.
+# More rows than these are asked of our own methods first: linear programmes of the simplex method, quadratic ones of the
+# interior-point one.
 MANY = 500
 # HiGHS' words for a programme without an answer.
 _INFEASIBLE, _UNBOUNDED = "Infeasible", "Unbounded"
@@ -62,9 +64,13 @@ class ConvexProgramme:
     ----------
     unknowns
         Number of unknowns.
+    vertex
+        Optimum of a programme before with the same cost and some of these rows, from which a linear programme of many rows goes on; after
+        `solve` that of this one.
     """
 
     unknowns: int
+    vertex: Vertex | None = None
     _matrices: list[FloatArray] = field(default_factory=list)
     _low: list[FloatArray] = field(default_factory=list)
     _high: list[FloatArray] = field(default_factory=list)
@@ -121,9 +127,21 @@ class ConvexProgramme:
             Every solver ended without an answer.
         """
         rows = self.rows()
-        if len(rows.matrix) > MANY:
-            return _many(rows, cost, square)
-        return _linear(rows, cost) if square is None else _quadratic(rows, cost, square)
+        few = len(rows.matrix) <= MANY
+        if square is not None:
+            return _quadratic(rows, cost, square) if few else _many(rows, cost, square)
+        return _linear(rows, cost) if few else self._many_linear(rows, cost)
+
+    def _many_linear(self, rows: Rows, cost: FloatArray) -> FloatArray | None:
+        """Solve a linear programme of many rows from the vertex before; by the interior-point method where rounding forbids it."""
+        found = dual_simplex(*rows.one_sided, cost, self.vertex)
+        if isinstance(found, NoPoint):
+            return None
+        self.vertex = found
+        if found is not None and rows.missed(found.x) <= 0.0:
+            return found.x
+        answer = interior_point(rows.matrix, rows.low, rows.high, cost)
+        return answer if answer is not None and rows.missed(answer) <= 0.0 else _linear(rows, cost)
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,6 +163,14 @@ class Rows:
     high: FloatArray
     accepted: FloatArray
 
+    @property
+    def one_sided(self) -> tuple[FloatArray, FloatArray]:
+        """The rows as ``matrix @ x <= bound``."""
+        above, below = np.isfinite(self.high), np.isfinite(self.low)
+        return np.vstack([self.matrix[above], -self.matrix[below]]), np.concatenate(
+            [self.high[above], -self.low[below]]
+        )
+
     def missed(self, found: FloatArray) -> float:
         """By how much an answer breaks rows beyond what is accepted; 0 or less where it keeps them all."""
         values = self.matrix @ found
@@ -155,16 +181,13 @@ _Road = Callable[[FloatArray, FloatArray, FloatArray, FloatArray], tuple[FloatAr
 """What solves a linear programme of a matrix, bounds of its rows and a cost: the answer, or nothing, and the status."""
 
 
-def _many(rows: Rows, cost: FloatArray, square: FloatArray | None) -> FloatArray | None:
-    """Solve a programme of many rows by the interior-point method; by HiGHS or least squares where that comes to no end."""
+def _many(rows: Rows, cost: FloatArray, square: FloatArray) -> FloatArray | None:
+    """Solve a quadratic programme of many rows by the interior-point method; by least squares where that comes to no end."""
     found = interior_point(rows.matrix, rows.low, rows.high, cost, square)
     if found is not None and rows.missed(found) <= 0.0:
         return found
-    excess = least_excess(rows.matrix, rows.low, rows.high)
-    if excess is not None and excess > rows.accepted.max():
+    if isinstance(dual_simplex(*rows.one_sided, np.zeros(len(cost))), NoPoint):
         return None
-    if square is None:
-        return _linear(rows, cost)
     nearest = _nearest(rows, cost, square)
     if nearest is not None:
         return nearest

@@ -41,8 +41,8 @@ MOST_OWN = 24
 MOST_SERVOS = 12
 # Least band that is asked for (share of the tolerance): below it the motion matters more.
 LEAST_ERROR = 5e-3
-# Share by which a band may be missed without another round.
-NEARLY = 1e-3
+# Share by which a band may be missed without another round: at one line speed, and at many, where rounds bring less and cost more.
+NEARLY, NEARLY_EACH = 1e-3, 1e-2
 
 
 class GatheredRows:
@@ -73,13 +73,11 @@ class GatheredRows:
             table = self._tables[0][0]
             self.ratios.append(table.ratio_rows(table.spread(*first)))
 
-    def add_worst(self, command: FloatArray | CamProfile, profile: CamProfile, band: float, *, ratio: bool) -> bool:
+    def add_worst(self, profile: CamProfile, band: float, *, ratio: bool) -> bool:
         """Add rows where a command leaves its band, or the nominal axis breaks a limit; whether there were any.
 
         Parameters
         ----------
-        command
-            The command as `ZoneTable` takes it: its unknowns (slave unit), or the profile where it has none.
         profile
             The command.
         band
@@ -87,24 +85,35 @@ class GatheredRows:
         ratio
             Whether the band of the ratio counts too.
         """
-        nearly = 1.0 if band == 1.0 else 1.0 + NEARLY
+        nearly = 1.0 if band == 1.0 else 1.0 + (NEARLY if len(self.problem.shares) == 1 else NEARLY_EACH)
         limit = max(band, LEAST_ERROR) * self.problem.task.cut.sync_tolerance * nearly
         added = False
         for tables in self._tables:
-            excesses = [np.abs(each.errors(command)) - limit for each in tables]
-            worst = _worst(tables, excesses) or self._finer(tables, excesses, command, limit)
+            worst = self._over(tables, profile, limit)
             self.bands += [table.band_rows(worst_places(excess, _most(self.problem))) for table, excess in worst]
             added |= bool(worst)
         if ratio and self.problem.task.cut.shear_zone:
-            added |= self._add_ratio(command, max(1.0, band))
+            added |= self._add_ratio(profile, max(1.0, band))
         if self.problem.axis_limits:
             added |= self.own.add_worst(profile)
-        between = self._between.rows(command, self.problem.wider * limit, unseen=not added)
+        between = self._between.rows(profile, self.problem.wider * limit, unseen=not added)
         self.bands += between
         return bool(between) or added
 
+    def _over(self, tables: list[ZoneTable], profile: CamProfile, limit: float) -> list[tuple[ZoneTable, FloatArray]]:
+        """Give the line speeds at which a servo exceeds a limit, and by how much at their points.
+
+        Those with rows are looked at first; the others, then those between, only where none of these exceeds it.
+        """
+        begun = [table for table in tables if table.begun]
+        worst = _worst(begun, [np.abs(table.errors(profile)) - limit for table in begun])
+        if worst:
+            return worst
+        excesses = [np.abs(table.errors(profile)) - limit for table in tables]
+        return _worst(tables, excesses) or self._finer(tables, excesses, profile, limit)
+
     def _finer(
-        self, tables: list[ZoneTable], excesses: list[FloatArray], command: FloatArray | CamProfile, limit: float
+        self, tables: list[ZoneTable], excesses: list[FloatArray], profile: CamProfile, limit: float
     ) -> list[tuple[ZoneTable, FloatArray]]:
         """Look at line speeds beside those where a servo comes near to its limit, and from then on; give those where it exceeds it."""
         least = FINEST * (self.problem.shares[0] - self.problem.shares[-1])
@@ -120,7 +129,7 @@ class GatheredRows:
                 new.append(ZoneTable(Axis(axis.task, servo, share), self.problem.basis))
         tables += new
         tables.sort(key=lambda table: -table.axis.share)
-        found = [(table, np.abs(table.errors(command)) - limit) for table in new]
+        found = [(table, np.abs(table.errors(profile)) - limit) for table in new]
         return [(table, excess) for table, excess in found if excess.max() > 0.0]
 
     def errors(self, profile: CamProfile) -> tuple[dict[float, float], ...]:
@@ -136,10 +145,10 @@ class GatheredRows:
         begun = {table.axis.share for tables in self._tables for table in tables if table.begun}
         return tuple(sorted(begun | self._between.shares, reverse=True)) or (1.0,)
 
-    def _add_ratio(self, command: FloatArray | CamProfile, band: float) -> bool:
+    def _add_ratio(self, profile: CamProfile, band: float) -> bool:
         """Add rows where the ratio of the nominal axis at full line speed leaves its band, widened to a share of itself."""
         cut, table = self.problem.task.cut, self._tables[0][0]
-        worst = worst_places(np.abs(table.ratios(command)) - band * RATIO * cut.sync_tolerance / cut.shear_zone)
+        worst = worst_places(np.abs(table.ratios(profile)) - band * RATIO * cut.sync_tolerance / cut.shear_zone)
         if len(worst):
             self.ratios.append(table.ratio_rows(worst))
         return bool(len(worst))
@@ -209,11 +218,11 @@ class BetweenServos:
         """Line speeds of those that have rows, as shares of the cut's."""
         return {table.axis.share for table in self._seen}
 
-    def rows(self, command: FloatArray | CamProfile, limit: float, *, unseen: bool) -> list[AxisRows]:
+    def rows(self, profile: CamProfile, limit: float, *, unseen: bool) -> list[AxisRows]:
         """Make rows where a servo between the corners is worse than its limit; those without rows are looked at last."""
         over = []
         for table in self._seen + (self._unseen if unseen else []):
-            excess = np.abs(table.errors(command)) - limit
+            excess = np.abs(table.errors(profile)) - limit
             if excess.max() > 0.0:
                 over.append((float(excess.max()), table, worst_places(excess, _most(self._problem))))
         over.sort(key=lambda each: -each[0])
@@ -228,6 +237,8 @@ class BetweenServos:
 
 def _worst(tables: list[ZoneTable], excesses: list[FloatArray]) -> list[tuple[ZoneTable, FloatArray]]:
     """Find, of a servo's tables by line speed, those that exceed a limit the most, and by how much at their points."""
+    if not tables:
+        return []
     worst: NDArray[np.intp] = worst_places(np.array([float(excess.max()) for excess in excesses]), MOST_SPEEDS)
     return [(tables[number], excesses[number]) for number in worst.tolist()]
 

@@ -18,8 +18,8 @@ from camwright.profiles.polynomial.profile import FloatArray
 _ACCURATE = 1e-9
 _LEAST = 1e-5
 _MOST_STEPS = 60
-# A gap beyond this grows without end: no point keeps the rows.
-_LOST = 1e30
+# A gap that has grown to so many times its least grows without end: no point keeps the rows.
+_LOST = 1e4
 # Share of the way to the edge that a step goes.
 _SHORT = 0.995
 # Rows of a block: products so small that the linear algebra library takes no threads for them, which cost more than
@@ -89,7 +89,7 @@ def interior_point(
     curved = np.zeros((count, count)) if square is None else square
     sides = _sides(matrix, low, high)
     at = _Point(np.zeros(count), np.maximum(sides.bound, 1.0), np.ones(len(sides.bound)))
-    before = np.inf
+    before = least = np.inf
     for _ in range(_MOST_STEPS):
         over = sides.of(at.x) + at.room - sides.bound
         gradient = cost + curved @ at.x + sides.pull(at.price)
@@ -100,36 +100,14 @@ def interior_point(
         small = _ACCURATE * max(abs(value), _LEAST)
         if gap < small and abs(value - before) < small and np.abs(over).max() < _ACCURATE:
             return at.x
-        before = value
-        if not gap < _LOST:
+        before, least = value, min(gap, least)
+        if not gap < _LOST * least:
             return None
         moved = _moved(sides, curved, at, over, gradient, middle)
         if moved is None:
             return None
         at = moved
     return None
-
-
-def least_excess(matrix: FloatArray, low: FloatArray, high: FloatArray) -> float | None:
-    """Find by how much all rows must be widened to leave a point; ``None`` if that is not found.
-
-    Parameters
-    ----------
-    matrix, low, high
-        As in `interior_point`.
-    """
-    count = len(matrix)
-    wider = np.zeros((2 * count + 1, matrix.shape[1] + 1))
-    wider[:count, :-1] = wider[count:-1, :-1] = matrix
-    wider[:count, -1], wider[count:-1, -1], wider[-1, -1] = -1.0, 1.0, 1.0
-    unbounded = np.full(count, np.inf)
-    cost = np.zeros(wider.shape[1])
-    cost[-1] = 1.0
-    # widening by less than nothing is counted as nothing: what keeps the rows with room needs no more
-    found = interior_point(
-        wider, np.concatenate([-unbounded, low, [0.0]]), np.concatenate([high, unbounded, [np.inf]]), cost
-    )
-    return None if found is None else float(found[-1])
 
 
 def _sides(matrix: FloatArray, low: FloatArray, high: FloatArray) -> _Sides:

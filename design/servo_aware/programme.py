@@ -10,6 +10,7 @@ import numpy as np
 from camwright.design.servo_aware.axis_problem import AxisProblem
 from camwright.design.servo_aware.convex import ACCEPTED, ConvexProgramme
 from camwright.design.servo_aware.gathered_rows import GatheredRows
+from camwright.design.servo_aware.simplex import Vertex
 from camwright.profiles.errors import SolverError
 from camwright.profiles.objective import OBJECTIVES, MotorObjective, ObjectiveName
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
@@ -42,6 +43,7 @@ class AxisProgramme:
         # a return alone comes near to its limits, a whole cycle has room: rows of its limits come when they matter
         self._tight = set(range(4)) if problem.command == "in_sync" else set[int]()
         self._turned: FloatArray | None = None
+        self._vertices: dict[tuple[object, ...], Vertex | None] = {}
         self._answer: tuple[FloatArray, CamProfile] | None = None
 
     @property
@@ -104,7 +106,7 @@ class AxisProgramme:
             room = LIMIT_MARGIN * max(abs(low), abs(high))
             if least < low - room or greatest > high + room:
                 return False
-        return not self.rows.add_worst(profile, profile, 1.0, ratio=True)
+        return not self.rows.add_worst(profile, 1.0, ratio=True)
 
     def least_share(self) -> float | None:
         """Least share of the tolerance that a command keeps with every axis, in position and ratio; ``None`` if none keeps the limits."""
@@ -131,7 +133,7 @@ class AxisProgramme:
 
     def _add_worst(self, unknowns: FloatArray, band: float, *, ratio: bool) -> bool:
         """Add rows where an answer leaves its band; as `GatheredRows.add_worst`."""
-        return self.rows.add_worst(unknowns * self.problem.scale, self.profile(unknowns), band, ratio=ratio)
+        return self.rows.add_worst(self.profile(unknowns), band, ratio=ratio)
 
     def profile(self, unknowns: FloatArray) -> CamProfile:
         """Return the command of an answer, from the start of the return; asked again, the same one."""
@@ -176,7 +178,9 @@ class AxisProgramme:
         self.solved += 1
         count = self.problem.basis.matrix.shape[1]
         peak = _linear(cost)
-        programme = ConvexProgramme(count + peak)
+        # rows only ever come: the optimum with fewer of them is where the next programme begins
+        kind = (cost, band, tuple(caps.items()), elastic)
+        programme = ConvexProgramme(count + peak, self._vertices.get(kind))
         bounds = self.problem.limits
         for order, (low, high) in bounds.items():
             if order not in self._tight and order not in caps:
@@ -208,6 +212,7 @@ class AxisProgramme:
             matrix, constant = self.problem.basis.differences[OBJECTIVES[cost].order]
             programme.add_peak(matrix * (self.problem.scale / unit), constant / unit, -1.0, 1.0)
         answer = programme.solve(np.append(np.zeros(count), 1.0))
+        self._vertices[kind] = programme.vertex
         return None if answer is None else (answer[:-1], max(0.0, float(answer[-1])) * unit)
 
     def _least_torque(self, programme: ConvexProgramme, cost: MotorObjective) -> tuple[FloatArray, float] | None:

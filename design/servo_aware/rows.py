@@ -14,7 +14,7 @@ RATIO = 2.0
 from one edge of its band to the other."""
 
 # Most rows added at a time, of one servo and of each of several.
-MOST_ROWS, MOST_EACH = 12, 4
+MOST_ROWS, MOST_EACH = 12, 8
 _EVERYWHERE = 1e300
 
 

@@ -19,20 +19,27 @@ from camwright.design.servo_aware.rows import RATIO, AxisRows
 from camwright.design.servo_aware.servo_weights import memory, state_weights
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 
-# Sampling instants in the shear zone at most, of a servo that samples often: what the axis does there has no finer waves.
-MOST_INSTANTS = 128
+# Sampling instants in the shear zone at most, of a servo that samples often: what the axis does there has no finer waves. At line speeds
+# below the full one fewer will do, and fewer sampling phases at the ends of the zone, as there are several of them.
+MOST_INSTANTS, SLOWER_INSTANTS, SLOWER_PHASES = 128, 96, 8
 # Most places in the shear zone that have rows from the start.
 MOST_PLACES = 24
 
 
 @dataclass(frozen=True, eq=False)
 class _Points:
-    """Points of a table: their places (m), their times since the sampling instant before (s), the instants (m), and which one each has."""
+    """Points of a table: their places (m), their times since the sampling instant before (s), the instants (m), and which one each has.
+
+    Of the instants ``count`` lie on a grid of sampling phases from its step ``first``, ``stride`` steps apart; those of the ends follow.
+    """
 
     places: FloatArray
     times: FloatArray
     instants: FloatArray
     of: NDArray[np.intp]
+    first: int
+    count: int
+    stride: int
 
 
 def _points(axis: Axis) -> _Points:
@@ -40,20 +47,25 @@ def _points(axis: Axis) -> _Points:
     start, end = axis.shear_zone
     v, after = axis.task.cut.line_speed, np.arange(SUBSTEPS) * (axis.servo.sample_time / SUBSTEPS)
     step = axis.sample / PHASES
-    stride = max(1, math.ceil((end - start) / (step * MOST_INSTANTS)))
+    most = MOST_INSTANTS if axis.share == 1.0 else SLOWER_INSTANTS
+    stride = max(1, math.ceil((end - start) / (step * most)))
     first = math.ceil((start - axis.sample) / step)
     regular = np.arange(first, math.floor(end / step) + 1, stride) * step
     places = regular + v * after[:, None]
     inside = (places >= start) & (places <= end)
-    edges = np.repeat(list(dict.fromkeys((start, end))), PHASES)
-    edge_times = (edges / v) % (axis.servo.sample_time / PHASES)
-    edge_times += np.tile(np.arange(PHASES), len(edges) // PHASES) * (axis.servo.sample_time / PHASES)
+    phases = PHASES if axis.share == 1.0 else SLOWER_PHASES
+    edges = np.repeat(list(dict.fromkeys((start, end))), phases)
+    edge_times = (edges / v) % (axis.servo.sample_time / phases)
+    edge_times += np.tile(np.arange(phases), len(edges) // phases) * (axis.servo.sample_time / phases)
     sub, index = np.nonzero(inside)
     return _Points(
         np.concatenate([places[inside], edges]),
         np.concatenate([after[sub], edge_times]),
         np.concatenate([regular, edges - v * edge_times]),
         np.concatenate([index, len(regular) + np.arange(len(edges))]),
+        first,
+        len(regular),
+        stride,
     )
 
 
@@ -87,22 +99,16 @@ class ZoneTable:
         """Times of the points since the sampling instant before (s)."""
         return self._points.times
 
-    @property
-    def _samples(self) -> FloatArray:
-        """Master positions that the loop sees at each instant, newest first."""
+    def _samples(self, instants: NDArray[np.intp] | slice) -> FloatArray:
+        """Master positions that the loop sees at some of the instants, newest first."""
         cut, servo = self.axis.task.cut, self.axis.servo
         past = np.arange(memory(servo.loop) + 1) * servo.sample_time
-        return self._points.instants[:, None] - cut.line_speed * (servo.delay + past)
+        return self._points.instants[instants, None] - cut.line_speed * (servo.delay + past)
 
     @cached_property
     def _weights(self) -> FloatArray:
         """Weights of the samples for state and reference, shape ``(samples, 4)``."""
         return state_weights(self.axis.servo.loop, memory(self.axis.servo.loop))
-
-    @cached_property
-    def _rows(self) -> tuple[FloatArray, FloatArray]:
-        """State and reference at the instants over the unknowns: shapes ``(instants, 4, n)`` and ``(instants, 4)``."""
-        return self._basis.sums(self._samples, self._weights)
 
     @cached_property
     def _combined(self) -> tuple[FloatArray, ...]:
@@ -115,23 +121,29 @@ class ZoneTable:
             for order in (0, 1)
         )
 
-    def _motion(self, command: FloatArray | CamProfile, order: int) -> FloatArray:
-        """Axis (0) or its ratio (1) at the points; of a command given by its unknowns (slave unit) or as a profile."""
-        if isinstance(command, CamProfile):
-            states = command(self._samples, outside="repeat") @ self._weights
-        else:
-            matrix, constant = self._rows
-            states = matrix @ command + constant
-        found: FloatArray = np.einsum("pa,pa->p", self._combined[order], states[self._points.of])
+    def _motion(self, command: CamProfile, order: int) -> FloatArray:
+        """Axis (0) or its ratio (1) at the points."""
+        found: FloatArray = np.einsum("pa,pa->p", self._combined[order], self._states(command)[self._points.of])
         return found
 
-    def errors(self, command: FloatArray | CamProfile) -> FloatArray:
+    def _states(self, command: CamProfile) -> FloatArray:
+        """State and reference at the instants: on the grid many of them share samples of the command."""
+        points, axis = self._points, self.axis
+        past, step = memory(axis.servo.loop), axis.sample / PHASES
+        width = past * PHASES + points.stride * (points.count - 1) + 1
+        places = step * (points.first - past * PHASES + np.arange(width)) - axis.task.cut.line_speed * axis.servo.delay
+        values = command(places, outside="repeat")
+        windows = np.lib.stride_tricks.sliding_window_view(values, past * PHASES + 1)[:: points.stride, ::-PHASES]
+        ends = command(self._samples(slice(points.count, None)), outside="repeat")
+        return np.concatenate([windows @ self._weights, ends @ self._weights])
+
+    def errors(self, command: CamProfile) -> FloatArray:
         """Sync error of the tool at the points (m)."""
         travel, _, coordinate = self._ideal
         tool = self.axis.task.machine.tool
         return np.asarray(tool(coordinate + (self._motion(command, 0) - travel)) - tool(coordinate))
 
-    def ratios(self, command: FloatArray | CamProfile) -> FloatArray:
+    def ratios(self, command: CamProfile) -> FloatArray:
         """Error of the tool's ratio at the points."""
         _, ratio, coordinate = self._ideal
         return np.asarray((self._motion(command, 1) - ratio) * self.axis.task.machine.tool_ratio(coordinate))
@@ -153,8 +165,9 @@ class ZoneTable:
 
     def _at(self, points: NDArray[np.intp], order: int) -> tuple[FloatArray, FloatArray]:
         """Axis or its ratio at some of the points, as rows over the unknowns."""
-        matrix, constant = self._rows
-        weights, of = self._combined[order][points], self._points.of[points]
+        instants, of = np.unique(self._points.of[points], return_inverse=True)
+        matrix, constant = self._basis.sums(self._samples(instants), self._weights)
+        weights = self._combined[order][points]
         return np.einsum("pa,pan->pn", weights, matrix[of]), np.einsum("pa,pa->p", weights, constant[of])
 
     def spread(self, least: int, instants: int) -> NDArray[np.intp]:

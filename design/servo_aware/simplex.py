@@ -1,0 +1,179 @@
+"""Linear programmes with many dense rows over few unknowns: a dual simplex method that goes on from the vertex of the programme before.
+
+A vertex is where as many rows bind as there are unknowns. When rows are added, the old vertex stays optimal for the old ones, so only the
+new rows that it breaks have to be exchanged in: some tens of exchanges where a programme from nothing takes a thousand (Lemke, *The dual
+method of solving the linear programming problem*, Naval Res. Logist. Q. 1, 1954). Of a programme without a point it ends with the proof:
+rows whose sum contradicts another.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from camwright.profiles.polynomial.profile import FloatArray
+
+# Rows are kept to this; bounds are about one.
+_ACCURATE = 1e-9
+# A programme from nothing begins in the corner of a box so wide, where no answer of use lies.
+_BOX = 1e3
+# Costs are shifted by about this share of the greatest, by a different one each: where many vertices are equally good a method of vertices
+# might go round among them for ever. The answer's cost is off by less than that share of the greatest unknown.
+_SHIFT = 1e-8
+_GOLDEN = 0.6180339887498949
+# Rows that are looked at in a pass, those that are broken most, and exchanges among them before all are looked at again.
+_PASS, _EXCHANGES = 200, 40
+# Exchanges after which the inverse is made anew, and at most in all.
+_FRESH, _MOST = 60, 20_000
+# Shares of a row below this of its greatest are rounding; prices may fall below zero by so much for the sake of a greater share.
+_SMALL, _SLACK = 1e-9, 1e-10
+
+
+@dataclass(frozen=True, eq=False)
+class Vertex:
+    """Optimum of a linear programme.
+
+    Parameters
+    ----------
+    x
+        The unknowns, shape ``(n,)``.
+    matrix, bound
+        Rows ``matrix @ x <= bound`` that bind there, shapes ``(n, n)`` and ``(n,)``.
+    """
+
+    x: FloatArray
+    matrix: FloatArray
+    bound: FloatArray
+
+
+@dataclass(frozen=True)
+class NoPoint:
+    """No point keeps the rows: all would have to be widened by ``least`` at least to leave one."""
+
+    least: float
+
+
+def dual_simplex(
+    matrix: FloatArray, bound: FloatArray, cost: FloatArray, start: Vertex | None = None
+) -> Vertex | NoPoint | None:
+    """Minimise ``cost @ x`` where ``matrix @ x <= bound``.
+
+    Parameters
+    ----------
+    matrix, bound
+        Shapes ``(rows, n)`` and ``(rows,)``, scaled so that bounds are about one.
+    cost
+        Shape ``(n,)``.
+    start
+        Optimum of the same programme with some of these rows.
+
+    Returns
+    -------
+    Vertex, NoPoint or None
+        ``None`` where rounding or the number of exchanges leaves no answer, or the answer has no bound.
+    """
+    shifted = cost + _SHIFT * (np.abs(cost).max() or 1.0) * (0.5 + (_GOLDEN * np.arange(len(cost))) % 1.0)
+    first = start if start is not None else _corner(shifted)
+    state = _State(np.vstack([first.matrix, matrix]), np.concatenate([first.bound, bound]), shifted)
+    if start is not None and state.price.min() < -_ACCURATE:
+        return dual_simplex(matrix, bound, cost)
+    try:
+        proof = state.run()
+    except np.linalg.LinAlgError:
+        return None
+    if proof is not None:
+        return proof if proof.least > 0.0 else None
+    active = state.active
+    if start is None and active.min() < len(cost):
+        return None  # the box binds
+    return Vertex(state.x, state.matrix[active], state.bound[active])
+
+
+def _corner(cost: FloatArray) -> Vertex:
+    """Give the best corner of the box."""
+    sign = np.where(cost >= 0.0, -1.0, 1.0)
+    return Vertex(sign * _BOX, np.diag(sign), np.full(len(cost), _BOX))
+
+
+class _State:
+    """A vertex on the way: rows that bind there, the inverse of their matrix, their prices."""
+
+    def __init__(self, matrix: FloatArray, bound: FloatArray, cost: FloatArray) -> None:
+        self.matrix, self.bound, self._cost = matrix, bound, cost
+        self._size = np.maximum(np.linalg.norm(matrix, axis=1), 1e-300)
+        self.active: NDArray[np.intp] = np.arange(len(cost))
+        self._since = 0
+        self._renew()
+
+    def _renew(self) -> None:
+        """Make the inverse anew, and of it the point and the prices."""
+        held, bound = self.matrix[self.active], self.bound[self.active]
+        self._inverse = np.linalg.inv(held)
+        x = self._inverse @ bound
+        self.x = x + self._inverse @ (bound - held @ x)
+        self.price = -(self._cost @ self._inverse)
+        self._since = 0
+
+    def run(self) -> NoPoint | None:
+        """Exchange rows until none is broken; of rows that leave no point give the proof, not positive where it is none.
+
+        Raises
+        ------
+        numpy.linalg.LinAlgError
+            Rows that bind are parallel by rounding, or there were too many exchanges.
+        """
+        for _ in range(_MOST // _EXCHANGES):
+            broken = self.matrix @ self.x - self.bound
+            broken[self.active] = 0.0
+            rows = np.nonzero(broken > _ACCURATE)[0]
+            if not len(rows):
+                if not self._since:
+                    return None
+                self._renew()
+                continue
+            if len(rows) > _PASS:
+                rows = rows[np.argpartition(-broken[rows] / self._size[rows], _PASS)[:_PASS]]
+            proof = self._among(rows, broken[rows])
+            if proof is not None:
+                return proof
+        raise np.linalg.LinAlgError("too many exchanges")
+
+    def _among(self, rows: NDArray[np.intp], broken: FloatArray) -> NoPoint | None:
+        """Exchange some rows among those given, that which is broken most first."""
+        matrix, size = self.matrix[rows], self._size[rows]
+        for _ in range(_EXCHANGES):
+            worst = int((broken / size).argmax())
+            if broken[worst] <= _ACCURATE:
+                break
+            shares = matrix[worst] @ self._inverse  # the row as a sum of those that bind
+            rising = np.nonzero(shares > _SMALL * np.abs(shares).max())[0]
+            if not len(rising):
+                if self._since:  # looked at again without rounding
+                    self._renew()
+                    return None
+                return NoPoint(float(broken[worst]) / (1.0 + float(np.abs(shares).sum())) - _ACCURATE)
+            prices = np.maximum(self.price[rising], 0.0)
+            near = prices / shares[rising] <= ((prices + _SLACK) / shares[rising]).min()
+            out = int(rising[near][shares[rising][near].argmax()])
+            broken = broken + matrix @ self._exchange(out, int(rows[worst]), shares, float(broken[worst]))
+            broken[worst] = 0.0
+            if self._since >= _FRESH:
+                self._renew()
+                break
+        return None
+
+    def _exchange(self, out: int, row: int, shares: FloatArray, broken: float) -> FloatArray:
+        """Let a row bind in the place of another; give the step of the point."""
+        column = self._inverse[:, out] / shares[out]
+        step = -broken * column
+        price = max(float(self.price[out]), 0.0) / shares[out]
+        self.x = self.x + step
+        self.price = self.price - price * shares
+        self.price[out] = price
+        self._inverse = self._inverse - np.outer(column, shares)
+        self._inverse[:, out] = column
+        self.active[out] = row
+        self._since += 1
+        return np.asarray(step)
