@@ -1,4 +1,6 @@
-"""What a whole cold `camwright design --json --no-figures` of the bundled job costs, beside importing the libraries it cannot do without.
+"""What a cold `camwright design` of the bundled job costs: without figures beside two imports, and with figures beside without.
+
+The two are CasADi, which it cannot do without, and scipy.signal, which it could have used.
 
 The measure is processor time of the whole process, so that other programs on the machine do not count; the runs alternate, after
 one of each that is not counted (compiled files, disk cache). The output of every counted run must be a design whose checks
@@ -24,20 +26,23 @@ from time import perf_counter
 RESULTS = Path(__file__).parent / "results"
 
 MOST = 1.0
-"""Greatest ratio that the project promises."""
+"""Greatest ratio of a design without figures to the imports that the project promises."""
+
+MOST_WITH_FIGURES = 2.0
+"""Greatest ratio of a design with figures to one without."""
 
 ENVIRONMENT = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
 """What the processes run in: an installed copy is compiled, so the checkout is too."""
 
 IMPORTS = [sys.executable, "-c", "import casadi, scipy.signal"]
-DESIGN = [
+FIGURES = [
     sys.executable,
     "-c",
     "import sys; from camwright.cli.main import main; sys.exit(main())",
     "design",
     "--json",
-    "--no-figures",
 ]
+DESIGN = [*FIGURES, "--no-figures"]
 
 
 def run(command: list[str], directory: str) -> tuple[float, float, str]:
@@ -56,7 +61,7 @@ def main() -> int:
     rows = []
     for number in range(-1, options.runs):
         row: dict[str, float] = {"run": number}
-        for name, command in (("imports", IMPORTS), ("design", DESIGN)):
+        for name, command in (("imports", IMPORTS), ("figures", FIGURES), ("design", DESIGN)):
             with tempfile.TemporaryDirectory() as directory:
                 processor, wall, output = run(command, directory)
             row |= {f"{name}_processor_s": processor, f"{name}_wall_s": wall}
@@ -73,11 +78,13 @@ def main() -> int:
         table.writerows(rows)
     middle = {name: statistics.median(row[name] for row in rows) for name in rows[0]}
     ratio = middle["design_processor_s"] / middle["imports_processor_s"]
+    with_figures = middle["figures_processor_s"] / middle["design_processor_s"]
     print("measure,value")
-    for name in ("imports_processor_s", "design_processor_s", "imports_wall_s", "design_wall_s"):
+    for name in list(rows[0])[1:]:
         print(f"{name},{middle[name]:.3f}")
-    print(f"ratio,{ratio:.2f} (promised below {MOST:g})")
-    return 0 if ratio < MOST else 1
+    print(f"design over imports,{ratio:.2f} (promised below {MOST:g})")
+    print(f"with figures over without,{with_figures:.2f} (promised below {MOST_WITH_FIGURES:g})")
+    return 0 if ratio < MOST and with_figures < MOST_WITH_FIGURES else 1
 
 
 if __name__ == "__main__":

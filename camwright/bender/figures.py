@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-import tempfile
-from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -12,20 +10,18 @@ from numpy.typing import NDArray
 
 from camwright.bender.program_file import BentOutline
 from camwright.design.bender.moves import TimeTable
-from camwright.house.fonts import font_folders
-from camwright.house.pictures import Frame, Line, Marks, Picture
-from camwright.house.svg import picture_svg
+from camwright.house.picture_files import write_pictures
+from camwright.house.pictures import DASHED, Frame, Line, Marks, Picture
 from camwright.profiles.bender.outline import Outline
 from camwright.profiles.polynomial.profile import FloatArray
 
-_PIXELS_PER_INCH = 150.0
 _BENDS_SHOWN = 6
 _PER_MOVE = 60
 _FINENESS = 3000
 """A view's width over the coarseness of arcs drawn in it."""
 
 _GRID = 12.0
-"""Frames begin and end on multiples of this (pt), whole pixels of the PNG: its lines are drawn without a seam."""
+"""Frames begin and end on multiples of this (pt), whole pixels of the PNG."""
 
 _WIDTH = 54 * _GRID
 _LEFT, _BETWEEN, _RIGHT, _BOTTOM, _TOP = (n * _GRID for n in (5, 5, 1, 5, 4))
@@ -38,26 +34,6 @@ _DRAWN, _BENT, _WORST, _START, _PAPER = "#b9c4d0", "#11304f", "#c1121f", "#2a9d3
 def draw(outline: BentOutline, directory: Path, name: str) -> None:
     """Write both figures of an outline as SVG and PNG: ``<name>-proof`` and ``<name>-times``."""
     write_pictures({f"{name}-proof": _proof(outline), f"{name}-times": _times(outline)}, directory)
-
-
-def write_pictures(pictures: Mapping[str, Picture], directory: Path) -> None:
-    """Write pictures by name, each as SVG and PNG; typst, which sets the sheet anyway, turns lines into pixels."""
-    import typst
-
-    with tempfile.TemporaryDirectory() as folder:
-        page = Path(folder) / "page.typ"
-        for name, picture in pictures.items():
-            svg = picture_svg(picture)
-            (directory / f"{name}.svg").write_text(svg, encoding="utf-8")
-            page.with_suffix(".svg").write_text(svg, encoding="utf-8")
-            size = f"width: {picture.width:g}pt, height: {picture.height:g}pt"
-            page.write_text(
-                f'#set page({size}, margin: 0pt, fill: white)\n#image("page.svg", {size})\n', encoding="utf-8"
-            )
-            typst.compile(
-                str(page), output=str(directory / f"{name}.png"), root=folder, font_paths=font_folders(),
-                ignore_system_fonts=True, format="png", ppi=_PIXELS_PER_INCH,
-            )  # fmt: skip
 
 
 def outline_path(outline: Outline, coarseness: float | FloatArray) -> FloatArray:
@@ -140,15 +116,15 @@ def _window(outline: BentOutline, worst: FloatArray) -> float:
 def _times(outline: BentOutline) -> Picture:
     """Show feed and mould over time for the first bends, beside the paper's moves."""
     tables = (
-        ("paper, sequential trapezoids", outline.paper_times, _PAPER, True),
-        ("jerk-limited, overlapped", outline.times, _BENT, False),
+        ("paper, sequential trapezoids", outline.paper_times, _PAPER, DASHED),
+        ("jerk-limited, overlapped", outline.times, _BENT, ()),
     )
     signs = np.sign(outline.moulds)
     feeds = [
-        Line(_feed_track(table), colour, 1.4, f"{label}: {table.total:.2f} s in all", dashed)
-        for label, table, colour, dashed in tables
+        Line(_feed_track(table), colour, 1.4, f"{label}: {table.total:.2f} s in all", dash)
+        for label, table, colour, dash in tables
     ]
-    moulds = [Line(_mould_track(table, signs), colour, 1.4, "", dashed) for _, table, colour, dashed in tables]
+    moulds = [Line(_mould_track(table, signs), colour, 1.4, "", dash) for _, table, colour, dash in tables]
     rows = [(feeds, "rule fed (mm)"), (moulds, "mould angle (°)")] if outline.plan.bends else [(feeds, "rule fed (mm)")]
     last = max(float(line.points[:, 0].max()) for line in (*feeds, *moulds)) or 1.0
     top, height, width = 3 * _GRID, 14 * _GRID, _WIDTH - _LEFT - _RIGHT

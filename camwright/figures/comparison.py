@@ -3,43 +3,54 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from camwright.figures.marks import blank_figure, line_mark, patch_mark
-from camwright.figures.saving import written
-from camwright.figures.style import (
-    LIMIT,
-    LINES,
-    title,
-)
+import numpy as np
+
+from camwright.figures.panel import RIGHT, WIDTH, first_frame, head, page, upright
+from camwright.figures.style import LINES, title
+from camwright.house.numbers import converted, number, unit_shown
+from camwright.house.picture_files import write_pictures
+from camwright.house.pictures import Bar, Frame, Item, Note, Picture, Tick
 from camwright.profiles.objective import OBJECTIVES
 from camwright.studies.comparison import Comparison
 from camwright.studies.measured import Measured
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Patch
-
-
 _BASELINE = "#b5b5b5"
-_UNBOUNDED_HATCH = "xxxx"
-_BEYOND_HATCH = "////"
+_NOTHING = "#ffffff"
 _BEYOND = 1e-9
 """Part of a limit by which rounding may exceed it."""
 
 _FAR = 4.0
 """A limit is drawn as a line if it is at most this many times the longest bar, else named in words."""
 
+_LEFT, _GAP, _ROW, _HEADING = 156.0, 12.0, 22.0, 36.0
+"""Room for the names, between two columns, for a profile, and for the headings (pt)."""
+
+_HALF = 0.33
+"""Half the height of a bar, as a part of its row."""
+
+_BROAD = 1.55
+"""Width of a column, as a multiple of its longest bar: numbers stand beside the bars."""
+
+
+@dataclass(frozen=True)
+class _Column:
+    """A measure of all profiles, in the units shown; the word for what has none."""
+
+    heading: str
+    values: Sequence[float | None]
+    limit: float | None
+    without: str = "unbounded"
+
 
 def comparison_figure(comparison: Comparison, directory: Path) -> list[Path]:
     """Write the bars of a comparison: ``comparison.svg`` and ``comparison.png`` in an existing directory."""
-    return written(lambda: bars_figure(comparison), directory, "comparison")
+    return write_pictures({"comparison": bars_figure(comparison)}, directory)
 
 
-def bars_figure(comparison: Comparison) -> Figure:
+def bars_figure(comparison: Comparison) -> Picture:
     """Draw the measures of all profiles side by side by the job's objective, what breaks a limit marked and at the bottom.
 
     What is unbounded, and what does not exist, has a hatched bar over the whole panel and says so.
@@ -49,45 +60,59 @@ def bars_figure(comparison: Comparison) -> Figure:
     comparison
         The profiles measured.
     """
-    rows, limits = comparison.rows, comparison.job.limits
-    figure = blank_figure(1.5 + 0.24 * len(rows))
-    unit = comparison.job.machine.slave_unit
+    job, rows = comparison.job, comparison.rows
+    columns = _columns(comparison)
+    note = "; † breaks a limit" if any(not row.within_limits for row in rows) else ""
+    heading = head(job.name, f"all profiles, by {OBJECTIVES[job.objective].words}{note}")
+    top = first_frame(heading) + _HEADING
+    width = (WIDTH - _LEFT - RIGHT + _GAP) / len(columns) - _GAP
+    ticks = [Tick(float(-i), _label(row), row.name == "optimised") for i, row in enumerate(rows)]
     names = [row.name for row in rows]
-    columns: list[tuple[str, list[float | None], float | None, str]] = [
-        (f"peak acc.\n({unit}/s²)", [row.motion.peak_acceleration for row in rows], limits.acceleration, "unbounded"),
-        (f"RMS acc.\n({unit}/s²)", [row.motion.rms_acceleration for row in rows], None, "unbounded"),
-        (f"peak jerk\n({unit}/s³)", [row.motion.peak_jerk for row in rows], limits.jerk, "unbounded"),
-        (f"RMS jerk\n({unit}/s³)", [row.motion.rms_jerk for row in rows], None, "unbounded"),
-        (
-            "settling\n(mm)",
-            [None if row.response.settling is None else row.response.settling * 1e3 for row in rows],
+    frames = [
+        _panel(column, names, ticks if i == 0 else (), (_LEFT + i * (width + _GAP), top, width))
+        for i, column in enumerate(columns)
+    ]
+    return page(heading, frames, _legend(frames))
+
+
+def _columns(comparison: Comparison) -> list[_Column]:
+    """Choose the measures that are drawn."""
+    job, rows = comparison.job, comparison.rows
+    units, slave = job.units, job.machine.slave_unit
+    acceleration, jerk = (units.measure(f"{slave}/s^{order}") for order in (2, 3))
+    length, millimetres = converted(1.0, "m", units), unit_shown("m", units)
+
+    def scaled(values: Sequence[float | None], factor: float) -> list[float | None]:
+        return [None if value is None else value * factor for value in values]
+
+    columns = [
+        _Column(
+            f"peak acc.\n({acceleration.printed})",
+            scaled([row.motion.peak_acceleration for row in rows], acceleration.factor),
+            job.limits.acceleration * acceleration.factor,
+        ),
+        _Column(
+            f"RMS acc.\n({acceleration.printed})",
+            scaled([row.motion.rms_acceleration for row in rows], acceleration.factor),
             None,
-            "not in zone",
+        ),
+        _Column(
+            f"peak jerk\n({jerk.printed})",
+            scaled([row.motion.peak_jerk for row in rows], jerk.factor),
+            job.limits.jerk * jerk.factor,
+        ),
+        _Column(f"RMS jerk\n({jerk.printed})", scaled([row.motion.rms_jerk for row in rows], jerk.factor), None),
+        _Column(
+            f"settling\n({millimetres})", scaled([row.response.settling for row in rows], length), None, "not in zone"
         ),
     ]
-    if comparison.job.objective == "sync_error":
-        errors: list[float | None] = [
-            None if (error := row.value("sync_error")) is None else error * 1e3 for row in rows
-        ]
-        columns.append(("sync error\n(mm)", errors, comparison.job.cut.sync_tolerance * 1e3, "unbounded"))
+    if job.objective == "sync_error":
+        errors = scaled([row.value("sync_error") for row in rows], length)
+        columns.append(_Column(f"sync error\n({millimetres})", errors, job.cut.sync_tolerance * length))
     torques = [row.motor.rms_torque for row in rows]
     if any(torque is not None for torque in torques):
-        columns.insert(2, ("RMS torque\n(N·m)", torques, None, "unbounded"))
-    panels = figure.subplots(1, len(columns), sharey=True)
-    limits_drawn = False
-    for axes, (heading, values, limit, without) in zip(panels, columns, strict=True):
-        limits_drawn |= _bars(axes, names, values, limit, without)
-        axes.set_title(heading)
-    panels[0].set_yticks(range(len(rows)), [_label(row) for row in rows])
-    for label, name in zip(panels[0].get_yticklabels(), names, strict=True):
-        label.set_fontweight("bold" if name == "optimised" else "normal")
-    panels[0].invert_yaxis()
-    note = "; † breaks a limit" if any(not row.within_limits for row in rows) else ""
-    figure.suptitle(
-        f"{comparison.job.name}: all profiles, by {OBJECTIVES[comparison.job.objective].words}{note}", fontsize=9.5
-    )
-    figure.legend(handles=_handles(columns, limits_drawn), loc="outside lower center", ncols=5)
-    return figure
+        columns.insert(2, _Column("RMS torque\n(N·m)", torques, None))
+    return columns
 
 
 def _label(row: Measured) -> str:
@@ -96,66 +121,48 @@ def _label(row: Measured) -> str:
     return name if row.within_limits else f"{name} †"
 
 
-def _handles(
-    columns: Sequence[tuple[str, list[float | None], float | None, str]], limits_drawn: bool
-) -> list[Patch | Line2D]:
-    """Entries of the legend: what is there to be seen."""
-    handles: list[Patch | Line2D] = [
-        patch_mark(facecolor=LINES["optimised"]["color"], label="optimised"),
-        patch_mark(facecolor=_BASELINE, label="baseline"),
-    ]
-    if any(_is_beyond(value, limit) for _, values, limit, _ in columns for value in values):
-        handles.append(
-            patch_mark(
-                facecolor=_BASELINE, edgecolor="black", hatch=_BEYOND_HATCH, linewidth=0.0, label="beyond the limit"
-            )
-        )
-    if any(value is None for _, values, _, _ in columns for value in values):
-        handles.append(
-            patch_mark(
-                facecolor="white", edgecolor="#777777", hatch=_UNBOUNDED_HATCH, linewidth=0.5, label="unbounded or none"
-            )
-        )
-    return [*handles, *([line_mark(label="limit of the drive", **LIMIT)] if limits_drawn else [])]
+def _legend(frames: Sequence[Frame]) -> list[Item]:
+    """Tell what is there to be seen, in a fixed order."""
+    order = ("optimised", "baseline", "beyond the limit", "unbounded or none", "limit of the drive")
+    seen = {item.label: item for frame in frames for item in frame.items}
+    if "beyond the limit" in seen:
+        seen["beyond the limit"] = Bar((0.0, 0.0), (1.0, 1.0), _BASELINE, "lines", "beyond the limit")
+    seen.setdefault("baseline", Bar((0.0, 0.0), (1.0, 1.0), _BASELINE, "", "baseline"))
+    seen.setdefault("optimised", Bar((0.0, 0.0), (1.0, 1.0), LINES["optimised"]["color"], "", "optimised"))
+    return [seen[label] for label in order if label in seen]
 
 
-def _is_beyond(value: float | None, limit: float | None) -> bool:
-    return value is not None and limit is not None and value > limit * (1 + _BEYOND)
-
-
-def _bars(axes: Axes, names: Sequence[str], values: Sequence[float | None], limit: float | None, without: str) -> bool:
-    """Draw one measure of all profiles, its numbers written beside the bars; tell whether its limit is drawn."""
-    longest = max((value for value in values if value is not None), default=0.0) or limit or 1.0
+def _panel(column: _Column, names: Sequence[str], ticks: Sequence[Tick], place: tuple[float, float, float]) -> Frame:
+    """Draw one measure of all profiles, its numbers written beside the bars; arguments end with left, top and width (pt)."""
+    limit = column.limit
+    longest = max((value for value in column.values if value is not None), default=0.0) or limit or 1.0
     drawn = limit is not None and limit <= _FAR * longest
+    items: list[Item] = []
+    low, high = -(len(names) - 0.4), 0.6
     if limit is not None and drawn:
-        axes.axvline(limit, **LIMIT)
         longest = max(longest, limit)
-    elif limit is not None:
-        axes.set_xlabel(f"limit {limit:g}: off scale", fontsize=7)
-    width = 1.55 * longest
-    axes.set_xlim(0.0, width)
-    for i, (name, value) in enumerate(zip(names, values, strict=True)):
-        if value is None:
-            axes.barh(i, width, 0.66, facecolor="white", edgecolor="#777777", hatch=_UNBOUNDED_HATCH, linewidth=0.0)
-            axes.text(0.5 * width, i, without, ha="center", va="center", fontsize=6.5,
-                      bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8})  # fmt: skip
-        else:
-            beyond = _is_beyond(value, limit)
-            colour = LINES["optimised"]["color"] if name == "optimised" else _BASELINE
-            axes.barh(
-                i,
-                value,
-                0.66,
-                facecolor=colour,
-                edgecolor="black",
-                linewidth=0.0,
-                hatch=_BEYOND_HATCH if beyond else "",
-            )
-            axes.text(value + 0.03 * width, i, f"{value:.4g}", ha="left", va="center", fontsize=6.5)
-    axes.grid(visible=False)
-    axes.tick_params(axis="y", length=0)
-    axes.tick_params(axis="x", labelsize=6.5)
-    axes.locator_params(axis="x", nbins=3)
-    for side in ("top", "right"):
-        axes.spines[side].set_visible(False)
-    return drawn
+        items.append(upright(limit, low, high, "limit of the drive"))
+    for i, (name, value) in enumerate(zip(names, column.values, strict=True)):
+        items += _bar(-float(i), name, value, column, _BROAD * longest)
+    left, top, width = place
+    return Frame(
+        left, top, width, _ROW * (len(names) + 0.2), np.array([0.0, low]), np.array([_BROAD * longest, high]), items,
+        "" if drawn or limit is None else f"limit {number(limit)}: off scale", "", column.heading,
+        yticks=ticks, numbers=True, edges=False,
+    )  # fmt: skip
+
+
+def _bar(at: float, name: str, value: float | None, column: _Column, width: float) -> list[Item]:
+    """Draw the bar of a profile at a height, and what is written to it."""
+    low, high = at - _HALF, at + _HALF
+    if value is None:
+        return [
+            Bar((0.0, low), (width, high), _NOTHING, "crosses", "unbounded or none"),
+            Note((0.5 * width, at), column.without, "middle", size=8.0, boxed=True),
+        ]
+    beyond = column.limit is not None and value > column.limit * (1 + _BEYOND)
+    colour, label = (LINES["optimised"]["color"], "optimised") if name == "optimised" else (_BASELINE, "baseline")
+    return [
+        Bar((0.0, low), (value, high), colour, "lines" if beyond else "", "beyond the limit" if beyond else label),
+        Note((value, at), number(value, 4), "start", (3.0, 0.0), 8.0),
+    ]

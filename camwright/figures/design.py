@@ -6,12 +6,13 @@ from pathlib import Path
 
 from camwright.figures.axis import AXES as SHOWN_AXES
 from camwright.figures.axis import axis_figure
-from camwright.figures.comparison import comparison_figure
+from camwright.figures.comparison import bars_figure
 from camwright.figures.crank import crank_figure
 from camwright.figures.profile import profile_figure
 from camwright.figures.saving import written
 from camwright.figures.servo import AXES, servo_figure
 from camwright.figures.speed_band import speed_band_figure
+from camwright.house.picture_files import write_pictures
 from camwright.studies.axis_study import robust_band
 from camwright.studies.design import Design
 from camwright.validation.servo.simulation import simulate
@@ -37,11 +38,14 @@ def design_figures(design: Design, directory: Path) -> list[Path]:
     """
     job, comparison = design.job, design.comparison
     runs = {name: simulate(comparison[name].profile, job.cut, job.servo) for name in AXES}
+    pictures = {
+        "profile": profile_figure(comparison),
+        "servo": servo_figure(comparison, runs),
+        "comparison": bars_figure(comparison),
+        "speed_band": speed_band_figure(design),
+    }
     return [
-        *written(lambda: profile_figure(comparison), directory, "profile"),
-        *written(lambda: servo_figure(comparison, runs), directory, "servo"),
-        *comparison_figure(comparison, directory),
-        *written(lambda: speed_band_figure(design), directory, "speed_band"),
+        *write_pictures(pictures, directory),
         *(
             written(lambda: crank_figure(comparison), directory, "crank")
             if job.machine.dead_centres is not None

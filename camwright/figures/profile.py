@@ -2,33 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
 
-from camwright.figures.marks import blank_figure, line_mark, patch_mark
-from camwright.figures.style import (
-    LIMIT,
-    LINES,
-    SHEAR_COLOUR,
-    SYNC_COLOUR,
-    shade_zones,
-    title,
-)
-from camwright.house.numbers import with_unit
-from camwright.profiles.machines import Machine
+from camwright.figures.panel import LEFT, RIGHT, WIDTH, across, first_frame, head, page, profile_line, zone_bands
+from camwright.figures.style import LINES, title
+from camwright.house.numbers import Units, converted, number, unit_shown, with_unit
+from camwright.house.pictures import Arrow, Frame, Item, Line, Note, Picture
+from camwright.jobs.job import Job
 from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.task import Task
 from camwright.studies.comparison import Comparison
 from camwright.validation.motion import RATIO_JUMP, SLOPE_JUMP, slope_scale
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Patch
-
 
 _POINTS = 48
 """Points drawn of a piece; the ends of pieces are drawn from both sides."""
@@ -42,8 +29,11 @@ _NOTHING = 1e-9
 _ROOM = 1.18
 """Height of a panel, as a multiple of what it holds."""
 
+_PANEL, _GAP = 144.0, 18.0
+"""Height of a panel, and room between two (pt)."""
 
-def profile_figure(comparison: Comparison) -> Figure:
+
+def profile_figure(comparison: Comparison) -> Picture:
     """Draw the optimised profile beside the linear return and the quintic.
 
     Where a derivative is unbounded, arrows stand at the jump instead of a value; they point the way of the jump.
@@ -53,60 +43,92 @@ def profile_figure(comparison: Comparison) -> Figure:
     comparison
         Holds the job and the profiles; those of `camwright.figures.style.LINES` are drawn.
     """
-    task = comparison.job.task
-    cut, limits, machine = task.cut, task.limits, task.machine
-    v = cut.line_speed
-    figure = blank_figure(8.0)
-    travel, ratio, acceleration, jerk = figure.subplots(4, 1, sharex=True)
+    job = comparison.job
     shown = {row.name: row.profile for row in comparison.rows if row.name in LINES}
-    for axes in (travel, ratio, acceleration, jerk):
-        shade_zones(axes, cut)
-    for name, profile in shown.items():
-        x, y = curve(profile, 0)
-        travel.plot(x * 1e3, _travel(x, y, task), **LINES[name])
-        for axes, order, factor in ((ratio, 1, 1.0), (acceleration, 2, v**2), (jerk, 3, v**3)):
-            x, value = curve(profile, order)
-            axes.plot(x * 1e3, value * factor, **LINES[name])
-    _limits(ratio, (task.least_ratio, task.greatest_ratio))
-    _limits(acceleration, (-limits.acceleration, limits.acceleration))
-    _limits(jerk, (-limits.jerk, limits.jerk))
-    for name, profile in shown.items():
-        _arrows(acceleration, jerk, name, profile)
-    if machine.guide is not None:
-        for end in machine.guide:
-            travel.axhline(end * 1e3, **LIMIT)
-    travel.set_ylabel(_travel_label(machine))
-    unit = machine.slave_unit
-    ratio.set_ylabel("ratio k = dy/dx" if unit == "m" else "ratio dy/dx (rad/m)")
-    acceleration.set_ylabel(f"acceleration ({unit}/s²)")
-    jerk.set_ylabel(f"jerk ({unit}/s³)")
-    jerk.set_xlabel("master position x (mm)")
-    jerk.set_xlim(0.0, cut.length * 1e3)
-    figure.align_ylabels()
-    figure.suptitle(
-        f"{comparison.job.name}: {with_unit(cut.length, 'm')} at {with_unit(v, 'm/s')}, "
-        f"minimised: {OBJECTIVES[comparison.job.objective].words}",
-        fontsize=9.5,
+    words = (
+        f"{with_unit(job.cut.length, 'm', units=job.units)} at {with_unit(job.cut.line_speed, 'm/s', units=job.units)}, "
+        f"minimised: {OBJECTIVES[job.objective].words}"
     )
-    _legend(figure, shown)
-    return figure
+    heading = head(job.name, words)
+    top = first_frame(heading)
+    frames = [_frame(job, shown, order, top + order * (_PANEL + _GAP)) for order in range(4)]
+    legend: list[Item] = [profile_line(name, np.empty((0, 2)), title(name)) for name in LINES if name in shown]
+    legend += [across(0.0, 0.0, 1.0, "limit of the drive"), *zone_bands(job.cut, job.units)]
+    if "linear_return" in shown:
+        legend.append(_arrow("linear_return", 0.0, 1.0, "unbounded"))
+    return page(heading, frames, legend)
 
 
-def _travel(x: FloatArray, y: FloatArray, task: Task) -> FloatArray:
-    """Give what the first panel draws: the correction ``y - x`` (mm), a carriage's place (mm), or an angle minus an even turn (deg)."""
-    machine = task.machine
+def _frame(job: Job, shown: dict[str, CamProfile], order: int, top: float) -> Frame:
+    """Draw the panel of the travel or of a derivative."""
+    units, task = job.units, job.task
+    end = converted(job.cut.length, "m", units)
+    lines = [profile_line(name, _points(profile, order, job)) for name, profile in shown.items()]
+    limits = _limits(task, order, units)
+    low, high, drawn = _range(lines, limits) if order else _whole(lines, limits)
+    items: list[Item] = [*zone_bands(job.cut, units), *(across(bound, 0.0, end) for bound in drawn), *reversed(lines)]
+    if order and limits[-1] not in drawn:
+        bound = number(limits[-1])
+        words = f"limit {bound}: off scale" if drawn else f"limits ±{bound}: off scale"
+        items.append(Note((end, high), words, "end", (0.0, -6.0)))
+    if order >= 2:
+        for name, profile in shown.items():
+            items += _arrows(name, profile, order, units, (low, high))
+    label = "master position x (" + unit_shown("m", units) + ")" if order == 3 else ""
+    return Frame(
+        LEFT, top, WIDTH - LEFT - RIGHT, _PANEL, np.array([0.0, low]), np.array([end, high]), items,
+        label, _label(task, order, units), grid=True, apart=24.0,
+    )  # fmt: skip
+
+
+def _points(profile: CamProfile, order: int, job: Job) -> FloatArray:
+    """Points of a curve in the units shown, shape ``(n, 2)``."""
+    x, y = curve(profile, order)
+    units, task = job.units, job.task
+    value = _travel(x, y, task, units) if order == 0 else y * job.cut.line_speed**order * _factor(task, order, units)
+    return np.stack([x * converted(1.0, "m", units), value], axis=1)
+
+
+def _factor(task: Task, order: int, units: Units) -> float:
+    """Factor from a derivative over time to what is shown; the ratio is one over the master."""
+    unit = task.machine.slave_unit
+    if order == 1:
+        return 1.0 / task.cut.line_speed
+    return units.measure(f"{unit}/s^{order}").factor
+
+
+def _limits(task: Task, order: int, units: Units) -> tuple[float, ...]:
+    """Limits of a panel in the units shown: the carriage's stroke, or those of the drive."""
+    limits, guide = task.limits, task.machine.guide
+    if order == 0:
+        return () if guide is None else tuple(converted(end, "m", units) for end in guide)
+    if order == 1:
+        return task.least_ratio, task.greatest_ratio
+    greatest = (limits.acceleration if order == 2 else limits.jerk) * _factor(task, order, units)
+    return -greatest, greatest
+
+
+def _travel(x: FloatArray, y: FloatArray, task: Task, units: Units) -> FloatArray:
+    """Give what the first panel draws: the correction ``y - x``, a carriage's place, or an angle minus an even turn (deg)."""
+    machine, factor = task.machine, converted(1.0, "m", units)
     if machine.slave_unit == "rad":
         return np.asarray(np.degrees(y - machine.pitch / task.cut.length * x))
     if machine.turns_back:
-        return np.asarray(task.slave_at_start + y - y[0]) * 1e3
-    return (y - x) * 1e3
+        return np.asarray(task.slave_at_start + y - y[0]) * factor
+    return (y - x) * factor
 
 
-def _travel_label(machine: Machine) -> str:
-    """Label of the first panel."""
-    if machine.slave_unit == "rad":
-        return "y − even turn (°)"
-    return f"{machine.noun} y (mm)" if machine.turns_back else "y − x (mm)"
+def _label(task: Task, order: int, units: Units) -> str:
+    """Label of a panel."""
+    machine = task.machine
+    unit = machine.slave_unit
+    if order == 0:
+        if unit == "rad":
+            return "y − even turn (°)"
+        return f"{f'{machine.noun} y' if machine.turns_back else 'y − x'} ({unit_shown('m', units)})"
+    if order == 1:
+        return "ratio k = dy/dx" if unit == "m" else "ratio dy/dx (rad/m)"
+    return f"{'acceleration' if order == 2 else 'jerk'} ({units.measure(f'{unit}/s^{order}').printed})"
 
 
 def curve(profile: CamProfile, order: int) -> tuple[FloatArray, FloatArray]:
@@ -119,64 +141,39 @@ def curve(profile: CamProfile, order: int) -> tuple[FloatArray, FloatArray]:
     return x.ravel(), value.ravel()
 
 
-def _limits(axes: Axes, bounds: tuple[float, float]) -> None:
-    """Mark limits as lines, or name those that lie far beyond all that is drawn; leave room around the curves."""
-    values = np.concatenate([np.asarray(line.get_ydata(), dtype=float) for line in axes.lines])
+def _whole(lines: Sequence[Line], limits: tuple[float, ...]) -> tuple[float, float, tuple[float, ...]]:
+    """Give least and greatest of a panel that holds its curves and all limits, with room around, and the limits."""
+    values = np.concatenate([*(line.points[:, 1] for line in lines), limits])
+    least, greatest = float(values.min()), float(values.max())
+    room = 0.05 * (greatest - least) if greatest > least else 1.0
+    return least - room, greatest + room, limits
+
+
+def _range(lines: Sequence[Line], limits: tuple[float, ...]) -> tuple[float, float, tuple[float, ...]]:
+    """Give least and greatest of a panel with room around its curves, and those limits that do not lie far beyond all that is drawn."""
+    values = np.concatenate([line.points[:, 1] for line in lines])
     least, greatest = float(values.min()), float(values.max())
     reach = max(abs(least), abs(greatest))
-    if reach <= _NOTHING * bounds[1]:
-        reach = bounds[1]
-    drawn = [bound for bound in bounds if abs(bound) <= _FAR * reach]
+    if reach <= _NOTHING * limits[1]:
+        reach = limits[1]
+    drawn = tuple(bound for bound in limits if abs(bound) <= _FAR * reach)
     least, greatest = min([least, *drawn]), max([greatest, *drawn])
     middle, half = 0.5 * (least + greatest), 0.5 * (greatest - least) * _ROOM
-    axes.set_ylim(middle - half, middle + half)
-    for bound in drawn:
-        axes.axhline(bound, **LIMIT)
-    if bounds[1] > _FAR * reach:
-        text = f"limit {bounds[1]:g}: off scale" if drawn else f"limits ±{bounds[1]:g}: off scale"
-        axes.text(1.0, 1.015, text, transform=axes.transAxes, ha="right", va="bottom", fontsize=7)
+    return middle - half, middle + half, drawn
 
 
-def _arrows(acceleration: Axes, jerk: Axes, name: str, profile: CamProfile) -> None:
+def _arrows(name: str, profile: CamProfile, order: int, units: Units, reach: tuple[float, float]) -> list[Arrow]:
     """Mark where acceleration or jerk is unbounded: at jumps of the ratio, or of the ratio slope."""
-    at = profile.breaks[1:] * 1e3
+    at = profile.breaks[1:] * converted(1.0, "m", units)
     ratio, slope = profile.jumps(1), profile.jumps(2)
     steep = np.abs(ratio) > RATIO_JUMP
-    for x, up in zip(at[steep], ratio[steep] > 0, strict=True):
-        _arrow(acceleration, name, float(x), up=bool(up))
-    for x in at[steep | (np.abs(slope) > SLOPE_JUMP * slope_scale(profile))]:
-        _arrow(jerk, name, float(x), up=True)
-        _arrow(jerk, name, float(x), up=False)
+    if order == 2:
+        return [_arrow(name, x, reach[int(up)]) for x, up in zip(at[steep].tolist(), ratio[steep] > 0, strict=True)]
+    sudden = steep | (np.abs(slope) > SLOPE_JUMP * slope_scale(profile))
+    return [_arrow(name, x, tip) for x in at[sudden].tolist() for tip in reversed(reach)]
 
 
-def _arrow(axes: Axes, name: str, x: float, *, up: bool) -> None:
+def _arrow(name: str, x: float, tip: float, label: str = "") -> Arrow:
     """Draw one arrow from zero to the edge of the panel."""
-    low, high = axes.get_ylim()
-    line = LINES[name]
-    axes.annotate(
-        "",
-        xy=(x, high if up else low),
-        xytext=(x, 0.0),
-        annotation_clip=False,
-        arrowprops={
-            "arrowstyle": "-|>",
-            "color": line["color"],
-            "linestyle": line["linestyle"],
-            "linewidth": line["linewidth"],
-            "shrinkA": 0,
-            "shrinkB": 0,
-        },
-    )
-
-
-def _legend(figure: Figure, shown: dict[str, CamProfile]) -> None:
-    handles: list[Line2D | Patch] = [line_mark(label=title(name), **LINES[name]) for name in LINES if name in shown]
-    handles += [
-        line_mark(label="limit of the drive", **LIMIT),
-        patch_mark(facecolor=SYNC_COLOUR, label="sync zone"),
-        patch_mark(facecolor=SHEAR_COLOUR, edgecolor="#8c8c8c", hatch="////", linewidth=0, label="shear zone"),
-    ]
-    if "linear_return" in shown:
-        line = LINES["linear_return"]
-        handles.append(line_mark(color=line["color"], marker="^", linestyle="-", linewidth=1.2, label="unbounded"))
-    figure.legend(handles=handles, loc="outside lower center", ncols=4)
+    line = profile_line(name, np.empty((0, 2)))
+    return Arrow(x, 0.0, tip, line.colour, line.width, label, line.dash)

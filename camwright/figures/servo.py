@@ -2,32 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+import math
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from camwright.figures.marks import blank_figure, line_mark, patch_mark
-from camwright.figures.style import (
-    LIMIT,
-    LINES,
-    SHEAR_COLOUR,
-    shade_shear_zone,
-    title,
-)
-from camwright.house.numbers import with_unit
+from camwright.figures.panel import (
+    BLACK,
+    DOTTED,
+    GREY,
+    LEFT,
+    RIGHT,
+    WIDTH,
+    across,
+    band,
+    first_frame,
+    head,
+    page,
+    profile_line,
+    thin_line,
+)  # fmt: skip
+from camwright.figures.style import LINES, title
+from camwright.house.numbers import Units, converted, unit_shown, with_unit
+from camwright.house.pictures import Frame, Item, Line, Marks, Note, Picture
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.studies.comparison import Comparison
 from camwright.studies.measured import Measured
 from camwright.validation.servo.axis_run import ServoRun
-from camwright.validation.servo.response import ServoResponse, sync_error
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Patch
-
+from camwright.validation.servo.response import sync_error
 
 AXES = ("linear_return", "optimised")
 """Profiles whose axis is drawn."""
@@ -41,11 +43,22 @@ _BEFORE, _AFTER = 0.15, 0.6
 _CLOSE = 6.0
 """Half height of the close view of the sync error, as a multiple of the sync tolerance."""
 
-_CROSSING: dict[str, Any] = {"marker": "o", "markerfacecolor": "white", "markersize": 5, "zorder": 6}
-_SETTLING: dict[str, Any] = {"marker": "D", "markersize": 4.5, "zorder": 6}
+_ROOM = 0.05
+"""Share of what a panel holds that is free above and below it."""
+
+_MEETING, _ERROR = 168.0, 144.0
+"""Heights of the upper two and the lower two panels (pt)."""
+
+_HEADING, _BELOW, _BETWEEN = 24.0, 36.0, 60.0
+"""Room above a panel with a title, below one with an x label, and between the upper two (pt)."""
+
+_CROSSING, _SETTLED = 7.0, 8.0
+"""Sizes of the marks (pt)."""
+
+_PLACE = "master from the start of the sync zone"
 
 
-def servo_figure(comparison: Comparison, runs: Mapping[str, ServoRun]) -> Figure:
+def servo_figure(comparison: Comparison, runs: Mapping[str, ServoRun]) -> Picture:
     """Draw what the job's servo makes of the linear return and of the optimised profile.
 
     Parameters
@@ -56,94 +69,37 @@ def servo_figure(comparison: Comparison, runs: Mapping[str, ServoRun]) -> Figure
         The simulated responses, by the names in `AXES`.
     """
     job = comparison.job
-    figure = blank_figure(8.2)
-    grid = figure.add_gridspec(3, 2, height_ratios=(1.15, 1.0, 1.0))
-    left = figure.add_subplot(grid[0, 0])
-    right = figure.add_subplot(grid[0, 1], sharex=left, sharey=left)
-    whole = figure.add_subplot(grid[1, :])
-    close = figure.add_subplot(grid[2, :], sharex=whole)
-    for axes, name in zip((left, right), AXES, strict=True):
-        _meeting(axes, comparison[name], comparison, runs[name])
-        axes.set_title(title(name))
-        axes.set_xlabel("master from the start of the sync zone (mm)")
-    left.set_ylabel(f"{'slave' if job.task.straight else 'tool'} from there (mm)")
-    zone, shear = job.cut.sync_zone, (job.cut.shear_zone_at, job.cut.shear_zone_at + job.cut.shear_zone)
-    for axes in (whole, close):
-        shade_shear_zone(axes, *shear)
-        for name in AXES:
-            _errors(axes, comparison[name], comparison, runs[name])
-        for sign in (-1.0, 1.0):
-            axes.axhline(sign * job.cut.sync_tolerance * 1e3, **LIMIT)
-        axes.set_ylabel("sync error (mm)")
-    whole.set_title(
-        "axis minus ideal sync line\n" + _findings([(title(name), comparison[name].response) for name in AXES])
+    servo, units = job.servo, job.units
+    heading = head(
+        job.name,
+        f"the servo at {with_unit(job.cut.line_speed, 'm/s', units=units)}, all {runs[AXES[0]].phases} sampling phases",
     )
-    close.set_title("the same, close to the tolerance")
-    close.set_ylim(-_CLOSE * job.cut.sync_tolerance * 1e3, _CLOSE * job.cut.sync_tolerance * 1e3)
-    close.set_xlim(0.0, zone * 1e3)
-    close.set_xlabel("master from the start of the sync zone (mm)")
-    servo = job.servo
-    figure.suptitle(
-        f"{job.name}: the servo at {with_unit(job.cut.line_speed, 'm/s')}, all {runs[AXES[0]].phases} sampling phases\n"
-        f"(ω = {servo.bandwidth:g} rad/s, ζ = {servo.damping:g}, K = {servo.position_gain:g} 1/s, "
-        f"ΔT = {with_unit(servo.sample_time, 's')}, α = {servo.velocity_feedforward:g})",
-        fontsize=8.5,
+    heading += (
+        f"\nω = {servo.bandwidth:g} rad/s, ζ = {servo.damping:g}, K = {servo.position_gain:g} 1/s, "
+        f"ΔT = {with_unit(servo.sample_time, 's')}, α = {servo.velocity_feedforward:g}"
     )
-    _legend(figure)
-    return figure
+    top = first_frame(heading) + _HEADING
+    upper = _meetings(comparison, runs, top)
+    top += _MEETING + _BELOW + 2 * _HEADING
+    lower = _errors(comparison, runs, top)
+    tolerance = across(0.0, 0.0, 1.0, "sync tolerance")
+    legend: list[Item] = [profile_line(name, np.empty((0, 2)), f"axis, {title(name)}") for name in AXES]
+    legend += [
+        Line(np.empty((0, 2)), BLACK, 1.1, "ideal sync line"),
+        Line(np.empty((0, 2)), GREY, 1.6, "command", DOTTED),
+        Marks(np.empty((0, 2)), "#444444", _CROSSING, "open", "crossing (latest phase)"),
+        Marks(np.empty((0, 2)), "#444444", _SETTLED, "diamond", "settled (latest phase)"),
+        tolerance,
+        band(0.0, 1.0, "shear zone", units),
+    ]
+    return page(heading, [*upper, *lower], legend)
 
 
-def _phases(axes: Axes, name: str, curves: Sequence[tuple[FloatArray, FloatArray]]) -> None:
-    """Draw the curve of each sampling phase: the first in the profile's own line, the others thin beside it.
-
-    The others are one line with gaps: every line is clipped by itself, which costs more than to draw it.
-    """
-    axes.plot(*map(_stride, curves[0]), **LINES[name])
-    gap = np.array([np.nan])
-    parts = [np.concatenate([part for curve in curves[1:] for part in (_stride(curve[i]), gap)]) for i in (0, 1)]
-    axes.plot(*parts, **{**LINES[name], "linestyle": "-", "linewidth": 0.4})
-
-
-def _meeting(axes: Axes, row: Measured, comparison: Comparison, run: ServoRun) -> None:
-    """Draw ideal line, command and axis at the tool around the start of the sync zone, from the material's point there."""
-    cut, machine = comparison.job.cut, comparison.job.machine
-    start = cut.return_start + cut.return_zone
-    first = max(-_BEFORE * cut.sync_zone, -cut.return_zone)
-    last = _AFTER * cut.sync_zone
-    origin = float(row.profile(start, outside="repeat"))
-    there = comparison.job.task.slave_at_sync_start
-
-    def tool(slave: FloatArray) -> FloatArray:
-        return np.asarray(machine.tool(there + slave - origin) - machine.tool(there)) * 1e3
-
-    shown = (run.master >= start + first) & (run.master <= start + last)
-    pieces = [np.nonzero(row_shown)[0] for row_shown in shown]
-    line = cut.sync_ratio * 1e3
-    axes.plot([first * 1e3, last * 1e3], [first * line, last * line], color="black", linewidth=0.9, zorder=1)
-    _phases(
-        axes,
-        row.name,
-        [
-            ((run.master[phase, index] - start) * 1e3, tool(run.axis[phase, index]))
-            for phase, index in enumerate(pieces)
-        ],
-    )
-    index = pieces[0]  # the command is the same at every phase
-    axes.plot(
-        _stride((run.master[0, index] - start) * 1e3),
-        _stride(tool(run.command[0, index])),
-        color="#6b6b6b",
-        linestyle=(0, (1, 1)),
-        linewidth=1.3,
-        zorder=1.5,
-    )
-    crossing = row.response.crossing
-    if crossing is not None and crossing <= last:
-        at = crossing * 1e3
-        there_on_line = (at, at * cut.sync_ratio)
-        axes.plot(*there_on_line, color=LINES[row.name]["color"], linestyle="none", **_CROSSING)
-        axes.annotate(f"{at:.1f} mm", there_on_line, xytext=(-6, 6), textcoords="offset points", ha="right", fontsize=8)
-    axes.axvline(0.0, color="#8c8c8c", linewidth=0.8, zorder=0.5)
+def _phases(name: str, curves: Sequence[FloatArray]) -> list[Line]:
+    """Draw the curve of each sampling phase: the first in the profile's own line, the others thin below it, one line with gaps."""
+    gap = np.full((1, 2), np.nan)
+    others = [part for each in curves[1:] for part in (_stride(each), gap)]
+    return [*([thin_line(name, np.concatenate(others))] if others else []), profile_line(name, _stride(curves[0]))]
 
 
 def _stride(values: FloatArray) -> FloatArray:
@@ -151,43 +107,130 @@ def _stride(values: FloatArray) -> FloatArray:
     return values[:: max(1, len(values) // _MOST_POINTS)]
 
 
-def _errors(axes: Axes, row: Measured, comparison: Comparison, run: ServoRun) -> None:
+def _meetings(comparison: Comparison, runs: Mapping[str, ServoRun], top: float) -> list[Frame]:
+    """Draw both axes around the start of the sync zone, side by side on one scale."""
+    job = comparison.job
+    units = job.units
+    both = [_meeting(comparison[name], comparison, runs[name]) for name in AXES]
+    low, high = _room(*_extent([item for items in both for item in items]))
+    width = 0.5 * (WIDTH - LEFT - RIGHT - _BETWEEN)
+    length = unit_shown("m", units)
+    beginning = Line(np.array([[0.0, low[1]], [0.0, high[1]]]), "#8c8c8c", 1.0)
+    return [
+        Frame(
+            LEFT + number * (width + _BETWEEN), top, width, _MEETING, low, high, [beginning, *items], f"{_PLACE} ({length})",
+            f"{'slave' if job.task.straight else 'tool'} from there ({length})" if number == 0 else "", title(name),
+            grid=True, apart=24.0,
+        )
+        for number, (name, items) in enumerate(zip(AXES, both, strict=True))
+    ]  # fmt: skip
+
+
+def _meeting(row: Measured, comparison: Comparison, run: ServoRun) -> list[Item]:
+    """Draw ideal line, command and axis at the tool around the start of the sync zone, from the material's point there."""
+    job = comparison.job
+    cut, factor = job.cut, converted(1.0, "m", job.units)
+    start = cut.return_start + cut.return_zone
+    first, last = max(-_BEFORE * cut.sync_zone, -cut.return_zone), _AFTER * cut.sync_zone
+    tool = _tool(row, comparison)
+    shown = (run.master >= start + first) & (run.master <= start + last)
+    pieces = [np.nonzero(row_shown)[0] for row_shown in shown]
+    ends = np.array([first, last])
+    axes = [
+        np.stack([run.master[phase, index] - start, tool(run.axis[phase, index])], axis=1) * factor
+        for phase, index in enumerate(pieces)
+    ]
+    index = pieces[0]  # the command is the same at every phase
+    command = np.stack([run.master[0, index] - start, tool(run.command[0, index])], axis=1) * factor
+    items: list[Item] = [
+        Line(np.stack([ends, cut.sync_ratio * ends], axis=1) * factor, BLACK, 1.1),
+        Line(_stride(command), GREY, 1.6, "", DOTTED),
+        *_phases(row.name, axes),
+    ]
+    crossing = row.response.crossing
+    if crossing is not None and crossing <= last:
+        there = (crossing * factor, crossing * cut.sync_ratio * factor)
+        words = _length(crossing, job.units)
+        items.append(Marks(np.array([there]), LINES[row.name]["color"], _CROSSING, "open"))
+        items.append(Note(there, words, "end", (-7.0, -9.0), 10.0))
+    return items
+
+
+def _tool(row: Measured, comparison: Comparison) -> Callable[[FloatArray], FloatArray]:
+    """Give the tool's way (m) from where the material is at the start of the sync zone, of a slave position of the run."""
+    cut, machine = comparison.job.cut, comparison.job.machine
+    origin = float(row.profile(cut.return_start + cut.return_zone, outside="repeat"))
+    there = comparison.job.task.slave_at_sync_start
+    return lambda slave: np.asarray(machine.tool(there + slave - origin) - machine.tool(there))
+
+
+def _errors(comparison: Comparison, runs: Mapping[str, ServoRun], top: float) -> list[Frame]:
+    """Draw the sync error over the sync zone, whole and close to the tolerance."""
+    job = comparison.job
+    cut, factor, length = job.cut, converted(1.0, "m", job.units), unit_shown("m", job.units)
+    end, tolerance = cut.sync_zone * factor, cut.sync_tolerance * factor
+    shear = band(cut.shear_zone_at, cut.shear_zone_at + cut.shear_zone, "shear zone", job.units)
+    items: list[Item] = [shear, *(across(sign * tolerance, 0.0, end) for sign in (-1.0, 1.0))]
+    for name in AXES:
+        items += _error(comparison[name], comparison, runs[name])
+    low, high = _room(*_extent(items))
+    low[0], high[0] = 0.0, end
+    close = _CLOSE * tolerance
+    findings = "\n".join(["axis minus ideal sync line", *(_finding(comparison[name], comparison) for name in AXES)])
+    label, width = f"sync error ({length})", WIDTH - LEFT - RIGHT
+    second = top + _ERROR + 12.0 + _HEADING
+    return [
+        Frame(LEFT, top, width, _ERROR, low, high, items, "", label, findings, grid=True, apart=24.0),
+        Frame(
+            LEFT, second, width, _ERROR, np.array([0.0, -close]), np.array([end, close]), items, f"{_PLACE} ({length})",
+            label, "the same, close to the tolerance", grid=True, apart=24.0,
+        ),
+    ]  # fmt: skip
+
+
+def _error(row: Measured, comparison: Comparison, run: ServoRun) -> list[Item]:
     """Draw the sync error of every phase, crossing and settling marked on the line of the axis."""
     job = comparison.job
+    factor, colour = converted(1.0, "m", job.units), LINES[row.name]["color"]
     start = job.cut.return_start + job.cut.return_zone
     master, error, _ = sync_error(run, row.profile, job.task, start, start + job.cut.sync_zone)
-    _phases(axes, row.name, [((master[phase] - start) * 1e3, error[phase] * 1e3) for phase in range(run.phases)])
-    colour = LINES[row.name]["color"]
+    curves = [np.stack([x - start, y], axis=1) * factor for x, y in zip(master, error, strict=True)]
+    items: list[Item] = [*_phases(row.name, curves)]
     crossing, settling = row.response.crossing, row.response.settling
     if crossing is not None:
-        axes.plot([crossing * 1e3], [0.0], color=colour, linestyle="none", **_CROSSING)
+        items.append(Marks(np.array([[crossing * factor, 0.0]]), colour, _CROSSING, "open"))
     if settling is not None:
         there = [float(np.interp(settling, x - start, y)) for x, y in zip(master, error, strict=True)]
-        axes.plot([settling * 1e3], [max(there, key=abs) * 1e3], color=colour, linestyle="none", **_SETTLING)
+        items.append(Marks(np.array([[settling, max(there, key=abs)]]) * factor, colour, _SETTLED, "diamond"))
+    return items
 
 
-def _findings(rows: list[tuple[str, ServoResponse]]) -> str:
-    """Write crossing, overshoot and settling length of each profile, one a line."""
-    lines = []
-    for name, response in rows:
-        crossing, settling = response.crossing, response.settling
-        lines.append(
-            f"{name}: "
-            + ("no crossing in the zone" if crossing is None else f"crossing {crossing * 1e3:.1f} mm")
-            + f", overshoot {response.overshoot * 1e3:.2f} mm, "
-            + ("not settled in the zone" if settling is None else f"settled after {settling * 1e3:.1f} mm")
+def _extent(items: Sequence[Item]) -> tuple[FloatArray, FloatArray]:
+    """Least and greatest of the points of lines, shape ``(2,)`` each."""
+    points = np.concatenate([item.points for item in items if isinstance(item, Line)])
+    return np.nanmin(points, axis=0), np.nanmax(points, axis=0)
+
+
+def _room(low: FloatArray, high: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Leave room around what a panel holds."""
+    room = _ROOM * (high - low)
+    return low - room, high + room
+
+
+def _finding(row: Measured, comparison: Comparison) -> str:
+    """Write crossing, overshoot and settling length of a profile."""
+    response, units = row.response, comparison.job.units
+    crossing, settling = (
+        without if place is None else f"{words} {_length(place, units)}"
+        for place, words, without in (
+            (response.crossing, "crossing", "no crossing in the zone"),
+            (response.settling, "settled after", "not settled in the zone"),
         )
-    return "\n".join(lines)
+    )
+    return f"{title(row.name)}: {crossing}, overshoot {_length(response.overshoot, units, 1)}, {settling}"
 
 
-def _legend(figure: Figure) -> None:
-    handles: list[Line2D | Patch] = [line_mark(label=f"axis, {title(name)}", **LINES[name]) for name in AXES]
-    handles += [
-        line_mark(color="black", linewidth=0.9, label="ideal sync line"),
-        line_mark(color="#6b6b6b", linestyle=(0, (1, 1)), linewidth=1.3, label="command"),
-        line_mark(color="#444444", linestyle="none", label="crossing (latest phase)", **_CROSSING),
-        line_mark(color="#444444", linestyle="none", label="settled (latest phase)", **_SETTLING),
-        line_mark(label="sync tolerance", **LIMIT),
-        patch_mark(facecolor=SHEAR_COLOUR, edgecolor="#8c8c8c", hatch="////", linewidth=0, label="shear zone"),
-    ]
-    figure.legend(handles=handles, loc="outside lower center", ncols=4)
+def _length(length: float, units: Units, more: int = 0) -> str:
+    """Write a length (m) to a tenth of a millimetre or finer, with so many decimals more."""
+    factor = converted(1.0, "m", units)
+    return f"{length * factor:.{math.ceil(4.0 - math.log10(factor)) + more}f} {unit_shown('m', units)}"

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+import math
 
 import numpy as np
 
-from camwright.figures.marks import blank_figure, patch_mark
-from camwright.figures.style import LIMIT, LINES, title
+from camwright.figures.panel import GREY, LEFT, RIGHT, WIDTH, across, first_frame, head, page, profile_line, thin_line
+from camwright.figures.style import title
 from camwright.house.numbers import unit_shown
+from camwright.house.pictures import Band, Frame, Item, Line, Picture, Tick
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.studies.axis_study import servos_of
 from camwright.studies.design import Design
 from camwright.validation.servo.line_speeds import line_speed_errors
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 SHOWN = ("optimised", "linear_return")
 """Profiles whose error is drawn."""
@@ -30,11 +28,12 @@ _BEYOND = 1.15
 _DEEPEST = 1e-3
 """Least part of the tolerance that is drawn: below it is rounding and no drive resolves it."""
 
-_RELEASED = "#d9ead3"
+_PANEL = 168.0
+"""Height of the panel (pt)."""
 
 
-def speed_band_figure(design: Design) -> Figure:
-    """Draw the sync error over the line speed, the tolerance as a line, the released speeds shaded.
+def speed_band_figure(design: Design) -> Picture:
+    """Draw the sync error over the line speed, by powers of ten, the tolerance as a line, the released speeds shaded.
 
     Parameters
     ----------
@@ -45,30 +44,32 @@ def speed_band_figure(design: Design) -> Figure:
     length, speed = units.shown["m"].factor, units.shown["m/s"].factor
     top = _BEYOND * max([job.cut.line_speed, *(high for _, high in band.parts)])
     speeds: FloatArray = np.unique([*np.linspace(_SLOWEST * top, top, _POINTS), job.cut.line_speed])
-    figure = blank_figure(3.4)
-    axes = figure.add_subplot()
-    for low, high in band.parts:
-        axes.axvspan(low * speed, high * speed, color=_RELEASED, linewidth=0, zorder=0)
     tolerance = job.cut.sync_tolerance * length
     servos = servos_of(job)
+    curves: list[Line] = []
     for name in SHOWN:
         errors = line_speed_errors(design.comparison[name].profile, job.task, servos, speeds) * length
-        look: dict[str, Any] = LINES[name]
-        axes.plot(speeds * speed, np.maximum(errors[0], _DEEPEST * tolerance), label=title(name), **look)
+        floored = np.log10(np.maximum(errors, _DEEPEST * tolerance))
+        curves.append(profile_line(name, np.stack([speeds * speed, floored[0]], axis=1), title(name)))
         if len(servos) > 1:
-            worst = np.maximum(errors.max(axis=0), _DEEPEST * tolerance)
-            thin = {**look, "linewidth": 0.7}
-            axes.plot(speeds * speed, worst, label=f"{title(name)}, worst servo of its ranges", **thin)
-    axes.axhline(tolerance, label="sync tolerance", **LIMIT)
-    axes.axvline(job.cut.line_speed * speed, color="#6b6b6b", linewidth=0.9, label="line speed of the job")
-    axes.set_yscale("log")
-    axes.set_xlim(0.0, top * speed)
-    axes.set_ylim(bottom=0.7 * _DEEPEST * tolerance)
-    axes.set_xlabel(f"line speed ({unit_shown('m/s', units)})")
-    axes.set_ylabel(f"sync error in the shear zone ({unit_shown('m', units)})")
-    figure.suptitle(f"{job.name}: one cam at every line speed", fontsize=9.5)
-    handles = axes.get_legend_handles_labels()[0]
-    if band.parts:
-        handles.append(patch_mark(facecolor=_RELEASED, label="every check of the optimised cam passes"))
-    figure.legend(handles=handles, loc="outside lower center", ncols=2)
-    return figure
+            worst = np.stack([speeds * speed, floored.max(axis=0)], axis=1)
+            curves.append(thin_line(name, worst, f"{title(name)}, worst servo of its ranges"))
+    low = math.log10(0.7 * _DEEPEST * tolerance)
+    high = max(math.log10(tolerance), *(float(line.points[:, 1].max()) for line in curves)) + 0.15
+    bands = [
+        Band(start * speed, end * speed, "green", "every check of the optimised cam passes")
+        for start, end in band.parts
+    ]
+    own = job.cut.line_speed * speed
+    marks = [
+        across(math.log10(tolerance), 0.0, top * speed, "sync tolerance"),
+        Line(np.array([[own, low], [own, high]]), GREY, 1.1, "line speed of the job"),
+    ]
+    items: list[Item] = [*bands, *marks, *reversed(curves)]
+    heading = head(job.name, "one cam at every line speed")
+    frame = Frame(
+        LEFT, first_frame(heading), WIDTH - LEFT - RIGHT, _PANEL, np.array([0.0, low]), np.array([top * speed, high]), items,
+        f"line speed ({unit_shown('m/s', units)})", f"sync error in the\nshear zone ({unit_shown('m', units)})", grid=True,
+        yticks=[Tick(float(power), f"{10.0**power:g}") for power in range(math.ceil(low), math.floor(high) + 1)],
+    )  # fmt: skip
+    return page(heading, [frame], [*curves, *marks, *bands])

@@ -1,4 +1,4 @@
-"""Plain plots as data: lines, marks and zones in frames, for sheets that must be quick to draw and read well in black and white.
+"""Plain plots as data: lines, marks, bars and zones in frames, quick to draw, which read well in black and white.
 
 `camwright.house.svg` draws them in a tenth of the time that a plotting library takes to be imported.
 """
@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 from camwright.house.numbers import number
@@ -20,8 +20,17 @@ _MOST_DECIMALS, _LARGE = 4, 1e6
 """Ticks with more decimals, or beyond this, are written in powers of ten where that is shorter: there is no room."""
 
 
-Look = Literal["grey", "hatched"]
+Look = Literal["grey", "hatched", "green"]
 """How a zone is told apart."""
+
+Shape = Literal["disc", "ring", "open", "square", "diamond"]
+"""What a mark looks like: an open disc is white inside, a ring lets the lines be seen."""
+
+Hatch = Literal["", "lines", "crosses"]
+"""What lies over the colour of a bar."""
+
+DASHED = (5.0, 2.5)
+"""Stroke and gap (pt) of a line that is simply dashed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,15 +47,15 @@ class Line:
         Of the stroke (pt).
     label
         In the legend; none if empty.
-    dashed
-        Whether it is.
+    dash
+        Lengths of strokes and gaps in turn (pt); drawn through if empty.
     """
 
     points: FloatArray
     colour: str
     width: float
     label: str = ""
-    dashed: bool = False
+    dash: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +65,7 @@ class Marks:
     points: FloatArray
     colour: str
     size: float
-    shape: Literal["disc", "ring", "square"]
+    shape: Shape
     label: str = ""
 
 
@@ -80,7 +89,89 @@ class Band:
     label: str = ""
 
 
-Item = Line | Marks | Band
+@dataclass(frozen=True, eq=False)
+class Bar:
+    """A filled rectangle.
+
+    Parameters
+    ----------
+    low, high
+        Two corners ``(x, y)``, in the units of the frame.
+    colour
+        As ``"#rrggbb"``.
+    hatch
+        What lies over the colour.
+    label
+        In the legend; none if empty.
+    """
+
+    low: tuple[float, float]
+    high: tuple[float, float]
+    colour: str
+    hatch: Hatch = ""
+    label: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Note:
+    """A few words at a place of a frame, not cut off at its edges.
+
+    Parameters
+    ----------
+    place
+        ``(x, y)`` in the units of the frame.
+    text
+        The words.
+    anchor
+        Which part of them lies at the place.
+    shift
+        From the place to the middle of their height (pt), y downwards.
+    size
+        Of the letters (pt).
+    boxed
+        Whether they stand on white.
+    """
+
+    place: tuple[float, float]
+    text: str
+    anchor: Literal["start", "middle", "end"] = "start"
+    shift: tuple[float, float] = (0.0, 0.0)
+    size: float = 9.0
+    boxed: bool = False
+    label: str = field(default="", init=False)
+
+
+@dataclass(frozen=True, eq=False)
+class Arrow:
+    """A line upwards or downwards with a head at its end, not cut off at the edges of the frame.
+
+    Parameters
+    ----------
+    place, start, tip
+        Its place along x, and the heights of both ends, in the units of the frame.
+    colour, width, label, dash
+        As of a `Line`.
+    """
+
+    place: float
+    start: float
+    tip: float
+    colour: str
+    width: float
+    label: str = ""
+    dash: tuple[float, ...] = ()
+
+
+Item = Line | Marks | Band | Bar | Note | Arrow
+
+
+@dataclass(frozen=True)
+class Tick:
+    """A tick that is chosen, not computed: its value in the units of the frame, and its text."""
+
+    value: float
+    text: str
+    bold: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,13 +185,19 @@ class Frame:
     low, high
         Ranges of x and y, shape ``(2,)`` each.
     items
-        What is drawn in it: bands, lines and marks on top of them, each the undermost first.
+        What is drawn in it: bands, bars, lines, marks, arrows and notes on top of each other, each the undermost first.
     xlabel, ylabel, title
-        Texts; none where empty. Without an x label its ticks have no numbers either. A y label may have several lines.
+        Texts; none where empty. Without an x label its ticks have no numbers either. A y label and a title may have several lines.
     grid
         Whether lines at the ticks and at zero are drawn.
     apart
         Least distance of ticks along y (pt).
+    yticks
+        Those along y, if not multiples of a round number.
+    numbers
+        Whether ticks along x have numbers without an x label too.
+    edges
+        Whether the frame is closed at its top and right.
     """
 
     left: float
@@ -115,6 +212,9 @@ class Frame:
     title: str = ""
     grid: bool = False
     apart: float = APART
+    yticks: Sequence[Tick] | None = None
+    numbers: bool = False
+    edges: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,13 +226,13 @@ class Picture:
     width, height
         Its size (pt).
     title, title_left
-        Above the frames, none where empty, and where it begins (pt).
+        Above the frames, in one or several lines, none where empty, and where it begins (pt).
     frames
         What is on it.
     legend
         Items with labels, told in this order.
     legend_below
-        Whether the legend stands in a row below the frames, or in the upper left corner of the first.
+        Whether the legend stands in rows below the frames, or in the upper left corner of the first.
     """
 
     width: float

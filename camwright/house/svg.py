@@ -7,7 +7,7 @@ from html import escape
 
 import numpy as np
 
-from camwright.house.pictures import APART, Band, Frame, Item, Line, Marks, Picture, ticks
+from camwright.house.pictures import APART, Arrow, Band, Bar, Frame, Item, Line, Marks, Note, Picture, Tick, ticks
 from camwright.profiles.polynomial.profile import FloatArray
 
 FINEST = 0.06
@@ -28,10 +28,20 @@ _HATCH = (
     '<defs><pattern id="cam-hatch" width="6" height="6" patternUnits="userSpaceOnUse">'
     '<path d="M-1 1L1 -1M0 6L6 0M5 7L7 5" stroke="#555" stroke-width="0.8"/></pattern></defs>'
 )
-_FILLS = {"grey": "#e4e4e4", "hatched": "url(#cam-hatch)"}
+_CROSSES = (
+    '<defs><pattern id="cam-crosses" width="7" height="7" patternUnits="userSpaceOnUse">'
+    '<path d="M0 0L7 7M7 0L0 7" stroke="#777" stroke-width="0.6"/></pattern></defs>'
+)
+_FILLS = {"grey": "#e4e4e4", "hatched": "url(#cam-hatch)", "green": "#d9ead3"}
+_OVER = {"lines": "url(#cam-hatch)", "crosses": "url(#cam-crosses)"}
 _BLACK, _GRID, _ZERO = "#000", "#ccc", "#999"
-_SAMPLE, _GAP, _BETWEEN, _BELOW = 24.0, 7.0, 22.0, 12.0
-"""Length of a sample in the legend, from it to its text, from entry to entry, and from the legend's middle to the lower edge (pt)."""
+_SAMPLE, _GAP, _BETWEEN, _BELOW, _ROW = 24.0, 7.0, 22.0, 12.0, 15.0
+"""Length of a sample in the legend, from it to its text, from entry to entry, from its last row to the lower edge, from row to row (pt)."""
+
+_HEAD = 8.0
+"""Length of an arrow's head (pt)."""
+
+_Tick = tuple[float, str, bool]
 
 
 def picture_svg(picture: Picture) -> str:
@@ -40,10 +50,13 @@ def picture_svg(picture: Picture) -> str:
     size = f'width="{width:g}pt" height="{height:g}pt" viewBox="0 0 {width:g} {height:g}"'
     look = f'font-family="{_FONTS}" font-size="{_TEXT:g}" fill="none"'
     parts = [f'<svg xmlns="http://www.w3.org/2000/svg" {size} role="img" {look}>']
-    if any(isinstance(item, Band) and item.look == "hatched" for frame in picture.frames for item in frame.items):
+    drawn = [*picture.legend, *(item for frame in picture.frames for item in frame.items)]
+    if any((isinstance(item, Band) and item.look == "hatched") or _hatch(item) == "lines" for item in drawn):
         parts.append(_HATCH)
-    if picture.title:
-        parts.append(_text(picture.title, picture.title_left, 17.0, "start", _TITLE))
+    if any(_hatch(item) == "crosses" for item in drawn):
+        parts.append(_CROSSES)
+    for number, line in enumerate(picture.title.split("\n") if picture.title else []):
+        parts.append(_text(line, picture.title_left, 17.0 + 15.0 * number, "start", _TITLE))
     for frame in picture.frames:
         parts += _frame(frame)
     return "\n".join([*parts, *_legend(picture), "</svg>\n"])
@@ -71,49 +84,81 @@ def simplified(points: FloatArray) -> FloatArray:
     return np.asarray(kept, dtype=np.float64)
 
 
+def _hatch(item: Item) -> str:
+    return item.hatch if isinstance(item, Bar) else ""
+
+
 def _frame(frame: Frame) -> Iterator[str]:
-    """Draw one frame: what is in it, cut off at its edges, then its axes."""
+    """Draw one frame: what is in it, cut off at its edges, then its axes and notes."""
     width, height = frame.width, frame.height
-    across, up = (
-        ticks(float(frame.low[axis]), float(frame.high[axis]), max(3, round(room)))
-        for axis, room in enumerate((width / APART, height / frame.apart))
-    )
-    x, y = (_on_page(frame, np.repeat(np.array(values)[:, None], 2, axis=1)) for values in (across[0], up[0]))
-    xticks, yticks = (
-        list(zip(x[:, 0].tolist(), across[1], strict=True)),
-        list(zip(y[:, 1].tolist(), up[1], strict=True)),
-    )
+    xticks, yticks = _ticks(frame)
     yield f'<g transform="translate({frame.left:g} {frame.top:g})">'
     yield f'<svg width="{width:g}" height="{height:g}" viewBox="0 0 {width:g} {height:g}" stroke-linejoin="round">'
-    for item in frame.items:
-        if isinstance(item, Band):
-            yield _band(frame, item)
+    yield from (_band(frame, item) for item in frame.items if isinstance(item, Band))
     if frame.grid:
-        yield _stroke("".join(f"M{at:g} 0V{height:g}" for at, _ in xticks), _GRID, 0.5)
-        yield _stroke("".join(f"M0 {at:g}H{width:g}" for at, _ in yticks), _GRID, 0.5)
-        if frame.low[1] <= 0.0 <= frame.high[1]:
-            yield _stroke(f"M0 {_on_page(frame, np.zeros((1, 2)))[0, 1]:g}H{width:g}", _ZERO, 0.6)
-    for item in frame.items:
-        if isinstance(item, Line):
-            yield from _line(frame, item)
-    for item in frame.items:
-        if isinstance(item, Marks):
-            yield from (_mark(item, across, down) for across, down in _on_page(frame, item.points).tolist())
+        yield from _grid(frame, xticks, yticks)
+    for item in sorted(frame.items, key=_layer):
+        yield from _drawn(frame, item)
     yield "</svg>"
     yield from _axes(frame, xticks, yticks)
+    for item in frame.items:
+        if isinstance(item, Note):
+            yield from _note(frame, item)
+        elif isinstance(item, Arrow):
+            ends = _on_page(frame, np.array([[item.place, item.start], [item.place, item.tip]])).tolist()
+            yield from _arrow(item, ends[0][0], ends[0][1], ends[1][1])
     yield "</g>"
 
 
-def _axes(frame: Frame, xticks: list[tuple[float, str]], yticks: list[tuple[float, str]]) -> Iterator[str]:
+def _grid(frame: Frame, xticks: list[_Tick], yticks: list[_Tick]) -> Iterator[str]:
+    """Draw lines at the ticks, and at zero."""
+    width, height = frame.width, frame.height
+    yield _stroke("".join(f"M{at:g} 0V{height:g}" for at, *_ in xticks), _GRID, 0.5)
+    yield _stroke("".join(f"M0 {at:g}H{width:g}" for at, *_ in yticks), _GRID, 0.5)
+    if frame.yticks is None and frame.low[1] <= 0.0 <= frame.high[1]:
+        yield _stroke(f"M0 {_on_page(frame, np.zeros((1, 2)))[0, 1]:g}H{width:g}", _ZERO, 0.6)
+
+
+def _layer(item: Item) -> int:
+    """Give what lies below what: bars, lines, marks."""
+    return (Bar, Line, Marks, Band, Note, Arrow).index(type(item))
+
+
+def _drawn(frame: Frame, item: Item) -> Iterator[str]:
+    """Draw what is neither below the grid nor beyond the edges."""
+    if isinstance(item, Bar):
+        yield from _bar(frame, item)
+    elif isinstance(item, Line):
+        yield from _line(frame, item)
+    elif isinstance(item, Marks):
+        yield from (_mark(item, across, down) for across, down in _on_page(frame, item.points).tolist())
+
+
+def _ticks(frame: Frame) -> tuple[list[_Tick], list[_Tick]]:
+    """Place the ticks along x and y: where (pt), text, bold or not."""
+    placed: list[list[_Tick]] = []
+    for axis, room in enumerate((frame.width / APART, frame.height / frame.apart)):
+        chosen = frame.yticks if axis else None
+        if chosen is None:
+            values, texts = ticks(float(frame.low[axis]), float(frame.high[axis]), max(3, round(room)))
+            chosen = [Tick(value, text) for value, text in zip(values, texts, strict=True)]
+        at = _on_page(frame, np.array([[tick.value, tick.value] for tick in chosen]).reshape(-1, 2))[:, axis]
+        placed.append([(place, tick.text, tick.bold) for place, tick in zip(at.tolist(), chosen, strict=True)])
+    return placed[0], placed[1]
+
+
+def _axes(frame: Frame, xticks: list[_Tick], yticks: list[_Tick]) -> Iterator[str]:
     """Draw the edge of a frame, its ticks and their numbers, its labels and title."""
     width, height = frame.width, frame.height
-    steps = [f"M{at:g} {height:g}v3.5" for at, _ in xticks] + [f"M-3.5 {at:g}h3.5" for at, _ in yticks]
-    yield _stroke(f"M0 0H{width:g}V{height:g}H0Z{''.join(steps)}", _BLACK, 0.8)
-    if frame.title:
-        yield _text(frame.title, 0.5 * width, -12.0, "middle", _TEXT + 1)
-    yield from (_text(text, -6.5, at, "end") for at, text in yticks)
+    steps = [f"M{at:g} {height:g}v3.5" for at, *_ in xticks] + [f"M-3.5 {at:g}h3.5" for at, *_ in yticks]
+    edge = f"M0 0H{width:g}V{height:g}H0Z" if frame.edges else f"M0 0V{height:g}H{width:g}"
+    yield _stroke(f"{edge}{''.join(steps)}", _BLACK, 0.8)
+    for number, text in enumerate(reversed(frame.title.split("\n") if frame.title else [])):
+        yield _text(text, 0.5 * width, -12.0 - 14.0 * number, "middle", _TEXT + 1)
+    yield from (_text(text, -6.5, at, "end", bold=bold) for at, text, bold in yticks)
+    if frame.xlabel or frame.numbers:
+        yield from (_text(text, at, height + 10.5, "middle") for at, text, _ in xticks)
     if frame.xlabel:
-        yield from (_text(text, at, height + 10.5, "middle") for at, text in xticks)
         yield _text(frame.xlabel, 0.5 * width, height + 23.0, "middle")
     for number, text in enumerate(reversed(frame.ylabel.split("\n") if frame.ylabel else [])):
         turned = _text(text, 0.0, 0.0, "middle")
@@ -134,7 +179,7 @@ def _line(frame: Frame, item: Line) -> Iterator[str]:
     parts = [part[~np.isnan(part).any(axis=1)] for part in np.split(places, ends)]
     paths = [" ".join(map(str, simplified(part).ravel().tolist())) for part in parts if len(part) > 1]
     if paths:
-        yield _stroke(f"M{'M'.join(paths)}", item.colour, item.width, dashed=item.dashed)
+        yield _stroke(f"M{'M'.join(paths)}", item.colour, item.width, dash=item.dash)
 
 
 def _band(frame: Frame, item: Band) -> str:
@@ -147,56 +192,116 @@ def _band(frame: Frame, item: Band) -> str:
     return f'<rect x="{left:g}" width="{right - left:g}" height="{frame.height:g}" fill="{_FILLS[item.look]}"/>'
 
 
+def _bar(frame: Frame, item: Bar) -> Iterator[str]:
+    """Draw a filled rectangle, and what lies over it."""
+    corners = _on_page(frame, np.array([item.low, item.high]))
+    (left, top), (right, bottom) = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
+    yield from _filled(f'x="{left:g}" y="{top:g}" width="{right - left:g}" height="{bottom - top:g}"', item)
+
+
+def _filled(box: str, item: Bar) -> Iterator[str]:
+    yield f'<rect {box} fill="{item.colour}"/>'
+    if item.hatch:
+        yield f'<rect {box} fill="{_OVER[item.hatch]}"/>'
+
+
+def _note(frame: Frame, item: Note) -> Iterator[str]:
+    """Set a note at its place."""
+    across, down = (_on_page(frame, np.array([item.place]))[0] + item.shift).tolist()
+    if item.boxed:
+        width = text_width(item.text, item.size)
+        left = across - {"start": 0.0, "middle": 0.5, "end": 1.0}[item.anchor] * width
+        box = f'x="{left:.2f}" y="{down - 0.6 * item.size:.2f}" width="{width:.2f}" height="{1.2 * item.size:.2f}"'
+        yield f'<rect {box} fill="#fff"/>'
+    yield _text(item.text, across, down, item.anchor, item.size)
+
+
 def _mark(item: Marks, across: float, down: float) -> str:
     """Draw one mark about a place."""
     half = 0.5 * item.size
     if item.shape == "square":
         at = f'x="{across - half:g}" y="{down - half:g}" width="{item.size:g}" height="{item.size:g}"'
         return f'<rect {at} fill="{item.colour}"/>'
-    look = f'fill="{item.colour}"' if item.shape == "disc" else f'stroke="{item.colour}" stroke-width="1.5"'
+    if item.shape == "diamond":
+        return f'<path d="M{across:g} {down - half:g}l{half:g} {half:g}l{-half:g} {half:g}l{-half:g} {-half:g}Z" fill="{item.colour}"/>'
+    edge = f'stroke="{item.colour}" stroke-width="1.5"'
+    look = {"disc": f'fill="{item.colour}"', "open": f'fill="#fff" {edge}', "ring": edge}[item.shape]
     return f'<circle cx="{across:g}" cy="{down:g}" r="{half:g}" {look}/>'
 
 
-def _stroke(path: str, colour: str, width: float, *, dashed: bool = False) -> str:
-    dash = ' stroke-dasharray="5 2.5"' if dashed else ""
-    return f'<path d="{path}" stroke="{colour}" stroke-width="{width:g}"{dash}/>'
+def _arrow(item: Arrow, across: float, start: float, tip: float) -> Iterator[str]:
+    """Draw an arrow upwards or downwards on the page."""
+    head = min(_HEAD, abs(tip - start)) * (1.0 if tip < start else -1.0)
+    yield _stroke(f"M{across:g} {start:g}V{tip + head:g}", item.colour, item.width, dash=item.dash)
+    yield f'<path d="M{across:g} {tip:g}l3 {head:g}h-6Z" fill="{item.colour}"/>'
 
 
-def _text(text: str, across: float, middle: float, anchor: str, size: float = _TEXT) -> str:
+def _stroke(path: str, colour: str, width: float, *, dash: tuple[float, ...] = ()) -> str:
+    dashes = f' stroke-dasharray="{" ".join(f"{part:g}" for part in dash)}"' if dash else ""
+    return f'<path d="{path}" stroke="{colour}" stroke-width="{width:g}"{dashes}/>'
+
+
+def _text(text: str, across: float, middle: float, anchor: str, size: float = _TEXT, *, bold: bool = False) -> str:
     """Set a line of text about a height."""
-    larger = "" if size == _TEXT else f' font-size="{size:g}"'
+    look = "" if size == _TEXT else f' font-size="{size:g}"'
+    look += ' font-weight="bold"' if bold else ""
     place = f'x="{across:g}" y="{middle + _BASE * size:.2f}"'
-    return f'<text {place} fill="{_BLACK}" text-anchor="{anchor}"{larger}>{escape(text)}</text>'
+    return f'<text {place} fill="{_BLACK}" text-anchor="{anchor}"{look}>{escape(text)}</text>'
 
 
 def _legend(picture: Picture) -> Iterator[str]:
-    """Tell what the items are: in a row below the frames, or one below the other in the first."""
-    if picture.legend_below:
-        sizes = [_sample_width(item) + _GAP + _text_width(item.label) for item in picture.legend]
-        across = 0.5 * (picture.width - sum(sizes) - _BETWEEN * (len(sizes) - 1))
-        for item, size in zip(picture.legend, sizes, strict=True):
-            yield from _entry(item, across, picture.height - _BELOW)
-            across += size + _BETWEEN
-    else:
+    """Tell what the items are: in rows below the frames, or one below the other in the first."""
+    if not picture.legend_below:
         first = picture.frames[0]
         for number, item in enumerate(picture.legend):
-            yield from _entry(item, first.left + 9.0, first.top + 14.0 + 15.0 * number)
+            yield from _entry(item, first.left + 9.0, first.top + 14.0 + _ROW * number)
+        return
+    rows = legend_rows(picture.legend, picture.width)
+    for number, row in enumerate(reversed(rows)):
+        across = 0.5 * (picture.width - _row_width(row))
+        for item in row:
+            yield from _entry(item, across, picture.height - _BELOW - _ROW * number)
+            across += _entry_width(item) + _BETWEEN
+
+
+def legend_rows(legend: Iterable[Item], width: float) -> list[list[Item]]:
+    """Put the entries of a legend into rows that a page of a width (pt) holds."""
+    rows: list[list[Item]] = [[]]
+    for item in legend:
+        if rows[-1] and _row_width([*rows[-1], item]) > width - _BETWEEN:
+            rows.append([])
+        rows[-1].append(item)
+    return rows
+
+
+def _row_width(row: list[Item]) -> float:
+    return sum(map(_entry_width, row)) + _BETWEEN * (len(row) - 1)
+
+
+def _entry_width(item: Item) -> float:
+    return _sample_width(item) + _GAP + text_width(item.label)
 
 
 def _entry(item: Item, left: float, middle: float) -> Iterable[str]:
     """Draw a sample of an item, and its label beside it."""
     label = _text(item.label, left + _sample_width(item) + _GAP, middle, "start")
     if isinstance(item, Line):
-        return _stroke(f"M{left:.2f} {middle:g}h{_SAMPLE:g}", item.colour, item.width, dashed=item.dashed), label
+        return _stroke(f"M{left:.2f} {middle:g}h{_SAMPLE:g}", item.colour, item.width, dash=item.dash), label
     if isinstance(item, Marks):
         return _mark(item, left + 0.5 * item.size, middle), label
-    box = f'x="{left:.2f}" y="{middle - 5.5:g}" width="{_SAMPLE:g}" height="11" fill="{_FILLS[item.look]}"'
-    return f'<rect {box} stroke="{_BLACK}" stroke-width="0.5"/>', label
+    if isinstance(item, Arrow):
+        return *_arrow(item, left + 0.5 * _SAMPLE, middle + 6.0, middle - 6.0), label
+    box = f'x="{left:.2f}" y="{middle - 5.5:g}" width="{_SAMPLE:g}" height="11"'
+    if isinstance(item, Bar):
+        return *_filled(box, item), label
+    fill = _FILLS[item.look] if isinstance(item, Band) else "none"
+    return f'<rect {box} fill="{fill}" stroke="{_BLACK}" stroke-width="0.5"/>', label
 
 
 def _sample_width(item: Item) -> float:
     return item.size if isinstance(item, Marks) else _SAMPLE
 
 
-def _text_width(text: str) -> float:
-    return _TEXT * sum(_WIDE if ord(letter) >= 0x2E80 else _NARROW for letter in text)
+def text_width(text: str, size: float = _TEXT) -> float:
+    """Bound the width of a text of a size (pt)."""
+    return size * sum(_WIDE if ord(letter) >= 0x2E80 else _NARROW for letter in text)

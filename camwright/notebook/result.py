@@ -5,24 +5,22 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from html import escape
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from camwright.answers.objective import objective_unit
 from camwright.figures.comparison import bars_figure
 from camwright.figures.profile import profile_figure
-from camwright.figures.saving import drawn
 from camwright.figures.servo import AXES, servo_figure
 from camwright.house.numbers import number, shown, unit_shown
+from camwright.house.pictures import Picture
 from camwright.house.progress import Step, ignore
 from camwright.jobs.job import Job
+from camwright.notebook.drawing import Drawing
 from camwright.studies import design as designing
 from camwright.studies.comparison import Comparison
 from camwright.validation.servo.simulation import simulate
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 What = Literal["profile", "servo", "comparison"]
 """Figures that a result can draw."""
@@ -36,12 +34,12 @@ class Result(designing.Design):
     --------
     >>> from camwright import load_job, optimise
     >>> result = optimise(load_job())
-    >>> "<table>" in result._repr_html_(), result.plot("comparison").get_suptitle()
+    >>> "<table>" in result._repr_html_(), result.plot("comparison").title
     (True, 'paper-600: all profiles, by peak acceleration; † breaks a limit')
     """
 
-    def plot(self, what: What = "profile") -> Figure:
-        """Draw a figure of the design in the house's style, as `camwright design` writes it.
+    def plot(self, what: What = "profile") -> Drawing:
+        """Draw a figure of the design, as `camwright design` writes it.
 
         Parameters
         ----------
@@ -50,8 +48,8 @@ class Result(designing.Design):
 
         Returns
         -------
-        Figure
-            Matplotlib's, without pyplot: ``figure.savefig(path)`` writes it.
+        Drawing
+            It shows itself in a notebook; its ``svg`` is the text of a file.
 
         Raises
         ------
@@ -60,7 +58,7 @@ class Result(designing.Design):
         """
         if what not in _FIGURES:
             raise ValueError(f"there is no figure {what!r}; the figures are {', '.join(_FIGURES)}")
-        return drawn(lambda: _FIGURES[what](self.comparison))
+        return Drawing(_FIGURES[what](self.comparison))
 
     def samples(self, points: int | None = None) -> dict[str, np.ndarray[Any, np.dtype[np.float64]]]:
         """Sample one cycle evenly over the master.
@@ -149,13 +147,13 @@ def optimise(job: Job, step: Step = ignore) -> Result:
     return Result(**{each.name: getattr(design, each.name) for each in fields(design)})
 
 
-def _servo(comparison: Comparison) -> Figure:
+def _servo(comparison: Comparison) -> Picture:
     """Draw the servo's answer."""
     job = comparison.job
     return servo_figure(comparison, {name: simulate(comparison[name].profile, job.cut, job.servo) for name in AXES})
 
 
-_FIGURES: dict[str, Callable[[Comparison], Figure]] = {
+_FIGURES: dict[str, Callable[[Comparison], Picture]] = {
     "profile": profile_figure,
     "servo": _servo,
     "comparison": bars_figure,

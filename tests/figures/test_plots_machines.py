@@ -16,6 +16,7 @@ from camwright.figures.crank import STYLES, crank_figure
 from camwright.figures.profile import profile_figure
 from camwright.figures.servo import AXES, servo_figure
 from camwright.figures.style import LINES
+from camwright.house.pictures import Frame, Line
 from camwright.jobs.job import load_job
 from camwright.profiles.machines import CrankSlider, LinearCarriage
 from camwright.studies.comparison import Comparison, compare
@@ -49,19 +50,26 @@ def thick() -> Comparison:
     return comparison_of("thick-product")
 
 
+def curve_of(frame: Frame, name: str) -> tuple[np.ndarray, np.ndarray]:
+    lines = [item.points for item in frame.items if isinstance(item, Line) and item.colour == LINES[name]["color"]]
+    points = max(lines, key=len)
+    return points[:, 0], points[:, 1]
+
+
 def curve(axes: Axes, colour: str) -> tuple[np.ndarray, np.ndarray]:
     line = max((line for line in axes.lines if line.get_color() == colour), key=lambda line: len(line.get_xdata()))
     return np.asarray(line.get_xdata(), dtype=float), np.asarray(line.get_ydata(), dtype=float)
 
 
-def heights(axes: Axes) -> list[float]:
-    return [float(line.get_ydata()[0]) for line in axes.lines if list(line.get_xdata()) == [0, 1]]
+def heights(frame: Frame) -> list[float]:
+    points = [item.points for item in frame.items if isinstance(item, Line) and len(item.points) == 2]
+    return [float(ends[0, 1]) for ends in points if ends[0, 1] == ends[1, 1]]
 
 
 def test_units_of_a_crank_are_angles(crank: Comparison) -> None:
-    labels = [axes.get_ylabel() for axes in profile_figure(crank).axes]
+    labels = [frame.ylabel for frame in profile_figure(crank).frames]
     assert labels == ["y − even turn (°)", "ratio dy/dx (rad/m)", "acceleration (rad/s²)", "jerk (rad/s³)"]
-    titles = [axes.get_title() for axes in bars_figure(crank).axes]
+    titles = [frame.title for frame in bars_figure(crank).frames]
     assert [title.split("\n")[1] for title in titles] == [
         "(rad/s²)",
         "(rad/s²)",
@@ -73,7 +81,7 @@ def test_units_of_a_crank_are_angles(crank: Comparison) -> None:
 
 
 def test_a_crank_s_turn_is_drawn_against_an_even_one(crank: Comparison) -> None:
-    x, y = curve(profile_figure(crank).axes[0], LINES["optimised"]["color"])
+    x, y = curve_of(profile_figure(crank).frames[0], "optimised")
     profile, length = crank["optimised"].profile, crank.job.cut.length
     assert y == pytest.approx(
         np.degrees(profile(np.clip(x * 1e-3, 0, length)) - 2 * np.pi * x * 1e-3 / length), abs=1e-9
@@ -82,14 +90,14 @@ def test_a_crank_s_turn_is_drawn_against_an_even_one(crank: Comparison) -> None:
 
 
 def test_a_carriage_is_drawn_in_its_stroke(saw: Comparison) -> None:
-    travel, ratio = profile_figure(saw).axes[:2]
+    travel, ratio = profile_figure(saw).frames[:2]
     machine, limits, v = saw.job.machine, saw.job.limits, saw.job.cut.line_speed
     assert isinstance(machine, LinearCarriage)
     assert heights(travel) == pytest.approx([0.0, machine.stroke * 1e3])
     assert heights(ratio) == pytest.approx(
         [-limits.speed / v, limits.speed / v]
     )  # it comes back, so backwards is allowed
-    _, y = curve(travel, LINES["optimised"]["color"])
+    _, y = curve_of(travel, "optimised")
     assert 0.0 <= y.min() <= y.max() <= machine.stroke * 1e3
     # the sync zone lies in the middle of the stroke
     assert y[0] == pytest.approx(0.5 * (machine.stroke + saw.job.cut.sync_zone) * 1e3)
@@ -100,9 +108,9 @@ def test_the_tool_meets_the_material(name: str, request: pytest.FixtureRequest) 
     comparison = request.getfixturevalue(name)
     job = comparison.job
     runs = {each: simulate(comparison[each].profile, job.cut, job.servo) for each in AXES}
-    meeting = servo_figure(comparison, runs).axes[1]
-    assert meeting.get_ylabel() == ""
-    x, y = curve(meeting, LINES["optimised"]["color"])
+    meeting = servo_figure(comparison, runs).frames[1]
+    assert meeting.ylabel == ""
+    x, y = curve_of(meeting, "optimised")
     in_sync = x > 0.4 * job.cut.sync_zone * 1e3
     # the tool runs along the material's line, but for what the servo leaves
     assert np.abs(y - x)[in_sync].max() < 1.5 * comparison["optimised"].response.peak_following_error * 1e3

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from camwright.bender.figures import write_pictures
+from camwright.house.picture_files import write_pictures
 from camwright.house.pictures import Band, Frame, Line, Marks, Picture, ticks
 from camwright.house.svg import FINEST, picture_svg, simplified
 

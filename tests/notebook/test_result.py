@@ -58,7 +58,10 @@ def test_the_page_names_what_failed_and_is_in_the_units_of_the_job_and_escaped()
 
 @pytest.mark.parametrize(("what", "panels"), [("profile", 4), ("servo", 4), ("comparison", 5)])
 def test_every_figure_is_drawn(result: Result, what: Any, panels: int) -> None:
-    assert len(result.plot(what).axes) == panels
+    drawing = result.plot(what)
+    assert len(drawing.picture.frames) == panels
+    assert drawing._repr_svg_() == drawing.svg
+    assert drawing.svg.startswith("<svg")
 
 
 def test_a_figure_that_does_not_exist_is_told(result: Result) -> None:

@@ -68,7 +68,7 @@ def test_the_workbook_names_it(made: MadeRecipe) -> None:
 
 
 def test_figure_and_view_name_it(design: Design) -> None:
-    title = profile_figure(design.comparison).get_suptitle()
+    title = profile_figure(design.comparison).title
     assert title.endswith("minimised: sync error")
 
 

@@ -26,46 +26,44 @@ class _Edge:
     spare
         Room left beside a guess, for it to lie on the other side of the edge than the last place did.
     low, high
-        Place where the quantity is known to be above zero, and place where it is not.
-    above, below
-        What it is there; infinite if only its sign is known.
+        Place where the quantity is known to be above zero, and place where it is not, each with what it is there: infinite if only its
+        sign is known.
     """
 
     excess: Callable[[float], float]
     spare: float
-    low: float
-    high: float
-    above: float
-    below: float
+    low: tuple[float, float]
+    high: tuple[float, float]
     _low_moved: bool | None = None
 
     def reached(self, place: float) -> bool:
         """Whether the quantity is at most zero at a place; it is not looked at there if that is known from places beside it."""
         guesses = _GUESSES
-        while self.low < place < self.high:
+        while self.low[0] < place < self.high[0]:
             self._look(self._guess() if guesses and self._guessable else place)
             guesses -= guesses > 0
-        return place >= self.high
+        return place >= self.high[0]
 
     @property
     def _guessable(self) -> bool:
-        return self.high - self.low > 2 * self.spare and math.isfinite(self.above - self.below)
+        return self.high[0] - self.low[0] > 2 * self.spare and math.isfinite(self.low[1] - self.high[1])
 
     def _guess(self) -> float:
         """Give the place where the straight line between both ends reaches zero, and a little on to the end that stayed."""
-        zero = self.low + (self.high - self.low) * self.above / (self.above - self.below)
+        (low, above), (high, below) = self.low, self.high
+        zero = low + (high - low) * above / (above - below)
         zero += -self.spare if self._low_moved is False else self.spare
-        return min(max(zero, self.low + self.spare), self.high - self.spare)
+        return min(max(zero, low + self.spare), high - self.spare)
 
     def _look(self, place: float) -> None:
         """Look at a place between the ends, and move one of them there; an end that stays twice counts half (Illinois)."""
         found = self.excess(place)
         if found > 0.0:
-            self.low, self.above = place, found
-            self.below *= 0.5 if self._low_moved else 1.0
+            self.low = place, found
+            self.high = self.high[0], self.high[1] * (0.5 if self._low_moved else 1.0)
         else:
-            self.high, self.below = place, found
-            self.above *= 0.5 if self._low_moved is False else 1.0
+            self.high = place, found
+            self.low = self.low[0], self.low[1] * (0.5 if self._low_moved is False else 1.0)
         self._low_moved = found > 0.0
 
 
@@ -119,7 +117,7 @@ class ZoneSearch:
             return None
         if (above := excess(low)) <= 0.0:
             return low
-        edge = _Edge(excess, 0.25 * resolution, low, high, above, below)
+        edge = _Edge(excess, 0.25 * resolution, (low, above), (high, below))
         while high - low > resolution:  # halved, so that the answer does not depend on how the edge was found
             middle = 0.5 * (low + high)
             low, high = (low, middle) if edge.reached(middle) else (middle, high)
