@@ -8,6 +8,9 @@ import numpy as np
 
 from camwright.design.feasible.feasibility import is_feasible
 from camwright.design.feasible.refusal import infeasible, require_feasible
+from camwright.design.line.forms import keeps_ramp
+from camwright.design.line.ramped import ramped_return
+from camwright.design.line.refusal import ramp_infeasible
 from camwright.design.place import Placement
 from camwright.design.place_cost import place_for
 from camwright.design.returns.curve_limits import motor_limits, motor_speed_limits
@@ -25,7 +28,8 @@ from camwright.design.torque.search import solve_torque, zone_peak
 from camwright.design.torque.task import TorqueTask
 from camwright.design.torque.within_curve import keeps_curve, least_load, solve_within_curve
 from camwright.profiles.cut import Cut
-from camwright.profiles.errors import InputError, SolverError
+from camwright.profiles.errors import InfeasibleError, InputError, SolverError
+from camwright.profiles.line import STEADY
 from camwright.profiles.machines import Machine
 from camwright.profiles.message import Message
 from camwright.profiles.objective import OBJECTIVES, CommandObjective, MotionObjective, ObjectiveName, of_motion
@@ -137,11 +141,63 @@ def solve(task: Task, objective: CommandObjective, *, suggest: bool = True) -> S
         return _solve_for_motor(task, objective, suggest)
     require_feasible(task, suggest=suggest)
     require_moving(machine, objective)
-    decisive = motion_objective(machine, objective)
+    solution = _solve_steady(task.with_line(STEADY), objective)
+    return solution if keeps_ramp(solution.profile, task) else _solve_ramped(task, objective, solution, suggest)
+
+
+def _solve_steady(task: Task, objective: CommandObjective) -> Solution:
+    """Design the cycle for a line that keeps its speed."""
+    decisive = motion_objective(task.machine, objective)
     if decisive is None:
         return _solve_torque(task, objective)
     back, status, value, iterations = _solve_motion(task, decisive)
-    return Solution(machine, assemble(back, task), back, status, objective, value, iterations)
+    return Solution(task.machine, assemble(back, task), back, status, objective, value, iterations)
+
+
+def _solve_ramped(task: Task, objective: CommandObjective, steady: Solution, suggest: bool) -> Solution:
+    """Design the cycle so that it bears the line's ramps, from what is best on a line that keeps its speed.
+
+    An objective of the motor that none of the motion stands for is searched for from the least mean square of the acceleration.
+
+    Raises
+    ------
+    InfeasibleError
+        No return was found that bears them.
+    """
+    decisive = motion_objective(task.machine, objective)
+    problem = return_problem(task, decisive or "rms_acceleration")
+    of = OBJECTIVES[problem.objective]
+    zone = max(abs(extremum.value) for extremum in task.sync.extrema(of.order)) if of.form == "peak" else 0.0
+    back = ramped_return(task, problem, steady.back, zone) if keeps_ramp(task.sync, task) else None
+    profile = None if back is None else assemble(back, task)
+    if back is None or profile is None or not keeps_ramp(profile, task):
+        raise ramp_infeasible(task, suggest=suggest)
+    if decisive is None:
+        return _solve_torque_ramped(task, objective, back, steady.iterations)
+    value = max(_over_time(back, decisive, task.cut), of.over_time(zone, task.cut.line_speed))
+    return Solution(task.machine, profile, back, SolveStatus.BEST_FOUND, objective, value, steady.iterations)
+
+
+def _solve_torque_ramped(task: Task, objective: CommandObjective, start: CamProfile, iterations: int) -> Solution:
+    """Search an objective of the motor among the returns that bear the line's ramps, from one of them."""
+    floor = zone_peak(task) if objective == "peak_torque" else 0.0
+    found = solve_torque(
+        TorqueTask(task, return_problem(task, "peak_acceleration"), objective),
+        lambda back: keeps_ramp(assemble(back, task), task),
+        [start],
+        floor,
+    )
+    agreement = Agreement(found.starts, found.agreeing, found.spread, found.residual, 1)
+    return Solution(
+        task.machine,
+        assemble(found.back, task),
+        found.back,
+        SolveStatus.BEST_FOUND,
+        objective,
+        found.value,
+        iterations + found.iterations,
+        agreement,
+    )
 
 
 def _solve_motion(task: Task, objective: MotionObjective) -> tuple[CamProfile, SolveStatus, float, int]:
@@ -204,7 +260,7 @@ def _solve_for_motor(task: Task, objective: CommandObjective, suggest: bool) -> 
             grid_objective(return_problem(task.with_limits(each), decisive or "rms_acceleration"))
             for each in rectangles
         ]
-        found.append(solve(task.with_limits(rectangles[int(np.argmin(rough))]), objective))
+        found += _within_rectangle(task.with_limits(rectangles[int(np.argmin(rough))]), objective)
     easiest = None
     if not found or not machine.constant_inertia:  # a rectangle says little where the torque depends on the place
         easiest = least_load(task)
@@ -219,9 +275,21 @@ def _solve_for_motor(task: Task, objective: CommandObjective, suggest: bool) -> 
                     machine, profile, within.back, SolveStatus.BEST_FOUND, objective, value, within.iterations, agreed
                 )
             )
+    if not found and task.line.ramps and is_feasible(task):
+        raise ramp_infeasible(task, suggest=suggest)
     if not found:
         raise infeasible(task, suggest=suggest, load=None if easiest is None else easiest.value)
     return min(found, key=lambda solution: solution.minimised)
+
+
+def _within_rectangle(task: Task, objective: CommandObjective) -> list[Solution]:
+    """Solve within one rectangle of a motor's curve; nothing where no return in it bears the line's ramps."""
+    try:
+        return [solve(task, objective, suggest=False)]
+    except InfeasibleError:
+        if not task.line.ramps:
+            raise
+        return []
 
 
 def _unique(problem: ReturnProblem) -> bool:
@@ -300,9 +368,9 @@ def _solve_free_place(task: Task, objective: CommandObjective, suggest: bool) ->
     if OBJECTIVES[objective].form != "peak" or OBJECTIVES[objective].of == "motor":
         require_moving(task.machine, objective)
         plain = motor_speed_limits(task.machine, task.limits)
-        placement = place_by_objective(task.with_limits(plain), objective, task.limits.motor)
-    placed = placement or place_for(task, objective)
-    solution = solve(placed.task.with_limits(task.limits), objective, suggest=suggest)
+        placement = place_by_objective(task.with_limits(plain).with_line(STEADY), objective, task.limits.motor)
+    placed = placement or place_for(task.with_line(STEADY), objective)
+    solution = solve(placed.task.with_limits(task.limits).with_line(task.line), objective, suggest=suggest)
     solution = replace(solution, status=SolveStatus.BEST_FOUND)  # no bound knows all places
     if solution.agreement is None:
         return replace(solution, agreement=Agreement(1, 1, 0.0, 0.0, placed.valleys))

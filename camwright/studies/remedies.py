@@ -78,7 +78,7 @@ class _Trial:
             return False
         data = deepcopy(self._data)
         table = data.setdefault(_table(remedy.change), {})
-        table[remedy.change] = f"{remedy.value:.15g} {remedy.unit}" if remedy.unit else remedy.value
+        table[_key(remedy.change)] = f"{remedy.value:.15g} {remedy.unit}" if remedy.unit else remedy.value
         if remedy.change == "command":
             table["servo_aware"] = True
         try:
@@ -184,7 +184,7 @@ def _taken_further(suggestion: Suggestion, units: Units) -> Iterator[Remedy]:
         return
     if suggestion.change == "motor":
         return  # a curve of many numbers: no single value to write
-    up = suggestion.change != "line_speed"
+    up = suggestion.change != "line_speed" and not suggestion.change.startswith("line.")
     value, unit = suggestion.value, suggestion.unit
     si = _METRIC.get(unit)
     if si is not None and units is not METRIC:
@@ -213,6 +213,11 @@ def _number(remedy: Remedy) -> float:
 def _table(change: str) -> str:
     """Name the table of a job file that holds a key."""
     return _place(change).partition("]")[0].removeprefix("[")
+
+
+def _key(change: str) -> str:
+    """Name the key of a change: that of ``"line.stop"`` is ``stop``."""
+    return change.rpartition(".")[2]
 
 
 def _place(change: str) -> str:

@@ -45,6 +45,9 @@ _UNITS = {
 }
 
 
+LINE_UNITS = {"line.acceleration": "m/s^2", "line.stop": "m/s^2", "line.jerk": "m/s^3"}
+"""Units of what the line does, SI and as they are offered."""
+
 _SI_POWERS = {"stroke": "", "speed": "/s", "acceleration": "/s^2", "jerk": "/s^3"}
 
 
@@ -98,7 +101,13 @@ def infeasible(
     )
     if not suggest:
         return InfeasibleError(Message(text, values), binding, excess, unit, ())
-    suggestions = tuple(_suggestions(task, need, torque, designs))
+    return refused(task, Message(text, values), binding, excess, unit, tuple(_suggestions(task, need, torque, designs)))
+
+
+def refused(
+    task: Task, why: Message, binding: str, excess: float | None, unit: str, suggestions: tuple[Suggestion, ...]
+) -> InfeasibleError:
+    """Make the refusal of a job from why it is refused and from the single changes that work."""
     offers = "; ".join(_offer(suggestion, f"offer_{number}") for number, suggestion in enumerate(suggestions))
     offered = (
         (f"offer_{number}", _offered(each, task))
@@ -106,7 +115,7 @@ def infeasible(
         if each.unit not in ("", "%")
     )
     works = f"What works, each alone: {offers}" if offers else "No single change of speed, length or limit works"
-    return InfeasibleError(Message(f"{text}. {works}", (*values, *offered)), binding, excess, unit, suggestions)
+    return InfeasibleError(Message(f"{why.text}. {works}", (*why.values, *offered)), binding, excess, unit, suggestions)
 
 
 def _torque_needed(task: Task) -> float:
@@ -164,10 +173,10 @@ def _suggestions(
 
     slower = slowdown(task)
     if slower > 0:
-        yield from _written("line_speed", slower * cut.line_speed, 60.0, "m/min", False, at_speed, further)
+        yield from written("line_speed", slower * cut.line_speed, 60.0, "m/min", False, at_speed, further)
     length = _nearest_length(at_length, task)
     if length is not None:
-        yield from _written(
+        yield from written(
             "length", length, 1e3, "mm", length > cut.length, lambda value: works(task.with_length(value)), further
         )
     if stroke_of(machine) < need.get("stroke", math.inf) < math.inf:
@@ -175,7 +184,7 @@ def _suggestions(
         def with_stroke(stroke: float) -> bool:
             return works(task.with_machine(machine.with_guide(stroke)))
 
-        yield from _written("stroke", need["stroke"], *_UNITS[machine.slave_unit]["stroke"], True, with_stroke, further)
+        yield from written("stroke", need["stroke"], *_UNITS[machine.slave_unit]["stroke"], True, with_stroke, further)
     for name in LIMIT_NAMES:
         if not getattr(limits, name) < need[name] < math.inf:
             continue
@@ -184,14 +193,14 @@ def _suggestions(
             return works(task.with_limits(with_limit(limits, name, value)))
 
         factor, unit = _UNITS[machine.slave_unit][name]
-        yield from _written(name, need[name], factor, unit, True, with_value, further)
+        yield from written(name, need[name], factor, unit, True, with_value, further)
     if limits.motor is not None and designs is None and 1.0 < torque < math.inf:
-        yield from _written("motor", torque, 100.0, "%", True, lambda factor: factor > torque, further)
+        yield from written("motor", torque, 100.0, "%", True, lambda factor: factor > torque, further)
     if not task.reverses and works(task.with_limits(replace(limits, reversal=True))):
         yield Suggestion("reversal", 1.0, "")
 
 
-def _written(
+def written(
     change: str,
     value: float,
     factor: float,
@@ -255,5 +264,7 @@ def _offered(suggestion: Suggestion, task: Task) -> Value:
         return Value(suggestion.value / 1e3, "m", 6, "above" if up else "below", chosen)
     if suggestion.change == "line_speed":
         return Value(suggestion.value / 60.0, "m/s", 6, "below", chosen)
+    if suggestion.change in LINE_UNITS:
+        return Value(suggestion.value, LINE_UNITS[suggestion.change], 6, "below", chosen)
     factor, _ = _UNITS[slave][suggestion.change]
     return Value(suggestion.value / factor, slave + _SI_POWERS[suggestion.change], 6, "above", chosen)

@@ -251,17 +251,17 @@ def from_extreme(motion: DoubleS) -> ScaledMotion:
     return ScaledMotion(np.array(arcs), np.array([0.0, top, top, 0.0, 0.0, -top, -top, 0.0]), math.nan)
 
 
-def tidy(motion: ScaledMotion, problem: ScaledProblem) -> ScaledMotion:
+def tidy(motion: ScaledMotion, problem: ScaledProblem, *, corners: bool = True) -> ScaledMotion:
     """Drop corners that are none, keep short ramps within the jerk limit, and meet the end conditions to rounding.
 
     The solver leaves residuals of about 1e-11. A ramp as short as that would break the jerk limit by them, so every piece is made at
     least as long as its rise needs; the longest piece gives. Last, the accelerations are corrected by the smallest amount that
-    makes ratio and position end where they must; both are linear in them.
+    makes ratio and position end where they must; both are linear in them. ``corners`` is whether corners that are none are dropped.
     """
     lengths, a = motion.lengths, motion.accelerations
     p = motion.degree
     lengths, a = _without_vanished(lengths, a, p)
-    if p == 1:
+    if p == 1 and corners:
         lengths, a = without_false_corners(lengths, a)
     for _ in range(3):  # each pass takes out what the one before left, down to rounding
         rise = p * np.abs(np.diff(a).reshape(len(lengths), p) @ subdivision(p - 1, SPLIT).T).max(axis=1)

@@ -17,6 +17,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from camwright.design.line.forms import ramp_forms
 from camwright.design.returns.ipopt import QUIET
 from camwright.design.torque.task import Pattern, TorqueTask
 from camwright.design.torque.zone import Zone, available_torque
@@ -170,7 +171,11 @@ class TorqueProgramme:
         mean_square = ca.dot(weights, (torque / units[0]) ** 2)
         sharpest = task.problem.greatest_jerk * task.problem.length**3 / task.scale
         by_phase = (1.0 - JERK_DRAWN_IN) * h / p[:n]
-        jerk = by_phase - rise / p[:n] / sharpest, by_phase + rise / p[:n] / sharpest
+        jerk = (
+            by_phase - rise / p[:n] / sharpest,
+            by_phase + rise / p[:n] / sharpest,
+            *self._ramps(a, v, h, p[:n]),
+        )
         peaks: list[Any] = []
         match task.aim:
             case "rms_torque":
@@ -225,6 +230,23 @@ class TorqueProgramme:
         nlp = {"x": unknowns, "p": p, "f": cost, "g": ca.vertcat(*equations, *peaks, *jerk, between)}
         self._solver = ca.nlpsol("camwright_torque", "ipopt", nlp, _OPTIONS)
 
+    def _ramps(self, a: Any, v: Any, h: Any, mesh: Any) -> list[Any]:
+        """Make what the line's ramps leave (`camwright.design.line.forms`) by Bernstein coefficients, times the lengths of the phases."""
+        task, length = self._task, self._task.problem.length
+        if not task.task.line.ramps:
+            return []
+        middle = v[:-1] + h * a[:-1] / 2
+        found = []
+        for form in ramp_forms(task.task):
+            ratio, slope, jerk = (
+                factor * task.scale / length**order
+                for order, factor in enumerate((form.ratio, form.slope, form.jerk), start=1)
+            )
+            for pace, bend in ((v[:-1], a[:-1]), (middle, (a[:-1] + a[1:]) / 2), (v[1:], a[1:])):
+                free = h * (1.0 - JERK_DRAWN_IN - ratio * pace - slope * bend) - jerk * (a[1:] - a[:-1])
+                found.append(free / mesh)
+        return found
+
     def _interval(self) -> Any:
         """Make the function of one interval: torque or force and power at the slave, and what the motor gives, at its Gauss-Lobatto points.
 
@@ -239,6 +261,8 @@ class TorqueProgramme:
         acceleration = task.scale / task.duration**2 * (a + rise * s)
         force = machine.inertia(y) * acceleration + machine.inertia_slope(y) * velocity**2 / 2 + machine.friction * sign
         available = available_torque(task, velocity, len(LOBATTO[0]))
+        if task.task.line.ramps:  # what a ramp takes of it
+            available -= machine.inertia(y) * ca.fabs(velocity) * task.task.line.hardest / task.cut.line_speed
         return ca.Function("interval", [a, rise, v, q, h, sign, start], [force, force * velocity, available])
 
     def _state(self, guess: Guess) -> FloatArray:

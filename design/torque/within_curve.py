@@ -21,6 +21,8 @@ from camwright.profiles.task import Task
 
 POINTS = 4001
 """Places of the cycle, besides its breaks, at which the torque is held against the curve."""
+RAMP_SPEEDS = 10
+"""Equal steps of the line speed down to standstill at which the torque of a ramp is looked at."""
 ROUNDING = 1e-9
 SAMPLED = 1e-6
 """Share of the torque that is kept free, for what happens between these places."""
@@ -38,15 +40,25 @@ def load(profile: CamProfile, task: Task, curve: MotorCurve) -> float:
     """Greatest share of the motor's torque at its speed that a cycle uses; beyond the motor's top speed, of that which it gives there."""
     machine = task.machine
     x = np.concatenate([np.linspace(profile.start, profile.end, POINTS), profile.breaks])
-    v, worst = task.cut.line_speed, 0.0
-    for side in ("left", "right"):
-        y = task.slave_at_start - float(profile(profile.start)) + profile(x)
-        pace, bend = v * profile(x, 1), v**2 * profile(x, 2, side=side)
-        force = machine.inertia(y) * bend + machine.inertia_slope(y) * pace**2 / 2 + machine.friction * np.sign(pace)
-        speed = np.minimum(np.abs(pace) * machine.motor_ratio, curve.top_speed)
-        given = curve.torque(speed) * machine.motor_ratio
-        worst = max(worst, float((np.abs(force) / given).max()))
+    worst = 0.0
+    y, ratio = task.slave_at_start - float(profile(profile.start)) + profile(x), profile(x, 1)
+    inertia, inertia_slope = machine.inertia(y), machine.inertia_slope(y)
+    for v, ramp in _line_states(task):
+        pace = v * ratio
+        given = curve.torque(np.minimum(np.abs(pace) * machine.motor_ratio, curve.top_speed)) * machine.motor_ratio
+        steady = inertia_slope * pace**2 / 2 + machine.friction * np.sign(ratio)
+        for side in ("left", "right"):
+            force = inertia * (v**2 * profile(x, 2, side=side) + ramp * ratio) + steady
+            worst = max(worst, float((np.abs(force) / given).max()))
     return worst
+
+
+def _line_states(task: Task) -> list[tuple[float, float]]:
+    """Speeds (m/s) and accelerations (m/s²) of the line at which the torque is looked at: with ramps at lower speeds too."""
+    v, line = task.cut.line_speed, task.line
+    if not line.ramps:
+        return [(v, 0.0)]
+    return [(v * k / RAMP_SPEEDS, ramp) for k in range(RAMP_SPEEDS + 1) for ramp in (line.speeding, -line.braking)]
 
 
 def least_load(task: Task) -> TorqueSolution | None:

@@ -20,12 +20,13 @@ from camwright.profiles.closed_forms.softest import softest
 from camwright.profiles.closed_forms.transfer import Bounds
 from camwright.profiles.errors import InputError
 from camwright.profiles.limits import Limits
-from camwright.profiles.objective import OBJECTIVES, ObjectiveName
+from camwright.profiles.objective import OBJECTIVES, MotionObjective, ObjectiveName
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.task import Task
 from camwright.validation.bounds.bound import NONE, Bound
 from camwright.validation.bounds.motor_bound import bent_bound, motor_bound
 from camwright.validation.bounds.quadratic import multipliers
+from camwright.validation.bounds.ramped import ramped_bound
 
 INTERVALS = 140
 """Intervals of half a motion."""
@@ -33,6 +34,8 @@ GREATEST = 1e3
 """Largest limit that the quadratic programme is told; none that matters is that large."""
 TURNS, EARLIEST = 40_000, 1e-6
 """Times of the first standstill of a carriage that are looked at, from this share of the latest on; each is later by a 3000th."""
+SAME = 1e-6
+"""A profile within this share of the bound for a line that keeps its speed needs no other."""
 ROUNDING = 1e-11
 """A bound that a design may reach exactly is lowered by this share."""
 CLOSED_FORM = "closed form, double-S"
@@ -55,6 +58,8 @@ class _Return:
 def lower_bound(profile: CamProfile, task: Task, objective: ObjectiveName) -> Bound:
     """Lower bound of what any return of this job can reach.
 
+    With a line that ramps the bound is that of its ramps too (`camwright.validation.bounds.ramped`), where that is the sharper.
+
     Bounds are known where the slave's ratio is constant in sync: then the return is a straight line plus a motion from rest to rest. Of the
     stroke of a carriage only that it must turn round within it is looked at, by itself, which can only lower them. Elsewhere there is none.
 
@@ -74,7 +79,6 @@ def lower_bound(profile: CamProfile, task: Task, objective: ObjectiveName) -> Bo
     InputError
         The objective is not one of these.
     """
-    machine, cut = task.machine, task.cut
     if objective not in OBJECTIVES:
         raise InputError(f"there is no objective {objective!r}; the objectives are {', '.join(OBJECTIVES)}")
     if objective == "rms_torque" or objective == "peak_torque" or objective == "energy":
@@ -86,6 +90,26 @@ def lower_bound(profile: CamProfile, task: Task, objective: ObjectiveName) -> Bo
         return motor_bound(profile, task, objective, motion)
     if objective == "sync_error":
         return Bound(math.nan, NONE)
+    steady = _steady_bound(profile, task, objective)
+    if not task.line.ramps or steady.value >= _reached(profile, task, objective) * (1.0 - SAME):
+        return steady
+    ramped = ramped_bound(profile, task, objective)
+    return ramped if math.isnan(steady.value) or ramped.value > steady.value else steady
+
+
+def _reached(profile: CamProfile, task: Task, objective: MotionObjective) -> float:
+    """Objective of a profile over time: a peak of the cycle, a root mean square of the return."""
+    of, start = OBJECTIVES[objective], task.cut.return_start
+    if of.form == "peak":
+        value = max(abs(each.value) for each in profile.extrema(of.order))
+    else:
+        value = math.sqrt(profile.mean_square(of.order, start, min(start + task.cut.return_zone, profile.end)))
+    return of.over_time(value, task.cut.line_speed)
+
+
+def _steady_bound(profile: CamProfile, task: Task, objective: MotionObjective) -> Bound:
+    """Lower bound for a line that keeps its speed, which is one for a line that ramps too."""
+    machine, cut = task.machine, task.cut
     if not task.straight:
         return bent_bound(profile, task, objective)
     length, v = cut.return_zone, cut.line_speed

@@ -1,0 +1,146 @@
+"""The return that bears the ramps of its line: a mesh that is refined where the jerk changes, and what its solution is."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from camwright.design.line.forms import Form, ramp_forms
+from camwright.design.line.programme import solve_on_mesh
+from camwright.design.returns.problem import ReturnProblem
+from camwright.design.returns.scaling import ScaledProblem, motion_scale, scale_problem, unscale_profile
+from camwright.design.returns.structure import subdivide, tidy
+from camwright.design.returns.transcription import ScaledMotion
+from camwright.profiles.objective import OBJECTIVES
+from camwright.profiles.polynomial.profile import CamProfile, FloatArray
+from camwright.profiles.task import Task
+
+FIRST = 64
+"""Intervals of the first mesh, shared out over the arcs of a return that does not know of the ramps."""
+
+MOST = 400
+"""Intervals of the last mesh at most."""
+
+ROUNDS = 8
+"""How often the mesh is refined."""
+
+STEP = 0.005
+"""Part of the greatest jerk by which neighbours differ where a mesh is refined: there an arc ends."""
+
+SHORTEST = 1e-6
+"""No interval is made shorter than this part of the return."""
+
+SAME_JERK = 2e-8
+"""Part of the greatest jerk by which neighbours of the same jerk may differ."""
+
+NO_MOTION = 1e-13
+"""A deviation from the straight line below this part of the return's length is no motion at all."""
+
+KEPT_PEAK = 1e-6
+"""Share of a peak that its smoothest motion may give away."""
+
+
+def ramped_return(task: Task, problem: ReturnProblem, start: CamProfile | None, zone: float = 0.0) -> CamProfile | None:
+    """Solve a return on which the line may ramp.
+
+    Parameters
+    ----------
+    task
+        Limits, cut and line.
+    problem
+        The return and its objective.
+    start
+        A return whose arcs the first mesh takes, the optimum of a line that keeps its speed; None for an even mesh.
+    zone
+        Peak of the objective in the sync zone, below which no peak of the return counts.
+
+    Returns
+    -------
+    CamProfile or None
+        The return over ``[0, length]`` from slave zero; ``None`` where no mesh has one.
+    """
+    scale = motion_scale(problem)
+    if abs(scale) <= NO_MOTION * problem.length:
+        return CamProfile.from_arrays([0.0, problem.length], [[0.0, problem.height / problem.length]])
+    scaled = scale_problem(problem, scale)
+    forms = tuple(_scaled(form, problem.length, scale) for form in ramp_forms(task))
+    motion = _refined(scaled, forms, _first_mesh(start, problem.length))
+    if motion is None:
+        return None
+    if OBJECTIVES[problem.objective].form == "peak":
+        motion = _smoothest(
+            scaled, forms, motion, zone * problem.length ** OBJECTIVES[problem.objective].order / abs(scale)
+        )
+    return unscale_profile(tidy(_joined(motion), scaled, corners=False).profile(), problem, scale)
+
+
+def bears_ramp(task: Task, problem: ReturnProblem, start: CamProfile | None = None) -> bool:
+    """Tell whether a mesh has a return on which the line may ramp."""
+    scale = motion_scale(problem)
+    if abs(scale) <= NO_MOTION * problem.length:
+        return all(form.ratio * problem.start_ratio <= 1.0 for form in ramp_forms(task))
+    scaled = replace(scale_problem(problem, scale), objective="rms_acceleration")
+    forms = tuple(_scaled(form, problem.length, scale) for form in ramp_forms(task))
+    return solve_on_mesh(scaled, _first_mesh(start, problem.length, 2 * FIRST), forms) is not None
+
+
+def _scaled(form: Form, length: float, scale: float) -> Form:
+    """Write a form for the scaled return."""
+    return Form(form.ratio * scale / length, form.slope * scale / length**2, form.jerk * scale / length**3)
+
+
+def _first_mesh(start: CamProfile | None, length: float, count: int = FIRST) -> FloatArray:
+    """Share out intervals over the arcs of a return."""
+    arcs = np.ones(1) if start is None else np.diff(start.breaks) / length
+    arcs = arcs[arcs > SHORTEST]
+    return subdivide(arcs / arcs.sum(), count)
+
+
+def _refined(problem: ScaledProblem, forms: tuple[Form, ...], lengths: FloatArray) -> ScaledMotion | None:
+    """Solve, and halve the intervals beside those places where the jerk steps, again and again; where there is no motion halve all."""
+    best: ScaledMotion | None = None
+    for _ in range(ROUNDS):
+        motion = solve_on_mesh(problem, lengths, forms)
+        if motion is None and best is not None:
+            break
+        best = motion
+        halved = np.ones(len(lengths), dtype=bool) if motion is None else _uneven(motion)
+        halved &= lengths > 2 * SHORTEST
+        if not halved.any() or len(lengths) + halved.sum() > MOST:
+            break
+        lengths = np.repeat(np.where(halved, 0.5 * lengths, lengths), 1 + halved)
+    return best
+
+
+def _uneven(motion: ScaledMotion) -> NDArray[np.bool_]:
+    """Mark the intervals at whose ends the jerk steps."""
+    jerk = np.diff(motion.accelerations) / motion.lengths
+    steps = np.abs(np.diff(jerk)) > STEP * float(np.abs(jerk).max())
+    return np.asarray(np.append(False, steps) | np.append(steps, False))
+
+
+def _joined(motion: ScaledMotion) -> ScaledMotion:
+    """Join neighbouring intervals of the same jerk: far less than the margin changes by that."""
+    jerk = np.diff(motion.accelerations) / motion.lengths
+    kept, first = [0], 0
+    for k in range(1, len(jerk)):
+        run = jerk[first : k + 1]
+        if float(run.max() - run.min()) > SAME_JERK * float(np.abs(jerk).max()):
+            kept.append(k)
+            first = k
+    nodes = np.concatenate([[0.0], np.cumsum(motion.lengths)])
+    kept.append(len(jerk))
+    return ScaledMotion(np.diff(nodes[kept]), motion.accelerations[kept], motion.objective)
+
+
+def _smoothest(problem: ScaledProblem, forms: tuple[Form, ...], motion: ScaledMotion, zone: float) -> ScaledMotion:
+    """Of all returns of a least peak, or the sync zone's, take the one of least RMS acceleration; the given one if that fails."""
+    measured = (
+        motion.accelerations
+        if OBJECTIVES[problem.objective].order == 2
+        else np.diff(motion.accelerations) / motion.lengths
+    )
+    peak = max(float(np.abs(measured).max()) * (1 + KEPT_PEAK), zone)
+    return solve_on_mesh(problem, motion.lengths, forms, peak) or motion
