@@ -116,6 +116,62 @@ class Audit:
         return None if own == 0.0 else 1.0 - best / own
 
 
+@dataclass(frozen=True, eq=False)
+class RunningCam:
+    """A cam as its drive runs it.
+
+    Parameters
+    ----------
+    target, table, notes, job, counted
+        As of `Audit`.
+    rebuilt
+        The cam from the job's master zero on, as many cycles as the table holds (slave unit over m).
+    count
+        Size of the counts that its positions are in (slave unit); 0 where it has none.
+    """
+
+    target: Target
+    table: CamTable
+    notes: tuple[str, ...]
+    job: Job
+    rebuilt: CamProfile
+    count: float
+    counted: bool
+
+    @property
+    def cycle(self) -> CamProfile:
+        """One cycle of the job."""
+        return one_cycle(self.rebuilt, self.job.cut)
+
+
+def running_cam(
+    text: str,
+    place: str,
+    job: Job,
+    target: str | None = None,
+    units: str | None = None,
+    travel: str | None = None,
+    slopes: str | None = None,
+) -> RunningCam:
+    """Rebuild the cam of a file's text as its drive does; arguments as of `audit`, messages begin with the place.
+
+    Raises
+    ------
+    InputError
+        The text is not read, or is no cam of this job.
+    """
+    layout = detect(text, place) if target is None else target_of(target)
+    placed = replace(job, machine=_with_place(job.machine, text, place))
+    whole = whole_cycle(with_slopes(read_table(layout, text, place), slopes), placed, place, units, travel)
+    table, counted = whole.table, without_rounding(whole.table)
+    rebuilt = whole.units.to_si(layout.rebuild(table if counted is None else counted.table))
+    one_cycle(rebuilt, job.cut)  # refuses another period
+    count = 0.0 if counted is None else counted.count * whole.units.slave.size
+    rebuilt, notes = aligned(rebuilt.shift(-rebuilt.start), placed, count=count)
+    told = (*table.notes, *whole.notes, *((counted.note,) if counted else ()), *notes)
+    return RunningCam(layout, table, told, placed, rebuilt, count, counted is not None)
+
+
 def audit(
     path: Path,
     job: Job,
@@ -164,27 +220,19 @@ def audit(
     (True, True)
     """
     step("reading")
-    text = read_text(path)
-    layout = detect(text, str(path)) if target is None else target_of(target)
-    placed = replace(job, machine=_with_place(job.machine, text, str(path)))
-    whole = whole_cycle(with_slopes(read_table(layout, text, str(path)), slopes), placed, str(path), units, travel)
-    table, counted = whole.table, without_rounding(whole.table)
-    rebuilt = whole.units.to_si(layout.rebuild(table if counted is None else counted.table))
-    one_cycle(rebuilt, job.cut)  # refuses another period
-    count = 0.0 if counted is None else counted.count * whole.units.slave.size
-    rebuilt, notes = aligned(rebuilt.shift(-rebuilt.start), placed, count=count)
-    cycle = one_cycle(rebuilt, job.cut)
+    found = running_cam(read_text(path), str(path), job, target, units, travel, slopes)
+    placed, cycle = found.job, found.cycle
     step("judging")
-    judgement = judge_table(rebuilt, placed.task, job.servo, count=count)
+    judgement = judge_table(found.rebuilt, placed.task, job.servo, count=found.count)
     report = judge(cycle, placed.task, job.servo)
     step("solving")
     solution = solve_job(job)
     best = replace(job, machine=solution.machine)
     best_report = judge(solution.profile, best.task, job.servo)
     return Audit(
-        layout,
-        table,
-        (*table.notes, *whole.notes, *((counted.note,) if counted else ()), *notes),
+        found.target,
+        found.table,
+        found.notes,
         placed,
         cycle,
         judgement,
@@ -194,7 +242,7 @@ def audit(
         solution.profile,
         best_report,
         _sampled(solution.profile, job),
-        counted is not None,
+        found.counted,
     )
 
 

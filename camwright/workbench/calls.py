@@ -5,19 +5,30 @@ from __future__ import annotations
 import base64
 import binascii
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from camwright.profiles.errors import InputError
 from camwright.profiles.tables.targets import TARGETS, target_of
+from camwright.recipes.catalogue import LANGUAGES
+from camwright.recipes.model import Language
 from camwright.workbench.runner import JOB_FILE
 
-LANGUAGES = ("en", "de", "zh")
-"""Languages of recipes, and of the page."""
-
 _OUT = ("--out", "out")
-_DROPPED = "dropped"
+
+_DROPPED, _NAMELESS = "dropped", "file"
+"""Folder of files that were dropped on the page, and what one without a name is called."""
+
+_TEXTS = {
+    "toml": "the text of a job file",
+    "design": "the text of a design.json",
+    "units": "units of master and slave",
+}
+"""What the texts of calls are."""
+
+_LONGEST = 60
+"""Signs of a file's name that are kept, from its end."""
 
 
 @dataclass(frozen=True)
@@ -44,15 +55,21 @@ def call_of(name: str, body: dict[str, Any]) -> Call:
     InputError
         Something that it needs is missing, or not what it should be.
     """
-    inputs = {JOB_FILE: job_text(body).encode()}
-    return _CALLS[name](body, inputs)
+    return _CALLS[name](body)
 
 
 def job_text(body: dict[str, Any]) -> str:
     """Take the job from what the page sends."""
-    text = body.get("toml")
+    return text_of(body, "toml")
+
+
+def text_of(body: dict[str, Any], key: str) -> str:
+    """Take a text from what the page sends."""
+    text = body.get(key)
     if not isinstance(text, str):
-        raise InputError('the body has no "toml", the text of a job file')
+        raise InputError(f'the body has no "{key}", {_TEXTS[key]}')
+    if any("\ud800" <= sign <= "\udfff" for sign in text):
+        raise InputError(f'"{key}" holds half a sign (a lone surrogate); send whole ones')
     return text
 
 
@@ -64,64 +81,107 @@ def laws_of(body: dict[str, Any]) -> list[str]:
     return laws
 
 
-def _check(_: dict[str, Any], inputs: dict[str, bytes]) -> Call:
-    return Call((("check", JOB_FILE, "--json"),), inputs)
+def file_of(body: dict[str, Any]) -> tuple[str, bytes]:
+    """Take a file that was dropped on the page: its name without any folder, and its bytes.
+
+    Only letters, digits and plain signs of the name are kept: it becomes the name of a file, and of programs made from it.
+    """
+    name, data = body.get("name"), body.get("base64")
+    if not isinstance(name, str) or not isinstance(data, str):
+        raise InputError('a file is sent as its "name" and its bytes as "base64"')
+    plain = re.sub(r"[^A-Za-z0-9_. -]", "_", re.split(r"[/\\]", name)[-1])[-_LONGEST:].lstrip("-. ")
+    try:
+        return plain or _NAMELESS, base64.b64decode(data, validate=True)
+    except binascii.Error as error:
+        raise InputError('"base64" is no base64') from error
 
 
-def _design(body: dict[str, Any], inputs: dict[str, bytes]) -> Call:
-    figures = () if _flag(body, "figures") else ("--no-figures",)
-    return Call((("design", JOB_FILE, "--json", *figures, *_OUT),), inputs)
+def _job(body: dict[str, Any]) -> dict[str, bytes]:
+    """Give the job as the input of a command."""
+    return {JOB_FILE: job_text(body).encode()}
 
 
-def _compare(body: dict[str, Any], inputs: dict[str, bytes]) -> Call:
-    objectives = ("--objectives",) if _flag(body, "objectives") else ()
-    return Call((("compare", JOB_FILE, "--json", "--no-figures", *objectives),), inputs)
+def _check(body: dict[str, Any]) -> Call:
+    return Call((("check", JOB_FILE, "--json"),), _job(body))
 
 
-def _limits(_: dict[str, Any], inputs: dict[str, bytes]) -> Call:
-    return Call((("limits", JOB_FILE, "--json"),), inputs)
+def _design(body: dict[str, Any]) -> Call:
+    figures = () if flag_of(body, "figures") else ("--no-figures",)
+    return Call((("design", JOB_FILE, "--json", *figures, *_OUT),), _job(body))
 
 
-def _envelope(body: dict[str, Any], inputs: dict[str, bytes]) -> Call:
+def _compare(body: dict[str, Any]) -> Call:
+    objectives = ("--objectives",) if flag_of(body, "objectives") else ()
+    return Call((("compare", JOB_FILE, "--json", "--no-figures", *objectives),), _job(body))
+
+
+def _limits(body: dict[str, Any]) -> Call:
+    return Call((("limits", JOB_FILE, "--json"),), _job(body))
+
+
+def _envelope(body: dict[str, Any]) -> Call:
     points = body.get("points", 9)
     if not isinstance(points, int) or isinstance(points, bool) or not 2 <= points <= 40:
         raise InputError(f'"points" is {points!r}; it is a whole number from 2 to 40')
-    return Call((("envelope", JOB_FILE, "--json", "--no-figures", "--points", str(points), *_OUT),), inputs)
+    command = ("envelope", JOB_FILE, "--json", "--no-figures", "--points", str(points), *_OUT)
+    return Call((command,), _job(body))
 
 
-def _export(body: dict[str, Any], inputs: dict[str, bytes]) -> Call:
+def _export(body: dict[str, Any]) -> Call:
     design = ("design", JOB_FILE, "--json", "--no-figures", *_OUT)
     units = ("--units", _plain(body, "units")) if body.get("units") else ()
     tables = ("export", "out/design.json", "--to", _targets(body), *units, "--out", "tables", "--json")
-    return Call((design, tables), inputs)
+    return Call((design, tables), _job(body))
 
 
-def _recipe(body: dict[str, Any], inputs: dict[str, bytes]) -> Call:
+def _recipe(body: dict[str, Any]) -> Call:
+    command = ("recipe", JOB_FILE, "--targets", _targets(body), "--language", language_of(body), "--out", "recipe")
+    return Call(((*command, "--json"),), _job(body))
+
+
+def language_of(body: Mapping[str, Any]) -> Language:
+    """Take the language from what the page sends; English if it is left out."""
     language = body.get("language", "en")
-    if language not in LANGUAGES:
-        raise InputError(f'"language" is {language!r}; it is {", ".join(LANGUAGES)}')
-    return Call(
-        (("recipe", JOB_FILE, "--targets", _targets(body), "--language", language, "--out", "recipe", "--json"),),
-        inputs,
-    )
+    for known in LANGUAGES:
+        if language == known:
+            return known
+    raise InputError(f'"language" is {language!r}; it is {", ".join(LANGUAGES)}')
 
 
-def _audit(body: dict[str, Any], inputs: dict[str, bytes]) -> Call:
-    """Judge a file that was dropped on the page; its name only tells its ending."""
-    name, data = body.get("name"), body.get("base64")
-    if not isinstance(name, str) or not isinstance(data, str):
-        raise InputError('an audit takes the file\'s "name" and its bytes as "base64"')
-    ending = re.search(r"\.[A-Za-z0-9]{1,8}$", name)
-    file = _DROPPED + (ending.group() if ending else "")
-    try:
-        inputs[file] = base64.b64decode(data, validate=True)
-    except binascii.Error as error:
-        raise InputError('"base64" is no base64') from error
+def _audit(body: dict[str, Any]) -> Call:
+    """Judge a table that was dropped on the page."""
+    name, data = file_of(body)
     units = ("--units", _plain(body, "units")) if body.get("units") else ()
-    return Call((("audit", file, "--job", JOB_FILE, "--json", "--no-figures", *units),), inputs)
+    path = f"{_DROPPED}/{name}"
+    return Call((("audit", path, "--job", JOB_FILE, "--json", "--no-figures", *units),), _job(body) | {path: data})
 
 
-def _flag(body: dict[str, Any], key: str) -> bool:
+def _identify(body: dict[str, Any]) -> Call:
+    """Find the servo of a recording that was dropped on the page."""
+    name, data = file_of(body)
+    path = f"{_DROPPED}/{name}"
+    return Call((("identify", path, "--json", "--out", "servo.toml"),), {path: data})
+
+
+def _bend(body: dict[str, Any]) -> Call:
+    """Bend a drawing that was dropped on the page; the bundled bender if no job of one is sent."""
+    name, data = file_of(body)
+    path = f"{_DROPPED}/{name}"
+    bender = ("--job", JOB_FILE) if "toml" in body else ()
+    reverse = ("--reverse",) if flag_of(body, "reverse") else ()
+    command = ("bend", path, *bender, "--styles", "all", *reverse, "--json", "--out", "bent")
+    return Call((command,), (_job(body) if bender else {}) | {path: data})
+
+
+def number_of(body: Mapping[str, Any], key: str, otherwise: float) -> float:
+    """Take a number from what the page sends."""
+    value = body.get(key, otherwise)
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise InputError(f'"{key}" is {str(value)[:40]!r}; it is a number')
+    return float(value)
+
+
+def flag_of(body: dict[str, Any], key: str) -> bool:
     """Read a key that is true or false; false where it is left out."""
     value = body.get(key, False)
     if not isinstance(value, bool):
@@ -145,7 +205,7 @@ def _targets(body: dict[str, Any]) -> str:
     return ",".join(target_of(name).name for name in names)
 
 
-_CALLS: dict[str, Callable[[dict[str, Any], dict[str, bytes]], Call]] = {
+_CALLS: dict[str, Callable[[dict[str, Any]], Call]] = {
     "check": _check,
     "design": _design,
     "compare": _compare,
@@ -154,6 +214,8 @@ _CALLS: dict[str, Callable[[dict[str, Any], dict[str, bytes]], Call]] = {
     "export": _export,
     "recipe": _recipe,
     "audit": _audit,
+    "identify": _identify,
+    "bend": _bend,
 }
 
 NAMES = tuple(_CALLS)

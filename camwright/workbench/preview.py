@@ -1,4 +1,4 @@
-"""What the page shows while a handle is dragged: the optimum of one motion objective, without bounds, servo and comparison."""
+"""What the plots show: while a hand drags the optimum of a motion objective, without bound, servo and comparison; then the design."""
 
 from __future__ import annotations
 
@@ -6,17 +6,15 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
 from camwright.design.optimise import solve
 from camwright.jobs.job import Job, parse_job
 from camwright.profiles.objective import OBJECTIVES, MotionObjective
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import baseline, baseline_names
 from camwright.profiles.task import Task
-
-POINTS = 721
-"""Samples over the cycle."""
+from camwright.stored.design_file import parse_design
+from camwright.validation.motor import greatest_load
+from camwright.workbench.sampling import limits_of, samples, zones
 
 _STAND_IN: MotionObjective = "rms_acceleration"
 """What is minimised where the job's own objective takes longer than a hand waits: of the motor, or of the axis."""
@@ -39,7 +37,8 @@ def preview(text: str, laws: Sequence[str] = ()) -> dict[str, Any]:
     -------
     dict
         ``objective`` (name, value, unit), ``exact`` (whether it is the job's own objective on the job's own terms), ``binding`` (the
-        limits that are touched), ``samples`` over the master and the zones' ends in m.
+        limits that are touched), ``slave_unit`` and ``turn`` (slave travel of a turn, null where nothing turns), ``line_speed_m_per_s``,
+        ``zones_m``, ``limits`` in SI units, ``samples`` of the cam and of the ``laws``.
 
     Raises
     ------
@@ -52,62 +51,58 @@ def preview(text: str, laws: Sequence[str] = ()) -> dict[str, Any]:
     """
     job = parse_job(text, "job")
     own = OBJECTIVES[job.objective].of == "motion" and not job.servo_aware and job.limits.motor is None
-    task = job.task if job.machine.placed else job.task.placed_midway()
-    task = task.with_cut(replace(task.cut, shaped=False)).with_limits(replace(task.limits, motor=None))
+    placed = job.task if job.machine.placed else job.task.placed_midway()
+    placed = placed.with_cut(replace(placed.cut, shaped=False))
+    task = placed.with_limits(replace(placed.limits, motor=None))
     name: MotionObjective = job.objective if own else _STAND_IN  # type: ignore[assignment]
     solution = solve(task, name, suggest=False)
-    unit = OBJECTIVES[name].unit(job.machine.slave_unit)
-    return {
-        "job": job.name,
-        "objective": {"name": name, "value": solution.minimised, "unit": unit},
+    return _drawn(replace(job, machine=placed.machine), placed, solution.profile, laws) | {
+        "objective": {
+            "name": name,
+            "value": solution.minimised,
+            "unit": OBJECTIVES[name].unit(job.machine.slave_unit),
+        },
         "exact": own and job.machine.placed,
-        "binding": _binding(solution.profile, task),
-        "slave_unit": job.machine.slave_unit,
-        "zones_m": zones(job),
-        "limits": limits_of(job),
-        "samples": samples(solution.profile, task.cut.line_speed),
-        "laws": {law: samples(baseline(law, task), task.cut.line_speed) for law in laws if law in baseline_names(task)},
     }
 
 
-def samples(profile: CamProfile, line_speed: float) -> dict[str, list[float]]:
-    """Sample a cycle over the master: position and ratio over the master, acceleration and jerk over time.
+def designed(text: str, laws: Sequence[str] = ()) -> dict[str, Any]:
+    """Draw a design: what is shown once it is proved.
 
     Parameters
     ----------
-    profile
-        The cycle.
-    line_speed
-        Line speed (m/s).
+    text
+        The text of a design.json.
+    laws
+        As of `preview`.
+
+    Returns
+    -------
+    dict
+        As of `preview`, ``exact`` always; the objective is told by the design itself.
+
+    Raises
+    ------
+    InputError
+        The text is no design.json.
     """
-    x = np.linspace(profile.start, profile.end, POINTS)
+    stored = parse_design(text, "design")
+    return _drawn(stored.job, stored.job.task, stored.profile, laws) | {"exact": True}
+
+
+def _drawn(job: Job, task: Task, profile: CamProfile, laws: Sequence[str]) -> dict[str, Any]:
+    """Gather what plots show of a cycle."""
+    known = baseline_names(task)
     return {
-        "x_m": x.tolist(),
-        "y": profile(x).tolist(),
-        "ratio": profile(x, 1).tolist(),
-        "speed": (profile(x, 1) * line_speed).tolist(),
-        "acceleration": (profile(x, 2) * line_speed**2).tolist(),
-        "jerk": (profile(x, 3) * line_speed**3).tolist(),
-    }
-
-
-def zones(job: Job) -> dict[str, list[list[float]]]:
-    """Where the sync zone and the shear zone lie on the master of a cycle (m), as parts of it."""
-    cut = job.cut
-    start = cut.shear_start % cut.length
-    end = start + cut.shear_zone
-    shear = [[start, end]] if end <= cut.length else [[start, cut.length], [0.0, end - cut.length]]
-    return {"sync": [list(part) for part in cut.sync_parts], "shear": shear if cut.shear_zone > 0.0 else []}
-
-
-def limits_of(job: Job) -> dict[str, float | bool]:
-    """List the limits of the slave in SI units."""
-    limits = job.limits
-    return {
-        "speed": limits.speed,
-        "acceleration": limits.acceleration,
-        "jerk": limits.jerk,
-        "reversal": limits.reversal,
+        "job": job.name,
+        "binding": _binding(profile, task),
+        "slave_unit": job.machine.slave_unit,
+        "turn": job.machine.slave_turn,
+        "line_speed_m_per_s": job.cut.line_speed,
+        "zones_m": zones(job),
+        "limits": limits_of(job),
+        "samples": samples(profile, task),
+        "laws": {law: samples(baseline(law, task), task) for law in laws if law in known},
     }
 
 
@@ -123,4 +118,8 @@ def _binding(profile: CamProfile, task: Task) -> list[str]:
             found.append(name)
         if order == 1 and not task.reverses and low <= _TOUCHED * v:
             found.append("reversal")
+    if limits.motor is not None and task.machine.moves_something:
+        torque, available = greatest_load(profile, task, limits.motor)
+        if torque.value >= available * (1.0 - _TOUCHED):
+            found.append("motor_torque")
     return found

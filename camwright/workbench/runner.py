@@ -7,8 +7,10 @@ import contextlib
 import io
 import multiprocessing
 import os
+import signal
 import tempfile
-from collections.abc import Callable, Sequence
+import threading
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
@@ -42,7 +44,7 @@ class Ran:
 
 
 class StaleError(Exception):
-    """A newer call has taken the place of this one."""
+    """A newer call of the same kind has taken the place of this one."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +54,7 @@ class _Child:
 
 
 class Runner:
-    """Runs commands in a process of its own, the newest call only: an older one that still runs is stopped.
+    """Runs commands in a process of its own, one call at a time; a newer call of the same kind ends an older one.
 
     Parameters
     ----------
@@ -64,38 +66,48 @@ class Runner:
         self._command_line = command_line
         self._context = multiprocessing.get_context("spawn")
         self._child = self._spawn()
-        self._calls = 0
-        self._busy = False
+        self._newest: dict[str, int] = {}
+        self._running: str | None = None
+        self._free = asyncio.Lock()
 
     def _spawn(self) -> _Child:
         """Start a process that waits for commands."""
         ours, theirs = self._context.Pipe()
         process = self._context.Process(target=_serve, args=(theirs, self._command_line), daemon=True)
-        process.start()
+        with _deaf():
+            process.start()
         theirs.close()
         return _Child(process, ours)
 
-    async def run(self, commands: Sequence[Sequence[str]], inputs: dict[str, bytes]) -> Ran:
+    async def run(self, kind: str, commands: Sequence[Sequence[str]], inputs: dict[str, bytes]) -> Ran:
         """Run commands one after the other, in a folder that holds the inputs, until one fails.
+
+        Parameters
+        ----------
+        kind
+            What is asked for; of each kind only the newest call is answered.
+        commands, inputs
+            Arguments of each command, and files by their path.
 
         Raises
         ------
         StaleError
-            A newer call came before this one was done.
+            A newer call of the kind came before this one was done.
         """
-        self._calls += 1
-        call = self._calls
-        if self._busy:
+        call = self._newest.get(kind, 0) + 1
+        self._newest[kind] = call
+        if self._running == kind:
             self._stop()
-            self._child = self._spawn()
-        self._busy, child = True, self._child
-        try:
+            self._running, self._child = None, self._spawn()
+        async with self._free:
+            if call != self._newest[kind]:
+                raise StaleError
+            self._running, child = kind, self._child
             child.line.send((tuple(tuple(command) for command in commands), inputs))
             ran = await asyncio.get_running_loop().run_in_executor(None, _received, child.line)
-        finally:
-            if call == self._calls:
-                self._busy = False
-        if ran is None or call != self._calls:
+            if child is self._child:
+                self._running = None
+        if ran is None or call != self._newest[kind]:
             raise StaleError
         return ran
 
@@ -108,6 +120,22 @@ class Runner:
         """End the process."""
         self._stop()
         self._child.line.close()
+
+
+@contextlib.contextmanager
+def _deaf() -> Iterator[None]:
+    """Start a process that a Ctrl-C in the terminal does not reach: it ends with the one that started it.
+
+    Only the main thread may say so; another one is a test's.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def _received(line: Connection) -> Ran | None:
@@ -131,6 +159,7 @@ def _run(command_line: CommandLine, commands: Sequence[Sequence[str]], inputs: d
     """Run commands in a folder of their own."""
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
         for name, data in inputs.items():
+            Path(name).parent.mkdir(exist_ok=True)
             Path(name).write_bytes(data)
         exit_code, said = 0, ""
         for command in commands:

@@ -7,7 +7,7 @@ import contextlib
 import hashlib
 import json
 import re
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -25,14 +25,34 @@ from camwright.jobs.job import parse_job
 from camwright.jobs.keys import job_keys
 from camwright.jobs.wording import error_words
 from camwright.profiles.errors import CamwrightError, InputError
+from camwright.profiles.returns import baseline_names
 from camwright.profiles.tables.targets import TARGETS
-from camwright.workbench.calls import LANGUAGES, NAMES, call_of, job_text, laws_of
+from camwright.recipes.catalogue import LANGUAGES, catalogue
+from camwright.workbench.calls import (
+    NAMES,
+    call_of,
+    file_of,
+    flag_of,
+    job_text,
+    language_of,
+    laws_of,
+    number_of,
+    text_of,
+)
 from camwright.workbench.guard import Guard
-from camwright.workbench.preview import preview
+from camwright.workbench.overlay import overlay
+from camwright.workbench.preview import designed, preview
 from camwright.workbench.runner import JOB_FILE, CommandLine, Ran, Runner, StaleError
+from camwright.workbench.servo import servo_view
 
 PAGE = Path(__file__).parent / "page"
 """The page's files."""
+
+WORDS = PAGE / "words"
+"""The page's own words, a file a language."""
+
+_SHARED = ("check.", "word.", "binding.")
+"""Groups of messages of the recipes that the page names things by too."""
 
 _NO_CALL = 422
 """Status of a call that is not what it should be; what a command refuses is an answer like any other."""
@@ -63,26 +83,39 @@ class Workbench:
         return FileResponse(PAGE / "index.html")
 
     async def job(self, _: Request) -> Response:
-        """Give what the page begins with: the job, the keys that its form is made from, targets and languages."""
+        """Give what the page begins with: the job, the keys that its form is made from, targets, baselines, languages."""
+        job = parse_job(self._text, JOB_FILE)
+        task = job.task if job.machine.placed else job.task.placed_midway()
         return JSONResponse(
             {
                 "toml": self._text,
-                "name": parse_job(self._text, JOB_FILE).name,
+                "name": job.name,
                 "keys": [{"path": key.path, **asdict(key)} for key in job_keys()],
                 "targets": list(TARGETS),
+                "laws": list(baseline_names(task)),
                 "languages": list(LANGUAGES),
             }
         )
 
-    async def preview(self, request: Request) -> Response:
-        """Draw a job at once."""
+    async def words(self, request: Request) -> Response:
+        """Give the words of a language: those of the page, and of the recipes what both name."""
         try:
-            body = await _body(request)
-            text, laws = job_text(body), laws_of(body)
+            language = language_of(request.query_params)
+        except InputError as error:
+            return _refusal(error, _NO_CALL)
+        own = json.loads((WORDS / f"{language}.json").read_text(encoding="utf-8"))
+        shared = {key: text for key, text in catalogue(language).messages.items() if key.startswith(_SHARED)}
+        return JSONResponse(shared | own)
+
+    async def at_once(self, request: Request) -> Response:
+        """Answer what takes no solver, or hardly one, beside the command that may run."""
+        name = request.url.path.rpartition("/")[2]
+        try:
+            answer = _AT_ONCE[name](await _body(request))
         except InputError as error:
             return _refusal(error, _NO_CALL)
         try:
-            return JSONResponse(await run_in_threadpool(preview, text, laws))
+            return JSONResponse(await run_in_threadpool(answer))
         except CamwrightError as error:
             return _refusal(error)
 
@@ -94,7 +127,7 @@ class Workbench:
         except InputError as error:
             return _refusal(error, _NO_CALL)
         try:
-            return _answered(await self._runner.run(call.commands, call.inputs))
+            return _answered(await self._runner.run(name, call.commands, call.inputs))
         except StaleError:
             return _STALE
 
@@ -106,7 +139,7 @@ class Workbench:
         except InputError as error:
             return _refusal(error, _NO_CALL)
         try:
-            ran = await self._runner.run(call.commands, call.inputs)
+            ran = await self._runner.run("save", call.commands, call.inputs)
             if ran.exit_code > 1:
                 return _answered(ran)
             work = Work("workbench", "the job of the page", hashlib.sha256(text.encode()).hexdigest())
@@ -143,12 +176,42 @@ def application(text: str, folder: Path, token: str, command_line: CommandLine) 
     routes = [
         Route("/", bench.page),
         Route("/api/job", bench.job),
-        Route("/api/preview", bench.preview, methods=["POST"]),
+        Route("/api/words", bench.words),
+        *(Route(f"/api/{name}", bench.at_once, methods=["POST"]) for name in _AT_ONCE),
         Route("/api/save", bench.save, methods=["POST"]),
         *(Route(f"/api/{name}", bench.call, methods=["POST"]) for name in NAMES),
         Mount("/page", StaticFiles(directory=PAGE)),
     ]
     return Guard(Starlette(routes=routes, lifespan=living), token)
+
+
+def _preview(body: dict[str, Any]) -> Callable[[], dict[str, Any]]:
+    text, laws = job_text(body), laws_of(body)
+    return lambda: preview(text, laws)
+
+
+def _cam(body: dict[str, Any]) -> Callable[[], dict[str, Any]]:
+    text, laws = text_of(body, "design"), laws_of(body)
+    return lambda: designed(text, laws)
+
+
+def _servo(body: dict[str, Any]) -> Callable[[], dict[str, Any]]:
+    design, share, curve = text_of(body, "design"), number_of(body, "share", 1.0), flag_of(body, "curve")
+    return lambda: servo_view(design, share, curve=curve)
+
+
+def _overlay(body: dict[str, Any]) -> Callable[[], dict[str, Any]]:
+    text, (name, data), units = job_text(body), file_of(body), body.get("units") and text_of(body, "units")
+    return lambda: overlay(text, data, name, units)
+
+
+_AT_ONCE: dict[str, Callable[[dict[str, Any]], Callable[[], dict[str, Any]]]] = {
+    "preview": _preview,
+    "cam": _cam,
+    "servo": _servo,
+    "overlay": _overlay,
+}
+"""Calls that are answered beside the command that may run, each made from what the page sends."""
 
 
 async def _body(request: Request) -> dict[str, Any]:

@@ -1,20 +1,28 @@
 // Calls of the server. Each answers {ok, data}: not ok are refusals, and calls that a newer one took the place of.
 
 const token = new URLSearchParams(location.search).get("token") ?? "";
+const HEADERS = { "X-Camwright-Token": token };
+
+/** The workbench ended, or cannot be reached: told once as a refusal like any other. */
+const gone = () => ({ ok: false, data: { status: "gone", message: "The workbench has ended. Start it again: camwright workbench" } });
 
 export async function get(path) {
-  const answer = await fetch(path, { headers: { "X-Camwright-Token": token } });
-  return { ok: answer.ok, data: await answer.json() };
+  try {
+    const answer = await fetch(path, { headers: HEADERS });
+    return { ok: answer.ok, data: await answer.json() };
+  } catch {
+    return gone();
+  }
 }
 
 export async function post(name, body) {
-  const answer = await fetch(`api/${name}`, {
-    method: "POST",
-    headers: { "Content-Type": "application/json", "X-Camwright-Token": token },
-    body: JSON.stringify(body),
-  });
-  const data = await answer.json();
-  return { ok: answer.ok && !(data.exit_code > 1) && data.status !== "stale", data };
+  try {
+    const answer = await fetch(`api/${name}`, { method: "POST", headers: { ...HEADERS, "Content-Type": "application/json" }, body: JSON.stringify(body) });
+    const data = await answer.json();
+    return { ok: answer.ok && !(data.exit_code > 1) && data.status !== "stale", data };
+  } catch {
+    return gone();
+  }
 }
 
 /** Runs one call at a time and only the newest of those that wait: a hand moves faster than a solver. */
@@ -34,7 +42,15 @@ export function newestOnly(run) {
   };
 }
 
-export function blobOf(base64, type) {
-  const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
-  return new Blob([bytes], { type });
+const bytesOf = (base64) => Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+
+export const blobOf = (base64, type) => new Blob([bytesOf(base64)], { type });
+export const textOf = (base64) => new TextDecoder().decode(bytesOf(base64));
+
+/** A chosen file as the server takes it. */
+export async function sent(file) {
+  const bytes = new Uint8Array(await file.arrayBuffer());
+  let text = "";
+  for (let at = 0; at < bytes.length; at += 32768) text += String.fromCharCode(...bytes.subarray(at, at + 32768));
+  return { name: file.name, base64: btoa(text) };
 }

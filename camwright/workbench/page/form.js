@@ -1,112 +1,101 @@
 // The job as a form made from the list of keys: values stand as they are typed, faults at their field.
 
-import { commit, draft, set, state } from "./state.js";
-import { quantity, values, withValue } from "./toml.js";
-import { digits } from "./plots.js";
+import { make } from "./elements.js";
+import { commit, set, state } from "./state.js";
+import { plain, values, withValue } from "./toml.js";
 import { word } from "./words.js";
 
-const SLIDERS = { "cut.length": "cut length", "cut.line_speed": "line speed", "cut.sync_zone": "sync zone", "limits.acceleration": "acceleration", "limits.jerk": "jerk" };
+const OPEN = new Set(["", "machine", "cut", "limits"]); // tables that stand open: the others are looked at less
+
+const kindOf = (known) => plain(known["machine.kind"]);
+const ofMachine = (kind) => state.keys.filter((key) => key.machine === "" || key.machine === kind);
 
 /** Build the form for the machine that the job names. */
 export function build(form) {
   const known = values(state.text);
-  const kind = JSON.parse(known["machine.kind"] ?? '""');
+  const kind = kindOf(known);
+  form.dataset.kind = kind;
   form.replaceChildren();
-  const tables = Map.groupBy(state.keys.filter((key) => key.machine === "" || key.machine === kind), (key) => key.table);
-  for (const [table, keys] of tables) {
-    const set = document.createElement("fieldset");
-    const legend = document.createElement("legend");
-    legend.textContent = table || "job";
-    set.append(legend, ...keys.map((key) => field(key, known[key.path])));
-    form.append(set);
+  for (const [table, keys] of Map.groupBy(ofMachine(kind), (key) => key.table)) {
+    const box = make("details");
+    box.open = OPEN.has(table);
+    box.append(make("summary", table ? word(`table.${table}`) : word("job")), ...keys.map((key) => field(key, known[key.path])));
+    form.append(box);
   }
 }
 
 function field(key, value) {
-  const row = document.createElement("div");
-  row.className = "field";
-  row.dataset.path = key.path;
-  const label = document.createElement("label");
-  const input = document.createElement("input");
+  const box = make("div", undefined, "field");
+  box.dataset.path = key.path;
+  const label = make("label", key.name.replaceAll("_", " "));
+  const input = choices(key) ? choice(key) : make("input");
   input.id = `field-${key.path}`;
   label.htmlFor = input.id;
-  label.textContent = key.name;
-  label.title = `${key.meaning}. ${key.takes}`;
-  input.value = value ?? "";
-  input.placeholder = key.default || `${word("optional")}: ${key.example}`;
-  input.addEventListener("change", () => set(key.path, input.value.trim()));
-  row.append(label, input);
-  return row;
+  box.title = `${key.path}: ${key.meaning}. ${key.takes}`;
+  if (!choices(key)) input.placeholder = key.default ? plain(key.default) : `${word("optional")}: ${plain(key.example)}`;
+  input.value = plain(value);
+  input.addEventListener("change", () => (key.path === "machine.kind" ? setMachine(input.value) : set(key.path, typed(key, input.value.trim()))));
+  box.append(label, input);
+  return box;
 }
 
-/** Bring the values of the text into the form, and the sliders to their places. */
-export function refresh(form, sliders) {
+/** The words that a key takes, where it takes no others. */
+function choices(key) {
+  if (key.path === "machine.kind") return [...new Set(state.keys.filter((each) => each.path === key.path).map((each) => plain(each.takes)))];
+  if (key.takes === "true or false") return ["true", "false"];
+  return /^"[^"]+"( or "[^"]+")*$/.test(key.takes) ? key.takes.split(" or ").map(plain) : null;
+}
+
+function choice(key) {
+  const select = make("select");
+  if (!key.required) select.append(Object.assign(make("option", key.default ? `${name(plain(key.default))} *` : "–"), { value: "" }));
+  for (const each of choices(key)) if (key.required || each !== plain(key.default)) select.append(Object.assign(make("option", name(each)), { value: each }));
+  return select;
+}
+
+const name = (value) => ({ true: word("yes"), false: word("no") })[value] ?? word(value);
+
+/** What was typed as it stands in the file: texts and quantities in quotes, numbers, lists and what has quotes as they are. */
+function typed(key, text) {
+  if (text === "" || /^["'[{]/.test(text)) return text;
+  return key.example.startsWith('"') || choices(key)?.every((each) => !["true", "false"].includes(each)) ? JSON.stringify(text) : text;
+}
+
+/** Another machine: the keys of the old one go, those that the new one needs come with the values of an example. */
+function setMachine(kind) {
   const known = values(state.text);
-  const kind = form.dataset.kind;
-  if (kind !== known["machine.kind"]) {
-    form.dataset.kind = known["machine.kind"];
-    build(form);
+  let text = state.text;
+  const wanted = ofMachine(kind).filter((key) => key.table === "machine");
+  for (const path of Object.keys(known)) if (path.startsWith("machine.") && !wanted.some((key) => key.path === path)) text = withValue(text, path, "");
+  for (const key of wanted) if (key.required && known[key.path] === undefined) text = withValue(text, key.path, key.example);
+  commit(withValue(text, "machine.kind", JSON.stringify(kind)));
+}
+
+/** Bring the values of the text into the form. */
+export function refresh(form) {
+  const known = values(state.text);
+  if (form.dataset.kind !== kindOf(known)) build(form);
+  for (const box of form.querySelectorAll(".field")) {
+    const input = box.querySelector("input, select");
+    const value = known[box.dataset.path] ?? "";
+    if (input !== document.activeElement || input.tagName === "SELECT") input.value = plain(value);
+    if (input.tagName === "SELECT" && input.selectedIndex < 0) input.value = "";
   }
-  for (const row of form.querySelectorAll(".field")) {
-    const input = row.querySelector("input");
-    if (input !== document.activeElement) input.value = known[row.dataset.path] ?? "";
-  }
-  for (const row of sliders.children) place(row, known[row.dataset.path]);
 }
 
 /** Show the faults at their fields; what is about no field is left to the refusal. */
 export function showFaults(form, faults) {
-  for (const row of form.querySelectorAll(".field")) {
-    row.removeAttribute("aria-invalid");
-    row.querySelector(".fault")?.remove();
-    const found = faults.find((fault) => fault.field === row.dataset.path);
+  for (const box of form.querySelectorAll(".field")) {
+    const input = box.querySelector("input, select");
+    input.removeAttribute("aria-invalid");
+    input.removeAttribute("aria-describedby");
+    box.querySelector(".fault")?.remove();
+    const found = faults.find((fault) => fault.field === box.dataset.path);
     if (!found) continue;
-    const told = document.createElement("p");
-    told.className = "fault";
-    told.textContent = found.message;
-    row.setAttribute("aria-invalid", "true");
-    row.append(told);
+    const told = Object.assign(make("p", found.message, "fault"), { id: `fault-${found.field}` });
+    input.setAttribute("aria-invalid", "true");
+    input.setAttribute("aria-describedby", told.id);
+    box.append(told);
+    box.closest("details").open = true;
   }
-}
-
-export function buildSliders(box) {
-  box.replaceChildren(...Object.entries(SLIDERS).map(([path, name]) => {
-    const row = document.createElement("div");
-    row.className = "slider";
-    row.dataset.path = path;
-    const label = document.createElement("label");
-    const slider = Object.assign(document.createElement("input"), { type: "range", min: -100, max: 100, step: 1, id: `slider-${path}` });
-    label.htmlFor = slider.id;
-    label.textContent = word(name);
-    slider.addEventListener("pointerdown", () => start(row));
-    slider.addEventListener("keydown", () => row.dataset.base || start(row));
-    slider.addEventListener("input", () => draft(moved(row, Number(slider.value))));
-    slider.addEventListener("change", () => {
-      commit(moved(row, Number(slider.value)));
-      delete row.dataset.base;
-    });
-    row.append(label, slider, document.createElement("output"));
-    return row;
-  }));
-}
-
-function start(row) {
-  row.dataset.base = values(state.text)[row.dataset.path] ?? "";
-}
-
-/** A slider's way is a factor of 4 to both sides of the value that it began at. */
-function moved(row, way) {
-  if (row.dataset.base === undefined) start(row);
-  const base = quantity(row.dataset.base);
-  if (!base) return state.text;
-  const value = base.number * 4 ** (way / 100);
-  return withValue(state.text, row.dataset.path, JSON.stringify(`${Number(value.toPrecision(4))} ${base.unit}`));
-}
-
-function place(row, value) {
-  const found = quantity(value);
-  row.querySelector("output").textContent = found ? `${digits(found.number)} ${found.unit}` : (value ?? "–");
-  const slider = row.querySelector("input");
-  slider.disabled = !found;
-  if (row.dataset.base === undefined) slider.value = 0;
 }

@@ -1,188 +1,182 @@
-// The page: wires form, plots and views to the state; previews while a hand moves, proof when it rests.
+// The page: wires form, plots and views to the state.
 
-import { get, newestOnly, post } from "./api.js";
-import { build, buildSliders, refresh, showFaults } from "./form.js";
+import { get, post } from "./api.js";
+import { button, make } from "./elements.js";
+import * as form from "./form.js";
+import { onGrip } from "./handles.js";
+import * as head from "./head.js";
+import { chosen, slaveUnits } from "./numbers.js";
 import * as plots from "./plots.js";
-import { begin, changed, commit, draft, onChange, set, state, step } from "./state.js";
-import { quantity, values, withValue } from "./toml.js";
-import { VIEWS } from "./views.js";
+import { committed, drafted, redraw } from "./proof.js";
+import * as readings from "./readings.js";
+import * as sliders from "./sliders.js";
+import { begin, changed, commit, onChange, state, step } from "./state.js";
+import { plain, values } from "./toml.js";
+import { outdated } from "./views/asking.js";
+import { FOLLOWING, VIEWS } from "./views/index.js";
 import { speak, word } from "./words.js";
 
-const LAWS = ["linear_return", "poly_3_4_5"];
-const PLACE = { line_speed: "cut.line_speed", length: "cut.length", sync_zone: "cut.sync_zone", stroke: "machine.stroke" };
 const $ = (id) => document.getElementById(id);
 let place = null;
 let view = "checks";
 
-const previewed = newestOnly(async (text) => {
-  const { ok, data } = await post("preview", { toml: text, laws: LAWS });
-  state.refusal = ok ? null : data;
-  if (ok) {
-    state.drawn = data;
-    if (state.status !== "proved" && state.status !== "failed") state.status = "preview";
-  } else state.status = data.status === "infeasible" ? "infeasible" : "faulty";
-  render();
-});
-
-let asked = 0;
-
-async function prove() {
-  const mine = (asked += 1);
-  state.status = "proving";
-  badge();
-  const { ok, data } = await post("design", { toml: state.text });
-  if (mine !== asked || data.status === "stale") return;
-  state.proof = ok ? data : null;
-  state.refusal = ok ? null : data;
-  state.status = ok ? (data.passed ? "proved" : "failed") : data.status === "infeasible" ? "infeasible" : "faulty";
-  render();
-  if (view === "checks") VIEWS.checks($("panel"));
-}
-
-function badge() {
-  const shown = $("badge");
-  shown.className = { proved: "proved", failed: "failed", infeasible: "failed", faulty: "failed" }[state.status] ?? "";
-  const { proof, drawn } = state;
-  const objective = state.status === "proved" || state.status === "failed" ? proof?.objective : drawn?.objective;
-  const value = objective && state.status !== "faulty" && state.status !== "infeasible" ? ` ${objective.name} ${plots.digits(objective.value)} ${objective.unit}` : "";
-  const failed = state.status === "failed" ? `: ${proof.checks.filter((check) => !check.passed).map((check) => check.name).join(", ")}` : "";
-  const stand = state.status === "preview" && drawn && !drawn.exact ? ` (${word("stands in")})` : "";
-  shown.textContent = `${word(state.status)}${failed}${value}${stand}`;
-}
-
-function refusal() {
-  const box = $("refusal");
-  const data = state.refusal;
-  box.hidden = data === null;
-  if (data === null) return;
-  const told = document.createElement("p");
-  told.textContent = data.message;
-  box.replaceChildren(told);
-  if (data.suggestions?.length) box.append(word("what works"), " ");
-  for (const each of data.suggestions ?? []) {
-    const path = PLACE[each.change] ?? `limits.${each.change}`;
-    const value = each.change === "reversal" ? "true" : JSON.stringify(`${each.value} ${each.unit}`);
-    const button = Object.assign(document.createElement("button"), { type: "button", textContent: `${path} = ${value}` });
-    button.addEventListener("click", () => set(path, value));
-    box.append(button);
-  }
-}
-
 function render() {
-  badge();
-  refusal();
-  showFaults($("form"), state.refusal?.faults ?? []);
-  $("job-name").textContent = values(state.text).name?.replaceAll('"', "") ?? "";
+  head.badge($("badge"));
+  head.refusal($("refusal"));
+  form.showFaults($("form"), state.refusal?.faults ?? []);
+  $("job-name").textContent = plain(values(state.text).name);
   $("undo").disabled = state.at === 0;
   $("redo").disabled = state.at === state.history.length - 1;
-  if (state.drawn) {
-    place = plots.draw($("plots"), state.drawn, { onGrip });
-    const binding = state.drawn.binding.map(word).join(", ");
-    $("legend").textContent = `${binding ? `${word("binds")}: ${binding}` : word("nothing binds")} — ${word("optimised")}, ${LAWS.map(word).join(", ")}${state.ghost ? `, ${word("previous")}` : ""}${state.pinned ? `, ${word("pinned")}` : ""}`;
-  }
+  if (state.drawn === null) return;
+  const focused = document.activeElement?.closest("#plots [data-path]")?.dataset.path;
+  place = plots.draw($("plots"), state.drawn, onGrip);
+  if (focused) document.querySelector(`#plots [data-path="${focused}"]`)?.focus();
+  readings.show($("readings"), place, state.drawn);
+  legend();
+  units();
+  $("outdated").hidden = FOLLOWING.has(view) || !outdated($("panel"));
 }
 
-/** Drag a limit or a zone's end; arrow keys do the same by one in a hundred. */
-function onGrip(element, grip) {
-  const change = (base, way, text) => {
-    const found = quantity(base);
-    if (!found) return text;
-    const number = Number(Math.max(found.number * way, Number.MIN_VALUE).toPrecision(4));
-    return withValue(text, grip.path, JSON.stringify(`${number} ${found.unit}`));
+/** What the lines are; those that may go have a button. */
+function legend() {
+  const entry = ({ kind, name }) => {
+    const made = make("span", undefined, "entry");
+    made.append(make("i", undefined, `line ${kind}`), name);
+    if (kind.startsWith("overlay")) made.append(Object.assign(button("×", () => { state.overlay = null; render(); }), { ariaLabel: `${word("remove")} ${name}` }));
+    return made;
   };
-  element.addEventListener("keydown", (event) => {
-    const way = { ArrowRight: 1.01, ArrowUp: 1.01, ArrowLeft: 0.99, ArrowDown: 0.99 }[event.key];
-    if (!way) return;
-    event.preventDefault();
-    commit(change(values(state.text)[grip.path], way, state.text));
-    document.querySelector(`[data-path="${grip.path}"]`)?.focus();
-  });
-  element.addEventListener("pointerdown", (event) => {
-    event.preventDefault();
-    const base = values(state.text)[grip.path];
-    const length = place.end - place.start;
-    const metres = grip.path === "cut.length" ? length : grip.path === "cut.sync_zone" ? state.drawn.zones_m.sync[0][1] - state.drawn.zones_m.sync[0][0] : grip.value;
-    const perPixel = grip.vertical ? grip.perPixel : place.metresPerPixel() * (grip.path === "cut.sync_zone" ? -1 : 1);
-    const [x, y] = [event.clientX, event.clientY];
-    const move = (now) => draft(change(base, 1 + ((grip.vertical ? y - now.clientY : now.clientX - x) * perPixel) / metres, state.text));
-    const end = () => {
-      removeEventListener("pointermove", move);
-      removeEventListener("pointerup", end);
-      commit();
-    };
-    addEventListener("pointermove", move);
-    addEventListener("pointerup", end);
-  });
+  $("legend").replaceChildren(...[{ kind: "", name: word("optimised") }, ...plots.curvesBeside(state.drawn)].map(entry));
+}
+
+function units() {
+  const options = slaveUnits(state.drawn);
+  const select = $("slave-unit");
+  if ([...select.options].map((each) => each.value).join() === options.join()) return;
+  select.replaceChildren(...options.map((each) => Object.assign(make("option", each === "deg" ? "°" : each), { value: each })));
+  if (!options.includes(chosen.slave)) [chosen.slave] = options;
+  select.value = chosen.slave;
+}
+
+function compared() {
+  $("laws").replaceChildren(...state.known.laws.map((law) => {
+    const label = make("label");
+    const box = Object.assign(make("input"), { type: "checkbox", checked: state.laws.includes(law) });
+    box.addEventListener("change", () => {
+      state.laws = state.known.laws.filter((each) => (each === law ? box.checked : state.laws.includes(each)));
+      redraw();
+    });
+    label.append(box, ` ${word(law)}`);
+    return label;
+  }));
 }
 
 function tabs() {
   $("tabs").replaceChildren(...Object.keys(VIEWS).map((name) => {
-    const tab = Object.assign(document.createElement("button"), { type: "button", textContent: word(name) });
-    tab.setAttribute("role", "tab");
-    tab.setAttribute("aria-selected", String(name === view));
+    const tab = button(word(name), () => open(name));
+    tab.id = `tab-${name}`;
     tab.dataset.view = name;
-    tab.addEventListener("click", () => {
-      view = name;
-      tabs();
-      VIEWS[name]($("panel"));
-    });
+    for (const [attribute, value] of [["role", "tab"], ["aria-selected", String(name === view)], ["aria-controls", "panel"]]) tab.setAttribute(attribute, value);
+    tab.tabIndex = name === view ? 0 : -1;
     return tab;
   }));
 }
 
+function open(name) {
+  view = name;
+  tabs();
+  $("panel").setAttribute("aria-labelledby", `tab-${name}`);
+  $("outdated").hidden = true;
+  $("panel").replaceChildren();
+  VIEWS[name]($("panel"));
+}
+
+/** Between tabs by arrow keys, as everywhere. */
+function tabKeys(event) {
+  const names = Object.keys(VIEWS);
+  const to = { ArrowRight: names.indexOf(view) + 1, ArrowLeft: names.indexOf(view) - 1, Home: 0, End: names.length - 1 }[event.key];
+  if (to === undefined) return;
+  event.preventDefault();
+  open(names[(to + names.length) % names.length]);
+  $(`tab-${view}`).focus();
+}
+
 onChange((what) => {
-  refresh($("form"), $("sliders"));
+  if (what === "drawn" || what === "status") render();
+  else if (what === "proof" && FOLLOWING.has(view)) VIEWS[view]($("panel"));
+  if (what !== "draft" && what !== "commit") return;
+  form.refresh($("form"));
+  sliders.refresh($("sliders"));
   if ($("toml") !== document.activeElement) $("toml").value = state.text;
-  if (what === "draft") state.status = "preview";
-  previewed(state.text);
-  if (what === "commit") prove();
+  (what === "draft" ? drafted : committed)();
 });
+
+async function save() {
+  const { ok, data } = await post("save", { toml: state.text });
+  $("said").textContent = ok ? `${word("saved")}: ${data.files.join(", ")}` : data.message;
+}
+
+function pin() {
+  state.pinned = state.pinned ? null : state.drawn;
+  $("pin").setAttribute("aria-pressed", String(state.pinned !== null));
+  render();
+}
+
+/** Keys of the page: those of every editor, and a letter for what has none. */
+function keys(event) {
+  const typing = ["INPUT", "TEXTAREA", "SELECT"].includes(document.activeElement.tagName) && document.activeElement.type !== "range";
+  const control = event.ctrlKey || event.metaKey;
+  const act = {
+    z: () => !typing && step(event.shiftKey ? 1 : -1),
+    y: () => !typing && step(1),
+    s: save,
+  }[control ? event.key.toLowerCase() : ""] ?? (!control && !typing && !event.altKey ? { p: pin, "?": () => $("help").showModal() }[event.key] : undefined);
+  if (!act || (control && typing && event.key.toLowerCase() !== "s")) return;
+  event.preventDefault();
+  act();
+}
+
+async function translate(language) {
+  await speak(language);
+  sliders.build($("sliders"));
+  sliders.refresh($("sliders"));
+  form.build($("form"));
+  compared();
+  open(view);
+  render();
+}
+
+function wire() {
+  $("undo").addEventListener("click", () => step(-1));
+  $("redo").addEventListener("click", () => step(1));
+  $("pin").addEventListener("click", pin);
+  $("save").addEventListener("click", save);
+  $("keys").addEventListener("click", () => $("help").showModal());
+  $("close").addEventListener("click", () => $("help").close());
+  $("master").addEventListener("change", (event) => { chosen.master = event.target.value; render(); });
+  $("slave-unit").addEventListener("change", (event) => { chosen.slave = event.target.value; render(); });
+  $("look").addEventListener("change", (event) => { document.documentElement.dataset.look = event.target.value; });
+  $("language").addEventListener("change", (event) => translate(event.target.value));
+  $("toml").addEventListener("change", () => commit($("toml").value));
+  $("form").addEventListener("submit", (event) => event.preventDefault());
+  $("tabs").addEventListener("keydown", tabKeys);
+  $("plots").addEventListener("pointermove", (event) => place && event.buttons === 0 && readings.point($("readings"), place, state.drawn, event.clientX));
+  $("plots").addEventListener("pointerdown", (event) => place && readings.point($("readings"), place, state.drawn, event.clientX));
+  $("plots").addEventListener("keydown", (event) => {
+    if (event.target === $("plots") && place && readings.key($("readings"), place, state.drawn, event)) event.preventDefault();
+  });
+  addEventListener("keydown", keys);
+  addEventListener("resize", () => state.drawn && render());
+}
 
 async function start() {
   const { data } = await get("api/job");
-  Object.assign(state, { keys: data.keys, targets: data.targets });
+  Object.assign(state, { keys: data.keys, targets: data.targets, known: { laws: data.laws } });
   begin(data.toml);
-  await speak("en");
-  build($("form"));
-  $("form").dataset.kind = values(state.text)["machine.kind"];
-  buildSliders($("sliders"));
-  tabs();
-  $("undo").addEventListener("click", () => step(-1));
-  $("redo").addEventListener("click", () => step(1));
-  $("pin").addEventListener("click", () => {
-    state.pinned = state.pinned ? null : state.drawn;
-    $("pin").setAttribute("aria-pressed", String(state.pinned !== null));
-    render();
-  });
-  $("save").addEventListener("click", async () => {
-    const { ok, data: said } = await post("save", { toml: state.text });
-    $("readout").textContent = ok ? `${word("saved")}: ${said.files.join(", ")}` : said.message;
-  });
-  $("master").addEventListener("change", (event) => {
-    plots.master.unit = event.target.value;
-    render();
-  });
-  $("language").addEventListener("change", async (event) => {
-    await speak(event.target.value);
-    buildSliders($("sliders"));
-    tabs();
-    changed("words");
-    VIEWS[view]($("panel"));
-  });
-  $("toml").addEventListener("change", () => commit($("toml").value));
-  $("form").addEventListener("submit", (event) => event.preventDefault());
-  $("plots").addEventListener("pointermove", (event) => {
-    if (place && event.buttons === 0) $("readout").textContent = plots.read($("plots"), place, state.drawn, event.clientX);
-  });
-  addEventListener("keydown", (event) => {
-    if ((event.ctrlKey || event.metaKey) && event.key === "z" && !["INPUT", "TEXTAREA"].includes(document.activeElement.tagName)) {
-      event.preventDefault();
-      step(event.shiftKey ? 1 : -1);
-    }
-  });
+  wire();
+  const language = data.languages.find((each) => navigator.language.startsWith(each)) ?? "en";
+  $("language").value = language;
+  await translate(language);
   changed("commit");
 }
-
-addEventListener("resize", () => state.drawn && render());
 
 start();

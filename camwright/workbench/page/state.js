@@ -8,14 +8,17 @@ export const state = {
   text: "",
   history: [],
   at: -1,
-  drawn: null, // the newest preview
+  drawn: null, // what the plots show: the newest preview, or the design once it is there
   ghost: null, // the one before the present edit
   pinned: null,
-  proof: null, // the newest design
+  overlay: null, // a table or a recording that was dropped
+  proof: null, // the newest design, null while there is none of this text
   refusal: null,
   status: "",
+  laws: ["linear_return", "poly_3_4_5"], // baselines to draw
   keys: [],
   targets: [],
+  known: { laws: [] },
 };
 
 export const onChange = (listener) => told.add(listener);
@@ -25,8 +28,16 @@ export function begin(text) {
   Object.assign(state, { text, history: [text], at: 0 });
 }
 
+let moving = false; // whether a hand is at it: what stood before is kept once
+
+function keepGhost() {
+  if (!moving) state.ghost = state.drawn;
+}
+
 /** Change the text while a hand is still at it. */
 export function draft(text) {
+  keepGhost();
+  moving = true;
   state.text = text;
   changed("draft");
 }
@@ -35,10 +46,11 @@ export function draft(text) {
 export function commit(text = state.text) {
   state.text = text;
   if (text !== state.history[state.at]) {
+    keepGhost();
     state.history = [...state.history.slice(0, state.at + 1), text];
     state.at = state.history.length - 1;
-    state.ghost = state.drawn;
   }
+  moving = false;
   changed("commit");
 }
 
@@ -47,6 +59,7 @@ export const set = (path, value) => commit(withValue(state.text, path, value));
 export function step(by) {
   const to = state.at + by;
   if (to < 0 || to >= state.history.length) return;
+  keepGhost();
   state.at = to;
   state.text = state.history[to];
   changed("commit");

@@ -1,0 +1,54 @@
+// A file from the machine: a table is judged, a recording tells its servo; either is laid over the plots.
+
+import { post, sent } from "../api.js";
+import { button, dropZone, make, table, waiting } from "../elements.js";
+import { changed, commit, state } from "../state.js";
+import { shownSi, digits, printed } from "../numbers.js";
+import { withValue } from "../toml.js";
+import { checkName, word } from "../words.js";
+import { ask } from "./asking.js";
+
+const SERVO = { bandwidth_rad_per_s: ["bandwidth", "rad/s"], damping: ["damping", ""], position_gain_per_s: ["position_gain", "1/s"], sample_time_ms: ["sample_time", "ms"], dead_time_ms: ["dead_time", "ms"], velocity_feedforward: ["velocity_feedforward", ""] };
+
+export function show(panel) {
+  const units = Object.assign(make("input"), { placeholder: "mm,deg", size: 8 });
+  const label = make("label", `${word("units")} `);
+  label.append(units);
+  const [notes, place] = [make("div"), make("div")];
+  const take = async (file) => {
+    const body = { toml: state.text, ...(await sent(file)), ...(units.value ? { units: units.value } : {}) };
+    notes.replaceChildren(waiting());
+    const { ok, data } = await post("overlay", body);
+    if (!ok) return notes.replaceChildren(make("p", data.message, "failed"));
+    state.overlay = { name: file.name, ...data };
+    changed("drawn");
+    notes.replaceChildren(make("p", word(data.kind === "trace" ? "laid trace" : "laid table")), ...data.notes.map((note) => make("p", note)));
+    return data.kind === "trace" ? ask(place, "identify", body, servo) : ask(place, "audit", body, judged);
+  };
+  panel.replaceChildren(dropZone(word("drop"), "", take), label, notes, place);
+}
+
+function judged(data) {
+  const save = (value) => (value === null ? "–" : `${digits(100 * value, 3)} %`);
+  const measures = [["peak_acceleration", "peak_acceleration_m_per_s2"], ["rms_acceleration", "rms_acceleration_m_per_s2"]];
+  const beside = table(["", word("this cam"), word("optimised"), word("saving")], measures.map(([name, key]) => [word(name), data.profile[key], data.optimum[key], save(data.saving[`${name}_rel`])]));
+  const checks = table([word("check"), "", word("value"), word("limit"), ""], data.checks.map((check) => {
+    const [value, limit] = [shownSi(check.value, check.unit), shownSi(check.limit, check.unit)];
+    return [checkName(check.name), make("td", word(check.passed ? "passed" : "failed"), check.passed ? "passed" : "failed"), value.value, limit.value, value.unit];
+  }));
+  return [beside, checks];
+}
+
+/** The servo of a recording, and a button that writes it into the job. */
+function servo(data) {
+  const lines = Object.entries(SERVO).filter(([key]) => data[key] !== undefined);
+  const list = table([word("servo"), word("value"), "", "95 %"], lines.map(([key, [name, unit]]) => {
+    const bounds = data.confidence[key];
+    return [name.replaceAll("_", " "), data[key], printed(unit), bounds ? bounds.map((value) => digits(value, 4)).join(" … ") : "–"];
+  }));
+  const use = () => commit(lines.reduce((text, [key, [name, unit]]) => {
+    const value = Number(data[key].toPrecision(6));
+    return withValue(text, `servo.${name}`, unit ? JSON.stringify(`${value} ${unit}`) : String(value));
+  }, state.text));
+  return [list, make("p", `${word("fit")} ${digits(data.fit, 6)}`), button(word("use servo"), use), ...data.notes.map((note) => make("p", note))];
+}

@@ -1,0 +1,38 @@
+// The proof: objective beside its bound, every check, the line speeds that the cam is released for, remedies.
+
+import { make, row, table } from "../elements.js";
+import { digits, printed, shownSi, withUnit } from "../numbers.js";
+import { state } from "../state.js";
+import { wayOut } from "../head.js";
+import { checkName, word } from "../words.js";
+import { noDesign } from "./asking.js";
+
+export function show(panel) {
+  const { proof } = state;
+  if (!proof) return panel.replaceChildren(noDesign());
+  const { objective } = proof;
+  const bound = objective.lower_bound === null ? "–" : withUnit(objective.lower_bound, objective.unit);
+  const gap = objective.gap === null ? "–" : `${digits(100 * objective.gap, 2)} %`;
+  const head = table([word("objective"), word("value"), word("bound"), word("gap")], [[word(objective.name), withUnit(objective.value, objective.unit), bound, gap]]);
+  const lines = proof.checks.map((check) => {
+    const [value, limit] = [shownSi(check.value, check.unit), shownSi(check.limit, check.unit)];
+    return [checkName(check.name), make("td", word(check.passed ? "passed" : "failed"), check.passed ? "passed" : "failed"), value.value, limit.value, value.unit];
+  });
+  const list = table([word("check"), "", word("value"), word("limit"), ""], lines);
+  proof.checks.forEach((check, number) => { row(list, number).title = check.source; });
+  const parts = [head, released(proof), list];
+  if (proof.remedies?.length) parts.splice(1, 0, remedies(proof.remedies));
+  return panel.replaceChildren(...parts);
+}
+
+function released({ speed_band: band }) {
+  const speed = (value) => digits(60 * value, 4);
+  if (!band.length) return make("p", word("released nowhere"), "failed");
+  return make("p", `${word("released")}: ${band.map(([low, high]) => `${speed(low)} … ${speed(high)}`).join(", ")} ${printed("m/min")}`);
+}
+
+function remedies(list) {
+  const box = make("p", `${word("what works")} `);
+  box.append(...list.map(wayOut));
+  return box;
+}

@@ -1,0 +1,53 @@
+"""The words of the page: every language has them all, and all that the page asks for."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+from starlette.testclient import TestClient
+
+from camwright.profiles.laws import LAWS
+from camwright.profiles.objective import OBJECTIVES
+
+PAGE = Path(__file__).parents[2] / "camwright" / "workbench" / "page"
+ASKED = {
+    word
+    for file in (*PAGE.rglob("*.js"), *PAGE.rglob("*.html"))
+    for word in re.findall(r'\bword\("([^"]+)"\)|data-(?:word|label)="([^"]+)"', file.read_text(encoding="utf-8"))
+    for word in word
+    if word
+}
+
+
+@pytest.fixture(scope="module", params=["en", "de", "zh"])
+def words(request: pytest.FixtureRequest, bench: TestClient) -> dict[str, str]:
+    found: dict[str, str] = bench.get("/api/words", params={"language": request.param}).json()
+    return found
+
+
+def test_what_the_page_asks_for_is_there(words: dict[str, str]) -> None:
+    assert len(ASKED) > 100
+    assert words.keys() >= ASKED
+    assert all(words.values())
+
+
+def test_names_of_the_program_have_words(words: dict[str, str]) -> None:
+    assert {f"word.{name}" for name in OBJECTIVES} <= words.keys()
+    assert set(LAWS) - {"linear"} <= words.keys()
+    assert words["check.sync_ratio"]  # of the recipes' catalogue
+
+
+def test_every_language_has_the_same_words() -> None:
+    known = {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in (PAGE / "words").glob("*.json")}
+    assert set(known) == {"en", "de", "zh"}
+    for language, words in known.items():
+        assert list(words) == list(known["en"]), language
+
+
+def test_another_language_is_refused(bench: TestClient) -> None:
+    answer = bench.get("/api/words", params={"language": "../en"})
+    assert answer.status_code == 422
+    assert "it is en, de, zh" in answer.json()["message"]
