@@ -102,8 +102,20 @@ def recorded_run(
     InputError
         The file cannot be read, or is no run of this cam.
     """
-    place = str(path)
-    text = decode(read_bytes(path, "recording", _MOST_BYTES), place, _MOST_BYTES)
+    data = read_bytes(path, "recording", _MOST_BYTES)
+    return laid_over(data, str(path), job, profile, line_speed, gear)
+
+
+def laid_over(
+    data: bytes,
+    place: str,
+    job: Job,
+    profile: CamProfile,
+    line_speed: float | None = None,
+    gear: float | None = None,
+) -> RecordedRun:
+    """Lay the bytes of a recording over a cam; as `recorded_run`, messages begin with the place."""
+    text = decode(data, place, _MOST_BYTES)
     trace = read_trace_csv(text, place, most_rows=_MOST_ROWS, master=True)
     trace = _unwrapped(trace, job.machine, job.cut.length, place)
     run = aligned(trace, profile, job.task, place, line_speed, gear)

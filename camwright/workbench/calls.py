@@ -17,6 +17,8 @@ from camwright.workbench.runner import JOB_FILE
 
 _OUT = ("--out", "out")
 
+_DESIGN = "design.json"
+
 _DROPPED, _NAMELESS = "dropped", "file"
 """Folder of files that were dropped on the page, and what one without a name is called."""
 
@@ -163,6 +165,14 @@ def _identify(body: dict[str, Any]) -> Call:
     return Call((("identify", path, "--json", "--out", "servo.toml"),), {path: data})
 
 
+def _trace(body: dict[str, Any]) -> Call:
+    """Lay a recording over a design: the sync error of each cut."""
+    name, data = file_of(body)
+    path, design = f"{_DROPPED}/{name}", text_of(body, "design").encode()
+    command = ("trace", path, "--job", JOB_FILE, "--design", _DESIGN, "--json", "--no-figures")
+    return Call((command,), _job(body) | {path: data, _DESIGN: design})
+
+
 def _bend(body: dict[str, Any]) -> Call:
     """Bend a drawing that was dropped on the page; the bundled bender if no job of one is sent."""
     name, data = file_of(body)
@@ -215,6 +225,7 @@ _CALLS: dict[str, Callable[[dict[str, Any]], Call]] = {
     "recipe": _recipe,
     "audit": _audit,
     "identify": _identify,
+    "trace": _trace,
     "bend": _bend,
 }
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import contextlib
-import hashlib
 import json
 import re
 from collections.abc import AsyncIterator, Callable
@@ -20,7 +19,6 @@ from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
 
 from camwright.answers.error import error_answer
-from camwright.house.owned import Work, owned
 from camwright.jobs.job import parse_job
 from camwright.jobs.keys import job_keys
 from camwright.jobs.wording import error_words
@@ -43,6 +41,7 @@ from camwright.workbench.guard import Guard
 from camwright.workbench.overlay import overlay
 from camwright.workbench.preview import designed, preview
 from camwright.workbench.runner import JOB_FILE, CommandLine, Ran, Runner, StaleError
+from camwright.workbench.saving import Saved
 from camwright.workbench.servo import servo_view
 
 PAGE = Path(__file__).parent / "page"
@@ -76,7 +75,7 @@ class Workbench:
     """
 
     def __init__(self, text: str, folder: Path, runner: Runner) -> None:
-        self._text, self._folder, self._runner = text, folder, runner
+        self._text, self._saved, self._runner = text, Saved(folder, text), runner
 
     async def page(self, _: Request) -> Response:
         """Give the page."""
@@ -142,10 +141,7 @@ class Workbench:
             ran = await self._runner.run("save", call.commands, call.inputs)
             if ran.exit_code > 1:
                 return _answered(ran)
-            work = Work("workbench", "the job of the page", hashlib.sha256(text.encode()).hexdigest())
-            with owned(self._folder, work) as aside:
-                (aside / JOB_FILE).write_bytes(text.encode())
-                (aside / "design.json").write_bytes(ran.files["out/design.json"])
+            self._saved.put(text, ran.files["out/design.json"])
         except InputError as error:
             return _refusal(error)
         except StaleError:
@@ -201,8 +197,9 @@ def _servo(body: dict[str, Any]) -> Callable[[], dict[str, Any]]:
 
 
 def _overlay(body: dict[str, Any]) -> Callable[[], dict[str, Any]]:
-    text, (name, data), units = job_text(body), file_of(body), body.get("units") and text_of(body, "units")
-    return lambda: overlay(text, data, name, units)
+    text, (name, data) = job_text(body), file_of(body)
+    units, design = (text_of(body, key) if body.get(key) else None for key in ("units", "design"))
+    return lambda: overlay(text, data, name, units, design)
 
 
 _AT_ONCE: dict[str, Callable[[dict[str, Any]], Callable[[], dict[str, Any]]]] = {

@@ -7,14 +7,18 @@ import json
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from starlette.testclient import TestClient
 
 from camwright.cli.main import main
-from camwright.house.owned import LIST
 from camwright.jobs.job import BUNDLED_JOB, parse_job
+from camwright.profiles.errors import InputError
+from camwright.stored.design_file import design_text
+from camwright.studies.design import optimise
 from camwright.workbench.guard import MOST_BYTES
 from camwright.workbench.preview import preview
+from camwright.workbench.saving import Saved
 
 PAPER = BUNDLED_JOB.read_text(encoding="utf-8")
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -56,6 +60,34 @@ def test_what_is_exported_is_byte_for_byte_the_command_lines(
     answer = bench.post("/api/export", json={"toml": PAPER, "targets": ["codesys", "LOGIX"]}).json()
     expected = {path.as_posix(): path.read_bytes() for place in ("out", "tables") for path in Path(place).iterdir()}
     assert {path: base64.b64decode(data) for path, data in answer["contents"].items()} == expected
+
+
+def test_a_recording_is_judged_as_by_the_command_line(bench: TestClient) -> None:
+    design = optimise(parse_job(PAPER, "job"))
+    times = np.arange(0.0, 2.0, 1e-3)
+    command = 1e3 * design.profile(times * design.job.cut.line_speed, outside="repeat")
+    rows = "".join(f"{1e3 * t:.1f},{y:.5f},{y - 0.03:.5f}\n" for t, y in zip(times, command, strict=True))
+    data = base64.b64encode(f"time [ms],command [mm],actual [mm]\n{rows}".encode()).decode()
+    body = {"toml": PAPER, "design": design_text(design), "name": "scope.csv", "base64": data}
+    answer = bench.post("/api/trace", json=body).json()
+    assert answer["exit_code"] in (0, 1)
+    assert len(answer["cuts"]) >= 3
+    assert bench.post("/api/identify", json={"name": "x.csv", "base64": "eA=="}).json()["exit_code"] == 2
+
+
+def test_a_drawing_is_bent_as_by_the_command_line(
+    bench: TestClient, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    drawing = EXAMPLES / "bender" / "carton.dxf"
+    body = {"name": "C:\\drawings\\carton.dxf", "base64": base64.b64encode(drawing.read_bytes()).decode()}
+    answer = bench.post("/api/bend", json=body).json()
+    monkeypatch.chdir(tmp_path)
+    Path("dropped").mkdir()
+    Path("dropped/carton.dxf").write_bytes(drawing.read_bytes())
+    assert main(["bend", "dropped/carton.dxf", "--styles", "all", "--out", "bent", "--quiet"]) == 0
+    expected = {path.as_posix(): path.read_bytes() for path in Path("bent").iterdir()}
+    found = {path: base64.b64decode(text) for path, text in answer["contents"].items()}
+    assert found == expected
 
 
 def test_a_recipe_and_an_audit(bench: TestClient) -> None:
@@ -185,11 +217,27 @@ def test_saving_writes_two_files_and_nothing_else(bench: TestClient, folder: Pat
     before = {path.name for path in folder.iterdir()}
     answer = bench.post("/api/save", json={"toml": PAPER})
     assert answer.json() == {"files": ["job.toml", "design.json"]}
-    assert {path.name for path in folder.iterdir()} - before == {"job.toml", "design.json", LIST}
+    assert {path.name for path in folder.iterdir()} - before == {"job.toml", "design.json"}
     assert (folder / "job.toml").read_text() == PAPER
     refused = bench.post("/api/save", json={"toml": SHORT})
     assert refused.json()["exit_code"] == 3
     assert (folder / "job.toml").read_text() == PAPER
+
+
+def test_saving_writes_over_what_the_page_began_with_or_saved_and_nothing_else(tmp_path: Path) -> None:
+    (tmp_path / "job.toml").write_text(PAPER)
+    saved, other = Saved(tmp_path, PAPER), PAPER.replace("600 mm", "610 mm")
+    saved.put(other, design_text(optimise(parse_job(other, "job"))).encode())
+    saved.put(PAPER, design_text(optimise(parse_job(PAPER, "job"))).encode())
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["design.json", "job.toml"]
+    (tmp_path / "job.toml").write_text("# mine\n" + PAPER)
+    with pytest.raises(InputError, match=r"job\.toml: another job stands in the folder"):
+        saved.put(PAPER, b"{}")
+    (tmp_path / "job.toml").unlink()
+    (tmp_path / "design.json").write_text("[1]")
+    with pytest.raises(InputError, match=r"design\.json: another job stands in the folder"):
+        saved.put(PAPER, b"{}")
+    assert [path.name for path in tmp_path.iterdir()] == ["design.json"]
 
 
 def test_the_command_says_where_it_listens_and_refuses_a_taken_port(

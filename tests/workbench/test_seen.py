@@ -5,13 +5,13 @@ from __future__ import annotations
 import base64
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from starlette.testclient import TestClient
 
 from camwright.jobs.job import Job, load_job
+from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import baseline
 from camwright.stored.design_file import design_text
@@ -106,21 +106,21 @@ def recording(job: Job, profile: CamProfile, cycles: int = 3, offset: float = 0.
     return "\n".join(["time [ms],command [mm],actual [mm]", *lines]).encode()
 
 
-def test_a_recording_is_laid_where_its_command_is_in_sync() -> None:
+def test_a_recording_is_laid_over_its_design() -> None:
     job = example("paper-600")
-    profile = optimise(job).profile
+    result = optimise(job)
     text = (EXAMPLES / "paper-600.toml").read_text(encoding="utf-8")
-    found = overlay(text, recording(job, profile), "scope.csv")
+    found = overlay(text, recording(job, result.profile), "scope.csv", design=design_text(result))
     assert found["kind"] == "trace"
     x, y = (np.array(found["samples"][key]) for key in ("x_m", "y"))
-    shift = np.mean(y - profile(x))
-    step = job.cut.length / 720
-    assert np.abs(y - profile(x) - shift).max() < 1.5 * step  # the place is found to a sample
-    lag = np.array(found["samples"]["y"]) - np.array(found["actual"]["y"])
-    run = simulate(profile, job.cut, job.servo)
+    np.testing.assert_allclose(y, result.profile(x), atol=2e-6)
+    lag = y - np.array(found["actual"]["y"])
+    run = simulate(result.profile, job.cut, job.servo)
     assert np.abs(lag).max() == pytest.approx(np.abs(run.command - run.axis).max(), rel=0.02)
     inside = (x > 0.41) & (x < 0.59)
     np.testing.assert_allclose(np.array(found["samples"]["ratio"])[inside], 1.0, atol=2e-3)
+    with pytest.raises(InputError, match="a recording is laid over a design"):
+        overlay(text, recording(job, result.profile), "scope.csv")
 
 
 def test_a_table_is_laid_as_its_drive_runs_it() -> None:
@@ -136,24 +136,20 @@ def test_a_table_is_laid_as_its_drive_runs_it() -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "data", "message"),
+    ("data", "message"),
     [
-        (
-            {},
-            b"time [ms],command [mm],actual [mm]\n0,0,0\n1,1,1\n2,2,2\n",
-            "2 ms are recorded, a cycle of this job takes 450 ms",
-        ),
-        (
-            {},
-            b"time [ms],command [deg],actual [deg]\n0,0,0\n500,1,1\n1000,2,2\n",
-            "positions in rad; the slave of this job is counted in m",
-        ),
-        ({}, b"nothing", "nothing.csv"),
+        (b"time [ms],command [mm],actual [mm]\n0,0,0\n500,1,1\n1000,2,2\n", "nothing.csv: "),
+        (b"nothing", "nothing.csv"),
     ],
 )
-def test_what_cannot_be_laid_is_refused(change: dict[str, Any], data: bytes, message: str, bench: TestClient) -> None:
-    text = (EXAMPLES / "paper-600.toml").read_text(encoding="utf-8")
-    body = {"toml": text, "name": "nothing.csv", "base64": base64.b64encode(data).decode()}
+def test_what_cannot_be_laid_is_refused(data: bytes, message: str, bench: TestClient) -> None:
+    result = optimise(example("paper-600"))
+    body = {
+        "toml": (EXAMPLES / "paper-600.toml").read_text(encoding="utf-8"),
+        "design": design_text(result),
+        "name": "nothing.csv",
+        "base64": base64.b64encode(data).decode(),
+    }
     answer = bench.post("/api/overlay", json=body).json()
     assert answer["exit_code"] == 2
     assert message in answer["message"]

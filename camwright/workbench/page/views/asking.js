@@ -5,15 +5,14 @@ import { make, waiting } from "../elements.js";
 import { state } from "../state.js";
 import { word } from "../words.js";
 
-let asked = 0;
-
 /** Ask for a call and show its answer in a place of the view. */
 export async function ask(place, name, body, show) {
-  const mine = (asked += 1);
+  const mine = (place.asked ?? 0) + 1;
+  place.asked = mine;
   const text = state.text;
   place.replaceChildren(waiting());
   const { ok, data } = await post(name, body);
-  if (mine !== asked || data.status === "stale" || !place.isConnected) return;
+  if (mine !== place.asked || data.status === "stale" || !place.isConnected) return;
   place.dataset.text = text;
   place.replaceChildren(...(ok ? [show(data)].flat() : [make("p", data.message ?? "", "failed")]));
 }

@@ -10,22 +10,27 @@ import { ask } from "./asking.js";
 
 const SERVO = { bandwidth_rad_per_s: ["bandwidth", "rad/s"], damping: ["damping", ""], position_gain_per_s: ["position_gain", "1/s"], sample_time_ms: ["sample_time", "ms"], dead_time_ms: ["dead_time", "ms"], velocity_feedforward: ["velocity_feedforward", ""] };
 
+const MOST = 50; // cuts that are listed
+
 export function show(panel) {
   const units = Object.assign(make("input"), { placeholder: "mm,deg", size: 8 });
   const label = make("label", `${word("units")} `);
   label.append(units);
-  const [notes, place] = [make("div"), make("div")];
+  const [notes, place, more] = [make("div"), make("div"), make("div")];
   const take = async (file) => {
-    const body = { toml: state.text, ...(await sent(file)), ...(units.value ? { units: units.value } : {}) };
+    const body = { toml: state.text, ...(await sent(file)), ...(units.value ? { units: units.value } : {}), ...(state.proof ? { design: state.proof.design } : {}) };
+    more.replaceChildren();
     notes.replaceChildren(waiting());
     const { ok, data } = await post("overlay", body);
     if (!ok) return notes.replaceChildren(make("p", data.message, "failed"));
     state.overlay = { name: file.name, ...data };
     changed("drawn");
     notes.replaceChildren(make("p", word(data.kind === "trace" ? "laid trace" : "laid table")), ...data.notes.map((note) => make("p", note)));
-    return data.kind === "trace" ? ask(place, "identify", body, servo) : ask(place, "audit", body, judged);
+    if (data.kind === "table") return ask(place, "audit", body, judged);
+    ask(more, "identify", body, servo);
+    return ask(place, "trace", body, cuts);
   };
-  panel.replaceChildren(dropZone(word("drop"), "", take), label, notes, place);
+  panel.replaceChildren(dropZone(word("drop"), "", take), label, notes, place, more);
 }
 
 function judged(data) {
@@ -37,6 +42,15 @@ function judged(data) {
     return [checkName(check.name), make("td", word(check.passed ? "passed" : "failed"), check.passed ? "passed" : "failed"), value.value, limit.value, value.unit];
   }));
   return [beside, checks];
+}
+
+/** Each cut of a recorded run: by how much the tool missed, and what kind of error that is. */
+function cuts(data) {
+  const { total } = data.errors;
+  const told = table([word("sync error"), "mm"], [[word("offset"), total.offset_mm], [word("drift"), total.drift_mm_per_cut], [word("scatter"), total.scatter_mm]]);
+  const list = table([word("cut number"), "m/min", `${word("sync error")} (mm)`, `${word("length")} (mm)`], data.cuts.slice(0, MOST).map((cut) => [cut.number, 60 * cut.line_speed_m_per_s, cut.sync_error_mm, cut.length_mm]));
+  const verdict = make("p", word(data.passed ? "passed" : "failed"), data.passed ? "passed" : "failed");
+  return [verdict, ...data.causes.map((cause) => make("p", cause)), told, list];
 }
 
 /** The servo of a recording, and a button that writes it into the job. */
