@@ -17,8 +17,9 @@ from camwright.profiles.errors import InputError
 from camwright.profiles.tables.targets import TARGETS, target_of
 from camwright.recipes.build import STEPS, designed, make_recipe
 from camwright.recipes.compare import Change, compare_answer, compare_recipes, read_recipe
-from camwright.recipes.manifest import sha256
+from camwright.recipes.manifest import MANIFEST_FILE, sha256
 from camwright.recipes.model import Language, Particulars, Recipe
+from camwright.recipes.signature import SIGNATURE_FILE, require_private_key, signed
 from camwright.recipes.write import WRITE_STEPS, is_recipe, recipe_files, write_folder
 from camwright.stored.design_file import MOST_BYTES, parse_design
 
@@ -62,6 +63,10 @@ def run(
     date: Annotated[
         str, typer.Option("--date", metavar="TEXT", help="Date that stands on the sheet, in any form.")
     ] = "",
+    sign: Annotated[
+        Path | None,
+        typer.Option("--sign", metavar="KEY", help="Sign it with this private Ed25519 key (PEM): manifest.json.sig."),
+    ] = None,
     compare: Annotated[
         tuple[Path, Path] | None,
         typer.Option("--compare", metavar="DIR1 DIR2", help="Show what changes between two recipes instead."),
@@ -72,7 +77,7 @@ def run(
     """Make the recipe of a product: a folder with all that is needed at the machine."""
     voice = Voice(as_json, quiet)
     if compare is not None:
-        if file is not None or targets is not None or out is not None:
+        if file is not None or targets is not None or out is not None or sign is not None:
             raise InputError("--compare takes two recipe folders and nothing else")
         return _compare(*compare, voice)
     if file is None:
@@ -81,7 +86,9 @@ def run(
     particulars = Particulars(
         **{name: _given(f"--{name}", value, _LONGEST_PARTICULAR) for name, value in given.items()}
     )
-    return _make(file, targets, out, language, _given("--note", note, _LONGEST_NOTE), particulars, voice)
+    if sign is not None:
+        require_private_key(sign)
+    return _make(file, targets, out, language, _given("--note", note, _LONGEST_NOTE), particulars, sign, voice)
 
 
 def _make(
@@ -91,6 +98,7 @@ def _make(
     language: Language,
     note: str,
     particulars: Particulars,
+    sign: Path | None,
     voice: Voice,
 ) -> int:
     """Make and write the recipe of a file."""
@@ -110,6 +118,8 @@ def _make(
         required = targets is None or targets.strip() != "all"
         made = make_recipe(design, names, language, note, particulars, required=required, step=step)
         files = recipe_files(made, step)
+        if sign is not None:
+            files[SIGNATURE_FILE] = signed(files[MANIFEST_FILE], sign)
         work = Work(
             "recipe", job.name, made.recipe.provenance.job_sha256, file if out is None and stored is None else None
         )

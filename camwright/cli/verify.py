@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from camwright.cli.options import Json, Quiet
-from camwright.cli.views.parts import new_table, new_text
+from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.house.output import Voice
-from camwright.recipes.verify import Fault, verify, verify_answer
+from camwright.recipes.verify import Verified, examine, verify_answer
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -18,24 +18,30 @@ if TYPE_CHECKING:
 
 def run(
     directory: Annotated[Path, typer.Argument(metavar="DIR", help="A recipe folder.")],
+    key: Annotated[
+        Path | None,
+        typer.Option("--key", metavar="PUB", help="Public key (PEM) of who must have signed it with recipe --sign."),
+    ] = None,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> int:
-    """Prove that a recipe folder is what was written, and that its tables are the motion that it promises."""
+    """Prove that a recipe folder is what was written, that its tables are the motion that it promises, and its sheet the cam's."""
     voice = Voice(as_json, quiet)
     with voice.progress(1) as step:
         step("checking")
-        faults = verify(directory)
-    voice.answer(lambda: verify_answer(faults), lambda: _view(directory, faults))
-    return 1 if faults else 0
+        found = examine(directory, key)
+    voice.answer(lambda: verify_answer(found), lambda: _view(directory, found))
+    return 1 if found.faults else 0
 
 
-def _view(directory: Path, faults: list[Fault]) -> RenderableType:
-    if not faults:
-        return new_text(f"{directory}: as it was written; its tables are the motion that it promises")
+def _view(directory: Path, found: Verified) -> RenderableType:
+    notes = [new_text(f"Note: {note.file}: {note.what}") for note in found.notes]
+    if not found.faults:
+        head = f"{directory}: as it was written; its tables are the motion that it promises"
+        return stacked(new_text("\n- ".join((head, *found.proved))), *notes)
     table = new_table(title=new_text(f"{directory}: NOT as it was written"), title_justify="left")
     table.add_column("file")
     table.add_column("what is wrong")
-    for fault in faults:
+    for fault in found.faults:
         table.add_row(new_text(fault.file), new_text(fault.what))
-    return table
+    return stacked(table, *notes)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -12,28 +12,40 @@ from typing import Any
 import numpy as np
 
 from camwright.drives.export import position_error
+from camwright.house.provenance import camwright_version
 from camwright.jobs.numbers import job_numbers
 from camwright.profiles.errors import InputError
 from camwright.profiles.tables.cam_table import CamTable, Unit, Units
 from camwright.profiles.tables.deviation import deviation
 from camwright.profiles.tables.targets import TARGETS, read_table
 from camwright.profiles.tables.text import decode
+from camwright.recipes.expected import expected
+from camwright.recipes.html import recipe_html
 from camwright.recipes.manifest import MANIFEST_FILE, read_manifest, sha256
 from camwright.recipes.model import Points, Recipe, RecipeTable
+from camwright.recipes.pdf import recipe_pdf
 from camwright.recipes.recipe_file import (
     RECIPE_FILE,
     parse_recipe,
     recipe_text,
     stored_design,
 )
+from camwright.recipes.sheet_faults import differs, sheet_faults
+from camwright.recipes.signature import SIGNATURE_FILE, is_signed
+from camwright.recipes.xlsx import recipe_xlsx
 from camwright.stored.design_file import MOST_BYTES, StoredDesign
 from camwright.validation.rebuilt import judge_table
 
-SAME = 1e-6
-"""What a value computed anew may be off the recorded one, relative to it: another processor or another version of numpy."""
+_OF_THE_SYSTEM = ("thumbs.db", "ehthumbs.db", ".ds_store", "desktop.ini")
+"""Files that a desktop puts into folders by itself, by their names in small letters."""
 
-_ROUNDING = 1e-9
-"""The same relative to the limit that a value is judged by, or to the tool's travel: values near zero are rounding."""
+_PAGE = "recipe.html"
+_SHEETS: dict[str, Callable[[Recipe], bytes]] = {
+    _PAGE: lambda recipe: recipe_html(recipe).encode(),
+    "recipe.pdf": recipe_pdf,
+    "recipe.xlsx": recipe_xlsx,
+}
+"""What people read, made of recipe.json alone."""
 
 
 @dataclass(frozen=True)
@@ -52,34 +64,115 @@ class Fault:
     what: str
 
 
-def verify(directory: Path) -> list[Fault]:
+@dataclass(frozen=True)
+class Verified:
+    """What was found in a recipe folder.
+
+    Parameters
+    ----------
+    faults
+        What is wrong; nothing for a recipe as it was written.
+    notes
+        What is no fault, and yet to be known.
+    proved
+        What was proved, in words; only where nothing is wrong.
+    """
+
+    faults: tuple[Fault, ...]
+    notes: tuple[Fault, ...]
+    proved: tuple[str, ...]
+
+
+def verify(directory: Path, key: Path | None = None) -> list[Fault]:
+    """Check a recipe folder; what is wrong, nothing for a recipe as it was written. As `examine`."""
+    return list(examine(directory, key).faults)
+
+
+def examine(directory: Path, key: Path | None = None) -> Verified:
     """Check a recipe folder.
 
     Checksums of all files, none missing and none added; recipe.json by its schema; every table read by its target's reader, rebuilt
-    as the target does, and judged, against the numbers in recipe.json.
+    as the target does, and judged, against the numbers in recipe.json. Where all this agrees, the values of the sheet are computed anew
+    of the cam and its job, and what people read is made anew of recipe.json.
 
     Parameters
     ----------
     directory
         The folder.
-
-    Returns
-    -------
-    list
-        What is wrong; nothing for a recipe as it was written.
+    key
+        PEM file of the public key that it must be signed with; without one no signature is looked at.
 
     Raises
     ------
     InputError
-        The directory is no recipe, or cannot be read.
+        The directory is no recipe, or cannot be read; the key is none.
     """
     found = _files(directory)
     if MANIFEST_FILE not in found and RECIPE_FILE not in found:
         raise InputError(f"{directory}: not a recipe: neither {MANIFEST_FILE} nor {RECIPE_FILE} is in it")
     data = {path: _bytes(directory / path) for path in sorted(found)}
-    faults = list(_sums(data))
+    notes = [
+        Fault(path, "put there by the desktop; no part of the recipe")
+        for path in sorted(data)
+        if Path(path).name.lower() in _OF_THE_SYSTEM and data[path] is not None
+    ]
+    for note in notes:
+        del data[note.file]
+    signature = data.pop(SIGNATURE_FILE, None)
+    faults = list(_signature_faults(data, signature, SIGNATURE_FILE in found, key))
+    if SIGNATURE_FILE in found and key is None:
+        notes.append(Fault(SIGNATURE_FILE, "signed, but the signature was not checked: name the public key with --key"))
+    faults += _sums(data)
     faults += _contents(data)
-    return faults
+    content = data.get(RECIPE_FILE)
+    if faults or content is None:
+        return Verified(tuple(faults), tuple(notes), ())
+    recipe = parse_recipe(_text(content), RECIPE_FILE)
+    made_by, own = recipe.provenance.camwright, camwright_version()
+    if made_by != own:
+        notes.append(
+            Fault(RECIPE_FILE, f"made by camwright {made_by}: {own} does not compute the sheet anew; that version does")
+        )
+    else:
+        faults += [Fault(RECIPE_FILE, what) for what in sheet_faults(recipe, expected(stored_design(recipe)))]
+        remade = list(_remade(recipe, data))
+        faults += [other for other in remade if other.file == _PAGE]
+        notes += [other for other in remade if other.file != _PAGE]
+    proved = () if faults else tuple(_proved(recipe, len(data), made_by == own, notes, key))
+    return Verified(tuple(faults), tuple(notes), proved)
+
+
+def _remade(recipe: Recipe, data: dict[str, bytes | None]) -> Iterator[Fault]:
+    """Make what people read anew; the page depends on this program alone, the rest on libraries that other machines may not have."""
+    for name, make in _SHEETS.items():
+        if data.get(name) != make(recipe):
+            libraries = "" if name == _PAGE else ", or was made with other versions of the typesetting libraries"
+            yield Fault(name, f"is not what this camwright makes of {RECIPE_FILE}{libraries}")
+
+
+def _proved(recipe: Recipe, files: int, anew: bool, notes: list[Fault], key: Path | None) -> Iterator[str]:
+    """Say what was proved, and what was not."""
+    yield f"{files} files have the checksums of the manifest, none is missing or added"
+    released = [table for table in recipe.tables if table.files]
+    yield f"{len(released)} tables, read and rebuilt as their drives do, have the recorded points, errors and checks"
+    if anew:
+        sheets = [name for name in _SHEETS if name not in {note.file for note in notes}]
+        yield f"{len(recipe.checks)} checks, expected values, speed band and working range are those computed anew of the cam and its job"
+        yield f"{', '.join(sheets)} say what {RECIPE_FILE} says"
+    yield f"signed by the owner of {key}" if key else "not proved: who wrote it (no signature was checked)"
+
+
+def _signature_faults(
+    data: dict[str, bytes | None], signature: bytes | None, there: bool, key: Path | None
+) -> Iterator[Fault]:
+    """Check the signature of the manifest, where a key is given."""
+    manifest = data.get(MANIFEST_FILE)
+    if key is None:
+        return
+    if not there:
+        yield Fault(SIGNATURE_FILE, "missing: this recipe is not signed")
+    elif signature is None or manifest is None or not is_signed(manifest, signature, key):
+        yield Fault(SIGNATURE_FILE, f"not a signature of this {MANIFEST_FILE} by the owner of {key}")
 
 
 def _files(directory: Path) -> set[str]:
@@ -187,6 +280,13 @@ def _table_faults(table: RecipeTable, design: StoredDesign, data: dict[str, byte
         for file in table.files
         if (content := data.get(file.path)) is not None and sha256(content) != file.sha256
     ]
+    faults += [
+        Fault(file.path, f"missing, or not a readable file: {RECIPE_FILE} has it")
+        for file in table.files
+        if data.get(file.path) is None
+    ]
+    if table.released and not table.files:
+        faults.append(Fault(RECIPE_FILE, f"the table for {table.target} is released and has no file"))
     target = TARGETS.get(table.target)
     if target is None:
         return [*faults, Fault(RECIPE_FILE, f"there is no target {table.target!r:.40}")]
@@ -215,9 +315,9 @@ def _number_faults(table: RecipeTable, read: CamTable, units: Units, design: Sto
     rebuilt = units.to_si(TARGETS[table.target].rebuild(read))
     off = deviation(profile, rebuilt)
     scale = float(np.ptp(profile(profile.breaks))) or 1.0
-    yield from _differs("position error (m)", position_error(profile, rebuilt, off, job), table.position_error, scale)
-    yield from _differs("ratio error", off.ratio, table.ratio_error, float(np.abs(profile(profile.breaks, 1)).max()))
-    yield from _differs("acceleration error", off.acceleration, table.acceleration_error, 1.0)
+    yield from differs("position error (m)", position_error(profile, rebuilt, off, job), table.position_error, scale)
+    yield from differs("ratio error", off.ratio, table.ratio_error, float(np.abs(profile(profile.breaks, 1)).max()))
+    yield from differs("acceleration error", off.acceleration, table.acceleration_error, 1.0)
     judgement = judge_table(rebuilt, job.task, job.servo, table.wraps)
     again = {check.name: check for check in judgement.checks}
     recorded = {check.name: check for check in table.checks}
@@ -225,7 +325,7 @@ def _number_faults(table: RecipeTable, read: CamTable, units: Units, design: Sto
         yield f"checks are {', '.join(again)}, recorded {', '.join(recorded)}"
     for name in again.keys() & recorded.keys():
         new, old = again[name], recorded[name]
-        yield from _differs(f"check {name}, {new.unit}", new.value, old.value, abs(old.limit or 1.0))
+        yield from differs(f"check {name}, {new.unit}", new.value, old.value, abs(old.limit or 1.0))
         if new.passed is not old.passed:
             yield f"check {name} {'passes' if new.passed else 'fails'}, recorded {'passed' if old.passed else 'failed'}"
 
@@ -244,21 +344,11 @@ def _point_faults(points: Points, read: CamTable) -> Iterator[str]:
             yield f"point {i + 1}: {name} is {float(values[i])!r}, recorded {float(recorded[i])!r}"
 
 
-def _differs(name: str, found: float | None, recorded: float | None, scale: float) -> Iterator[str]:
-    """Tell a value that is not the recorded one, but for rounding."""
-    same = (
-        found is recorded
-        if found is None or recorded is None
-        else abs(found - recorded) <= SAME * abs(recorded) + _ROUNDING * scale
-    )
-    if not same:
-        yield f"{name}: {found!r}, recorded {recorded!r}"
-
-
 def _units(units: Units) -> str:
     return ", ".join(f"{unit.symbol} ({unit.size!r} {unit.si})" for unit in (units.master, units.slave))
 
 
-def verify_answer(faults: list[Fault]) -> dict[str, Any]:
+def verify_answer(found: Verified) -> dict[str, Any]:
     """Answer of ``camwright verify``."""
-    return {"ok": not faults, "faults": [asdict(fault) for fault in faults]}
+    answer: dict[str, Any] = {"ok": not found.faults, "faults": [asdict(fault) for fault in found.faults]}
+    return {**answer, "notes": [asdict(note) for note in found.notes], "proved": list(found.proved)}

@@ -16,6 +16,7 @@ from camwright.recipes.manifest import MANIFEST_FILE, job_of_manifest, manifest_
 from camwright.recipes.model import Language, Particulars, Recipe
 from camwright.recipes.pdf import recipe_pdf
 from camwright.recipes.recipe_file import RECIPE_FILE, recipe_text
+from camwright.recipes.signature import SIGNATURE_FILE
 from camwright.recipes.xlsx import recipe_xlsx
 from camwright.stored.design_file import StoredDesign
 from camwright.studies.design import Design
@@ -152,7 +153,7 @@ def _theirs(old: Path, taken: set[str], work: Work | None, notes: list[str]) -> 
     kept = {}
     for file in sorted(old.rglob("*")):
         path = file.relative_to(old).as_posix()
-        if path == MANIFEST_FILE or (file.is_dir() and not file.is_symlink()):
+        if path in (MANIFEST_FILE, SIGNATURE_FILE) or (file.is_dir() and not file.is_symlink()):
             continue
         plain = file.is_file() and not file.is_symlink()
         if plain and path in listed:

@@ -51,7 +51,9 @@ def test_the_folder_holds_what_the_answer_lists(say: Say, paper_job: Path, tmp_p
     assert sum(path.startswith("tables/") for path in found) == 4
     assert not list(tmp_path.rglob(".camwright-*"))
     code, said, _ = say("verify", out, "--json")
-    assert (code, json.loads(said)) == (0, {"ok": True, "faults": []})
+    answer = json.loads(said)
+    assert (code, answer["ok"], answer["faults"], answer["notes"]) == (0, True, [], [])
+    assert len(answer["proved"]) == 5
 
 
 @pytest.mark.slow

@@ -12,16 +12,15 @@ import pytest
 
 from camwright.profiles.errors import InputError
 from camwright.recipes.build import MadeRecipe
+from camwright.recipes.html import recipe_html
 from camwright.recipes.manifest import manifest_text
-from camwright.recipes.recipe_file import canonical
-from camwright.recipes.verify import Fault, verify
+from camwright.recipes.recipe_file import canonical, parse_recipe
+from camwright.recipes.verify import Fault, examine, verify
 from camwright.recipes.write import recipe_files, write_folder
 
 
 def rebuild(folder: Path) -> None:
     """Write the manifest anew, as someone would who wants a change to pass."""
-    from camwright.recipes.recipe_file import parse_recipe
-
     files = {
         file.relative_to(folder).as_posix(): file.read_bytes()
         for file in folder.rglob("*")
@@ -215,3 +214,96 @@ def test_a_table_that_cannot_be_read_is_told(folder: Path) -> None:
     faults = [fault for fault in verify(folder) if fault.file == f"tables/{file.name}"]
     assert any("SHA-256" in fault.what for fault in faults)
     assert any("control character" in fault.what for fault in faults)
+
+
+def test_what_is_proved_is_said(folder: Path) -> None:
+    found = examine(folder)
+    assert found.faults == found.notes == ()
+    files, tables, _, sheet, rest = found.proved
+    assert files.startswith(f"{len([file for file in folder.rglob('*') if file.is_file()])} files have the checksums")
+    assert tables.startswith("3 tables, read and rebuilt as their drives do")
+    assert sheet == "recipe.html, recipe.pdf, recipe.xlsx say what recipe.json says"
+    assert rest == "not proved: who wrote it (no signature was checked)"
+
+
+def test_tables_that_the_recipe_has_must_be_there(folder: Path) -> None:
+    """Tables taken out of the folder and of the manifest, as someone would who wants it to pass."""
+    shutil.rmtree(folder / "tables")
+    rebuild(folder)
+    faults = verify(folder)
+    assert len(faults) == 4
+    assert {fault.what for fault in faults} == {"missing, or not a readable file: recipe.json has it"}
+
+
+def test_a_released_table_has_files(folder: Path) -> None:
+    (file,) = (folder / "tables").glob("*_cam.csv")
+    file.unlink()
+    edit(folder, lambda data: data["tables"][2].update(files=[]))
+    assert verify(folder) == [Fault("recipe.json", "the table for csv is released and has no file")]
+
+
+SHEET: dict[str, Callable[[dict], object]] = {
+    "slave_start": lambda data: data.update(slave_start=0.01),
+    "pitch": lambda data: data.update(pitch=0.41),
+    "objective.value": lambda data: data["objective"].update(value=data["objective"]["value"] * 0.99),
+    "objective.name": lambda data: data["objective"].update(name="peak_jerk"),
+    "zones.shear[0][1]": lambda data: data["zones"]["shear"][0].__setitem__(1, data["zones"]["shear"][0][1] + 1e-4),
+    "checks.acceleration.value": lambda data: check(data, "acceleration").update(value=7.0),
+    "checks.acceleration.limit": lambda data: check(data, "acceleration").update(limit=40.0),
+    "checks are ": lambda data: data["checks"].remove(check(data, "settling")),
+    "speeds[3].following_error": lambda data: data["speeds"][3].update(following_error=1e-3),
+    "speeds[1].acceleration": lambda data: data["speeds"][1].update(acceleration=None),
+    "speeds has 4 entries": lambda data: data["speeds"].pop(),
+    "lead_time": lambda data: data.update(lead_time=0.05),
+    "speed_band[0].high": lambda data: data["speed_band"][0].update(high=1.01 * data["speed_band"][0]["high"]),
+    "speed_band[0].high_binding": lambda data: data["speed_band"][0].update(high_binding="none"),
+    "working_range.max_line_speed.value": lambda data: data["working_range"]["max_line_speed"].update(value=3.0),
+    "working_range.min_length.binding": lambda data: data["working_range"]["min_length"].update(binding="stroke"),
+}
+
+
+def check(data: dict, name: str) -> dict:
+    return next(each for each in data["checks"] if each["name"] == name)
+
+
+@pytest.mark.parametrize("place", SHEET)
+def test_values_of_the_sheet_are_those_of_its_cam(folder: Path, place: str) -> None:
+    """Every checksum fits, and the page and the rest are made anew of the changed recipe.json."""
+    edit(folder, SHEET[place])
+    recipe = parse_recipe((folder / "recipe.json").read_text(encoding="utf-8"), "recipe.json")
+    (folder / "recipe.html").write_text(recipe_html(recipe), encoding="utf-8", newline="")
+    rebuild(folder)
+    faults = verify(folder)
+    assert len(faults) == 1, faults
+    assert faults[0].file == "recipe.json"
+    assert faults[0].what.startswith(place)
+
+
+def test_a_page_that_says_something_else_is_told(folder: Path) -> None:
+    replace_in(folder / "recipe.html", "paper-600", "paper-601")
+    (folder / "recipe.pdf").write_bytes((folder / "recipe.pdf").read_bytes() + b"%\n")
+    rebuild(folder)
+    found = examine(folder)
+    assert found.faults == (Fault("recipe.html", "is not what this camwright makes of recipe.json"),)
+    (note,) = found.notes
+    assert note.file == "recipe.pdf"
+    assert note.what.endswith("or was made with other versions of the typesetting libraries")
+
+
+def test_a_recipe_of_another_version_is_not_computed_anew(folder: Path) -> None:
+    edit(folder, lambda data: data["provenance"].update(camwright="0.1.0"))
+    found = examine(folder)
+    assert found.faults == ()
+    assert found.notes[0].what.startswith("made by camwright 0.1.0: ")
+    assert not any("computed anew" in line for line in found.proved)
+
+
+def test_files_of_the_desktop_are_named_and_no_fault(folder: Path) -> None:
+    for name in ("Thumbs.db", ".DS_Store", "tables/desktop.ini", "tables/.DS_Store"):
+        (folder / name).write_bytes(b"\x00")
+    found = examine(folder)
+    assert found.faults == ()
+    assert [note.file for note in found.notes] == [".DS_Store", "Thumbs.db", "tables/.DS_Store", "tables/desktop.ini"]
+    (folder / "tables" / "Thumbs.db").symlink_to(folder / "recipe.html")
+    (folder / "my thumbs.db").write_bytes(b"")
+    assert [fault.file for fault in verify(folder)] == ["my thumbs.db", "tables/Thumbs.db"]
