@@ -20,7 +20,7 @@ from camwright.profiles.errors import InputError
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import RotaryKnife
 from camwright.profiles.task import Task
-from camwright.recipes import build
+from camwright.recipes import build, expected
 from camwright.recipes.build import MadeRecipe, designed, make_recipe
 from camwright.recipes.recipe_file import (
     parse_recipe,
@@ -189,7 +189,7 @@ def test_zones_lie_on_the_master_where_the_job_puts_them(name: str, sync: list, 
     job = load_job(EXAMPLES / f"{known}.toml")
     if known != name:
         job = replace(job, cut=replace(job.cut, shear_zone=0.0, shear_zone_at=job.cut.sync_zone))
-    zones = build.zones(job.cut)
+    zones = expected.zones(job.cut)
     assert np.array(zones.sync) == pytest.approx(np.array(sync), abs=1e-15)
     assert np.array(zones.shear) == pytest.approx(np.array(shear), abs=1e-12)
 
