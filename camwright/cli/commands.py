@@ -72,6 +72,11 @@ COMMANDS: dict[str, Command] = {
         CAM,
         "camwright limits board.toml",
     ),
+    "ramps": Command(
+        "Design how the machine starts into the running line, stops out of it, and makes one piece on demand.",
+        CAM,
+        'camwright ramps board.toml --latency "10 ms"',
+    ),
     "envelope": Command(
         "Map which cut lengths and line speeds are possible, with which return, and what binds.",
         CAM,

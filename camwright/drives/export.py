@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -75,6 +75,28 @@ class Exported:
         return self.judgement.passed
 
 
+@dataclass(frozen=True, eq=False)
+class Stretch:
+    """A motion that a drive runs once, and does not repeat: a start, a stop, one piece on demand.
+
+    Parameters
+    ----------
+    name
+        What the names of its tables begin with.
+    zones
+        Where zones begin and end inside it (m).
+    slave_start
+        Slave coordinate of the machine at its start (slave unit).
+    judge
+        Judges the motion that a drive makes of its table.
+    """
+
+    name: str
+    zones: tuple[float, ...]
+    slave_start: float
+    judge: Callable[[CamProfile], TableJudgement]
+
+
 def export(
     profile: CamProfile,
     job: Job,
@@ -133,13 +155,14 @@ def export_possible(
     accuracy: Accuracy | None = None,
     points: int | None = None,
     force: bool = False,
+    stretch: Stretch | None = None,
     step: Step = ignore,
 ) -> tuple[list[Exported], dict[str, tuple[str, ...]]]:
-    """Write a cycle for drives like `export`, and say of those that cannot take it why not."""
+    """Write a cycle for drives like `export`, or a motion that is run once, and say of those that cannot take it why not."""
     targets = [target_of(name) for name in dict.fromkeys(names)]
     wanted = units or default_units(job.machine)
-    asked = _in_slave_units(accuracy or Accuracy(), profile, job)
-    judge = _Judge(profile, job)
+    judge = _Judge(profile, job, stretch or _running(job))
+    asked = _in_slave_units(accuracy or Accuracy(), judge)
     results, refused = [], {}
     for target in targets:
         step(f"writing for {target.name}")
@@ -150,11 +173,19 @@ def export_possible(
     return results, refused
 
 
-def _in_slave_units(accuracy: Accuracy, profile: CamProfile, job: Job) -> Accuracy:
+def _running(job: Job) -> Stretch:
+    """Describe the cycle of a job like a motion that is run once; its tables are called as the job."""
+    cut = job.cut
+    zones = (cut.return_zone,) if cut.origin == "return" else (0.5 * cut.sync_zone, cut.length - 0.5 * cut.sync_zone)
+    return Stretch("", zones, job.task.slave_at_start, lambda rebuilt: judge_table(rebuilt, job.task, job.servo))
+
+
+def _in_slave_units(accuracy: Accuracy, judge: _Judge) -> Accuracy:
     """Turn what the tool may be off into what the slave may be off; nothing changes for a slave in m."""
+    job, profile = judge.job, judge.profile
     if job.machine.slave_unit == "m":
         return accuracy
-    y = job.task.slave_at_start + profile(np.linspace(profile.start, profile.end, 721))
+    y = judge.stretch.slave_start + profile(np.linspace(profile.start, profile.end, 721))
     lever = float(np.abs(job.machine.tool_ratio(y)).max())
     in_sync = abs(float(job.task.sync(0.0, 1)))
     return replace(accuracy, position=accuracy.position / lever, ratio=accuracy.ratio * in_sync)
@@ -170,16 +201,16 @@ class _Judge:
 
     profile: CamProfile
     job: Job
+    stretch: Stretch
     _known: dict[tuple[bytes, ...], tuple[Deviation, float, TableJudgement]] = field(default_factory=dict)
 
     def __call__(self, rebuilt: CamProfile) -> tuple[Deviation, float, TableJudgement]:
         """Deviation from the profile, `position_error`, and the checks."""
         key = tuple((numbers + 0.0).tobytes() for numbers in (rebuilt.breaks, rebuilt.coefficients))  # no negative zero
         if key not in self._known:
-            job = self.job
             off = deviation(self.profile, rebuilt)
-            judgement = judge_table(rebuilt, job.task, job.servo)
-            self._known[key] = off, position_error(self.profile, rebuilt, off, job), judgement
+            error = position_error(self.profile, rebuilt, off, self.job, self.stretch.slave_start)
+            self._known[key] = off, error, self.stretch.judge(rebuilt)
         return self._known[key]
 
 
@@ -192,11 +223,12 @@ def _export(
     points: int | None,
     force: bool,
 ) -> Exported:
-    job, cut = judge.job, judge.job.cut
-    zones = (cut.return_zone,) if cut.origin == "return" else (0.5 * cut.sync_zone, cut.length - 0.5 * cut.sync_zone)
+    job, zones, name = judge.job, judge.stretch.zones, judge.stretch.name
     choice = choose(profile, target, table_units(target, profile, wanted), accuracy, points, zones)
+    if name:
+        choice = replace(choice, table=replace(choice.table, periodic=False))
     _, error, expected = judge(choice.rebuilt)
-    head = Header(job.name, camwright_version(), job.sha256, _facts(expected, job, error))
+    head = Header(f"{name} {job.name}".strip(), camwright_version(), job.sha256, _facts(expected, job, error))
     result = _written(judge, choice, target, head, accuracy)
     if target.number_format == "float32" and target.spacing == "free":
         dense = choose(profile, target, table_units(target, profile, wanted), accuracy, DENSE, zones)
@@ -221,14 +253,13 @@ def _written(judge: _Judge, choice: Choice, target: Target, head: Header, accura
     return Exported(target, table, table.units or units, off, error, accuracy.kept_by(off), judgement, files)
 
 
-def position_error(profile: CamProfile, rebuilt: CamProfile, off: Deviation, job: Job) -> float:
-    """Greatest error of the slave (m); of a slave in rad the tool's, along the material (m)."""
+def position_error(profile: CamProfile, rebuilt: CamProfile, off: Deviation, job: Job, begin: float) -> float:
+    """Greatest error of the slave (m); of a slave in rad the tool's, along the material (m), from its coordinate at the start."""
     if job.machine.slave_unit == "m":
         return off.position
     inner = np.union1d(profile.breaks, rebuilt.breaks)
     x = np.linspace(max(profile.start, rebuilt.start), min(profile.end, rebuilt.end), _PLACES)
     x = np.union1d(x, inner[(inner > x[0]) & (inner < x[-1])])
-    begin = job.task.slave_at_start
     return float(np.abs(job.machine.tool(begin + rebuilt(x)) - job.machine.tool(begin + profile(x))).max())
 
 

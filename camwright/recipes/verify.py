@@ -314,8 +314,9 @@ def _number_faults(table: RecipeTable, read: CamTable, units: Units, design: Sto
         units = read.units
     rebuilt = units.to_si(TARGETS[table.target].rebuild(read))
     off = deviation(profile, rebuilt)
+    error = position_error(profile, rebuilt, off, job, job.task.slave_at_start)
     scale = float(np.ptp(profile(profile.breaks))) or 1.0
-    yield from differs("position error (m)", position_error(profile, rebuilt, off, job), table.position_error, scale)
+    yield from differs("position error (m)", error, table.position_error, scale)
     yield from differs("ratio error", off.ratio, table.ratio_error, float(np.abs(profile(profile.breaks, 1)).max()))
     yield from differs("acceleration error", off.acceleration, table.acceleration_error, 1.0)
     judgement = judge_table(rebuilt, job.task, job.servo, table.wraps)

@@ -16,12 +16,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from camwright.profiles.polynomial.profile import FloatArray
+from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 
 ROUNDING = 1e-12
 """Share of a limit by which a state may exceed it."""
 LATE = 1e-9
 """Share of its time that a transfer may last longer, which is rounding."""
+SLIVER = 1e-13
+"""Share of its time below which a phase is none."""
 _STEPS = 200
 """Safeguarded Newton steps; halvings alone would need no more."""
 
@@ -90,6 +92,27 @@ class Transfer:
                 lows.append(v - a * a / (2 * j))
         return min(lows)
 
+    def greatest_distance(self) -> float:
+        """Farthest that the way leads from its start, forwards; zero if it never does."""
+        ends = self._ends()
+        places = [s for s, _, _ in ends]
+        for (s, v, a), (t, j) in zip(ends, self.phases, strict=False):
+            turns = [turn for turn in _turns(v, a, j) if 0 < turn < t]
+            places += [s + turn * (v + turn * (a / 2 + turn * j / 6)) for turn in turns]
+        return max(places)
+
+    def profile(self) -> CamProfile:
+        """Return the way as a profile over time, from zero; phases of no length but for rounding are left out."""
+        t, breaks, rows = 0.0, [0.0], []
+        least = SLIVER * sum(width for width, _ in self.phases)
+        for (s, v, a), (width, jerk) in zip(self._ends(), self.phases, strict=False):
+            if width <= least:
+                continue
+            rows.append([s, v, a / 2, jerk / 6])
+            t += width
+            breaks.append(t)
+        return CamProfile.from_arrays(breaks, rows)
+
     def mirrored(self) -> Transfer:
         """Return the same motion in the other direction."""
         start = State(-self.start.velocity, -self.start.acceleration)
@@ -100,6 +123,15 @@ class Transfer:
         times = np.cumsum([0.0, *(t for t, _ in self.phases)])
         kept = np.concatenate([[True], np.diff(times) > 0])
         return times[kept], np.array([a for _, _, a in self._ends()])[kept]
+
+
+def _turns(velocity: float, acceleration: float, jerk: float) -> tuple[float, ...]:
+    """Give the times at which a motion of constant jerk stands still for a moment."""
+    square = acceleration * acceleration - 2 * jerk * velocity
+    if square < 0:
+        return ()
+    q = -(acceleration + math.copysign(math.sqrt(square), acceleration))
+    return (*((q / jerk,) if jerk else ()), *((2 * velocity / q,) if q else ()))
 
 
 def farthest(time: float, start: State, end: State, bounds: Bounds) -> Transfer | None:

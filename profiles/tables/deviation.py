@@ -88,9 +88,13 @@ def _worst(profile: CamProfile, rebuilt: CamProfile, nodes: FloatArray) -> tuple
 
 @lru_cache(maxsize=16)
 def _bounded(profile: CamProfile, rebuilt: CamProfile) -> bool:
-    """Say whether the rebuilt ratio does not jump, so that there is an acceleration."""
-    scale = max(1.0, float(np.abs(profile(profile.breaks[:-1], 1)).max()))
-    return float(np.abs(rebuilt.jumps(1)).max()) <= _JUMP * scale
+    """Say whether the rebuilt ratio does not jump, so that there is an acceleration.
+
+    Where the profile's own ratio does not meet itself at the seam, it is a motion that is run once, and has none.
+    """
+    allowed = _JUMP * max(1.0, float(np.abs(profile(profile.breaks[:-1], 1)).max()))
+    jumps = rebuilt.jumps(1, seam=bool(abs(profile.jumps(1)[-1]) <= allowed))
+    return float(np.abs(jumps).max(initial=0.0)) <= allowed
 
 
 def _on_pieces(profile: CamProfile, middle: FloatArray, x: FloatArray) -> Iterator[FloatArray]:

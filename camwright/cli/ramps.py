@@ -1,0 +1,236 @@
+"""The command ``camwright ramps``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, cast, get_args
+
+import typer
+
+from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, final_paths
+from camwright.cli.views.checks import checks_view
+from camwright.cli.views.files import files_view
+from camwright.cli.views.parts import new_table, new_text, stacked
+from camwright.drives.options import chosen_targets, parse_targets
+from camwright.drives.withheld import copy_aside, remove
+from camwright.figures.ramps import AIMS, ramps_figure
+from camwright.figures.saving import written
+from camwright.house.files import staged
+from camwright.house.json_text import to_json
+from camwright.house.numbers import number, with_unit
+from camwright.house.output import Voice
+from camwright.house.units import quantity
+from camwright.jobs.job import Job, load_job
+from camwright.jobs.table_units import slave_length
+from camwright.jobs.wording import in_job_words
+from camwright.production.ramp_answer import objective_of, ramps_answer
+from camwright.production.ramp_tables import KINDS, RampTables, tables_answer, write_ramps
+from camwright.production.ramps import LATENCY, STEPS, Ramps, ramps
+from camwright.profiles.errors import InputError
+from camwright.profiles.ramp import Aim
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rich.console import RenderableType
+
+
+def run(
+    job: GivenJob,
+    park: Annotated[
+        str,
+        typer.Option(
+            "--park",
+            metavar="POSITION",
+            help="Where the slave stands, as its coordinate (-200 mm, 180 deg); auto: opposite the sync zone, a carriage at home.",
+        ),
+    ] = "auto",
+    minimise: Annotated[
+        str, typer.Option("--minimise", metavar="WHAT", help=f"What is made least: {', '.join(get_args(Aim))}.")
+    ] = "peak_acceleration",
+    latency: Annotated[
+        str, typer.Option("--latency", metavar="TIME", help="Time from the sensor to the start.")
+    ] = f"{LATENCY * 1e3:g} ms",
+    to: Annotated[
+        str | None,
+        typer.Option(
+            "--to", metavar="NAMES", help="Targets, separated by commas, or all; the job's, else csv, if left out."
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Output directory; out/<name>-ramps if left out.")
+    ] = None,
+    as_json: Json = False,
+    no_figures: NoFigures = False,
+    quiet: Quiet = False,
+) -> int:
+    """Design how the machine starts into the running line, stops out of it, and makes one piece on demand."""
+    aim, delay = _aim(minimise), quantity(latency, "time", zero=True)
+    if to is not None:
+        parse_targets(to)  # a wrong name is told before anything is designed
+    asked = load_job(job)
+    place, names = _park(park, asked), chosen_targets(to, asked)
+    directory = Path("out") / f"{asked.name}-ramps" if out is None else out
+    voice = Voice(as_json, quiet)
+    with voice.progress(STEPS + len(KINDS) + 2) as step:
+        with in_job_words(asked.units):
+            found = ramps(asked, place, aim, delay, step)
+        step("checking")
+        found.report  # noqa: B018 - simulated here, so that the progress says so
+        tables = write_ramps(found, names, required=to != "all", step=step)
+        step("writing files")
+        files = _write(found, tables, directory, figures=not no_figures)
+    voice.answer(lambda: ramps_answer(found, tables), lambda: _view(found, tables, files))
+    return 0 if found.passed and tables.passed else 1
+
+
+def _aim(text: str) -> Aim:
+    """Read what is to be made least."""
+    if text not in get_args(Aim):
+        raise InputError(f"--minimise takes one of {', '.join(get_args(Aim))}; got {text[:40]!r}")
+    return cast("Aim", text)
+
+
+def _park(text: str, job: Job) -> float | None:
+    """Read where the slave stands; None where that is camwright's to choose."""
+    if text.strip() == "auto":
+        return None
+    try:
+        return slave_length(text, job.machine)
+    except InputError as error:
+        raise InputError(*(f"--park: {fault}; or write auto" for fault in error.faults)) from error
+
+
+def _write(found: Ramps, tables: RampTables, directory: Path, *, figures: bool) -> list[Path]:
+    """Write tables, their report, the answer and the figure, all or none; older tables of what is withheld are set aside."""
+    older = tables.older(found, directory)
+    texts = {
+        **tables.files,
+        "ramps.json": to_json({**ramps_answer(found, tables), "profiles": _profiles(found)}),
+        "report.json": to_json({**tables_answer(tables, found), "set_aside": older}),
+    }
+    with staged(directory) as aside:
+        for name, text in texts.items():
+            (aside / name).write_bytes(text.encode())
+        if figures:
+            written(lambda: ramps_figure(found), aside, "ramps")
+        copy_aside(directory, aside, older)
+        files = final_paths(aside, directory)
+    remove(directory, older)
+    return files
+
+
+def _profiles(found: Ramps) -> dict[str, object]:
+    """Give the three motions as pieces of polynomials, master and slave in SI units from zero."""
+    return {
+        "ramp_in": found.start_table.to_dict(),
+        "ramp_out": found.stop_table.to_dict(),
+        "one_shot": found.one_shot.to_dict(),
+    }
+
+
+def _view(found: Ramps, tables: RampTables, files: Sequence[Path]) -> RenderableType:
+    """Show start and stop, what they ask of the line, checks and tables."""
+    job, units = found.job, found.job.units
+    slave = job.machine.slave_unit
+    rows = new_table(
+        title=f"Start and stop at {with_unit(job.cut.line_speed, 'm/s', units=units)}, minimised: {AIMS[found.aim]}",
+        title_justify="left",
+    )
+    for name in ("", "slave travels", "material", "time", "peak acceleration", "lower bound"):
+        rows.add_column(name, justify="right" if name else "left")
+    for name, ramp, bound in zip(("start", "stop"), (found.ramp_in, found.ramp_out), found.bounds, strict=True):
+        unit = objective_of(found, ramp)[1]
+        measure = units.measure(unit) if unit in units.shown else None
+        told = (
+            "none is known"
+            if bound is None
+            else f"{number(bound)} {unit}"
+            if measure is None
+            else with_unit(bound, unit, units=units)
+        )
+        rows.add_row(
+            name,
+            with_unit(ramp.arc, slave, units=units),
+            with_unit(ramp.master, "m", units=units),
+            with_unit(ramp.time, "s", units=units),
+            with_unit(ramp.peak_acceleration, f"{slave}/s^2", units=units),
+            told,
+        )
+    rows.add_row(
+        "one piece",
+        "",
+        with_unit(found.one_shot.length, "m", units=units),
+        "",
+        with_unit(found.peak_acceleration, f"{slave}/s^2", units=units),
+        "",
+    )
+    return stacked(
+        rows,
+        new_text("\n".join(_facts(found))),
+        checks_view(found.checks, units),
+        _tables_view(tables),
+        *(
+            new_text(f"{target} cannot take the {kind}: {'; '.join(why)}")
+            for kind, group in tables.refused.items()
+            for target, why in group.items()
+        ),
+        files_view(files),
+        new_text(*_verdict(found, tables)),
+    )
+
+
+def _facts(found: Ramps) -> list[str]:
+    """Say where the slave stands, what a start needs at least, and where a sensor belongs."""
+    job, units = found.job, found.job.units
+    slave, noun = job.machine.slave_unit, job.machine.noun
+    lines = [f"the {noun} stands at {with_unit(found.stand.park, slave, units=units)}"]
+    if found.arcs.run_up is not None:
+        lines.append(
+            f"a start needs {with_unit(found.arcs.run_up.arc, slave, units=units)} at least "
+            f"({with_unit(found.arcs.run_up.time, 's', units=units)}, {with_unit(found.arcs.run_up.master, 'm', units=units)} of material)"
+        )
+    if found.fastest is not None:
+        lines.append(f"it can stand between two cuts up to {with_unit(found.fastest, 'm/s', units=units)}")
+    if found.least_sensor is not None:
+        ahead, fastest = (with_unit(way, "m", units=units) for way in (found.sensor, found.least_sensor))
+        lines.append(
+            f"first cut: the sensor must stand {ahead} ahead of the cut at mid sync zone for this start, {fastest} for the "
+            f"fastest, with {with_unit(found.latency, 's', units=units)} of latency"
+        )
+    return lines
+
+
+def _tables_view(tables: RampTables) -> RenderableType:
+    """Show each table as its drive runs it."""
+    table = new_table(title="Tables as the drives run them", title_justify="left")
+    for name in ("motion", "target", "points", "position\num", "judgement", "files"):
+        table.add_column(name, justify="right" if name in ("points", "position\num") else "left")
+    for kind, results in tables.results.items():
+        for result in results:
+            failed = [check.name for check in result.judgement.checks if not check.passed]
+            table.add_row(
+                kind,
+                result.target.name,
+                str(result.table.points),
+                f"{result.position_error * 1e6:.3g}",
+                "failed: " + ", ".join(failed) if failed else "passed",
+                "\n".join(result.files) or "not released",
+            )
+    return table
+
+
+def _verdict(found: Ramps, tables: RampTables) -> tuple[str, str]:
+    """Say in the last line whether start and stop passed, or what failed."""
+    failed = [check.name for check in found.checks if not check.passed]
+    if failed:
+        return f"{found.job.name}: FAILED: {', '.join(failed)}", "bold red"
+    if not tables.passed:
+        return (
+            f"{found.job.name}: start and stop passed every check; not every drive can run them (see the tables)",
+            "bold red",
+        )
+    return (
+        f"{found.job.name}: start and stop passed every check at {with_unit(found.job.cut.line_speed, 'm/s', units=found.job.units)}",
+        "bold",
+    )
