@@ -1,5 +1,1 @@
-<<<<<<< HEAD
-"""What production does to a cam: the line ramps."""
-=======
-"""What a line asks for beside its steady cycle: starts and stops, judged."""
->>>>>>> 62b521f (Starts and stops over the master: ramps with least peak, heat or length, proved, and their tables)
+"""What production does to a cam: ramps of the line, starts and stops, judged."""
