@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 
 from camwright.design.production.ramps import (
+    balanced,
     can_stand,
     can_start_and_stop,
     fastest_line,
+    has_room,
     least_arcs,
     zone_kept,
 )
@@ -99,10 +101,11 @@ def _ways_out(at: Stand, *, free: bool) -> list[tuple[Suggestion, Value, str]]:
         size, name = (1e3, "mm") if unit == "m" else (math.degrees(1.0), "deg")
         words = f"park {'earlier' if park < at.park else 'later'}, at {{offer}} (--park)"
         found.append((Suggestion("park", park * size, name), Value(park, unit, 7), words))
-    speed = fastest_line(at, can_stand if free else can_start_and_stop)
+    speed = fastest_line(at, can_stand if free else has_room)
     if speed is not None and speed < at.task.cut.line_speed:
         told = rounded_to(speed * 60, _DIGITS, up=False)
-        if (can_stand if free else can_start_and_stop)(at.at_speed(told / 60)):
+        slower = at.at_speed(told / 60)
+        if can_start_and_stop(balanced(slower) if free else slower):
             value = Value(told / 60, "m/s", _DIGITS, toward="nearest", chosen=f"{told:.10g} m/min")
             found.append((Suggestion("line_speed", told, "m/min"), value, "{@line_speed} = {offer}"))
     return found

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 from camwright.design.returns.curve_limits import motor_limits
+from camwright.profiles.closed_forms.overshoot import shortest_stop
 from camwright.profiles.closed_forms.run_up import (
     backwards,
     coolest,
@@ -27,6 +28,15 @@ _HALVINGS = 200
 _STRIDE = 2.0
 _FASTEST = 1e6
 """Factor on the line speed beyond which nothing is looked for."""
+
+_CAPS = tuple(0.97**k for k in range(1, 100, 3))
+"""Shares of what a ramp of the line leaves of the acceleration that are tried: the less is used, the more is left of the jerk."""
+
+_REFINED = 40
+"""Steps in which the jerk that is left is taken for the peak that was found."""
+
+_OVER = 1.1
+"""Factor on the velocity in the end up to which a ramp may go on a line that ramps, where the end has a falling one."""
 
 _WAYS: dict[Aim, Callable[[float, State, Bounds], Transfer | None]] = {
     "peak_acceleration": gentlest,
@@ -94,10 +104,21 @@ def can_start_and_stop(at: Stand) -> bool:
     return zone_kept(at) and ramp_in(at, "shortest") is not None and ramp_out(at, "shortest") is not None
 
 
+def has_room(at: Stand) -> bool:
+    """Whether the ways from the park and beyond the sync zone are as long as start and stop need at least."""
+    arcs = least_arcs(at)
+    if arcs.run_up is None or arcs.run_up.arc > at.run_up or not zone_kept(at):
+        return False
+    if at.task.machine.guide is None:
+        return arcs.run_out is not None and arcs.run_out.arc <= at.run_out
+    stops = (Bounds(-each.speed, each.speed, each.acceleration, each.jerk) for each in _limits(at))
+    return any(shortest_stop(at.out_of.velocity, each) <= at.room for each in stops)
+
+
 def can_stand(at: Stand) -> bool:
-    """Whether the machine can start and stop from some park: of a slave that goes round any, of one that comes back its home."""
+    """Whether there is room to start and stop from some park: of a slave that goes round any, of one that comes back its home."""
     if at.task.machine.guide is not None:
-        return can_start_and_stop(at)
+        return has_room(at)
     return zone_kept(at) and least_arcs(at).whole <= at.run_up + at.run_out
 
 
@@ -163,13 +184,48 @@ def _best(at: Stand, aim: Aim, find: Callable[[Limits], Transfer | None]) -> Ram
     """Take the best of the ramps within each of the limits that the motor's curve stands for."""
     if not at.run_up > 0:
         return None
-    ways = (find(limits) for limits in _limits(at))
-    ramps = [Ramp(way, at.task.cut.line_speed) for way in ways if way is not None]
-    return min(ramps, key=_COSTS[aim], default=None)
+    v = at.task.cut.line_speed
+
+    def ramps(limits: Iterator[Limits]) -> list[Ramp]:
+        ways = (find(each) for each in limits)
+        return [Ramp(way, v) for way in ways if way is not None]
+
+    best = min(ramps(_limits(at)), key=_COSTS[aim], default=None)
+    if best is None or not at.task.line.ramps:
+        return best
+    for _ in range(_REFINED):
+        best = min((best, *ramps(_reserved(at, (best.peak_acceleration,), absolute=True))), key=_COSTS[aim])
+    return best
 
 
 def _limits(at: Stand) -> Iterator[Limits]:
-    yield from motor_limits(at.task.machine, at.task.limits)
+    """Limits that a motion may be held to, each enough by itself: one for each rectangle of the motor's curve, and what the line leaves."""
+    return _reserved(at, _CAPS) if at.task.line.ramps else iter(motor_limits(at.task.machine, at.task.limits))
+
+
+def _reserved(at: Stand, caps: tuple[float, ...], *, absolute: bool = False) -> Iterator[Limits]:
+    """Limits that leave room for the ramps of the line, at every phase.
+
+    With the line's acceleration ``a`` and jerk ``j`` an acceleration ``A`` and a jerk ``J`` of the slave become ``A + k a`` and
+    ``J + 3 A a / v + k j``, with its ratio ``k``. With the greatest ratio and a peak ``c`` of the acceleration, ``A - k a`` and
+    ``J - 3 c a / v - k j`` are left: enough, if not all.
+
+    Parameters
+    ----------
+    caps
+        Peaks to try: shares of what is left of the acceleration, or absolute values.
+    """
+    task, line = at.task, at.task.line
+    v, a, j = task.cut.line_speed, line.hardest, line.known_jerk
+    fastest = _OVER * max(at.into.velocity, at.out_of.velocity)
+    for each in motor_limits(task.machine, task.limits):
+        top = each.speed if task.machine.guide is not None else min(each.speed, fastest)
+        acceleration = each.acceleration - top / v * a
+        for cap in caps:
+            peak = min(cap, acceleration) if absolute else cap * acceleration
+            jerk = each.jerk - 3 * peak * a / v - top / v * j
+            if peak > 0 and jerk > 0:
+                yield replace(each, speed=top, acceleration=peak, jerk=jerk)
 
 
 def _run_up(arc: float, end: State, limits: Limits, aim: Aim) -> Transfer | None:

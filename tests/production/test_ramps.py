@@ -10,6 +10,7 @@ from camwright.jobs.job import Job, load_job
 from camwright.production.ramp_tables import KINDS, stretch_of, write_ramps
 from camwright.production.ramps import one_shot_cycle, ramps, waiting
 from camwright.profiles.errors import InfeasibleError, InputError
+from camwright.profiles.line import Line
 from camwright.profiles.machines import CrankSlider
 from camwright.profiles.servo import Servo
 from camwright.profiles.tables.targets import TARGETS
@@ -175,3 +176,27 @@ def test_a_target_that_takes_none_is_a_fault() -> None:
     """Where a drive takes whole periods, 136.296296… mm are none."""
     with pytest.raises(InputError, match=r"br: .*whole"):
         write_ramps(ramps(PAPER, aim="shortest"), ["br"])
+
+
+@pytest.mark.parametrize("aim", ["peak_acceleration", "rms_acceleration", "shortest"])
+@pytest.mark.parametrize(
+    ("name", "line"),
+    [
+        ("paper", Line(1.0, 2.0, 10.0)),
+        ("paper", Line(5.0, 5.0, 50.0)),
+        ("saw", Line(0.2, 0.5, 2.0)),
+        ("horizontal", Line(1.0, 2.0, 10.0)),
+    ],
+)
+def test_a_line_that_ramps_is_borne_by_start_and_stop(name: str, line: Line, aim: str) -> None:
+    found = ramps(replace(JOBS[name], line=line), aim=aim)
+    assert found.passed, [check.name for check in found.checks if not check.passed]
+    assert "line_ramp" in [check.name for check in found.checks]
+    steady = ramps(JOBS[name], aim=aim)
+    if aim == "peak_acceleration":  # it costs next to nothing
+        assert (
+            steady.ramp_in.peak_acceleration
+            <= found.ramp_in.peak_acceleration
+            <= 1.0015 * steady.ramp_in.peak_acceleration
+        )
+    assert found.fastest <= steady.fastest
