@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, cast, get_args
 
 import typer
 
-from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, final_paths
+from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, final_paths, job_work
 from camwright.cli.views.checks import checks_view
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import new_table, new_text, stacked
@@ -15,10 +15,10 @@ from camwright.drives.options import chosen_targets, parse_targets
 from camwright.drives.withheld import copy_aside, remove
 from camwright.figures.ramps import AIMS, ramps_figure
 from camwright.figures.saving import written
-from camwright.house.files import staged
 from camwright.house.json_text import to_json
 from camwright.house.numbers import number, with_unit
-from camwright.house.output import Voice
+from camwright.house.output import Voice, complain
+from camwright.house.owned import Work, owned
 from camwright.house.units import quantity
 from camwright.jobs.job import Job, load_job
 from camwright.jobs.table_units import slave_length
@@ -79,7 +79,7 @@ def run(
         found.report  # noqa: B018 - simulated here, so that the progress says so
         tables = write_ramps(found, names, required=to != "all", step=step)
         step("writing files")
-        files = _write(found, tables, directory, figures=not no_figures)
+        files = _write(found, tables, directory, job_work("ramps", asked, job, out), figures=not no_figures)
     voice.answer(lambda: ramps_answer(found, tables), lambda: _view(found, tables, files))
     return 0 if found.passed and tables.passed else 1
 
@@ -101,7 +101,7 @@ def _park(text: str, job: Job) -> float | None:
         raise InputError(*(f"--park: {fault}; or write auto" for fault in error.faults)) from error
 
 
-def _write(found: Ramps, tables: RampTables, directory: Path, *, figures: bool) -> list[Path]:
+def _write(found: Ramps, tables: RampTables, directory: Path, work: Work, *, figures: bool) -> list[Path]:
     """Write tables, their report, the answer and the figure, all or none; older tables of what is withheld are set aside."""
     older = tables.older(found, directory)
     texts = {
@@ -109,7 +109,8 @@ def _write(found: Ramps, tables: RampTables, directory: Path, *, figures: bool) 
         "ramps.json": to_json({**ramps_answer(found, tables), "profiles": _profiles(found)}),
         "report.json": to_json({**tables_answer(tables, found), "set_aside": older}),
     }
-    with staged(directory) as aside:
+    kept = [new for names in older.values() for new in names.values()]
+    with owned(directory, work, complain, kept) as aside:
         for name, text in texts.items():
             (aside / name).write_bytes(text.encode())
         if figures:

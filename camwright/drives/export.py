@@ -228,7 +228,9 @@ def _export(
     if name:
         choice = replace(choice, table=replace(choice.table, periodic=False))
     _, error, expected = judge(choice.rebuilt)
-    head = Header(f"{name} {job.name}".strip(), camwright_version(), job.sha256, _facts(expected, job, error))
+    head = Header(
+        f"{name}-{job.name}" if name else job.name, camwright_version(), job.sha256, _facts(expected, job, error)
+    )
     result = _written(judge, choice, target, head, accuracy)
     if target.number_format == "float32" and target.spacing == "free":
         dense = choose(profile, target, table_units(target, profile, wanted), accuracy, DENSE, zones)

@@ -56,7 +56,7 @@ class RampTables:
         for kind in KINDS:
             withheld = [result.target for result in self.results[kind] if not result.files]
             withheld += [target_of(name) for name in self.refused[kind]]
-            older = older_tables(directory, withheld, Header(f"{kind} {found.job.name}", camwright_version()))
+            older = older_tables(directory, withheld, Header(f"{_named(kind)}-{found.job.name}", camwright_version()))
             names |= {f"{kind} {target}": files for target, files in older.items()}
         return names
 
@@ -101,6 +101,11 @@ def write_ramps(
     return RampTables(results, refused)
 
 
+def _named(kind: str) -> str:
+    """Name a motion as the names of tables begin."""
+    return kind.replace("_", "-")
+
+
 def stretch_of(found: Ramps, kind: str, profile: CamProfile) -> Stretch:
     """Describe one of the motions: its zones, where it starts, and how what a drive makes of it is judged."""
     at, start, stop = found.stand, found.ramp_in.profile, found.ramp_out.profile
@@ -128,7 +133,7 @@ def stretch_of(found: Ramps, kind: str, profile: CamProfile) -> Stretch:
         begin = at.park + float(whole(cut_at))
     else:
         zones, begin = (start.end, found.zone_end), at.park
-    return Stretch(kind, zones, begin, judged)
+    return Stretch(_named(kind), zones, begin, judged)
 
 
 def _continued(first: CamProfile, then: CamProfile) -> CamProfile:

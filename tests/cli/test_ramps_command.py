@@ -40,6 +40,7 @@ def test_the_answer_for_the_machine_of_the_paper(capsys: pytest.CaptureFixture[s
     assert found["first_cut"]["sensor_ahead_mm"] == pytest.approx(185.9, abs=0.05)
     assert found["passed"]
     assert {file.name for file in tmp_path.iterdir()} == {
+        ".camwright.json",
         "one_shot_paper_600_cam.csv",
         "ramp_in_paper_600_cam.csv",
         "ramp_out_paper_600_cam.csv",
