@@ -30,7 +30,8 @@ BOOKS = {
 
 SUBCOMMANDS = (
     "new", "examples", "keys", "schema",
-    "design", "compare", "limits", "ramps", "validate", "check", "quick", "envelope", "identify", "trace", "book", "export", "audit", "targets",
+    "design", "compare", "limits", "ramps", "validate", "check", "quick", "envelope", "identify", "trace", "book", 
+    "export", "audit", "targets",
     "recipe", "verify", "bend", "workbench",
 )  # fmt: skip
 
