@@ -30,7 +30,7 @@ BOOKS = {
 
 SUBCOMMANDS = (
     "new", "examples", "keys", "schema",
-    "design", "compare", "limits", "ramps", "validate", "check", "quick", "envelope", "identify", "trace", "book", 
+    "design", "compare", "limits", "ramps", "validate", "check", "quick", "envelope", "identify", "trace", "book",
     "export", "audit", "targets",
     "recipe", "verify", "bend", "workbench",
 )  # fmt: skip
