@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from camwright.design.feasible.refusal import infeasible, require_feasible
+from camwright.design.line.refusal import ramp_infeasible
 from camwright.design.optimise import (
     Solution,
     motion_objective,
@@ -154,6 +155,8 @@ def _servo_blind(task: Task, cost: ObjectiveName, designs: Callable[[Task], bool
         if designs is None:
             raise
         placed = task if task.machine.placed else place_for(task, of_command(cost)).task
+        if error.binding.startswith("line."):
+            raise ramp_infeasible(placed) from error
         raise infeasible(placed, designs=designs) from error
 
 
@@ -241,6 +244,8 @@ def _infeasible(problem: AxisProblem, settles: _Ways | None) -> InfeasibleError:
     if share is None:
         if problem.structure is None:
             require_feasible(problem.task, suggest=settles is not None)
+            if problem.task.line.ramps:
+                raise ramp_infeasible(problem.task, suggest=settles is not None)
             raise SolverError(
                 "a servo-aware design found no command that keeps the limits although the job allows one; report this job"
             )

@@ -76,6 +76,21 @@ class CommandBasis:
         return tuple(found)
 
     @cached_property
+    def ratios(self) -> tuple[FloatArray, FloatArray]:
+        """Ratio at the nodes, as ``(matrix, constant)`` of shapes ``(N + 1, n)`` and ``(N + 1,)``."""
+        count = len(self.nodes) - 1
+        index = np.arange(count)[:, None] + np.arange(_DEGREE + 1)
+        first = self.pieces[:, 1, :]
+        matrix, constant = (
+            np.einsum("kc,kcn->kn", first, self.matrix[index]),
+            (first * self.constant[index]).sum(axis=1),
+        )
+        (slope, slope_constant), width = self.differences[2], float(self.nodes[-1] - self.nodes[-2])
+        last = matrix[-1] + 0.5 * width * (slope[-2] + slope[-1])
+        last_constant = constant[-1] + 0.5 * width * (slope_constant[-2] + slope_constant[-1])
+        return np.vstack([matrix, last]), np.append(constant, last_constant)
+
+    @cached_property
     def pieces(self) -> FloatArray:
         """Powers of the four splines of each interval, ascending: shape ``(N, 4 powers, 4 splines)``."""
         return spline_pieces(self.knots)

@@ -7,9 +7,11 @@ from typing import cast
 
 import numpy as np
 
+from camwright.design.line.forms import keeps_ramp
 from camwright.design.servo_aware.axis_problem import AxisProblem
 from camwright.design.servo_aware.convex import ACCEPTED, ConvexProgramme
 from camwright.design.servo_aware.gathered_rows import GatheredRows
+from camwright.design.servo_aware.ramp_rows import RampRows
 from camwright.design.servo_aware.simplex import Vertex
 from camwright.profiles.errors import SolverError
 from camwright.profiles.objective import OBJECTIVES, MotorObjective, ObjectiveName
@@ -39,6 +41,7 @@ class AxisProgramme:
     def __init__(self, problem: AxisProblem) -> None:
         self.problem = problem
         self.rows = GatheredRows(problem)
+        self.ramps = RampRows(problem)
         self.solved = 0
         # a return alone comes near to its limits, a whole cycle has room: rows of its limits come when they matter
         self._tight = set(range(4)) if problem.command == "in_sync" else set[int]()
@@ -106,7 +109,7 @@ class AxisProgramme:
             room = LIMIT_MARGIN * max(abs(low), abs(high))
             if least < low - room or greatest > high + room:
                 return False
-        return not self.rows.add_worst(profile, 1.0, ratio=True)
+        return keeps_ramp(profile, self.problem.task) and not self.rows.add_worst(profile, 1.0, ratio=True)
 
     def least_share(self) -> float | None:
         """Least share of the tolerance that a command keeps with every axis, in position and ratio; ``None`` if none keeps the limits."""
@@ -169,7 +172,7 @@ class AxisProgramme:
                 if values.min() < low + room or values.max() > high - room:
                     broken.add(order)
         self._tight |= broken
-        return bool(broken)
+        return self.ramps.tighten(unknowns, LIMIT_MARGIN) or bool(broken)
 
     def _solve_once(
         self, cost: ObjectiveName, band: float | None, caps: dict[int, float], *, elastic: bool
@@ -191,6 +194,9 @@ class AxisProgramme:
             least, most = max(low, -peak_allowed) + room, min(high, peak_allowed) - room
             matrix, constant = self.problem.basis.differences[order]
             programme.add(matrix * (self.problem.scale / size), (least - constant) / size, (most - constant) / size)
+        matrix, constant = self.ramps.rows()
+        if len(matrix):
+            programme.add(matrix, -np.inf, 1.0 - LIMIT_MARGIN - constant)
         for rows in self.rows.bands + (self.rows.ratios if elastic or band == 1.0 else []):
             matrix, constant = rows.matrix * (self.problem.scale / rows.size)[:, None], rows.constant / rows.size
             below, above = rows.low / rows.size, rows.high / rows.size
