@@ -77,6 +77,11 @@ COMMANDS: dict[str, Command] = {
         CAM,
         'camwright ramps board.toml --latency "10 ms"',
     ),
+    "marks": Command(
+        "Say how early and how late a print mark may come, by what the controller does, and how to tune its loop.",
+        CAM,
+        "camwright marks board.toml --delay 2",
+    ),
     "envelope": Command(
         "Map which cut lengths and line speeds are possible, with which return, and what binds.",
         CAM,

@@ -30,7 +30,7 @@ BOOKS = {
 
 SUBCOMMANDS = (
     "new", "examples", "keys", "schema",
-    "design", "compare", "limits", "ramps", "validate", "check", "quick", "envelope", "identify", "trace", "book",
+    "design", "compare", "limits", "ramps", "marks", "validate", "check", "quick", "envelope", "identify", "trace", "book",
     "export", "audit", "targets",
     "recipe", "verify", "bend", "workbench",
 )  # fmt: skip
@@ -85,6 +85,7 @@ def example_cases(example: str) -> Iterator[Case]:
     yield case("compare-objectives", "compare", job, "--objectives", *out("compare-objectives"))
     yield case("limits", "limits", job, slow=example == "short-cut")
     yield case("ramps", "ramps", job, *out("ramps"), slow=example == "short-cut")
+    yield case("marks", "marks", job, *out("marks"), "--delay", "2", slow=example == "short-cut")
     yield case("envelope", "envelope", job, "--points", "3", *out("envelope"))
     yield case("validate-design", "validate", made, "--job", job, needs=["design"])
     yield case("validate-table", "validate", f"{runs}/design/cam.csv", "--job", job, needs=["design"])

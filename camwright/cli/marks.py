@@ -1,0 +1,179 @@
+"""The command ``camwright marks``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, final_paths, job_work
+from camwright.cli.views.files import files_view
+from camwright.cli.views.parts import new_table, new_text, stacked
+from camwright.figures.print_marks import print_marks_figure
+from camwright.figures.saving import written
+from camwright.house.json_text import to_json
+from camwright.house.numbers import Units, number, unit_shown, with_unit
+from camwright.house.output import Voice, complain
+from camwright.house.owned import owned
+from camwright.house.units import quantity
+from camwright.jobs.job import load_job
+from camwright.jobs.wording import in_job_words
+from camwright.production.mark_answer import clamp_table, marks_answer
+from camwright.production.mark_offsets import DeadTime, dead_time
+from camwright.production.marks import STEPS, Marks, marks
+from camwright.profiles.closed_forms.mark_loop import best_gain
+from camwright.profiles.errors import InputError
+from camwright.profiles.mark_range import MarkRange
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rich.console import RenderableType
+
+MOST_DELAY = 1000
+"""Most cuts by which an error may be known late."""
+
+
+def run(
+    job: GivenJob,
+    delay: Annotated[
+        int,
+        typer.Option("--delay", metavar="N", help="Cuts between a cut and the first one that its error can correct."),
+    ] = 0,
+    offsets: Annotated[
+        Path | None,
+        typer.Option(
+            "--offsets", metavar="FILE", help="Measured offsets over line speeds (CSV), for the sensor's dead time."
+        ),
+    ] = None,
+    noise: Annotated[
+        str | None, typer.Option("--noise", metavar="LENGTH", help="Standard deviation of the sensor; with --stretch.")
+    ] = None,
+    stretch: Annotated[
+        str | None,
+        typer.Option(
+            "--stretch", metavar="LENGTH", help="Standard deviation of the material's stretch in one cut; with --noise."
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Output directory; out/<name>-marks if left out.")
+    ] = None,
+    as_json: Json = False,
+    no_figures: NoFigures = False,
+    quiet: Quiet = False,
+) -> int:
+    """Say how early and how late a print mark may come, by what the controller does, and how to tune its loop."""
+    if not 0 <= delay <= MOST_DELAY:
+        raise InputError(f"--delay takes 0 to {MOST_DELAY} cuts; got {delay}")
+    wander = _wander(noise, stretch)
+    dead = None if offsets is None else dead_time(offsets)
+    asked = load_job(job)
+    directory = Path("out") / f"{asked.name}-marks" if out is None else out
+    voice = Voice(as_json, quiet)
+    with voice.progress(STEPS) as step:
+        with in_job_words(asked.units):
+            found = marks(asked, delay, step)
+        step("writing files")
+        with owned(directory, job_work("marks", asked, job, out), complain) as aside:
+            (aside / "marks.csv").write_bytes(clamp_table(found).encode())
+            (aside / "marks.json").write_bytes(to_json(marks_answer(found, dead, wander)).encode())
+            if not no_figures:
+                written(lambda: print_marks_figure(found), aside, "marks")
+            files = final_paths(aside, directory)
+    voice.answer(lambda: marks_answer(found, dead, wander), lambda: _view(found, dead, wander, files))
+    return 0 if found.proved else 1
+
+
+def _wander(noise: str | None, stretch: str | None) -> tuple[float, float] | None:
+    """Read the standard deviations of stretch and sensor."""
+    if noise is None and stretch is None:
+        return None
+    if noise is None or stretch is None:
+        raise InputError("--noise and --stretch go together: the best gain weighs one against the other")
+    found = quantity(stretch, "length", zero=True), quantity(noise, "length", zero=True)
+    if found == (0.0, 0.0):
+        raise InputError("--noise and --stretch are both zero: there is nothing to weigh")
+    return found
+
+
+def _view(
+    found: Marks, dead: DeadTime | None, wander: tuple[float, float] | None, files: Sequence[Path]
+) -> RenderableType:
+    """Show the ranges at the job's line speed and below, the loop, and the dead time."""
+    units = found.job.units
+    here = new_table(
+        title=f"A print mark at {with_unit(found.here.line_speed, 'm/s', units=units)}", title_justify="left"
+    )
+    for name in ("what the controller does", "earliest", "latest", "by acceleration alone"):
+        here.add_column(name, justify="left" if name.startswith("what") else "right")
+    for words, ends, alone in (
+        ("next length, designed anew", found.here.redesign, None),
+        ("phase of the master, cam as it is", found.here.master_phase, found.phase_alone),
+        ("offset of the slave, cam as it is", found.here.slave_offset, found.offset_alone),
+    ):
+        if ends is None:
+            here.add_row(words, "not in sync", "not in sync", "")
+            continue
+        here.add_row(words, *_ends(ends, units), "" if alone is None else " to ".join(_ends(alone, units)))
+    table = new_table(title=f"Earliest and latest over the line speed ({unit_shown('m', units)})", title_justify="left")
+    for name in (unit_shown("m/s", units), "designed anew", "phase", "offset"):
+        table.add_column(name, justify="right")
+    for each in found.by_speed:
+        table.add_row(
+            with_unit(each.line_speed, "m/s", units=units),
+            *(
+                "–" if part is None else " to ".join(_ends(part, units))
+                for part in (each.redesign, each.master_phase, each.slave_offset)
+            ),
+        )
+    proved = (
+        "cams at both ends were designed, none 1 % beyond"
+        if found.proved
+        else "NOT PROVED: a cam at an end was not designed, or one beyond was"
+    )
+    return stacked(
+        here,
+        table,
+        new_text(
+            "\n".join([proved, *_loop(found, wander, units), *_dead(dead, units)]), "" if found.proved else "bold red"
+        ),
+        files_view(files),
+    )
+
+
+def _loop(found: Marks, wander: tuple[float, float] | None, units: Units) -> list[str]:
+    """Say how much of an error to correct."""
+    lines = [
+        (
+            f"loop with {found.delay} cuts of delay: gain below {number(found.greatest_gain, 4)}, without overshoot up to "
+            f"{number(found.gain, 4)}; then the cut has {number(found.noise, 4)} of the sensor's variance"
+        )
+    ]
+    if wander is not None:
+        stretch, noise = (with_unit(each, "m", units=units) for each in wander)
+        lines.append(
+            f"best gain without delay against {stretch} of stretch a cut and {noise} of noise: {number(best_gain(*wander), 4)}"
+        )
+    return lines
+
+
+def _dead(dead: DeadTime | None, units: Units) -> list[str]:
+    """Say what measured offsets tell of the sensor."""
+    if dead is None:
+        return []
+    return [
+        (
+            f"dead time {number(dead.time * 1e3, 4)} ms (± {number(dead.time_error * 1e3, 2)}), offset at standstill "
+            f"{with_unit(dead.constant, 'm', units=units)}, measurements within {with_unit(dead.residual, 'm', 3, units=units)} of the line"
+        )
+    ]
+
+
+def _ends(found: MarkRange, units: Units) -> list[str]:
+    """Write both ends of a range, rounded towards zero: what is told can be done."""
+    factor = units.shown["m"].factor
+    return [
+        "no limit" if end is None else number(int(end * factor * 1e3) / 1e3, 7)
+        for end in (found.earliest, found.latest)
+    ]

@@ -1,0 +1,187 @@
+"""`Marks`: how early and how late a print mark may come, by what the controller can do, over the line speed; and the loop around it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from camwright.design.optimise import solve
+from camwright.design.production.marks import redesigned
+from camwright.house.progress import Step, ignore
+from camwright.jobs.job import Job
+from camwright.profiles.closed_forms.mark_loop import gain_without_overshoot, greatest_gain, noise_share
+from camwright.profiles.errors import InfeasibleError
+from camwright.profiles.mark_range import MarkRange
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.servo import spectral_radius
+from camwright.profiles.task import Task
+from camwright.studies.remedies import solve_or_advise
+from camwright.validation.motion import greatest_magnitude
+from camwright.validation.production.mark_shift import arc_range, held, offset_range, phase_range
+from camwright.validation.servo.response import servo_response
+
+STEPS = 4
+"""Steps that `marks` tells."""
+
+SHARES = tuple(k / 10 for k in range(1, 11))
+"""Line speeds of the table, as shares of the job's."""
+
+NONE = MarkRange(0.0, 0.0)
+"""No correction at all."""
+
+BEYOND = 0.01
+"""Share of a correction by which it is taken further to see that it cannot be designed."""
+
+_INSIDE = 1e-9
+"""Share by which a correction at the edge is designed inside: rounding."""
+
+
+@dataclass(frozen=True)
+class ByMethod:
+    """Corrections by what the controller does, at one line speed.
+
+    Parameters
+    ----------
+    line_speed
+        The line speed (m/s).
+    redesign
+        The next length changes, its return designed anew.
+    master_phase
+        The cam stays and its master is shifted over the return.
+    slave_offset
+        The cam stays and its slave is shifted over the return; ``None`` where that is not in sync.
+    """
+
+    line_speed: float
+    redesign: MarkRange
+    master_phase: MarkRange
+    slave_offset: MarkRange | None
+
+
+@dataclass(frozen=True, eq=False)
+class Marks:
+    """How far the marks of a job may be off.
+
+    Parameters
+    ----------
+    job
+        The job, its machine with everything that the design chose.
+    cam
+        The running cam.
+    by_speed
+        Corrections at shares of the line speed, the last at all of it.
+    phase_alone, offset_alone
+        By master phase and slave offset at the job's line speed if nothing but the acceleration were limited; a cam that uses its jerk
+        limit up allows none otherwise.
+    proved
+        Whether cams at both ends were designed and keep the limits, and none was found `BEYOND` them.
+    delay
+        Cuts by which an error is known late.
+    """
+
+    job: Job
+    cam: CamProfile
+    by_speed: tuple[ByMethod, ...]
+    phase_alone: MarkRange
+    offset_alone: MarkRange | None
+    proved: bool
+    delay: int
+
+    @property
+    def here(self) -> ByMethod:
+        """Corrections at the job's line speed."""
+        return self.by_speed[-1]
+
+    @property
+    def greatest_gain(self) -> float:
+        """Gain that the loop must stay below."""
+        return greatest_gain(self.delay)
+
+    @property
+    def gain(self) -> float:
+        """Greatest gain without overshoot."""
+        return gain_without_overshoot(self.delay)
+
+    @property
+    def noise(self) -> float:
+        """Variance of the cut over that of the sensor's noise, with that gain."""
+        return noise_share(self.gain, self.delay)
+
+
+def marks(job: Job, delay: int = 0, step: Step = ignore) -> Marks:
+    """Find how early and how late a print mark may come for a cut to follow it.
+
+    Parameters
+    ----------
+    job
+        The job.
+    delay
+        Cuts between a cut and the first one that its error can correct.
+    step
+        Told what begins now.
+
+    Raises
+    ------
+    InfeasibleError
+        The cut itself cannot be done.
+
+    Examples
+    --------
+    >>> from camwright import load_job
+    >>> found = marks(load_job())
+    >>> round(found.here.redesign.earliest * 1e3, 2), found.here.redesign.latest, found.proved      # mm
+    (-263.38, None, True)
+    """
+    step("designing the running cam")
+    solution = solve_or_advise(job)
+    placed = replace(job, machine=solution.machine)
+    step("finding what it bears at each line speed")
+    by_speed = tuple(at_speed(solution.profile, placed, share * job.cut.line_speed) for share in SHARES)
+    alone = held(placed.task, acceleration_alone=True)
+    phase, offset = (find(solution.profile, placed.task, alone) for find in (phase_range, offset_range))
+    assert phase is not None  # noqa: S101 - a phase of the master is in sync on every machine
+    step("proving both ends")
+    proved = proven(placed.task, by_speed[-1].redesign)
+    return Marks(placed, solution.profile, by_speed, phase, offset, proved, delay)
+
+
+def at_speed(cam: CamProfile, job: Job, line_speed: float) -> ByMethod:
+    """Find what a cam bears at a line speed."""
+    task = job.task.at_speed(line_speed)
+    limits = held(task)
+    offset = None if job.cut.shaped else offset_range(cam, task, limits)
+    phase = NONE if job.cut.shaped else phase_range(cam, task, limits)
+    return ByMethod(
+        line_speed, redesigned(task), phase, None if offset is None else offset.within(_arc(cam, job, task))
+    )
+
+
+def _arc(cam: CamProfile, job: Job, task: Task) -> MarkRange:
+    """Room of the shear zone in the sync zone; none where the axis does not settle."""
+    if not spectral_radius(job.servo) < 1.0:
+        return NONE
+    settling = servo_response(cam, task, job.servo).settling
+    return NONE if settling is None else arc_range(task, settling)
+
+
+def proven(task: Task, found: MarkRange) -> bool:
+    """Whether cams with the corrections at both ends are designed within the limits, and none a hundredth beyond."""
+    return all(
+        _designed(task, (1 - _INSIDE) * end) and not _designed(task, (1 + BEYOND) * end)
+        for end in (found.earliest, found.latest)
+        if end
+    )
+
+
+def _designed(task: Task, shift: float) -> bool:
+    """Whether a cam of least peak acceleration is designed for a length that is so much off, and keeps the limits."""
+    length = task.cut.length + shift
+    if length <= task.cut.sync_zone:
+        return False
+    other, v, limits = task.with_length(length), task.cut.line_speed, task.limits
+    try:
+        cam = solve(other, "peak_acceleration", suggest=False).profile
+    except InfeasibleError:
+        return False
+    peaks = (greatest_magnitude(cam, order).value * v**order for order in (1, 2, 3))
+    kept = (limits.speed, limits.acceleration, limits.jerk)
+    return all(found <= limit * (1 + 1e-9) for found, limit in zip(peaks, kept, strict=True))

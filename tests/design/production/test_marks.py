@@ -1,0 +1,83 @@
+"""Corrections by a redesign: the paper's numbers, the closed form without jerk and speed, designs at the ends."""
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from camwright.design.optimise import solve
+from camwright.design.production.marks import redesigned
+from camwright.jobs.examples import example
+from camwright.jobs.job import load_job
+from camwright.profiles.errors import InfeasibleError
+from camwright.profiles.limits import Limits
+from camwright.profiles.task import Task
+
+PAPER = load_job().task
+
+
+@pytest.mark.parametrize(("length", "earliest"), [(0.6, -263.38), (0.45, -113.38), (0.35, -13.38), (0.337, -0.377)])
+def test_the_machine_of_the_paper(length: float, earliest: float) -> None:
+    found = redesigned(PAPER.with_length(length))
+    assert found.earliest * 1e3 == pytest.approx(earliest, abs=5e-3 if length > 0.34 else 5e-4)
+    assert found.latest is None
+
+
+def test_without_limits_of_jerk_and_speed_it_is_a_closed_form() -> None:
+    free = PAPER.with_limits(Limits(1e3, 30.0, 1e12))
+    v, height = PAPER.cut.line_speed, PAPER.height
+    k = 30.0 / (4 * v**2)
+    length = (-1 + math.sqrt(1 + 4 * k * height)) / (2 * k) + PAPER.cut.sync_zone
+    assert length * 1e3 == pytest.approx(329.38, abs=5e-3)
+    assert redesigned(free).earliest == pytest.approx(length - PAPER.cut.length, abs=1e-6)
+
+
+@pytest.mark.parametrize("length", [0.6, 0.45, 0.35, 0.337])
+def test_the_correction_designs_and_a_hundredth_more_does_not(length: float) -> None:
+    task = PAPER.with_length(length)
+    end = redesigned(task).earliest
+    cam = solve(task.with_length(length + end * (1 - 1e-9)), "peak_acceleration").profile
+    v = task.cut.line_speed
+    assert max(abs(each.value) for each in cam.extrema(2)) * v**2 <= 30.0 * (1 + 1e-9)
+    assert max(abs(each.value) for each in cam.extrema(3)) * v**3 <= 3000.0 * (1 + 1e-9)
+    with pytest.raises(InfeasibleError):
+        solve(task.with_length(length + 1.01 * end), "peak_acceleration")
+
+
+def test_a_slave_that_cannot_stand_has_a_longest_length() -> None:
+    """At 150 m/min the knife cannot stop between two cuts: 450 mm it does, a length without end it does not."""
+    task = PAPER.at_speed(150 / 60).with_length(0.45)
+    found = redesigned(task)
+    assert found.latest is not None
+    assert found.latest > 0
+    solve(task.with_length(0.45 + found.latest * (1 - 1e-9)), "peak_acceleration")
+    with pytest.raises(InfeasibleError):
+        solve(task.with_length(0.45 + 1.01 * found.latest), "peak_acceleration")
+
+
+@pytest.mark.parametrize("name", ["flying-saw", "thick-product", "cross-cutter"])
+def test_other_machines_design_at_both_ends(name: str) -> None:
+    task = load_job(example(name).path).task
+    found = redesigned(task)
+    assert found.latest is None
+    solve(task.with_length(task.cut.length + found.earliest * (1 - 1e-7)), "peak_acceleration")
+    with pytest.raises(InfeasibleError):
+        solve(task.with_length(task.cut.length + 1.01 * found.earliest), "peak_acceleration")
+
+
+def test_a_knife_that_may_run_backwards_waits_for_any_mark() -> None:
+    task = PAPER.with_limits(replace(PAPER.limits, reversal=True)).at_speed(150 / 60).with_length(0.45)
+    assert redesigned(task).latest is None
+
+
+def test_a_cut_that_cannot_be_done_is_refused() -> None:
+    with pytest.raises(InfeasibleError):
+        redesigned(PAPER.with_length(0.3))
+
+
+def test_slower_lines_bear_more() -> None:
+    ends = [
+        redesigned(Task(PAPER.machine, replace(PAPER.cut, line_speed=v), PAPER.limits)).earliest
+        for v in (0.4, 0.8, 1.2)
+    ]
+    assert ends == sorted(ends)
