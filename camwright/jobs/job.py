@@ -116,6 +116,13 @@ class Job:
     source: Source | None = field(default=None, compare=False, repr=False)
     units: Units = field(default=METRIC, compare=False, repr=False)
 
+    def __post_init__(self) -> None:
+        if self.cut.shaped and not self.servo_aware:
+            raise InputError(
+                f"{self.name}: the cut asks for a shaped command, which is for servo-aware designs only; "
+                "give servo_aware=True with it, or a cut with shaped=False"
+            )
+
     @staticmethod
     def of(
         name: str,
@@ -182,7 +189,14 @@ class Job:
 
     @property
     def command(self) -> Command:
-        """What a servo-aware design may do to the command in the sync zone."""
+        """What a servo-aware design may do to the command in the sync zone: it follows the cut, which is what is replaced for another.
+
+        Examples
+        --------
+        >>> job = load_job()
+        >>> replace(job, servo_aware=True, cut=replace(job.cut, shaped=True)).command
+        'shaped'
+        """
         return "shaped" if self.cut.shaped else "in_sync"
 
     @cached_property
@@ -202,10 +216,12 @@ class Job:
     def _tables(self) -> dict[str, Any]:
         """Write the job as the data of a job file, with every key that it can have."""
         objective: dict[str, Any] = {"minimise": self.objective}
-        if self.servo_aware or self.cut.shaped:
-            objective |= {"servo_aware": self.servo_aware, "command": self.command}
         if self.servo_aware:
-            objective["line_speeds"] = line_speeds_text(self.slowest)
+            objective |= {
+                "servo_aware": True,
+                "command": self.command,
+                "line_speeds": line_speeds_text(self.slowest),
+            }
         return {
             "name": self.name,
             "machine": machine_table(self.machine),

@@ -207,3 +207,19 @@ def test_faults_of_a_job_made_in_python_are_those_of_a_file(changed: dict[str, A
     with pytest.raises(InputError) as caught:
         Job.of("mine", **{**TABLES, **changed})
     assert any(fault.startswith(message) for fault in caught.value.faults), caught.value.faults
+
+
+def test_the_command_follows_the_cut_and_a_shaped_one_is_servo_aware() -> None:
+    job = load_job()
+    shaped = replace(job, servo_aware=True, cut=replace(job.cut, shaped=True))
+    assert (shaped.command, shaped.task.cut.shaped) == ("shaped", True)
+    assert parse_job(shaped.text, "job.toml") == shaped
+    assert replace(shaped, cut=replace(shaped.cut, shaped=False)).command == "in_sync"
+    # it is one fact: what does not exist cannot be left behind
+    with pytest.raises(TypeError, match="command"):
+        replace(job, servo_aware=True, command="shaped")
+    for change in (lambda: replace(job, cut=shaped.cut), lambda: replace(shaped, servo_aware=False)):
+        with pytest.raises(
+            InputError, match="a shaped command, which is for servo-aware designs only; give servo_aware=True"
+        ):
+            change()

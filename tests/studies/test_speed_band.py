@@ -155,10 +155,11 @@ def test_a_cam_that_fails_at_every_speed_has_no_band_and_says_why() -> None:
     assert band.forbids == ("servo_stability",)
     tight = replace(
         PAPER,
+        servo_aware=True,
         servo=replace(PAPER.servo, velocity_feedforward=0.0),
         cut=replace(PAPER.cut, shaped=True, sync_tolerance=1e-9),
     )
-    assert band_of(baseline("cycloid", PAPER.task), replace(tight, servo_aware=True)).forbids == ("shear_zone_error",)
+    assert band_of(baseline("cycloid", PAPER.task), tight).forbids == ("shear_zone_error",)
 
 
 def test_gaps_on_the_way_up_are_told() -> None:
