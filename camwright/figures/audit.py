@@ -2,30 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from camwright.drives.audit import MEASURES, Audit
-from camwright.figures.marks import blank_figure, line_mark, patch_mark
-from camwright.figures.saving import written
-from camwright.figures.style import (
-    LIMIT,
-    LINES,
-    SHEAR_COLOUR,
-    SYNC_COLOUR,
-    shade_zones,
-)
+from camwright.figures.panel import LEFT, NOTHING, RIGHT, WIDTH, across, first_frame, head, page, stroked, zone_bands
+from camwright.figures.strokes import BLACK, LINES, Stroke
+from camwright.house.numbers import converted, number, unit_shown
+from camwright.house.picture_files import write_pictures
+from camwright.house.pictures import Bar, Frame, Item, Line, Note, Picture, Tick, ticks
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.validation.rebuilt import differences
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-
-_THIS: dict[str, Any] = {**LINES["linear_return"], "linestyle": "-", "linewidth": 1.1}
+_THIS = replace(LINES["linear_return"], width=1.4, dash=())
 _BEST = LINES["optimised"]
 _POINTS = 3000
 _ROOM = 1.15
@@ -38,13 +30,19 @@ _FARTHEST = 100.0
 _LEAST_AXIS = 10.0
 """Least reach of the axis of savings (%)."""
 
+_RATIO, _ACCELERATION, _ROW, _NAMES = 144.0, 180.0, 22.0, 130.0
+"""Heights of both panels and of a bar's row, and room for the names of the measures (pt)."""
+
+_POWERS = ("/s", "/s^2", "/s^2", "/s^3", "/s^3")
+"""Powers of time of the measures."""
+
 
 def audit_figures(audit: Audit, directory: Path) -> list[Path]:
     """Write the figure of an audit: ``audit.svg`` and ``audit.png`` in an existing directory."""
-    return written(lambda: audit_figure(audit), directory, "audit")
+    return write_pictures({"audit": audit_figure(audit)}, directory)
 
 
-def audit_figure(audit: Audit) -> Figure:
+def audit_figure(audit: Audit) -> Picture:
     """Draw a running cam beside the optimum: what it asks of the drive, and the savings as bars.
 
     Where the cam's acceleration is unbounded, its differences at the servo's sample time are drawn, and those of the
@@ -55,43 +53,49 @@ def audit_figure(audit: Audit) -> Figure:
     audit
         The cam and the optimum.
     """
-    cut, limits, unit = audit.job.cut, audit.job.limits, audit.job.machine.slave_unit
-    v = cut.line_speed
-    figure = blank_figure(6.8)
-    ratio, acceleration, bars = figure.subplots(3, 1, height_ratios=[1.0, 1.25, 0.9])
-    acceleration.sharex(ratio)
-    for axes in (ratio, acceleration):
-        shade_zones(axes, cut)
-    for profile, line in ((audit.cycle, _THIS), (audit.optimum, _BEST)):
-        x = _places(profile)
-        ratio.plot(x * 1e3, profile(x, 1), **line)
-        acceleration.plot(x * 1e3, _acceleration(audit, profile, x), **line)
-    _bounds(ratio, [limits.speed / v, -limits.speed / v])
-    _bounds(acceleration, [limits.acceleration, -limits.acceleration])
+    job = audit.job
+    heading = head(job.name, f"a running cam ({audit.target.name}, {audit.table.points} points) beside the optimum")
+    top = first_frame(heading)
+    second = top + _RATIO + 18.0
+    frames = [_ratio(audit, top), _over_time(audit, second), _savings(audit, second + _ACCELERATION + 48.0)]
+    legend: list[Item] = [
+        stroked(_THIS, NOTHING, "running cam"),
+        stroked(_BEST, NOTHING, "optimum"),
+        across(0.0, 0.0, 1.0, "limit of the drive"),
+        *zone_bands(job.cut, job.units),
+    ]
+    return page(heading, frames, legend)
+
+
+def _ratio(audit: Audit, top: float) -> Frame:
+    """Draw the ratio of both cams."""
+    limits, v = audit.job.limits, audit.job.cut.line_speed
+    lines = [stroked(stroke, _scaled(audit, x, profile(x, 1), 1.0)) for profile, stroke, x in _both(audit)]
+    label = "ratio dy/dx" if audit.job.machine.slave_unit == "m" else "ratio dy/dx (rad/m)"
+    return _frame(audit, lines, limits.speed / v, label, top, _RATIO)
+
+
+def _over_time(audit: Audit, top: float) -> Frame:
+    """Draw the acceleration of both cams."""
+    measure = audit.job.units.measure(f"{audit.job.machine.slave_unit}/s^2")
+    lines = [
+        stroked(stroke, _scaled(audit, x, _acceleration(audit, profile, x), measure.factor))
+        for profile, stroke, x in _both(audit)
+    ]
     how = "\nby differences" if audit.is_sampled("peak_acceleration") else ""
-    ratio.set_ylabel("ratio dy/dx" if unit == "m" else "ratio dy/dx (rad/m)")
-    ratio.tick_params(labelbottom=False)
-    acceleration.set_ylabel(f"acceleration{how} ({unit}/s²)")
-    acceleration.set_xlabel("master position x (mm)")
-    acceleration.set_xlim(0.0, cut.length * 1e3)
-    figure.align_ylabels([ratio, acceleration])
-    _savings(bars, audit)
-    figure.suptitle(
-        f"{audit.job.name}: a running cam ({audit.target.name}, {audit.table.points} points) beside the optimum",
-        fontsize=9.5,
-    )
-    figure.legend(
-        handles=[
-            line_mark(label="running cam", **_THIS),
-            line_mark(label="optimum", **_BEST),
-            line_mark(label="limit of the drive", **LIMIT),
-            patch_mark(facecolor=SYNC_COLOUR, label="sync zone"),
-            patch_mark(facecolor=SHEAR_COLOUR, edgecolor="#8c8c8c", hatch="////", linewidth=0, label="shear zone"),
-        ],
-        loc="outside lower center",
-        ncols=5,
-    )
-    return figure
+    limit = audit.job.limits.acceleration * measure.factor
+    frame = _frame(audit, lines, limit, f"acceleration{how} ({measure.printed})", top, _ACCELERATION)
+    return replace(frame, xlabel=f"master position x ({unit_shown('m', audit.job.units)})")
+
+
+def _both(audit: Audit) -> list[tuple[CamProfile, Stroke, FloatArray]]:
+    """Give the cams, their strokes, and the places at which they are drawn."""
+    return [(audit.cycle, _THIS, _places(audit.cycle)), (audit.optimum, _BEST, _places(audit.optimum))]
+
+
+def _scaled(audit: Audit, x: FloatArray, y: FloatArray, factor: float) -> FloatArray:
+    """Put a curve over the master into the units shown, shape ``(n, 2)``."""
+    return np.stack([x * converted(1.0, "m", audit.job.units), y * factor], axis=1)
 
 
 def _places(profile: CamProfile) -> FloatArray:
@@ -108,51 +112,49 @@ def _acceleration(audit: Audit, profile: CamProfile, x: FloatArray) -> FloatArra
     return differences(profile, x - cut.line_speed * servo.sample_time, 2, cut, servo)
 
 
-def _bounds(axes: Axes, bounds: list[float]) -> None:
+def _frame(audit: Audit, lines: Sequence[Line], limit: float, label: str, top: float, height: float) -> Frame:
     """Mark limits that lie near the curves, name those that do not, and leave room around what is drawn."""
-    values = np.concatenate([np.asarray(line.get_ydata(), dtype=float) for line in axes.lines])
+    end = converted(audit.job.cut.length, "m", audit.job.units)
+    values = np.concatenate([line.points[:, 1] for line in lines])
     least, greatest = float(values.min()), float(values.max())
-    reach = max(abs(least), abs(greatest)) or bounds[0]
-    drawn = [b for b in bounds if abs(b) <= _FAR * reach and (b > 0 or least < 0)]
-    if not drawn:
-        axes.text(0.995, 0.95, f"limit {bounds[0]:.4g}: off scale", transform=axes.transAxes, ha="right", va="top",
-                  fontsize=7)  # fmt: skip
+    reach = max(abs(least), abs(greatest)) or limit
+    drawn = [b for b in (limit, -limit) if limit <= _FAR * reach and (b > 0 or least < 0)]
     low, high = min([least, *drawn]), max([greatest, *drawn])
-    middle, half = 0.5 * (low + high), 0.5 * (high - low) * _ROOM
-    axes.set_ylim(middle - half, middle + half)
-    for bound in drawn:
-        axes.axhline(bound, **LIMIT)
+    middle, half = 0.5 * (low + high), 0.5 * (high - low) * _ROOM or 1.0
+    items: list[Item] = [*zone_bands(audit.job.cut, audit.job.units), *(across(b, 0.0, end) for b in drawn), *lines]
+    if not drawn:
+        items.append(Note((end, middle + half), f"limit {number(limit, 4)}: off scale", "end", (0.0, -6.0)))
+    return Frame(
+        LEFT, top, WIDTH - LEFT - RIGHT, height, np.array([0.0, middle - half]), np.array([end, middle + half]), items,
+        "", label, grid=True, apart=24.0,
+    )  # fmt: skip
 
 
-def _savings(axes: Axes, audit: Audit) -> None:
+def _savings(audit: Audit, top: float) -> Frame:
     """Draw what the optimum saves of each measure (%), the values of both beside it; a bar cut off is hatched."""
-    unit = audit.job.machine.slave_unit
-    powers = ("/s", "/s²", "/s²", "/s³", "/s³")
-    rows = list(zip(MEASURES.items(), powers, strict=True))
+    unit, units = audit.job.machine.slave_unit, audit.job.units
     savings = [100.0 * (audit.saving(name) or 0.0) for name in MEASURES]
     low, high = max(min(0.0, *savings), -_FARTHEST), max(0.0, *savings)
     room = max(high - low, _LEAST_AXIS)
-    axes.set_xlim(low - (0.04 * room if low < 0 else 0.0), high + 0.95 * room)
-    axes.set_xticks([tick for tick in axes.get_xticks() if low - 1e-9 <= tick <= max(high, 0.0) + 0.1 * room])
-    for i, (((name, _), power), saving) in enumerate(zip(rows, savings, strict=True)):
+    start, end = low - (0.04 * room if low < 0 else 0.0), high + 0.95 * room
+    items: list[Item] = []
+    for i, (name, power, saving) in enumerate(zip(MEASURES, _POWERS, savings, strict=True)):
         own, best = audit.pair(name)
-        axes.barh(
-            i,
-            max(saving, -_FARTHEST),
-            0.62,
-            facecolor=_BEST["color"] if saving >= 0 else _THIS["color"],
-            edgecolor="white",
-            hatch="" if saving >= -_FARTHEST else "////",
-            linewidth=0.0,
-        )
-        words = f"{saving:+.1f} %   {own:.4g} → {best:.4g} {unit}{power}"
+        measure = units.measure(unit + power)
+        colour = _BEST.colour if saving >= 0 else _THIS.colour
+        far = saving < -_FARTHEST
+        items.append(Bar((0.0, -i - 0.31), (max(saving, -_FARTHEST), 0.31 - i), colour, "lines" if far else ""))
+        values = " → ".join(number(value if value is None else value * measure.factor, 4) for value in (own, best))
+        percent = f"{round(saving, 1) + 0.0:+.1f}".replace("-", "−")
+        words = f"{percent} %: {values} {measure.printed}"
         words += ", by differences" if audit.is_sampled(name) else ""
-        axes.text(max(saving, 0.0) + 0.015 * room, i, words, ha="left", va="center", fontsize=7.5)
-    axes.axvline(0.0, color="black", linewidth=0.6)
-    axes.set_yticks(range(len(rows)), [title for (_, title), _ in rows])
-    axes.invert_yaxis()
-    axes.grid(visible=False)
-    axes.tick_params(axis="y", length=0)
-    axes.set_xlabel("saved by the optimum (% of the running cam)")
-    for side in ("top", "right"):
-        axes.spines[side].set_visible(False)
+        items.append(Note((max(saving, 0.0), float(-i)), words, "start", (5.0, 0.0)))
+    bottom = 0.4 - len(savings)
+    items.append(Line(np.array([[0.0, bottom], [0.0, 0.6]]), BLACK, 0.8))
+    chosen = [Tick(*each) for each in zip(*ticks(start, end, 10), strict=True)]
+    return Frame(
+        _NAMES, top, WIDTH - _NAMES - RIGHT, _ROW * (len(savings) + 0.2), np.array([start, bottom]), np.array([end, 0.6]),
+        items, "saved by the optimum (% of the running cam)", edges=False,
+        xticks=[tick for tick in chosen if low - 1e-9 <= tick.value <= high + 0.1 * room],
+        yticks=[Tick(float(-i), words) for i, words in enumerate(MEASURES.values())],
+    )  # fmt: skip

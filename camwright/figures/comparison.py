@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from camwright.figures.panel import RIGHT, WIDTH, first_frame, head, page, upright
-from camwright.figures.style import LINES, title
+from camwright.figures.strokes import LINES
+from camwright.figures.style import title
 from camwright.house.numbers import converted, number, unit_shown
 from camwright.house.picture_files import write_pictures
 from camwright.house.pictures import Bar, Frame, Item, Note, Picture, Tick
@@ -128,7 +129,7 @@ def _legend(frames: Sequence[Frame]) -> list[Item]:
     if "beyond the limit" in seen:
         seen["beyond the limit"] = Bar((0.0, 0.0), (1.0, 1.0), _BASELINE, "lines", "beyond the limit")
     seen.setdefault("baseline", Bar((0.0, 0.0), (1.0, 1.0), _BASELINE, "", "baseline"))
-    seen.setdefault("optimised", Bar((0.0, 0.0), (1.0, 1.0), LINES["optimised"]["color"], "", "optimised"))
+    seen.setdefault("optimised", Bar((0.0, 0.0), (1.0, 1.0), LINES["optimised"].colour, "", "optimised"))
     return [seen[label] for label in order if label in seen]
 
 
@@ -161,7 +162,7 @@ def _bar(at: float, name: str, value: float | None, column: _Column, width: floa
             Note((0.5 * width, at), column.without, "middle", size=8.0, boxed=True),
         ]
     beyond = column.limit is not None and value > column.limit * (1 + _BEYOND)
-    colour, label = (LINES["optimised"]["color"], "optimised") if name == "optimised" else (_BASELINE, "baseline")
+    colour, label = (LINES["optimised"].colour, "optimised") if name == "optimised" else (_BASELINE, "baseline")
     return [
         Bar((0.0, low), (value, high), colour, "lines" if beyond else "", "beyond the limit" if beyond else label),
         Note((value, at), number(value, 4), "start", (3.0, 0.0), 8.0),

@@ -2,43 +2,36 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
 
 import numpy as np
 
-from camwright.figures.marks import blank_figure, line_mark, patch_mark
+from camwright.figures.panel import LEFT, NOTHING, RIGHT, WIDTH, first_frame, head, page, stroked, zone_bands
 from camwright.figures.profile import curve
-from camwright.figures.style import (
-    LINES,
-    SHEAR_COLOUR,
-    SYNC_COLOUR,
-    shade_zones,
-    title,
-)
+from camwright.figures.strokes import BLACK, LINES, Stroke
+from camwright.figures.style import title
+from camwright.house.numbers import converted, number, unit_shown
+from camwright.house.pictures import Band, Frame, Item, Line, Marks, Picture, Tick
+from camwright.jobs.job import Job
 from camwright.jobs.machine_words import machine_words
-from camwright.profiles.task import Task
+from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.studies.comparison import Comparison
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Patch
-
 
 TABULATED = "crank_tabulated"
 
-STYLES: dict[str, dict[str, Any]] = {
-    "optimised": LINES["optimised"],
-    TABULATED: {"color": "#a0522d", "linestyle": (0, (3, 1.5)), "linewidth": 1.2, "zorder": 3},
-}
-"""Look of the two profiles drawn."""
+STYLES: dict[str, Stroke] = {"optimised": LINES["optimised"], TABULATED: Stroke("#a0522d", 1.5, (4.5, 2.2))}
+"""Strokes of the two profiles drawn."""
 
 _ANGLES = 721
 """Points drawn of the crank's turn."""
 
+_UPPER, _LOWER, _BETWEEN = 168.0, 132.0, 60.0
+"""Heights of the upper two and the lower two panels, and room between the upper two (pt)."""
 
-def crank_figure(comparison: Comparison) -> Figure:
+_ROOM = 0.05
+
+
+def crank_figure(comparison: Comparison) -> Picture:
     """Draw the maps of a crank and the running curve of its servo.
 
     Parameters
@@ -52,77 +45,99 @@ def crank_figure(comparison: Comparison) -> Figure:
         The machine's tool has no dead centres.
     """
     job = comparison.job
-    machine, cut = job.machine, job.cut
+    machine = job.machine
     if machine.dead_centres is None:
         raise TypeError(f"the crank figure is about a tool that turns back, not a {type(machine).__name__}")
-    shown = {row.name: row.profile for row in comparison.rows if row.name in STYLES}
-    figure = blank_figure(7.6)
-    grid = figure.add_gridspec(3, 2, height_ratios=(1.15, 1.0, 1.0))
-    turn, travel = figure.add_subplot(grid[0, 0]), figure.add_subplot(grid[0, 1])
-    speed = figure.add_subplot(grid[1, :])
-    acceleration = figure.add_subplot(grid[2, :], sharex=speed)
-    _turn(turn, job.task, machine.dead_centres)
-    for axes in (travel, speed, acceleration):
-        shade_zones(axes, cut)
-        axes.set_xlim(0.0, cut.length * 1e3)
-    rpm, radians = machine.motor_ratio * cut.line_speed * 30 / np.pi, machine.motor_ratio * cut.line_speed**2
-    start = job.task.slave_at_start
-    back = float(machine.tool(machine.dead_centres[0]))
-    for name in (name for name in STYLES if name in shown):
-        profile = shown[name]
-        x, y = curve(profile, 0)
-        place = machine.tool(start + y - float(profile(profile.start))) - back
-        travel.plot(x * 1e3, place * 1e3, **STYLES[name])
-        x, ratio = curve(profile, 1)
-        speed.plot(x * 1e3, rpm * ratio, **STYLES[name])
-        x, slope = curve(profile, 2)
-        acceleration.plot(x * 1e3, radians * slope, **STYLES[name])
-    speed.axhline(0.0, color="black", linewidth=0.8)
-    speed.set_ylim(bottom=min(0.0, speed.get_ylim()[0]) - 0.04 * speed.get_ylim()[1])
-    travel.set_title("master to carriage")
-    travel.set_xlabel("master position x (mm)")
-    travel.set_ylabel("carriage position (mm)")
-    speed.set_title("servo curve")
-    speed.set_ylabel("servo speed (rpm)")
-    acceleration.set_ylabel("servo acceleration (rad/s²)")
-    acceleration.set_xlabel("master position x (mm)")
-    figure.align_ylabels([speed, acceleration])
-    figure.suptitle(
-        f"{job.name}: {machine_words(machine, digits=6)}, gear {machine.motor_ratio:g}",
-        fontsize=9.5,
-    )
-    handles: list[Line2D | Patch] = [line_mark(label=title(name), **STYLES[name]) for name in STYLES if name in shown]
-    handles += [
-        patch_mark(facecolor=SYNC_COLOUR, label="sync zone"),
-        patch_mark(facecolor=SHEAR_COLOUR, edgecolor="#8c8c8c", hatch="////", linewidth=0, label="shear zone"),
+    profiles = {row.name: row.profile for row in comparison.rows}
+    shown = {name: profiles[name] for name in STYLES if name in profiles}
+    heading = head(job.name, f"{machine_words(machine, digits=6)}, gear {machine.motor_ratio:g}")
+    top = first_frame(heading) + 24.0
+    width = 0.5 * (WIDTH - LEFT - RIGHT - _BETWEEN)
+    below = top + _UPPER + 72.0
+    frames = [
+        _turn(job, machine.dead_centres, top, width),
+        _travel(job, shown, machine.dead_centres[0], (LEFT + width + _BETWEEN, top, width)),
+        *_motor(job, shown, below),
     ]
-    figure.legend(handles=handles, loc="outside lower center", ncols=4)
-    return figure
+    legend: list[Item] = [stroked(STYLES[name], NOTHING, title(name)) for name in shown]
+    return page(heading, frames, [*legend, *zone_bands(job.cut, job.units)])
 
 
-def _turn(axes: Axes, task: Task, dead_centres: tuple[float, float]) -> None:
+def _turn(job: Job, dead_centres: tuple[float, float], top: float, width: float) -> Frame:
     """Draw the carriage over one turn of the crank from its back dead centre, with the zones on the crank and their ends."""
-    machine, cut = task.machine, task.cut
+    task, cut, machine = job.task, job.cut, job.machine
     back, front = dead_centres
+    factor, length = converted(1.0, "m", job.units), unit_shown("m", job.units)
     angle = np.linspace(back, back + 2 * np.pi, _ANGLES)
     lowest = float(machine.tool(back))
-    axes.plot(np.degrees(angle), (machine.tool(angle) - lowest) * 1e3, color="black", linewidth=1.3)
-    sync, start = task.sync, task.slave_at_sync_start
+    way = np.stack([np.degrees(angle), (machine.tool(angle) - lowest) * factor], axis=1)
     shear = (cut.shear_zone_at, min(cut.shear_zone_at + cut.shear_zone, cut.sync_zone))
-    ends = start + sync(np.array([0.0, cut.sync_zone, *shear]))
-    first, last, cut_first, cut_last = np.degrees(ends)
-    axes.axvspan(first, last, color=SYNC_COLOUR, linewidth=0, zorder=0)
-    if cut_last > cut_first:
-        axes.axvspan(
-            cut_first, cut_last, facecolor=SHEAR_COLOUR, edgecolor="#8c8c8c", hatch="////", linewidth=0, zorder=0.5
-        )
-    places = (machine.tool(ends[:2]) - lowest) * 1e3
-    axes.plot([first, last], places, linestyle="none", marker="o", color="black", markersize=4)
-    axes.axvline(np.degrees(front), color="#8c8c8c", linewidth=0.8, zorder=0.5)
-    axes.set_xlim(np.degrees(back), np.degrees(back) + 360)
-    axes.set_xticks(np.arange(0, 361, 60))
-    axes.set_title("crank to carriage")
-    axes.set_xlabel(
-        f"crank angle (°)\nsync zone {first:.1f}° to {last:.1f}°, carriage {places[0]:.1f} to {places[1]:.1f} mm"
-    )
-    axes.set_ylabel("carriage position (mm)")
+    ends = task.slave_at_sync_start + task.sync(np.array([0.0, cut.sync_zone, *shear]))
+    first, last, cut_first, cut_last = np.degrees(ends).tolist()
+    places = (machine.tool(ends[:2]) - lowest) * factor
+    low, high = _span(way[:, 1])
+    dead = float(np.degrees(front))
+    items: list[Item] = [
+        Band(first, last, "grey"),
+        *([Band(cut_first, cut_last, "hatched")] if cut_last > cut_first else []),
+        Line(np.array([[dead, low], [dead, high]]), "#8c8c8c", 1.0),
+        Line(way, BLACK, 1.6),
+        Marks(np.stack([[first, last], places], axis=1), BLACK, 6.0, "disc"),
+    ]
+    start = float(np.degrees(back))
+    turned: FloatArray = np.arange(np.ceil(start / 60.0), np.floor(start / 60.0 + 6.0) + 1.0) * 60.0
+    words = f"{first:.1f}° to {last:.1f}°, carriage {number(places[0], 4)} to {number(places[1], 4)} {length}"
+    return Frame(
+        LEFT, top, width, _UPPER, np.array([start, low]), np.array([start + 360.0, high]), items,
+        f"crank angle (°)\nsync zone {words}", f"carriage position ({length})", "crank to carriage", grid=True, apart=24.0,
+        xticks=[Tick(float(each), f"{each:g}") for each in turned + 0.0],
+    )  # fmt: skip
+
+
+def _travel(job: Job, shown: Mapping[str, CamProfile], back: float, place: tuple[float, float, float]) -> Frame:
+    """Draw the carriage over the master; left, top and width of the panel (pt)."""
+    machine, start = job.machine, job.task.slave_at_start
+    factor, length = converted(1.0, "m", job.units), unit_shown("m", job.units)
+    lines = []
+    for name, profile in shown.items():
+        x, y = curve(profile, 0)
+        tool = machine.tool(start + y - float(profile(profile.start))) - float(machine.tool(back))
+        lines.append(stroked(STYLES[name], np.stack([x, tool], axis=1) * factor))
+    low, high = _span(np.concatenate([line.points[:, 1] for line in lines]))
+    left, top, width = place
+    return Frame(
+        left, top, width, _UPPER, np.array([0.0, low]), np.array([job.cut.length * factor, high]),
+        [*zone_bands(job.cut, job.units), *reversed(lines)], f"master position x ({length})", "", "master to carriage",
+        grid=True, apart=24.0,
+    )  # fmt: skip
+
+
+def _motor(job: Job, shown: Mapping[str, CamProfile], top: float) -> list[Frame]:
+    """Draw speed and acceleration of the servo over the master."""
+    v, gear, factor = job.cut.line_speed, job.machine.motor_ratio, converted(1.0, "m", job.units)
+    frames = []
+    for order, scale, label in (
+        (1, gear * v * 30 / np.pi, "servo speed (rpm)"),
+        (2, gear * v**2, "servo acceleration (rad/s²)"),
+    ):
+        lines = [
+            stroked(STYLES[name], np.stack(curve(profile, order), axis=1) * [factor, scale])
+            for name, profile in shown.items()
+        ]
+        low, high = _span(np.concatenate([*(line.points[:, 1] for line in lines), [0.0]]))
+        frames.append(
+            Frame(
+                LEFT, top + (order - 1) * (_LOWER + 18.0), WIDTH - LEFT - RIGHT, _LOWER, np.array([0.0, low]),
+                np.array([job.cut.length * factor, high]), [*zone_bands(job.cut, job.units), *reversed(lines)],
+                f"master position x ({unit_shown('m', job.units)})" if order == 2 else "", label,
+                "servo curve" if order == 1 else "", grid=True, apart=24.0,
+            )
+        )  # fmt: skip
+    return frames
+
+
+def _span(values: FloatArray) -> tuple[float, float]:
+    """Least and greatest of a panel, with room around."""
+    low, high = float(values.min()), float(values.max())
+    room = _ROOM * (high - low)
+    return low - room, high + room

@@ -9,7 +9,6 @@ from camwright.figures.axis import axis_figure
 from camwright.figures.comparison import bars_figure
 from camwright.figures.crank import crank_figure
 from camwright.figures.profile import profile_figure
-from camwright.figures.saving import written
 from camwright.figures.servo import AXES, servo_figure
 from camwright.figures.speed_band import speed_band_figure
 from camwright.house.picture_files import write_pictures
@@ -44,20 +43,10 @@ def design_figures(design: Design, directory: Path) -> list[Path]:
         "comparison": bars_figure(comparison),
         "speed_band": speed_band_figure(design),
     }
-    return [
-        *write_pictures(pictures, directory),
-        *(
-            written(lambda: crank_figure(comparison), directory, "crank")
-            if job.machine.dead_centres is not None
-            else []
-        ),
-        *(_axis_figures(design, directory) if design.axis is not None else []),
-    ]
-
-
-def _axis_figures(design: Design, directory: Path) -> list[Path]:
-    """Write the figure of a servo-aware design's axis."""
-    job, names = design.job, {row.name for row in design.comparison.rows}
-    runs = {name: simulate(design.comparison[name].profile, job.cut, job.servo) for name in SHOWN_AXES if name in names}
-    band = robust_band(job, design.profile)
-    return written(lambda: axis_figure(design, runs, band), directory, "axis")
+    if job.machine.dead_centres is not None:
+        pictures["crank"] = crank_figure(comparison)
+    if design.axis is not None:
+        names = {row.name for row in comparison.rows}
+        axes = {name: simulate(comparison[name].profile, job.cut, job.servo) for name in SHOWN_AXES if name in names}
+        pictures["axis"] = axis_figure(design, axes, robust_band(job, design.profile))
+    return write_pictures(pictures, directory)

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from camwright.figures.style import LINES, zone_parts
+from camwright.figures.strokes import LIMIT, LINES, Stroke
+from camwright.figures.style import zone_parts
 from camwright.house.numbers import Units, converted
 from camwright.house.pictures import Band, Frame, Item, Line, Look, Picture
 from camwright.house.svg import legend_rows
@@ -22,37 +23,49 @@ TITLE = 15.0
 
 _LEGEND_ROW, _LEGEND_MARGIN = 15.0, 8.0
 _LONGEST_TITLE = 84
+_MOST_POINTS = 4000
+"""Points drawn of a sampling phase; far more than a printed line shows."""
 
-_LOOKS: dict[str, tuple[float, tuple[float, ...]]] = {
-    "optimised": (2.2, ()),
-    "linear_return": (1.5, (8.0, 2.6)),
-    "poly_3_4_5": (1.5, (9.0, 2.3, 2.0, 2.3)),
-}
-"""Width and dash of each profile drawn (pt)."""
+NOTHING: FloatArray = np.empty((0, 2))
+"""No points: what a sample of a legend has."""
 
-BLACK, GREY = "#000", "#6b6b6b"
-DOTTED = (1.3, 2.0)
+
+def stroked(stroke: Stroke, points: FloatArray, label: str = "") -> Line:
+    """Draw a curve, points of shape ``(n, 2)``."""
+    return Line(points, stroke.colour, stroke.width, label, stroke.dash)
 
 
 def profile_line(name: str, points: FloatArray, label: str = "") -> Line:
     """Draw a curve of a profile in its own colour and dash; points of shape ``(n, 2)``."""
-    width, dash = _LOOKS[name]
-    return Line(points, LINES[name]["color"], width, label, dash)
+    return stroked(LINES[name], points, label)
+
+
+def phase_lines(name: str, curves: Sequence[FloatArray]) -> list[Line]:
+    """Draw the curve of each sampling phase: the first in the profile's own line, the others thin below it, one line with gaps."""
+    gap = np.full((1, 2), np.nan)
+    others = [part for each in curves[1:] for part in (_stride(each), gap)]
+    thin = [thin_line(name, np.concatenate(others))] if others else []
+    return [*thin, profile_line(name, _stride(curves[0]))]
+
+
+def _stride(values: FloatArray) -> FloatArray:
+    """Take as many points as a line needs."""
+    return values[:: max(1, len(values) // _MOST_POINTS)]
 
 
 def thin_line(name: str, points: FloatArray, label: str = "") -> Line:
     """Draw what goes with a curve, thin and in its colour."""
-    return Line(points, LINES[name]["color"], 0.5, label)
+    return Line(points, LINES[name].colour, 0.5, label)
 
 
 def across(value: float, start: float, end: float, label: str = "") -> Line:
     """Mark a limit: a dotted line at a height."""
-    return Line(np.array([[start, value], [end, value]]), BLACK, 1.3, label, DOTTED)
+    return stroked(LIMIT, np.array([[start, value], [end, value]]), label)
 
 
 def upright(place: float, low: float, high: float, label: str = "") -> Line:
     """Mark a limit: a dotted line at a place."""
-    return Line(np.array([[place, low], [place, high]]), BLACK, 1.3, label, DOTTED)
+    return stroked(LIMIT, np.array([[place, low], [place, high]]), label)
 
 
 def zone_bands(cut: Cut, units: Units) -> list[Band]:
@@ -77,7 +90,10 @@ def head(name: str, words: str) -> str:
 def page(title: str, frames: Sequence[Frame], legend: Sequence[Item]) -> Picture:
     """Put frames on a page that ends below its legend; that of each label comes once."""
     told = list({item.label: item for item in legend}.values())
-    lowest = max(frame.top + frame.height + (30.0 if frame.xlabel else 16.0) for frame in frames)
+    lowest = max(
+        frame.top + frame.height + (16.0 + 14.0 * len(frame.xlabel.split("\n")) if frame.xlabel else 16.0)
+        for frame in frames
+    )
     height = lowest + _LEGEND_ROW * len(legend_rows(told, WIDTH)) + _LEGEND_MARGIN
     return Picture(WIDTH, 12.0 * math.ceil(height / 12.0), title, LEFT, frames, told)
 

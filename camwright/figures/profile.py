@@ -6,8 +6,20 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from camwright.figures.panel import LEFT, RIGHT, WIDTH, across, first_frame, head, page, profile_line, zone_bands
-from camwright.figures.style import LINES, title
+from camwright.figures.panel import (
+    LEFT,
+    NOTHING,
+    RIGHT,
+    WIDTH,
+    across,
+    first_frame,
+    head,
+    page,
+    profile_line,
+    zone_bands,
+)
+from camwright.figures.strokes import LINES
+from camwright.figures.style import title
 from camwright.house.numbers import Units, converted, number, unit_shown, with_unit
 from camwright.house.pictures import Arrow, Frame, Item, Line, Note, Picture
 from camwright.jobs.job import Job
@@ -52,7 +64,7 @@ def profile_figure(comparison: Comparison) -> Picture:
     heading = head(job.name, words)
     top = first_frame(heading)
     frames = [_frame(job, shown, order, top + order * (_PANEL + _GAP)) for order in range(4)]
-    legend: list[Item] = [profile_line(name, np.empty((0, 2)), title(name)) for name in LINES if name in shown]
+    legend: list[Item] = [profile_line(name, NOTHING, title(name)) for name in LINES if name in shown]
     legend += [across(0.0, 0.0, 1.0, "limit of the drive"), *zone_bands(job.cut, job.units)]
     if "linear_return" in shown:
         legend.append(_arrow("linear_return", 0.0, 1.0, "unbounded"))
@@ -175,5 +187,5 @@ def _arrows(name: str, profile: CamProfile, order: int, units: Units, reach: tup
 
 def _arrow(name: str, x: float, tip: float, label: str = "") -> Arrow:
     """Draw one arrow from zero to the edge of the panel."""
-    line = profile_line(name, np.empty((0, 2)))
+    line = profile_line(name, NOTHING)
     return Arrow(x, 0.0, tip, line.colour, line.width, label, line.dash)

@@ -8,10 +8,8 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from camwright.figures.panel import (
-    BLACK,
-    DOTTED,
-    GREY,
     LEFT,
+    NOTHING,
     RIGHT,
     WIDTH,
     across,
@@ -19,10 +17,12 @@ from camwright.figures.panel import (
     first_frame,
     head,
     page,
+    phase_lines,
     profile_line,
-    thin_line,
-)  # fmt: skip
-from camwright.figures.style import LINES, title
+    stroked,
+)
+from camwright.figures.strokes import BLACK, COMMAND, LINES
+from camwright.figures.style import title
 from camwright.house.numbers import Units, converted, unit_shown, with_unit
 from camwright.house.pictures import Frame, Item, Line, Marks, Note, Picture
 from camwright.profiles.polynomial.profile import FloatArray
@@ -33,9 +33,6 @@ from camwright.validation.servo.response import sync_error
 
 AXES = ("linear_return", "optimised")
 """Profiles whose axis is drawn."""
-
-_MOST_POINTS = 4000
-"""Points drawn of a sampling phase; far more than a printed line shows."""
 
 _BEFORE, _AFTER = 0.15, 0.6
 """Part of the sync zone drawn before and after its start, where the axis meets the line."""
@@ -83,28 +80,16 @@ def servo_figure(comparison: Comparison, runs: Mapping[str, ServoRun]) -> Pictur
     top += _MEETING + _BELOW + 2 * _HEADING
     lower = _errors(comparison, runs, top)
     tolerance = across(0.0, 0.0, 1.0, "sync tolerance")
-    legend: list[Item] = [profile_line(name, np.empty((0, 2)), f"axis, {title(name)}") for name in AXES]
+    legend: list[Item] = [profile_line(name, NOTHING, f"axis, {title(name)}") for name in AXES]
     legend += [
-        Line(np.empty((0, 2)), BLACK, 1.1, "ideal sync line"),
-        Line(np.empty((0, 2)), GREY, 1.6, "command", DOTTED),
-        Marks(np.empty((0, 2)), "#444444", _CROSSING, "open", "crossing (latest phase)"),
-        Marks(np.empty((0, 2)), "#444444", _SETTLED, "diamond", "settled (latest phase)"),
+        Line(NOTHING, BLACK, 1.1, "ideal sync line"),
+        stroked(COMMAND, NOTHING, "command"),
+        Marks(NOTHING, "#444444", _CROSSING, "open", "crossing (latest phase)"),
+        Marks(NOTHING, "#444444", _SETTLED, "diamond", "settled (latest phase)"),
         tolerance,
         band(0.0, 1.0, "shear zone", units),
     ]
     return page(heading, [*upper, *lower], legend)
-
-
-def _phases(name: str, curves: Sequence[FloatArray]) -> list[Line]:
-    """Draw the curve of each sampling phase: the first in the profile's own line, the others thin below it, one line with gaps."""
-    gap = np.full((1, 2), np.nan)
-    others = [part for each in curves[1:] for part in (_stride(each), gap)]
-    return [*([thin_line(name, np.concatenate(others))] if others else []), profile_line(name, _stride(curves[0]))]
-
-
-def _stride(values: FloatArray) -> FloatArray:
-    """Take as many points as a line needs."""
-    return values[:: max(1, len(values) // _MOST_POINTS)]
 
 
 def _meetings(comparison: Comparison, runs: Mapping[str, ServoRun], top: float) -> list[Frame]:
@@ -144,14 +129,14 @@ def _meeting(row: Measured, comparison: Comparison, run: ServoRun) -> list[Item]
     command = np.stack([run.master[0, index] - start, tool(run.command[0, index])], axis=1) * factor
     items: list[Item] = [
         Line(np.stack([ends, cut.sync_ratio * ends], axis=1) * factor, BLACK, 1.1),
-        Line(_stride(command), GREY, 1.6, "", DOTTED),
-        *_phases(row.name, axes),
+        stroked(COMMAND, command),
+        *phase_lines(row.name, axes),
     ]
     crossing = row.response.crossing
     if crossing is not None and crossing <= last:
         there = (crossing * factor, crossing * cut.sync_ratio * factor)
         words = _length(crossing, job.units)
-        items.append(Marks(np.array([there]), LINES[row.name]["color"], _CROSSING, "open"))
+        items.append(Marks(np.array([there]), LINES[row.name].colour, _CROSSING, "open"))
         items.append(Note(there, words, "end", (-7.0, -9.0), 10.0))
     return items
 
@@ -191,11 +176,11 @@ def _errors(comparison: Comparison, runs: Mapping[str, ServoRun], top: float) ->
 def _error(row: Measured, comparison: Comparison, run: ServoRun) -> list[Item]:
     """Draw the sync error of every phase, crossing and settling marked on the line of the axis."""
     job = comparison.job
-    factor, colour = converted(1.0, "m", job.units), LINES[row.name]["color"]
+    factor, colour = converted(1.0, "m", job.units), LINES[row.name].colour
     start = job.cut.return_start + job.cut.return_zone
     master, error, _ = sync_error(run, row.profile, job.task, start, start + job.cut.sync_zone)
     curves = [np.stack([x - start, y], axis=1) * factor for x, y in zip(master, error, strict=True)]
-    items: list[Item] = [*_phases(row.name, curves)]
+    items: list[Item] = [*phase_lines(row.name, curves)]
     crossing, settling = row.response.crossing, row.response.settling
     if crossing is not None:
         items.append(Marks(np.array([[crossing * factor, 0.0]]), colour, _CROSSING, "open"))

@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from camwright.figures.panel import GREY, LEFT, RIGHT, WIDTH, across, first_frame, head, page, profile_line, thin_line
+from camwright.figures.panel import LEFT, RIGHT, WIDTH, across, first_frame, head, page, profile_line, thin_line
+from camwright.figures.strokes import GREY
 from camwright.figures.style import title
 from camwright.house.numbers import unit_shown
 from camwright.house.pictures import Band, Frame, Item, Line, Picture, Tick

@@ -2,28 +2,23 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from camwright.figures.labels import label_points
-from camwright.figures.marks import blank_figure, line_mark
-from camwright.figures.saving import written
-from camwright.figures.style import (
-    LINES,
-    SYNC_COLOUR,
-    title,
-)
+from camwright.figures.panel import LEFT, NOTHING, RIGHT, WIDTH, first_frame, head, page
+from camwright.figures.strokes import BLACK, LINES
+from camwright.figures.style import title
+from camwright.house.numbers import Shown
+from camwright.house.picture_files import write_pictures
+from camwright.house.pictures import Band, Frame, Item, Line, Marks, Note, Picture, Shape, Tick, ticks
 from camwright.profiles.objective import CommandObjective
+from camwright.profiles.polynomial.profile import FloatArray
 from camwright.studies.tradeoff import Row, TradeOff, words
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.axis import Axis
-    from matplotlib.figure import Figure
-
 
 _SAME = 2e-3
 """Share of the panel within which points count as one and share a label."""
@@ -37,19 +32,64 @@ _ROOM = 0.12
 _STRIP = 0.27
 """Width of the strip of unbounded values, as a part of the rest."""
 
-_STYLES: dict[str, dict[str, Any]] = {
-    "objective": {"marker": "o", "color": LINES["optimised"]["color"], "label": "optimum of an objective"},
-    "baseline": {"marker": "s", "color": "#8c8c8c", "markersize": 6.5, "label": "baseline"},
-    "beyond": {"marker": "x", "color": "#555555", "label": "baseline that breaks a limit"},
+_PANEL, _GAP = 252.0, 48.0
+"""Height of a panel, and room between the two (pt)."""
+
+_LABEL = 8.0
+"""Size of a point's label (pt)."""
+
+_APART = 44.0
+"""Least distance of ticks along x (pt)."""
+
+_STYLES: dict[str, tuple[Shape, str, float, str]] = {
+    "objective": ("disc", LINES["optimised"].colour, 6.0, "optimum of an objective"),
+    "baseline": ("frame", "#8c8c8c", 7.0, "baseline"),
+    "beyond": ("cross", "#555555", 5.5, "baseline that breaks a limit"),
 }
+"""Shape, colour and size of a point, and what it is: discs, open squares and crosses differ without colour."""
+
+
+@dataclass(frozen=True)
+class _Scale:
+    """An axis: what it spans, in logarithms where that is a lot.
+
+    Parameters
+    ----------
+    low, high
+        Its ends, as they are laid out.
+    wide
+        Whether they are logarithms.
+    edge
+        Beyond this unbounded values stand; at its end where there are none.
+    """
+
+    low: float
+    high: float
+    wide: bool
+    edge: float
+
+    def at(self, value: float | None) -> float:
+        """Give the place of a value, of an unbounded one in the middle of the strip."""
+        if value is None:
+            return 0.5 * (self.edge + self.high)
+        return math.log10(value) if self.wide else value
+
+    def ticks(self, most: int) -> list[Tick]:
+        """Choose ticks up to the edge: round numbers, or 1, 2 and 5 of each power of ten."""
+        if not self.wide:
+            return [Tick(*each) for each in zip(*ticks(self.low, self.edge, most), strict=True)]
+        powers = range(math.floor(self.low), math.ceil(self.edge) + 1)
+        steps = (1.0, 2.0, 5.0) if self.edge - self.low < most / 3 else (1.0,)
+        values = [step * 10.0**power for power in powers for step in steps]
+        return [Tick(math.log10(v), f"{v:g}") for v in values if self.low <= math.log10(v) <= self.edge]
 
 
 def tradeoff_figures(result: TradeOff, directory: Path) -> list[Path]:
     """Write the figure of a trade-off: ``tradeoff.svg`` and ``tradeoff.png`` in an existing directory."""
-    return written(lambda: tradeoff_figure(result), directory, "tradeoff")
+    return write_pictures({"tradeoff": tradeoff_figure(result)}, directory)
 
 
-def tradeoff_figure(result: TradeOff) -> Figure:
+def tradeoff_figure(result: TradeOff) -> Picture:
     """Draw all profiles of a trade-off as points: peak acceleration over RMS torque, or RMS acceleration, and over peak jerk.
 
     Profiles of unbounded jerk stand beyond a line at the right edge; those of unbounded acceleration are named below.
@@ -60,38 +100,72 @@ def tradeoff_figure(result: TradeOff) -> Figure:
         The trade-off.
     """
     bounded = [row for row in result.rows if row.values["peak_acceleration"] is not None]
-    figure = blank_figure(7.6)
-    upper, lower = figure.subplots(2, 1, sharey=True)
     heating: CommandObjective = "rms_torque" if "rms_torque" in result.measures else "rms_acceleration"
-    panels: list[tuple[Axes, CommandObjective]] = [(upper, heating), (lower, "peak_jerk")]
-    for axes, measure in panels:
-        _scales(axes, [row.values[measure] for row in bounded], [row.values["peak_acceleration"] for row in bounded])
-        axes.set_xlabel(f"{words(measure)} ({_unit(result, measure)})")
-        axes.set_ylabel(f"peak acceleration ({_unit(result, 'peak_acceleration')})")
-    figure.suptitle(f"{result.job.name}: what each objective costs", fontsize=9.5)
+    heading = head(result.job.name, "what each objective costs")
+    top = first_frame(heading)
     unbounded = [_label(row) for row in result.rows if row.values["peak_acceleration"] is None]
-    if unbounded:
-        lower.set_xlabel(f"{lower.get_xlabel()}\nnot drawn, with an unbounded acceleration: {', '.join(unbounded)}")
+    note = f"\nnot drawn, with an unbounded acceleration: {', '.join(unbounded)}" if unbounded else ""
+    frames = [
+        _panel(result, bounded, heating, top, ""),
+        _panel(result, bounded, "peak_jerk", top + _PANEL + _GAP, note),
+    ]
     kinds = [kind for kind in _STYLES if any(_kind(row) == kind for row in bounded)]
-    figure.legend(handles=[line_mark(**_marker(kind)) for kind in kinds], loc="outside lower center", ncols=3)
-    for axes, measure in panels:
-        _draw(axes, bounded, measure)
-    return figure
+    legend: list[Item] = [_mark(kind, NOTHING, _STYLES[kind][3]) for kind in kinds]
+    return page(heading, frames, legend)
 
 
-def _unit(result: TradeOff, measure: CommandObjective) -> str:
-    return result.unit(measure).replace("^2", "²").replace("^3", "³").replace(" ", "·")
+def _panel(result: TradeOff, rows: Sequence[Row], measure: CommandObjective, top: float, note: str) -> Frame:
+    """Draw the points of a panel and label them; those at one place share a label."""
+    across, up = _measure(result, measure), _measure(result, "peak_acceleration")
+    pairs = [
+        tuple(_times(row.values[name], unit) for name, unit in ((measure, across), ("peak_acceleration", up)))
+        for row in rows
+    ]
+    x, y = _scale([pair[0] for pair in pairs]), _scale([pair[1] for pair in pairs])
+    size = np.array([WIDTH - LEFT - RIGHT, _PANEL])
+    low, high = np.array([x.low, y.low]), np.array([x.high, y.high])
+    places = np.array([[x.at(a), y.at(b)] for a, b in pairs])
+    items: list[Item] = []
+    if x.edge < x.high:
+        items += [Band(x.edge, x.high, "grey"), Line(np.array([[x.edge, y.low], [x.edge, y.high]]), BLACK, 1.0)]
+        items.append(Note((x.high, y.high), "unbounded", "end", (-4.0, 8.0), _LABEL))
+    items += [_mark(_kind(row), place[None]) for row, place in zip(rows, places, strict=True)]
+    groups = _groups((places - low) / (high - low), [_label(row) for row in rows])
+    walls = [float((x.edge - x.low) / (x.high - x.low) * size[0])] if x.edge < x.high else []
+    found = label_points(
+        (size[0], size[1]),
+        np.array([place for place, _ in groups]) * size,
+        [text for _, text in groups],
+        walls=walls,
+        size=_LABEL,
+    )
+    for (place, text), (middle, tip) in zip(groups, found, strict=True):
+        centre = low + middle / size * (high - low)
+        items.append(Note((float(centre[0]), float(centre[1])), text, "middle", size=_LABEL))
+        if tip is not None:
+            items.append(Line(low + np.array([place, tip / size]) * (high - low), "#8c8c8c", 0.6))
+    return Frame(
+        LEFT, top, size[0], _PANEL, low, high, items, f"{words(measure)} ({across.printed}){note}",
+        f"peak acceleration ({up.printed})", grid=True, xticks=x.ticks(int(size[0] / _APART)), yticks=y.ticks(8),
+    )  # fmt: skip
+
+
+def _measure(result: TradeOff, measure: CommandObjective) -> Shown:
+    """Give the unit in which a measure is shown."""
+    return result.job.units.measure(result.unit(measure))
+
+
+def _times(value: float | None, unit: Shown) -> float | None:
+    return None if value is None else value * unit.factor
 
 
 def _kind(row: Row) -> str:
     return row.kind if row.within_limits or row.kind == "objective" else "beyond"
 
 
-def _marker(kind: str) -> dict[str, Any]:
-    """Look of a point: filled circles, open squares and crosses differ without colour."""
-    style = _STYLES[kind]
-    filled = style["color"] if kind == "objective" else "none"
-    return {"linestyle": "none", "markersize": 4.5, "markerfacecolor": filled, **style}
+def _mark(kind: str, points: FloatArray, label: str = "") -> Marks:
+    shape, colour, size, _ = _STYLES[kind]
+    return Marks(points, colour, size, shape, label)
 
 
 def _label(row: Row) -> str:
@@ -101,74 +175,28 @@ def _label(row: Row) -> str:
     return title(row.name).split(" (")[0].split(",")[0]
 
 
-def _scales(axes: Axes, x: Sequence[float | None], y: Sequence[float | None]) -> None:
-    """Set scales and limits of a panel, with room for labels; unbounded values get a strip of their own at the right."""
-    finite = [value for value in x if value is not None]
-    low, high, wide = _range(finite)
-    bottom, top, tall = _range([value for value in y if value is not None])
-    low, high = _widened(low, high, wide)
-    if tall:
-        axes.set_yscale("log")
-        _plain(axes.yaxis, np.inf)
-    if wide:
-        axes.set_xscale("log")
-        _plain(axes.xaxis, high)
-    axes.set_ylim(*_widened(bottom, top, tall))
-    if len(finite) < len(x):
-        edge = high
-        high = high * (high / low) ** _STRIP if wide else high + _STRIP * (high - low)
-        axes.axvspan(edge, high, facecolor=SYNC_COLOUR, edgecolor="none", zorder=1)
-        axes.axvline(edge, color="black", linewidth=0.8)
-        axes.text(0.99, 0.985, "unbounded", transform=axes.transAxes, ha="right", va="top", fontsize=7)
-    axes.set_xlim(low, high)
+def _groups(shares: FloatArray, names: Sequence[str]) -> list[tuple[FloatArray, str]]:
+    """Join the names of points that lie at one place of the panel, given as shares of it."""
+    groups: list[tuple[FloatArray, str]] = []
+    for share, name in zip(shares, names, strict=True):
+        near = next((i for i, (place, _) in enumerate(groups) if np.abs(place - share).max() <= _SAME), None)
+        if near is None:
+            groups.append((share, name))
+        else:
+            groups[near] = groups[near][0], f"{groups[near][1]}\n{name}"
+    return groups
 
 
-def _plain(axis: Axis, last: float) -> None:
-    """Write the numbers of a logarithmic axis plainly, none beyond the last."""
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
-
-    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=40))
-    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}" if value <= last else ""))
-    axis.set_minor_locator(NullLocator())
-
-
-def _widened(low: float, high: float, logarithmic: bool) -> tuple[float, float]:
-    """Limits with room for points and labels at both ends."""
-    if logarithmic:
-        factor = (high / low) ** _ROOM
-        return low / factor, high * factor
-    return low - _ROOM * (high - low), high + _ROOM * (high - low)
-
-
-def _range(values: Sequence[float]) -> tuple[float, float, bool]:
-    """Least and greatest value, apart where all are the same, and whether they need a logarithmic scale."""
-    least, greatest = min(values, default=0.9), max(values, default=1.1)
+def _scale(values: Sequence[float | None]) -> _Scale:
+    """Set an axis with room for labels; unbounded values get a strip of their own at its end."""
+    finite = [value for value in values if value is not None]
+    least, greatest = min(finite, default=0.9), max(finite, default=1.1)
+    wide = least > 0.0 and greatest > _WIDE * least
     if greatest - least <= 1e-3 * greatest:
         spread = 0.1 * greatest or 1.0
-        return least - spread, greatest + spread, False
-    return least, greatest, least > 0.0 and greatest > _WIDE * least
-
-
-def _draw(axes: Axes, rows: Sequence[Row], measure: CommandObjective) -> None:
-    """Draw the points of a panel and label them; those at one place share a label."""
-    figure = axes.get_figure(root=True)
-    assert figure is not None  # noqa: S101 - axes belong to a figure
-    figure.draw_without_rendering()  # settles the layout, and with it what points and labels cover
-    strip = axes.transData.inverted().transform(axes.transAxes.transform((1.0 - 0.5 * _STRIP / (1.0 + _STRIP), 0.0)))[0]
-    groups: list[tuple[np.ndarray, np.ndarray, list[str]]] = []
-    for row in rows:
-        value = row.values[measure]
-        point = np.array([strip if value is None else value, row.values["peak_acceleration"]], dtype=float)
-        axes.plot(*point, **{**_marker(_kind(row)), "label": None, "zorder": 5 if row.kind == "objective" else 4})
-        place = axes.transAxes.inverted().transform(axes.transData.transform(point))
-        near = next((group for group in groups if np.abs(group[1] - place).max() <= _SAME), None)
-        if near is None:
-            groups.append((point, place, [_label(row)]))
-        else:
-            near[2].append(_label(row))
-    walls = [
-        float(np.asarray(line.get_xdata())[0]) for line in axes.lines if list(np.asarray(line.get_ydata())) == [0, 1]
-    ]
-    label_points(
-        axes, np.array([point for point, _, _ in groups]), ["\n".join(names) for _, _, names in groups], walls=walls
-    )
+        least, greatest = least - spread, greatest + spread
+    low, high = (math.log10(least), math.log10(greatest)) if wide else (least, greatest)
+    room = _ROOM * (high - low)
+    low, edge = low - room, high + room
+    strip = _STRIP * (edge - low) if len(finite) < len(values) else 0.0
+    return _Scale(low, edge + strip, wide, edge)

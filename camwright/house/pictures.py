@@ -23,11 +23,11 @@ _MOST_DECIMALS, _LARGE = 4, 1e6
 Look = Literal["grey", "hatched", "green"]
 """How a zone is told apart."""
 
-Shape = Literal["disc", "ring", "open", "square", "diamond"]
-"""What a mark looks like: an open disc is white inside, a ring lets the lines be seen."""
+Shape = Literal["disc", "ring", "open", "square", "frame", "diamond", "cross"]
+"""What a mark looks like: an open disc is white inside, a ring and a frame let the lines be seen."""
 
-Hatch = Literal["", "lines", "crosses"]
-"""What lies over the colour of a bar."""
+Hatch = Literal["", "lines", "back", "crosses", "plus", "level", "dots"]
+"""What lies over the colour of a bar or an area."""
 
 DASHED = (5.0, 2.5)
 """Stroke and gap (pt) of a line that is simply dashed."""
@@ -113,6 +113,24 @@ class Bar:
 
 
 @dataclass(frozen=True, eq=False)
+class Area:
+    """A filled outline.
+
+    Parameters
+    ----------
+    points
+        Its corners, shape ``(n, 2)``, in the units of the frame.
+    colour, hatch, label
+        As of a `Bar`.
+    """
+
+    points: FloatArray
+    colour: str
+    hatch: Hatch = ""
+    label: str = ""
+
+
+@dataclass(frozen=True, eq=False)
 class Note:
     """A few words at a place of a frame, not cut off at its edges.
 
@@ -121,7 +139,7 @@ class Note:
     place
         ``(x, y)`` in the units of the frame.
     text
-        The words.
+        The words, in one or several lines.
     anchor
         Which part of them lies at the place.
     shift
@@ -162,7 +180,7 @@ class Arrow:
     dash: tuple[float, ...] = ()
 
 
-Item = Line | Marks | Band | Bar | Note | Arrow
+Item = Line | Marks | Band | Bar | Area | Note | Arrow
 
 
 @dataclass(frozen=True)
@@ -185,15 +203,15 @@ class Frame:
     low, high
         Ranges of x and y, shape ``(2,)`` each.
     items
-        What is drawn in it: bands, bars, lines, marks, arrows and notes on top of each other, each the undermost first.
+        What is drawn in it: bands, areas, bars, lines, marks, arrows and notes on top of each other, each the undermost first.
     xlabel, ylabel, title
-        Texts; none where empty. Without an x label its ticks have no numbers either. A y label and a title may have several lines.
+        Texts; none where empty. Without an x label its ticks have no numbers either. Each may have several lines.
     grid
         Whether lines at the ticks and at zero are drawn.
     apart
         Least distance of ticks along y (pt).
-    yticks
-        Those along y, if not multiples of a round number.
+    xticks, yticks
+        Those along an axis, if not multiples of a round number.
     numbers
         Whether ticks along x have numbers without an x label too.
     edges
@@ -212,6 +230,7 @@ class Frame:
     title: str = ""
     grid: bool = False
     apart: float = APART
+    xticks: Sequence[Tick] | None = None
     yticks: Sequence[Tick] | None = None
     numbers: bool = False
     edges: bool = True

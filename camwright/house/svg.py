@@ -7,7 +7,7 @@ from html import escape
 
 import numpy as np
 
-from camwright.house.pictures import APART, Arrow, Band, Bar, Frame, Item, Line, Marks, Note, Picture, Tick, ticks
+from camwright.house.pictures import APART, Area, Arrow, Band, Bar, Frame, Item, Line, Marks, Note, Picture, Tick, ticks
 from camwright.profiles.polynomial.profile import FloatArray
 
 FINEST = 0.06
@@ -28,12 +28,16 @@ _HATCH = (
     '<defs><pattern id="cam-hatch" width="6" height="6" patternUnits="userSpaceOnUse">'
     '<path d="M-1 1L1 -1M0 6L6 0M5 7L7 5" stroke="#555" stroke-width="0.8"/></pattern></defs>'
 )
-_CROSSES = (
-    '<defs><pattern id="cam-crosses" width="7" height="7" patternUnits="userSpaceOnUse">'
-    '<path d="M0 0L7 7M7 0L0 7" stroke="#777" stroke-width="0.6"/></pattern></defs>'
-)
+_OTHERS: dict[str, str] = {
+    "back": "M-1 5L1 7M0 0L6 6M5 -1L7 1",
+    "crosses": "M0 0L6 6M6 0L0 6",
+    "plus": "M3 0V6M0 3H6",
+    "level": "M0 3H6",
+    "dots": "M2.5 3H3.5",
+}
+"""Patterns beside the slanted lines, each on a square of 6 pt."""
+
 _FILLS = {"grey": "#e4e4e4", "hatched": "url(#cam-hatch)", "green": "#d9ead3"}
-_OVER = {"lines": "url(#cam-hatch)", "crosses": "url(#cam-crosses)"}
 _BLACK, _GRID, _ZERO = "#000", "#ccc", "#999"
 _SAMPLE, _GAP, _BETWEEN, _BELOW, _ROW = 24.0, 7.0, 22.0, 12.0, 15.0
 """Length of a sample in the legend, from it to its text, from entry to entry, from its last row to the lower edge, from row to row (pt)."""
@@ -51,10 +55,7 @@ def picture_svg(picture: Picture) -> str:
     look = f'font-family="{_FONTS}" font-size="{_TEXT:g}" fill="none"'
     parts = [f'<svg xmlns="http://www.w3.org/2000/svg" {size} role="img" {look}>']
     drawn = [*picture.legend, *(item for frame in picture.frames for item in frame.items)]
-    if any((isinstance(item, Band) and item.look == "hatched") or _hatch(item) == "lines" for item in drawn):
-        parts.append(_HATCH)
-    if any(_hatch(item) == "crosses" for item in drawn):
-        parts.append(_CROSSES)
+    parts += _patterns({_hatch(item) for item in drawn})
     for number, line in enumerate(picture.title.split("\n") if picture.title else []):
         parts.append(_text(line, picture.title_left, 17.0 + 15.0 * number, "start", _TITLE))
     for frame in picture.frames:
@@ -85,7 +86,21 @@ def simplified(points: FloatArray) -> FloatArray:
 
 
 def _hatch(item: Item) -> str:
-    return item.hatch if isinstance(item, Bar) else ""
+    if isinstance(item, Band):
+        return "lines" if item.look == "hatched" else ""
+    return item.hatch if isinstance(item, Bar | Area) else ""
+
+
+def _patterns(used: set[str]) -> Iterator[str]:
+    """Define the hatches that a picture uses."""
+    if "lines" in used:
+        yield _HATCH
+    for name, path in _OTHERS.items():
+        if name in used:
+            yield (
+                f'<defs><pattern id="cam-{name}" width="6" height="6" patternUnits="userSpaceOnUse">'
+                f'<path d="{path}" stroke="#777" stroke-width="{1.0 if name == "dots" else 0.6:g}"/></pattern></defs>'
+            )
 
 
 def _frame(frame: Frame) -> Iterator[str]:
@@ -120,14 +135,17 @@ def _grid(frame: Frame, xticks: list[_Tick], yticks: list[_Tick]) -> Iterator[st
 
 
 def _layer(item: Item) -> int:
-    """Give what lies below what: bars, lines, marks."""
-    return (Bar, Line, Marks, Band, Note, Arrow).index(type(item))
+    """Give what lies below what: areas, bars, lines, marks."""
+    return (Area, Bar, Line, Marks, Band, Note, Arrow).index(type(item))
 
 
 def _drawn(frame: Frame, item: Item) -> Iterator[str]:
     """Draw what is neither below the grid nor beyond the edges."""
     if isinstance(item, Bar):
         yield from _bar(frame, item)
+    elif isinstance(item, Area):
+        path = " ".join(map(str, _on_page(frame, item.points).ravel().tolist()))
+        yield from _filled("path", f'd="M{path}Z"', item)
     elif isinstance(item, Line):
         yield from _line(frame, item)
     elif isinstance(item, Marks):
@@ -138,7 +156,7 @@ def _ticks(frame: Frame) -> tuple[list[_Tick], list[_Tick]]:
     """Place the ticks along x and y: where (pt), text, bold or not."""
     placed: list[list[_Tick]] = []
     for axis, room in enumerate((frame.width / APART, frame.height / frame.apart)):
-        chosen = frame.yticks if axis else None
+        chosen = frame.yticks if axis else frame.xticks
         if chosen is None:
             values, texts = ticks(float(frame.low[axis]), float(frame.high[axis]), max(3, round(room)))
             chosen = [Tick(value, text) for value, text in zip(values, texts, strict=True)]
@@ -158,8 +176,8 @@ def _axes(frame: Frame, xticks: list[_Tick], yticks: list[_Tick]) -> Iterator[st
     yield from (_text(text, -6.5, at, "end", bold=bold) for at, text, bold in yticks)
     if frame.xlabel or frame.numbers:
         yield from (_text(text, at, height + 10.5, "middle") for at, text, _ in xticks)
-    if frame.xlabel:
-        yield _text(frame.xlabel, 0.5 * width, height + 23.0, "middle")
+    for number, text in enumerate(frame.xlabel.split("\n") if frame.xlabel else []):
+        yield _text(text, 0.5 * width, height + 23.0 + 14.0 * number, "middle")
     for number, text in enumerate(reversed(frame.ylabel.split("\n") if frame.ylabel else [])):
         turned = _text(text, 0.0, 0.0, "middle")
         yield f'<g transform="translate({-46.0 - 14.0 * number:g} {0.5 * height:g}) rotate(-90)">{turned}</g>'
@@ -196,24 +214,30 @@ def _bar(frame: Frame, item: Bar) -> Iterator[str]:
     """Draw a filled rectangle, and what lies over it."""
     corners = _on_page(frame, np.array([item.low, item.high]))
     (left, top), (right, bottom) = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
-    yield from _filled(f'x="{left:g}" y="{top:g}" width="{right - left:g}" height="{bottom - top:g}"', item)
+    yield from _filled("rect", f'x="{left:g}" y="{top:g}" width="{right - left:g}" height="{bottom - top:g}"', item)
 
 
-def _filled(box: str, item: Bar) -> Iterator[str]:
-    yield f'<rect {box} fill="{item.colour}"/>'
+def _filled(form: str, place: str, item: Bar | Area) -> Iterator[str]:
+    """Fill a form with its colour, and what lies over it."""
+    edge = (
+        f' stroke="{item.colour}" stroke-width="0.5"' if isinstance(item, Area) else ""
+    )  # closes the seam to the next
+    yield f'<{form} {place} fill="{item.colour}"{edge}/>'
     if item.hatch:
-        yield f'<rect {box} fill="{_OVER[item.hatch]}"/>'
+        yield f'<{form} {place} fill="url(#cam-{"hatch" if item.hatch == "lines" else item.hatch})"/>'
 
 
 def _note(frame: Frame, item: Note) -> Iterator[str]:
-    """Set a note at its place."""
+    """Set the lines of a note about its place."""
     across, down = (_on_page(frame, np.array([item.place]))[0] + item.shift).tolist()
+    lines = item.text.split("\n")
     if item.boxed:
-        width = text_width(item.text, item.size)
+        width = max(text_width(line, item.size) for line in lines)
         left = across - {"start": 0.0, "middle": 0.5, "end": 1.0}[item.anchor] * width
-        box = f'x="{left:.2f}" y="{down - 0.6 * item.size:.2f}" width="{width:.2f}" height="{1.2 * item.size:.2f}"'
-        yield f'<rect {box} fill="#fff"/>'
-    yield _text(item.text, across, down, item.anchor, item.size)
+        half = 0.6 * item.size * len(lines)
+        yield f'<rect x="{left:.2f}" y="{down - half:.2f}" width="{width:.2f}" height="{2 * half:.2f}" fill="#fff"/>'
+    for number, line in enumerate(lines):
+        yield _text(line, across, down + 1.2 * item.size * (number - 0.5 * (len(lines) - 1)), item.anchor, item.size)
 
 
 def _mark(item: Marks, across: float, down: float) -> str:
@@ -222,6 +246,12 @@ def _mark(item: Marks, across: float, down: float) -> str:
     if item.shape == "square":
         at = f'x="{across - half:g}" y="{down - half:g}" width="{item.size:g}" height="{item.size:g}"'
         return f'<rect {at} fill="{item.colour}"/>'
+    if item.shape == "frame":
+        at = f'x="{across - half:g}" y="{down - half:g}" width="{item.size:g}" height="{item.size:g}"'
+        return f'<rect {at} stroke="{item.colour}" stroke-width="1.3"/>'
+    if item.shape == "cross":
+        strokes = f"M{across - half:g} {down - half:g}l{item.size:g} {item.size:g}m0 {-item.size:g}l{-item.size:g} {item.size:g}"
+        return _stroke(strokes, item.colour, 1.3)
     if item.shape == "diamond":
         return f'<path d="M{across:g} {down - half:g}l{half:g} {half:g}l{-half:g} {half:g}l{-half:g} {-half:g}Z" fill="{item.colour}"/>'
     edge = f'stroke="{item.colour}" stroke-width="1.5"'
@@ -292,8 +322,8 @@ def _entry(item: Item, left: float, middle: float) -> Iterable[str]:
     if isinstance(item, Arrow):
         return *_arrow(item, left + 0.5 * _SAMPLE, middle + 6.0, middle - 6.0), label
     box = f'x="{left:.2f}" y="{middle - 5.5:g}" width="{_SAMPLE:g}" height="11"'
-    if isinstance(item, Bar):
-        return *_filled(box, item), label
+    if isinstance(item, Bar | Area):
+        return *_filled("rect", box, item), label
     fill = _FILLS[item.look] if isinstance(item, Band) else "none"
     return f'<rect {box} fill="{fill}" stroke="{_BLACK}" stroke-width="0.5"/>', label
 

@@ -14,7 +14,8 @@ from camwright.figures.design import design_figures
 from camwright.figures.profile import profile_figure
 from camwright.figures.servo import AXES, servo_figure
 from camwright.figures.speed_band import speed_band_figure
-from camwright.figures.style import LINES, title, zone_parts
+from camwright.figures.strokes import LINES
+from camwright.figures.style import title, zone_parts
 from camwright.house.pictures import Arrow, Band, Bar, Frame, Line, Marks, Note, Picture
 from camwright.house.svg import legend_rows, text_width
 from camwright.jobs.job import BUNDLED_JOB, Job, load_job, parse_job
@@ -41,9 +42,7 @@ def lines(frame: Frame) -> list[Line]:
 
 def curve(frame: Frame, name: str) -> tuple[np.ndarray, np.ndarray]:
     """Return the line that has the colour of a profile and the most points."""
-    line = max(
-        (line for line in lines(frame) if line.colour == LINES[name]["color"]), key=lambda line: len(line.points)
-    )
+    line = max((line for line in lines(frame) if line.colour == LINES[name].colour), key=lambda line: len(line.points))
     return line.points[:, 0], line.points[:, 1]
 
 
@@ -151,7 +150,7 @@ def test_servo_figure_draws_every_phase_and_marks_crossing_and_settling(paper: D
     _, _, whole, close = figure.frames
     for frame in (whole, close):
         for name in AXES:
-            response, colour = paper.comparison[name].response, LINES[name]["color"]
+            response, colour = paper.comparison[name].response, LINES[name].colour
             others, first = (line for line in lines(frame) if line.colour == colour)
             assert not np.isnan(first.points).any()
             # the others are one line, a gap after each

@@ -8,14 +8,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from matplotlib.axes import Axes
 
 from camwright.design.optimise import solve
 from camwright.figures.comparison import bars_figure
 from camwright.figures.crank import STYLES, crank_figure
 from camwright.figures.profile import profile_figure
 from camwright.figures.servo import AXES, servo_figure
-from camwright.figures.style import LINES
+from camwright.figures.strokes import BLACK
 from camwright.house.pictures import Frame, Line
 from camwright.jobs.job import load_job
 from camwright.profiles.machines import CrankSlider, LinearCarriage
@@ -51,14 +50,10 @@ def thick() -> Comparison:
 
 
 def curve_of(frame: Frame, name: str) -> tuple[np.ndarray, np.ndarray]:
-    lines = [item.points for item in frame.items if isinstance(item, Line) and item.colour == LINES[name]["color"]]
+    colour = STYLES[name].colour if name in STYLES else name
+    lines = [item.points for item in frame.items if isinstance(item, Line) and item.colour == colour]
     points = max(lines, key=len)
     return points[:, 0], points[:, 1]
-
-
-def curve(axes: Axes, colour: str) -> tuple[np.ndarray, np.ndarray]:
-    line = max((line for line in axes.lines if line.get_color() == colour), key=lambda line: len(line.get_xdata()))
-    return np.asarray(line.get_xdata(), dtype=float), np.asarray(line.get_ydata(), dtype=float)
 
 
 def heights(frame: Frame) -> list[float]:
@@ -117,21 +112,21 @@ def test_the_tool_meets_the_material(name: str, request: pytest.FixtureRequest) 
 
 
 def test_the_crank_s_turn_is_its_formula(crank: Comparison) -> None:
-    turn = crank_figure(crank).axes[0]
-    x, y = curve(turn, "black")
+    turn = crank_figure(crank).frames[0]
+    x, y = curve_of(turn, BLACK)
     machine = crank.job.machine
     assert isinstance(machine, CrankSlider)
     r, rod = machine.crank * 1e3, machine.rod * 1e3
     alpha = np.radians(x)
     assert y == pytest.approx(-r * np.cos(alpha) + np.sqrt(rod**2 - (r * np.sin(alpha)) ** 2) - (rod - r), abs=1e-9)
     first, last = machine.sync_start(crank.job.cut) + machine.sync_profile(crank.job.cut)(np.array([0.0, 0.15]))
-    assert f"sync zone {math.degrees(first):.1f}° to {math.degrees(last):.1f}°" in turn.get_xlabel()
+    assert f"sync zone {math.degrees(first):.1f}° to {math.degrees(last):.1f}°" in turn.xlabel
 
 
 def test_master_and_carriage_move_alike_in_the_sync_zone(crank: Comparison) -> None:
-    travel = crank_figure(crank).axes[1]
+    travel = crank_figure(crank).frames[1]
     cut = crank.job.cut
-    x, y = curve(travel, LINES["optimised"]["color"])
+    x, y = curve_of(travel, "optimised")
     in_sync = x >= cut.return_zone * 1e3
     assert np.diff(y[in_sync]) == pytest.approx(np.diff(x[in_sync]), abs=1e-8)
     assert 0.0 <= y.min() < 1.0
@@ -139,11 +134,11 @@ def test_master_and_carriage_move_alike_in_the_sync_zone(crank: Comparison) -> N
 
 
 def test_the_servo_curve_is_the_motor_s_and_never_turns_back(crank: Comparison) -> None:
-    _, _, speed, acceleration = crank_figure(crank).axes
+    _, _, speed, acceleration = crank_figure(crank).frames
     for name in STYLES:
         row = crank[name]
-        _, rpm = curve(speed, STYLES[name]["color"])
-        _, slope = curve(acceleration, STYLES[name]["color"])
+        _, rpm = curve_of(speed, name)
+        _, slope = curve_of(acceleration, name)
         gear = crank.job.machine.motor_ratio
         assert rpm.max() * math.pi / 30 == pytest.approx(row.motor.peak_speed, rel=1e-3)
         assert rpm.min() >= 0.0
@@ -159,8 +154,8 @@ def test_the_crank_figure_is_about_cranks(saw: Comparison) -> None:
 def test_maps_hold_with_either_origin(origin: str, crank: Comparison) -> None:
     job = replace(crank.job, cut=replace(crank.job.cut, origin=origin))
     optimum = solve(job.task, "rms_acceleration")
-    travel = crank_figure(compare(job, optimum.profile, ["crank_tabulated"])).axes[1]
-    _, y = curve(travel, LINES["optimised"]["color"])
+    travel = crank_figure(compare(job, optimum.profile, ["crank_tabulated"])).frames[1]
+    _, y = curve_of(travel, "optimised")
     start = job.task.slave_at_start
     assert y[0] == pytest.approx((job.machine.tool(start) - job.machine.tool(0.0)) * 1e3)
     assert y[0] == pytest.approx(y[-1], abs=1e-6)

@@ -10,7 +10,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 
 from camwright.cli.compare import compare_objectives
 from camwright.cli.views.tradeoff import tradeoff_view
@@ -18,9 +17,11 @@ from camwright.design.optimise import (
     Solution,
     solve,
 )
+from camwright.figures.labels import label_size
 from camwright.figures.tradeoff import tradeoff_figure
 from camwright.house.output import Voice
 from camwright.house.owned import LIST, Work
+from camwright.house.pictures import Frame, Marks, Note
 from camwright.jobs.job import Job, load_job
 from camwright.profiles.errors import InfeasibleError, InputError, SolverError
 from camwright.profiles.limits import Limits
@@ -148,7 +149,7 @@ def test_an_objective_that_fails_is_listed_and_the_rest_goes_on(
     Voice(as_json=False, quiet=False).answer(lambda: answer, lambda: tradeoff_view(result))
     shown = capsys.readouterr().out
     assert "minimised RMS jerk, failed: no luck with rms_jerk" in shown
-    assert isinstance(tradeoff_figure(result), Figure)
+    assert len(tradeoff_figure(result).frames) == 2
 
 
 def test_where_every_objective_fails_so_does_the_trade_off(paper: TradeOff, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -196,31 +197,48 @@ def test_the_command_prints_and_draws(
     assert {file.name: file.read_bytes() for file in tmp_path.iterdir()} == first  # the same bytes
 
 
-def labels(figure: Figure) -> list[list]:
-    """Give the boxes of all labels of each panel."""
-    figure.draw_without_rendering()
-    return [[text.get_window_extent() for text in axes.texts if text.get_text() != "unbounded"] for axes in figure.axes]
+def labels(frame: Frame) -> list[tuple[Note, np.ndarray]]:
+    """Give the labels of a panel with their boxes (pt): left, top, right, bottom."""
+    size = np.array([frame.width, frame.height])
+    notes = [item for item in frame.items if isinstance(item, Note) and item.text != "unbounded"]
+    middles = [(np.array(note.place) - frame.low) / (frame.high - frame.low) * size for note in notes]
+    halves = [label_size(note.text, note.size) / 2 for note in notes]
+    return [(n, np.concatenate([m - h, m + h])) for n, m, h in zip(notes, middles, halves, strict=True)]
 
 
 def test_labels_of_points_do_not_overlap(paper: TradeOff, carriage: TradeOff) -> None:
     for result in (paper, carriage):
-        figure = tradeoff_figure(result)
-        for axes, boxes in zip(figure.axes, labels(figure), strict=True):
+        for frame in tradeoff_figure(result).frames:
+            boxes = [box for _, box in labels(frame)]
             assert len(boxes) >= 8
-            panel = axes.get_window_extent()
             for i, box in enumerate(boxes):
-                assert panel.x0 <= box.x0 <= box.x1 <= panel.x1
-                assert panel.y0 <= box.y0 <= box.y1 <= panel.y1
-                assert not any(box.overlaps(other) for other in boxes[i + 1 :])
+                assert box[0] >= 0.0
+                assert box[1] >= 0.0
+                assert box[2] <= frame.width
+                assert box[3] <= frame.height
+                for other in boxes[i + 1 :]:
+                    assert (np.minimum(box[2:], other[2:]) <= np.maximum(box[:2], other[:2])).any()
 
 
-def test_every_bounded_profile_is_labelled_and_the_others_named(paper: TradeOff) -> None:
-    upper, lower = tradeoff_figure(paper).axes
-    for axes in (upper, lower):
-        names = "\n".join(text.get_text() for text in axes.texts).splitlines()
-        bounded = [row for row in paper.rows if row.values["peak_acceleration"] is not None]
-        assert len([name for name in names if name != "unbounded"]) == len(bounded)
-    assert "linear return" in lower.get_xlabel()
+def test_every_bounded_profile_is_a_mark_and_a_label_and_the_others_are_named(paper: TradeOff) -> None:
+    upper, lower = tradeoff_figure(paper).frames
+    bounded = [row for row in paper.rows if row.values["peak_acceleration"] is not None]
+    for frame in (upper, lower):
+        names = [name for note, _ in labels(frame) for name in note.text.splitlines()]
+        assert len(names) == len(set(names)) == len(bounded)
+        assert sum(isinstance(item, Marks) for item in frame.items) == len(bounded)
+    assert "linear return" in lower.xlabel
+    # a mark stands where its two measures are, by logarithms where the axis is
+    marks = [item.points[0] for item in upper.items if isinstance(item, Marks)]
+    expected = [(row.values["rms_acceleration"], row.values["peak_acceleration"]) for row in bounded]
+    for axis, ticks in enumerate((upper.xticks, upper.yticks)):
+        assert ticks
+        wide = any(abs(tick.value - float(tick.text)) > 1e-9 for tick in ticks)
+        values = [10.0 ** mark[axis] if wide else mark[axis] for mark in marks]
+        assert values == pytest.approx([pair[axis] for pair in expected])
+        assert [10.0**tick.value if wide else tick.value for tick in ticks] == pytest.approx(
+            [float(tick.text) for tick in ticks]
+        )
 
 
 # -- the screw-driven carriage ----------------------------------------------------------------------------------------
