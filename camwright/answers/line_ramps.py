@@ -19,6 +19,7 @@ def line_ramps_answer(found: LineRamps | None) -> dict[str, Any] | None:
         "binds": found.up_to.ramp.binds,
         "stop_length_mm": None if found.stop_length is None else found.stop_length * 1e3,
         "by_acceleration_alone_m_per_s2": _number(found.alone),
+        "sync_error": _sync_answer(found),
         "by_speed": [
             {
                 "line_speed_m_per_s": each.line_speed,
@@ -30,6 +31,15 @@ def line_ramps_answer(found: LineRamps | None) -> dict[str, Any] | None:
             for each in found.curve
         ],
     }
+
+
+def _sync_answer(found: LineRamps) -> dict[str, Any] | None:
+    """Write the greatest sync error while the line ramps as the job says; null where it says nothing or the servo is unstable."""
+    if found.sync is None:
+        return None
+    error, speed, way = found.sync.worst
+    within = error <= found.job.cut.sync_tolerance
+    return {"worst_mm": error * 1e3, "line_speed_m_per_s": speed, "while": way, "within_tolerance": within}
 
 
 def _number(allowed: Allowed) -> float | None:

@@ -10,12 +10,14 @@ import typer
 from camwright.cli.options import Json, NoFigures, Out, Quiet, job_work, output_directory
 from camwright.cli.views.checks import checks_view
 from camwright.cli.views.files import files_view
+from camwright.cli.views.line_ramps import plc_words
 from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.drives.audit import MEASURES, Audit, audit, audit_answer
 from camwright.figures.audit import audit_figures
 from camwright.house.output import Voice, complain
 from camwright.house.owned import owned
 from camwright.jobs.job import load_job
+from camwright.studies.line_ramps import line_ramps
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -93,4 +95,5 @@ def _view(result: Audit, file: Path, files: list[Path]) -> RenderableType:
             0,
             new_text(f"* {why}; by differences of the positions at the sample time of {time:g} ms, for both"),
         )
-    return stacked(table, checks_view(result.judgement.checks, result.job.units), *notes, files_view(files))
+    ramps = new_text(plc_words(line_ramps(result.cycle, result.job)))
+    return stacked(table, checks_view(result.judgement.checks, result.job.units), ramps, *notes, files_view(files))

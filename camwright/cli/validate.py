@@ -11,11 +11,13 @@ from camwright.answers.validate import validate_answer
 from camwright.cli.options import Json, JudgedBy, Quiet
 from camwright.cli.views.checks import checks_view
 from camwright.cli.views.lead import lead_view
+from camwright.cli.views.line_ramps import plc_words
 from camwright.cli.views.parts import new_text, stacked
 from camwright.cli.views.speed_band import band_view
 from camwright.house.output import Voice
 from camwright.jobs.job import load_job
 from camwright.stored.judge import Judged, validate_file
+from camwright.studies.line_ramps import LineRamps, line_ramps
 from camwright.studies.speed_band import SpeedBand, job_band
 
 if TYPE_CHECKING:
@@ -31,19 +33,22 @@ def run(
     """Judge a cam, camwright's or anyone's, by a job's machine, limits and servo."""
     asked = load_job(job)
     voice = Voice(as_json, quiet)
-    with voice.progress(2) as step:
+    with voice.progress(3) as step:
         step("checking")
         found = validate_file(file, asked)
         step("finding its line speeds")
         band = job_band(found.profile, found.job, found.report)
+        step("finding how hard the line may ramp")
+        ramps = line_ramps(found.profile, found.job)
 
     voice.answer(
-        lambda: validate_answer(found.job, file, found.report, band, found.notes), lambda: _view(found, band, file)
+        lambda: validate_answer(found.job, file, found.report, band, ramps, found.notes),
+        lambda: _view(found, band, ramps, file),
     )
     return 0 if found.report.passed else 1
 
 
-def _view(found: Judged, band: SpeedBand, file: Path) -> RenderableType:
+def _view(found: Judged, band: SpeedBand, ramps: LineRamps, file: Path) -> RenderableType:
     """Show the checks on a file, its line speeds and the verdict."""
     job, report = found.job, found.report
     failed = [check.name for check in report.checks if not check.passed]
@@ -54,5 +59,6 @@ def _view(found: Judged, band: SpeedBand, file: Path) -> RenderableType:
         lead_view(job, report.length_errors),
         *told,
         band_view(band, job.units),
+        new_text(plc_words(ramps)),
         new_text(f"{file}: {verdict}"),
     )

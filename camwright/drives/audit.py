@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from camwright.answers.line_ramps import line_ramps_answer
 from camwright.answers.measures import report_answer
 from camwright.drives.alignment import aligned
 from camwright.drives.options import with_slopes
@@ -25,6 +26,7 @@ from camwright.profiles.tables.target import Target
 from camwright.profiles.tables.targets import detect, read_table, target_of
 from camwright.profiles.tables.text import read_text
 from camwright.studies.axis_study import solve_job
+from camwright.studies.line_ramps import line_ramps
 from camwright.validation.rebuilt import TableJudgement, differences, judge_table, one_cycle, sampled_peaks
 from camwright.validation.report import ValidationReport, judge
 
@@ -294,6 +296,7 @@ def audit_answer(result: Audit, path: Path, files: Sequence[Path] = ()) -> dict[
             "profile": asdict(result.sampled),
             "optimum": asdict(result.optimum_sampled),
         },
+        "line_ramp": line_ramps_answer(line_ramps(result.cycle, job)),
         "checks": [asdict(check) for check in result.judgement.checks],
         "passed": result.judgement.passed,
         "files": [str(file) for file in files],

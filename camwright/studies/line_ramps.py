@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from camwright.jobs.job import Job
 from camwright.profiles.errors import InfeasibleError, SolverError
 from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.servo import spectral_radius
 from camwright.studies.axis_study import solve_job
 from camwright.studies.reach import placed_as
 from camwright.validation.production.line_ramp import (
@@ -16,6 +17,7 @@ from camwright.validation.production.line_ramp import (
     line_ramp,
     ramp_curve,
 )
+from camwright.validation.production.ramped_servo import RampedSync, ramped_sync
 
 
 @dataclass(frozen=True)
@@ -33,12 +35,15 @@ class LineRamps:
         What the limit of acceleration alone would allow at the job's line speed.
     curve
         What is allowed at shares of the line speed, at that speed alone.
+    sync
+        The sync error while the line ramps as the job says; nothing where it says nothing, or the servo is unstable.
     """
 
     job: Job
     up_to: LineRamp
     alone: Allowed
     curve: tuple[LineRamp, ...]
+    sync: RampedSync | None
 
     @property
     def stop_length(self) -> float | None:
@@ -59,7 +64,9 @@ def line_ramps(profile: CamProfile, job: Job) -> LineRamps:
     (20.86, 'jerk')
     """
     task = job.task
-    return LineRamps(job, line_ramp(profile, task), by_acceleration_alone(profile, task), ramp_curve(profile, task))
+    sync = ramped_sync(profile, task, job.servo) if spectral_radius(job.servo) < 1.0 else None
+    alone = by_acceleration_alone(profile, task)
+    return LineRamps(job, line_ramp(profile, task), alone, ramp_curve(profile, task), sync)
 
 
 def designed_ramps(job: Job) -> LineRamps | None:

@@ -42,7 +42,22 @@ def plc_words(found: LineRamps) -> str:
     if found.up_to.ramp.binds == "jerk":
         text += f"; acceleration alone would allow {ramp_words(found.alone, units)} {unit}"
         text += " (give [line] acceleration and a design leaves it room)" if not found.job.line.ramps else ""
-    return text
+    return f"{text}{sync_words(found)}"
+
+
+def sync_words(found: LineRamps) -> str:
+    """Word what the axis is off the material while the line ramps as the job says; nothing where that is not known."""
+    if found.sync is None:
+        return ""
+    units = found.job.units
+    error, speed, way = found.sync.worst
+    beyond = (
+        ""
+        if error <= found.job.cut.sync_tolerance
+        else ", beyond the tolerance: what is cut meanwhile is scrap or a lead for it is needed"
+    )
+    at = with_unit(speed, "m/s", 4, units)
+    return f"; sync error while it ramps as the job says: {with_unit(error, 'm', 4, units)} at most ({way}, at {at}){beyond}"
 
 
 def ramp_words(allowed: Allowed, units: Units) -> str:
