@@ -250,7 +250,7 @@ def _written(judge: _Judge, choice: Choice, target: Target, head: Header, accura
     if units is None:
         raise InputError("the table's units were lost")
     files = target.write(choice.table, head)
-    table, rebuilt = _read_back(target, files, units)
+    table, rebuilt = read_back(target, files, units)
     off, error, judgement = judge(rebuilt)
     return Exported(target, table, table.units or units, off, error, accuracy.kept_by(off), judgement, files)
 
@@ -265,7 +265,7 @@ def position_error(profile: CamProfile, rebuilt: CamProfile, off: Deviation, job
     return float(np.abs(job.machine.tool(begin + rebuilt(x)) - job.machine.tool(begin + profile(x))).max())
 
 
-def _read_back(target: Target, files: dict[str, str], units: Units) -> tuple[CamTable, CamProfile]:
+def read_back(target: Target, files: dict[str, str], units: Units) -> tuple[CamTable, CamProfile]:
     """Read the table out of the file as it will lie on the disk; the first file holds it."""
     name, text = next(iter(files.items()))
     table = read_table(target, decode(text.encode(), name), name)

@@ -1,1 +1,1 @@
-"""What a line asks for beside its steady cycle: starts and stops, designed."""
+"""What a line asks for beside its steady cycle, designed: starts and stops, the line's speed over a list, transitions."""

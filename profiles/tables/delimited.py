@@ -56,6 +56,22 @@ class Column:
     heading: str = ""
 
 
+@dataclass(frozen=True)
+class Layout:
+    """What the rows of a file look like where they are not all numbers.
+
+    Parameters
+    ----------
+    holds
+        Whether a cell, with or without a comma as decimal sign, is such as rows hold.
+    above
+        How many of the lines, cut into cells, stand above the rows.
+    """
+
+    holds: Callable[[str, bool], bool]
+    above: Callable[[Sequence[Sequence[str]]], int]
+
+
 @dataclass(frozen=True, eq=False)
 class Sheet:
     """Rows and what they are called.
@@ -119,7 +135,9 @@ def number_in(cell: str, comma: bool) -> float | None:
     return None
 
 
-def read_sheet(text: str, place: str, names: Callable[[str], str | None], example: str, kind: str) -> Sheet:
+def read_sheet(
+    text: str, place: str, names: Callable[[str], str | None], example: str, kind: str, layout: Layout | None = None
+) -> Sheet:
     """Find the rows of numbers in a text, and their headings.
 
     Comment lines begin with ``#`` or ``//``. The separator is the one by which most cells are numbers, unless a line
@@ -138,6 +156,8 @@ def read_sheet(text: str, place: str, names: Callable[[str], str | None], exampl
         A heading as it should be, for messages.
     kind
         What the file should hold, for messages.
+    layout
+        What rows look like; rows of numbers where not given.
 
     Raises
     ------
@@ -147,14 +167,17 @@ def read_sheet(text: str, place: str, names: Callable[[str], str | None], exampl
     lines, remarks, said = _lines(text, place)
     if not lines:
         raise InputError(f"{place}: there is no {kind} in it; write a header like {example} and rows below")
-    separator = said or _separator([line for _, line in lines])
+    separator = said or _separator([line for _, line in lines], _is_number if layout is None else layout.holds)
     comma = separator != ","
     split = [(number, _cells(line, separator)) for number, line in lines]
     quoted = separator == "," and any('"' in line for _, line in lines)
     comma = comma or quoted
-    while split and len(split) > 1 and not any(any(sign.isdigit() for sign in cell) for cell in split[-1][1]):
-        split.pop()  # scopes end their files with a word
-    first = next((k for k, (_, cells) in enumerate(split) if _is_row(cells, comma)), len(split))
+    if layout is None:
+        while len(split) > 1 and not any(any(sign.isdigit() for sign in cell) for cell in split[-1][1]):
+            split.pop()  # scopes end their files with a word
+        first = next((k for k, (_, cells) in enumerate(split) if _is_row(cells, comma)), len(split))
+    else:
+        first = layout.above([cells for _, cells in split])
     headings, rows = split[:first], split[first:]
     width = _width(headings, rows)
     if not headings and remarks:
@@ -166,6 +189,8 @@ def read_sheet(text: str, place: str, names: Callable[[str], str | None], exampl
     named = len(_trimmed([column.heading for column in columns]))
     if rows and heading and named < width and sum(names(column.name) is not None for column in columns) >= 2:
         raise refuse(place, rows[0][0], _MISFIT.format(count=width, where="the header has", width=named))
+    if layout is not None:  # cells at the end of a row may be left out
+        rows = [(number, _padded(cells, width) if len(cells) < width else cells) for number, cells in rows]
     kept = tuple(_row(cells, width, number, place, bool(headings)) for number, cells in rows)
     return Sheet(place, columns, kept, tuple(number for number, _ in rows), heading, comma)
 
@@ -193,15 +218,19 @@ def _lines(text: str, place: str) -> tuple[list[tuple[int, str]], list[tuple[int
     return kept, remarks, said
 
 
-def _separator(lines: Sequence[str]) -> str:
-    """Find the sign that makes most cells numbers and fewest words."""
+def _is_number(cell: str, comma: bool) -> bool:
+    return number_in(cell, comma) is not None
+
+
+def _separator(lines: Sequence[str], holds: Callable[[str, bool], bool]) -> str:
+    """Find the sign that makes most cells numbers, or what rows hold, and fewest words."""
     sample = lines[len(lines) // 2 :][:_SAMPLE] if len(lines) > 2 * _SAMPLE else lines[-_SAMPLE:]
 
     def score(sign: str) -> int:
         total = 0
         for line in sample:
             cells = [cell for cell in _cells(line, sign) if cell.strip()]
-            found = sum(number_in(cell, sign != "," or '"' in line) is not None for cell in cells)
+            found = sum(holds(cell, sign != "," or '"' in line) for cell in cells)
             total += found - 2 * (len(cells) - found) if found > 1 else 0
         return total
 

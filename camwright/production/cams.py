@@ -1,0 +1,132 @@
+"""The cams that a cut list needs: one for each gap, at the highest line speed that it can do and that the job asks for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from camwright.design.feasible.extremes import max_line_speed, placed_fastest
+from camwright.design.optimise import Solution
+from camwright.design.production.transition import RunningCam
+from camwright.jobs.job import Job
+from camwright.profiles.cut import Cut
+from camwright.profiles.errors import InfeasibleError
+from camwright.profiles.line import STEADY, Line
+from camwright.studies.axis_study import solve_job
+from camwright.validation.report import ValidationReport, judge
+
+_INSIDE = 1e-9
+"""Share by which a cam's line speed stays below what the perfect axis can do at most: rounding."""
+
+_STRIDE, _STRIDES = 0.85, 8
+"""Where the axis, too, must be in sync, the line is slowed down in such steps until a cam is found."""
+
+
+@dataclass(frozen=True, eq=False)
+class ListCam:
+    """A cam of a cut list.
+
+    Parameters
+    ----------
+    number
+        Its number, from 1, in the order in which they are first needed.
+    job
+        The list's job for this gap: its cut length and line speed, its sync zone placed, the origin at the end of the zone.
+    perfect
+        Highest line speed of a perfect axis on a line that keeps its speed (m/s).
+    ramping
+        The same where the line's own ramps are to be borne (m/s).
+    solution
+        The optimal cycle.
+    report
+        The checks on it.
+    """
+
+    number: int
+    job: Job
+    perfect: float
+    ramping: float
+    solution: Solution
+    report: ValidationReport
+
+    @property
+    def length(self) -> float:
+        """Gap that it is for (m)."""
+        return self.job.cut.length
+
+    @property
+    def line_speed(self) -> float:
+        """Highest line speed at which it may run (m/s)."""
+        return self.job.cut.line_speed
+
+    @property
+    def bears_ramps(self) -> bool:
+        """Whether it was designed to bear the line's ramps up to its line speed."""
+        return self.job.line.ramps
+
+    @property
+    def running(self) -> RunningCam:
+        """The cam as it runs."""
+        return RunningCam(self.job.task, self.solution.profile)
+
+
+def highest_speeds(job: Job, length: float) -> tuple[float, float]:
+    """Highest line speed of a perfect axis for a gap: on a steady line, and on one that ramps as the job says (m/s); 0 where none works."""
+    task = job.task.from_return().with_length(length)
+    steady = task.with_line(STEADY)
+    perfect = max_line_speed(placed_fastest(steady)) or 0.0
+    if not job.line.ramps or perfect == 0.0:
+        return perfect, perfect
+    return perfect, min(perfect, max_line_speed(placed_fastest(task)) or 0.0)
+
+
+def list_cam(number: int, job: Job, length: float, speeds: tuple[float, float], cap: float, line: Line) -> ListCam:
+    """Design the cam of a gap.
+
+    Parameters
+    ----------
+    number
+        Its number.
+    job
+        The list's job.
+    length
+        The gap (m).
+    speeds
+        What `highest_speeds` gives for it.
+    cap
+        Line speed above which it need not run (m/s).
+    line
+        Ramps of the line that it is to bear.
+
+    Raises
+    ------
+    InfeasibleError
+        No cam does the gap at any line speed that is looked at.
+    SolverError
+        The solver failed.
+    """
+    top = min(cap, (speeds[1] if line.ramps else speeds[0]) * (1.0 - _INSIDE))
+    for stride in range(_STRIDES):
+        asked = replace(job, name=cam_name(number, length, job), cut=_cut(job, length, top * _STRIDE**stride), line=line)
+        asked = replace(asked, slowest=min(1.0, job.line_speeds[0] / asked.cut.line_speed))
+        try:
+            solution = solve_job(asked, suggest=False)
+        except InfeasibleError:
+            if not job.servo_aware or stride == _STRIDES - 1:
+                raise
+            continue
+        break
+    placed = replace(asked, machine=solution.machine)
+    report = judge(
+        solution.profile, placed.task, job.servo, sweep=False, servo_aware=job.servo_aware, slowest=placed.slowest
+    )
+    return ListCam(number, placed, *speeds, solution, report)
+
+
+def _cut(job: Job, length: float, line_speed: float) -> Cut:
+    """Make the cut of a gap, its origin at the end of the sync zone."""
+    return replace(job.cut, length=length, line_speed=line_speed, origin="return")
+
+
+def cam_name(number: int, length: float, job: Job) -> str:
+    """Name a cam so that no two cams in a controller are called alike."""
+    return f"K{number:03d} L{length * 1e3:.6g} {job.name}"[:60].rstrip(" .")
