@@ -36,21 +36,22 @@ def place_for(task: Task, objective: CommandObjective) -> Placement:
     InputError
         The sync zone fits nowhere.
     """
-
-    def cost(placed: Task) -> float:
-        if not is_feasible(placed):
-            return MISSING * _missing(placed)
-        match objective:
-            case "peak_acceleration":
-                return least_limit(placed, "acceleration")
-            case "peak_jerk":
-                return least_limit(placed, "jerk")
-            case "rms_acceleration" | "rms_jerk":
-                return _rms(placed, objective)
-        return _torque(placed)
-
-    found = place_sync(task, cost)
+    found = place_sync(task, lambda placed: cost_at(placed, objective))
     return Placement(task.placed_midway(), math.inf, 1) if found is None else found
+
+
+def cost_at(placed: Task, objective: CommandObjective) -> float:
+    """Objective at a place, or far above any what is missing of the limits there; of the torque a stand-in, as `place_for` has it."""
+    if not is_feasible(placed):
+        return MISSING * _missing(placed)
+    match objective:
+        case "peak_acceleration":
+            return least_limit(placed, "acceleration")
+        case "peak_jerk":
+            return least_limit(placed, "jerk")
+        case "rms_acceleration" | "rms_jerk":
+            return _rms(placed, objective)
+    return _torque(placed)
 
 
 def _missing(task: Task) -> float:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-START, CAM, DRIVE, SHEET, SERVO, BENDER = (
+START, CAM, PRODUCTION, DRIVE, SHEET, SERVO, BENDER = (
     "Start",
     "Cams",
+    "Production",
     "Tables for drives",
     "Recipes for commissioning",
     "The servo",
@@ -96,6 +97,11 @@ COMMANDS: dict[str, Command] = {
         "Make the patent's quintic cam of a rotary cross-cutter from three lengths.",
         CAM,
         "camwright quick --circumference 400mm --sync 200mm --length 900mm",
+    ),
+    "cutlist": Command(
+        "Work a cut list out: its cams, the changes between them, the fastest line speed, tables and their seams.",
+        PRODUCTION,
+        "camwright cutlist board.toml order.csv --line-acceleration '1 m/s^2'",
     ),
     "export": Command(
         "Write a design for drives; every file is read back and judged as the drive will run it.",

@@ -106,7 +106,9 @@ def list_cam(number: int, job: Job, length: float, speeds: tuple[float, float], 
     """
     top = min(cap, (speeds[1] if line.ramps else speeds[0]) * (1.0 - _INSIDE))
     for stride in range(_STRIDES):
-        asked = replace(job, name=cam_name(number, length, job), cut=_cut(job, length, top * _STRIDE**stride), line=line)
+        asked = replace(
+            job, name=cam_name(number, length, job), cut=_cut(job, length, top * _STRIDE**stride), line=line
+        )
         asked = replace(asked, slowest=min(1.0, job.line_speeds[0] / asked.cut.line_speed))
         try:
             solution = solve_job(asked, suggest=False)

@@ -29,7 +29,7 @@ _STRIDE, _STRIDES = 0.8, 12
 
 _POSITION = 1e-9
 _SHARE = 1e-6
-"""Steps of position (m), and of velocity and acceleration as shares of the line speed and of the limit, that are none: solvers' accuracy."""
+"""Steps of position (m), and of velocity and acceleration as shares of line speed and limit, that are none: solvers' accuracy."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -228,9 +228,7 @@ def _ramping(
         moment = plan.when(ends)
         inner = plan.speed(plan.when(0.5 * (ends[1:] + ends[:-1])))
         at = plan.speed(moment)
-        low, high = (
-            pick(pick(at[:-1], at[1:]), inner) for pick in (np.minimum, np.maximum)
-        )
+        low, high = (pick(pick(at[:-1], at[1:]), inner) for pick in (np.minimum, np.maximum))
         found = ramps.copy()
         found[np.unique(of[high > low * (1.0 + 1e-9)])] = True
         found |= ramps
@@ -246,7 +244,9 @@ def _require_running(
     for change in changes.values():
         if change.times and change.how == "stop":
             at = 1 + int(np.flatnonzero((of[:-1] == change.before - 1) & (of[1:] == change.after - 1))[0])
-            one, other = (with_unit(cams[number - 1].length, "m", 4, job.units) for number in (change.before, change.after))
+            one, other = (
+                with_unit(cams[number - 1].length, "m", 4, job.units) for number in (change.before, change.after)
+            )
             way = (
                 f"place the sync zone at one place for all: --common-place, or {{@machine}}.{job.machine.place_name}"
                 if job.machine.place_name

@@ -30,7 +30,20 @@ _UNIT = re.compile(r".*[\[(]\s*([^\[\]()]{1,20}?)\s*[\])]\s*")
 
 _WORDS: dict[str, tuple[str, ...]] = {
     "length": ("length", "len", "länge", "laenge", "longueur", "长度", "长"),
-    "quantity": ("quantity", "qty", "count", "pieces", "pcs", "number", "anzahl", "stück", "stueck", "menge", "数量", "件数"),
+    "quantity": (
+        "quantity",
+        "qty",
+        "count",
+        "pieces",
+        "pcs",
+        "number",
+        "anzahl",
+        "stück",
+        "stueck",
+        "menge",
+        "数量",
+        "件数",
+    ),
     "kind": ("kind", "type", "art", "typ", "operation", "种类", "类型"),
     "time": ("time", "zeit", "t", "时间"),
     "speed": ("speed", "velocity", "v", "geschwindigkeit", "geschw", "速度"),
@@ -114,9 +127,13 @@ def parse_line_run(text: str, place: str) -> LineRun:
         raise InputError(f"{place}: one row; the speed of the line needs two at least, the first at its start")
     for row, line in enumerate(sheet.lines):
         if speed[row] < 0:
-            raise InputError(f"{place}, line {line}: a speed of {speed[row]:.6g} m/s; a line runs forwards: write 0 or more")
+            raise InputError(
+                f"{place}, line {line}: a speed of {speed[row]:.6g} m/s; a line runs forwards: write 0 or more"
+            )
         if row and time[row] <= time[row - 1]:
-            raise InputError(f"{place}, line {line}: the time does not increase from the row before; sort the rows by time")
+            raise InputError(
+                f"{place}, line {line}: the time does not increase from the row before; sort the rows by time"
+            )
     return LineRun(time, speed)
 
 
@@ -153,9 +170,11 @@ def _columns(sheet: Sheet, names: Sequence[str], needed: int, header: str) -> di
     at: dict[str, int] = {}
     for number, column in enumerate(sheet.columns):
         role = _role(column.name)
-        if role in names:
+        if role is not None and role in names:
             if role in at:
-                raise InputError(f"{sheet.place}, line {sheet.heading}: column {role} stands there twice; leave one out")
+                raise InputError(
+                    f"{sheet.place}, line {sheet.heading}: column {role} stands there twice; leave one out"
+                )
             at[role] = number
     missing = [name for name in names[:needed] if name not in at]
     if missing:
@@ -210,7 +229,8 @@ def line_run_text(run: LineRun, comments: Sequence[str] = ()) -> str:
     """Write the speed of the line over time so that `parse_line_run` reads it back."""
     lines = ["# " + " ".join(comment.splitlines()) for comment in comments]
     lines.append(LINE_HEADER)
-    lines += [f"{time!r},{speed!r}" for time, speed in zip(run.times.tolist(), (np.asarray(run.speeds) * 60).tolist(), strict=True)]
+    lines += [
+        f"{time!r},{speed!r}"
+        for time, speed in zip(run.times.tolist(), (np.asarray(run.speeds) * 60).tolist(), strict=True)
+    ]
     return "\n".join(lines) + "\n"
-
-

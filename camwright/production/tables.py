@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 from camwright.drives.export import export_possible, read_back
 from camwright.house.provenance import camwright_version
@@ -120,7 +121,7 @@ def _through(
         chain.append((between, other.running.zero))
     chain.append((rebuilt[other.number], other.running.zero))
     found = NO_JUMP
-    for (before, zero), (after, next_zero) in zip(chain, chain[1:], strict=False):
+    for (before, zero), (after, next_zero) in pairwise(chain):
         speed = min(line_speed, one.line_speed, other.line_speed)
         found = found.worst(seam_jump(before, zero, after, next_zero, other.job.task, speed))
     return found

@@ -15,7 +15,6 @@ from camwright.profiles.errors import InputError
 from camwright.profiles.line_run import LineRun
 from camwright.profiles.polynomial.profile import FloatArray
 
-
 HARDEST = 1e4
 """Greatest acceleration of a line that is planned for (m/s²): beyond it is a jump, and no ramp."""
 
@@ -73,9 +72,7 @@ def fastest_line(lengths: FloatArray, highest: FloatArray, acceleration: float) 
     return LineRun(times[kept], speeds[kept])
 
 
-def _corners(
-    lengths: FloatArray, tops: FloatArray, joints: FloatArray, slope: float
-) -> tuple[FloatArray, FloatArray]:
+def _corners(lengths: FloatArray, tops: FloatArray, joints: FloatArray, slope: float) -> tuple[FloatArray, FloatArray]:
     """Places on the material where the ramp may change, and the squares of the speed there."""
     first, last = joints[:-1], joints[1:]
     ends = np.concatenate([[0.0], np.cumsum(lengths)])

@@ -64,7 +64,9 @@ class RunningCam:
         return position, float(profile(end, 1)), float(profile(end, 2))
 
 
-def transition_problem(before: RunningCam, after: RunningCam, line_speed: float, objective: MotionObjective) -> ReturnProblem:
+def transition_problem(
+    before: RunningCam, after: RunningCam, line_speed: float, objective: MotionObjective
+) -> ReturnProblem:
     """Put the return of a transition into numbers.
 
     Parameters
@@ -78,9 +80,9 @@ def transition_problem(before: RunningCam, after: RunningCam, line_speed: float,
 
     Notes
     -----
-    Where the line ramps, limits are drawn in by what its ramp can add to any motion within them: ``A' = A - a k``, ``J' = J - 3 A' a / v -
-    j k`` with the greatest ratio ``k`` that is allowed. That is enough, and more than needed. The state at either end is given, whatever the
-    ramp would ask for there.
+    Where the line ramps, limits are drawn in by what its ramp can add to any motion within them: ``A' = A - a k`` and
+    ``J' = J - 3 A' a / v - j k`` with the greatest ratio ``k`` that is allowed. That is enough, and more than needed. The state at
+    either end is given, whatever the ramp would ask for there.
     """
     place, ratio, slope = before.last
     end_slope = float(after.profile(after.zone_start, 2))
@@ -107,7 +109,7 @@ def transition_problem(before: RunningCam, after: RunningCam, line_speed: float,
 
 
 def _drawn_in(task: Task, needed: float) -> Task:
-    """Take from the limits what the line's ramps can add; what the ends need is left, and of the jerk a trifle, with which nothing is possible.
+    """Take from the limits what the line's ramps can add; what the ends need is left, and of the jerk a trifle, which allows nothing.
 
     Parameters
     ----------

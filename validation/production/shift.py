@@ -73,9 +73,9 @@ class Shift:
 
     def places(self) -> FloatArray:
         """Start, middle and end of the shear zone of each piece on the material (m), shape ``(pieces, 3)``."""
-        zone, at, width = np.array([(task.cut.sync_zone, task.cut.shear_zone_at, task.cut.shear_zone) for task in self.tasks])[
-            self.of
-        ].T
+        zone, at, width = np.array(
+            [(task.cut.sync_zone, task.cut.shear_zone_at, task.cut.shear_zone) for task in self.tasks]
+        )[self.of].T
         joints = self.table.joints[1:]
         first = joints - zone + at
         last = np.minimum(first + width, joints)
@@ -202,13 +202,15 @@ class _Seen:
 
     def _off(self, x: FloatArray, piece: NDArray[np.intp], axis: FloatArray) -> FloatArray:
         """Sync error, the material's slip since the cut taken off."""
-        return self.shift.off(x, piece, axis) - self.slip[piece] * (x - self.places[piece, 1])
+        return np.asarray(self.shift.off(x, piece, axis) - self.slip[piece] * (x - self.places[piece, 1]))
 
     def _between(self, time: FloatArray) -> FloatArray:
         """Axis at times between points: the cubic through positions and velocities of the neighbours; shape of ``time``."""
         (rate, axis), at = self.points, (time - self.begin) / self.step
         k = np.clip(at.astype(np.intp), 0, len(axis) - 2)
-        return hermite(at - k, np.full(k.shape, self.step), (axis[k], axis[k + 1]), (rate[k], rate[k + 1]))[0]
+        return np.asarray(
+            hermite(at - k, np.full(k.shape, self.step), (axis[k], axis[k + 1]), (rate[k], rate[k + 1]))[0]
+        )
 
 
 def _axis(table: MotionTable, line: LineRun, servo: Servo, noise: FloatArray, until: float) -> Iterator[FloatArray]:

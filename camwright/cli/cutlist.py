@@ -1,0 +1,175 @@
+"""The command ``camwright cutlist``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, final_paths
+from camwright.cli.views.files import files_view
+from camwright.cli.views.parts import new_table, new_text, stacked
+from camwright.drives.options import chosen_targets
+from camwright.figures.line_plan import line_plan_figure
+from camwright.house.files import staged, write_files
+from camwright.house.numbers import converted, number, unit_shown, with_unit
+from camwright.house.output import Voice
+from camwright.house.units import quantity
+from camwright.jobs.job import load_job
+from camwright.production.common_place import placed_alike
+from camwright.production.cut_list import ListStudy, line_of, study_list
+from camwright.production.list_answer import list_answer, list_files
+from camwright.production.list_file import read_cut_list
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+_STEPS = 6
+_MOST_SHOWN = 12
+"""Changes that are shown on the screen; all stand in ``changes.csv``."""
+
+_HOW = {
+    "direct": "directly",
+    "slow_down": "directly, but first slow down",
+    "transition": "through a transition of one piece",
+    "stop": "only at a standstill",
+}
+
+
+def run(
+    job: GivenJob,
+    cut_list: Annotated[Path, typer.Argument(metavar="LIST", help="Cut list (CSV): length, quantity and kind.")],
+    targets: Annotated[
+        str | None,
+        typer.Option(
+            "--targets",
+            metavar="NAMES",
+            help="Targets of the tables, separated by commas, or all; else the job's, else csv.",
+        ),
+    ] = None,
+    line_acceleration: Annotated[
+        str | None,
+        typer.Option(
+            "--line-acceleration",
+            metavar="A",
+            help='Ramp of the line, e.g. "0.5 m/s^2"; else [line] acceleration of the job.',
+        ),
+    ] = None,
+    common_place: Annotated[
+        bool, typer.Option("--common-place", help="Place the sync zone of a crank at one place for all lengths.")
+    ] = False,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Output directory; out/<name>-cutlist if left out.")
+    ] = None,
+    no_figures: NoFigures = False,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> int:
+    """Work a cut list out: cams, changes, the fastest line speed, tables whose seams are run, and a table for the PLC."""
+    given = load_job(job)
+    ramp = None if line_acceleration is None else quantity(line_acceleration, "acceleration")
+    asked, rows = line_of(given, ramp), read_cut_list(cut_list)
+    place = placed_alike(asked, rows) if common_place else None
+    voice = Voice(as_json, quiet)
+    with voice.progress(_STEPS) as step:
+        study = study_list(asked if place is None else place.job, rows, chosen_targets(targets, given), step)
+    directory = Path("out") / f"{given.name}-cutlist" if out is None else out
+    files = _written(study, directory, figures=not no_figures)
+
+    def data() -> dict[str, Any]:
+        common = {} if place is None else {"common_place": place.answer()}
+        return {**list_answer(study), **common, "files": [str(file) for file in files]}
+
+    voice.answer(data, lambda: stacked(*_views(study), files_view(files)))
+    return 0 if study.passed else 1
+
+
+def _written(study: ListStudy, directory: Path, *, figures: bool) -> list[Path]:
+    """Write the tables of each target into a folder of its own, and beside them what the controller needs to run the list."""
+    with staged(directory) as aside:
+        for name, text in list_files(study).items():
+            (aside / name).write_bytes(text.encode())
+        if figures:
+            line_plan_figure(study, aside)
+        files = final_paths(aside, directory)
+    for table in study.tables:
+        if table.files:
+            files += write_files(directory / table.name, table.files)
+    return files
+
+
+def _views(study: ListStudy) -> list[RenderableType]:
+    """Show cams, changes, time and seams."""
+    units = study.job.units
+    speed = unit_shown("m/s", units)
+    cams = new_table(
+        title=f"{study.job.name}: {len(study.cams)} cams for {study.asked.pieces} pieces", title_justify="left"
+    )
+    for name in (
+        "cam",
+        f"length\n{unit_shown('m', units)}",
+        "pieces",
+        f"highest speed\n{speed}",
+        "bears ramps",
+        "checks",
+    ):
+        cams.add_column(name, justify="left" if name == "checks" else "right")
+    for cam in study.cams:
+        failed = [check.name for check in cam.report.checks if not check.passed]
+        cams.add_row(
+            str(cam.number),
+            f"{converted(cam.length, 'm', units):.6g}",
+            str(int((study.of == cam.number - 1).sum())),
+            f"{converted(cam.line_speed, 'm/s', units):.5g}",
+            "yes" if cam.bears_ramps else "no",
+            new_text(f"FAILED: {', '.join(failed)}", "bold red") if failed else new_text("passed", "green"),
+        )
+    made = [change for change in study.changes.values() if change.times]
+    changes = new_table(title="Changes", title_justify="left")
+    for name in ("from", "to", "how", f"line speed\n{speed}", "times"):
+        changes.add_column(name, justify="left" if name == "how" else "right")
+    for change in made[:_MOST_SHOWN]:
+        at = f"{converted(change.line_speed, 'm/s', units):.5g}"
+        changes.add_row(str(change.before), str(change.after), _HOW[change.how], at, str(change.times))
+    return [cams, *([changes] if made else []), _seams(study), new_text(_said(study, len(made)))]
+
+
+def _seams(study: ListStudy) -> RenderableType:
+    """Show what was found at the seams of each target's tables."""
+    seams = new_table(title="Seams of the tables as read back", title_justify="left")
+    for name in ("target", "numbers", "velocity jump\nm/s", "acceleration jump\nm/s²", ""):
+        seams.add_column(name, justify="right" if "jump" in name else "left")
+    for table in study.tables:
+        told = [
+            *(f"cam {cam} withheld: {why}" for cam, why in table.withheld.items()),
+            *table.refused,
+            *([] if table.within else ["more than two tables may be off"]),
+        ]
+        verdict = new_text("; ".join(told), "bold red") if told else new_text("passed", "green")
+        seams.add_row(
+            table.name, table.number_format, number(table.jump.velocity), number(table.jump.acceleration), verdict
+        )
+    return seams
+
+
+def _said(study: ListStudy, changes: int) -> str:
+    """Say the time, the scrap, and what the servo makes of it."""
+    units, plan = study.job.units, study.plan
+    lines = [
+        f"{plan.time:.5g} s on a line that ramps with {study.job.line.acceleration:.4g} m/s²",
+        f"{study.time_at_slowest:.5g} s at the slowest piece's speed",
+        f"scrap {with_unit(study.asked.scrap, 'm', 5, units)}",
+    ]
+    if changes > _MOST_SHOWN:
+        lines.append(f"{changes - _MOST_SHOWN} more changes stand in changes.csv")
+    worst, tolerance = float(study.run.sync_errors.max()), study.job.cut.sync_tolerance
+    lines.append(
+        f"servo: off by {with_unit(worst, 'm', 4, units)} at most in the shear zone, "
+        f"{study.off} of {study.asked.pieces} pieces outside {with_unit(tolerance, 'm', 4, units)}"
+    )
+    if study.off:
+        lines.append(
+            "a gentler ramp of the line helps where that is while it ramps; camwright simulate shows each piece"
+        )
+    return "\n".join(lines)

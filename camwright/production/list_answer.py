@@ -1,0 +1,142 @@
+"""What ``camwright cutlist --json`` prints, and the files for the controller."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from camwright.house.provenance import camwright_version
+from camwright.production.changes import Change
+from camwright.production.cut_list import ListStudy
+from camwright.production.list_file import line_run_text
+from camwright.validation.production.seams import NO_JUMP
+
+PLC_HEADER = "piece,length [mm],kind,cam,run first,highest line speed [m/min]"
+CAMS_HEADER = "cam,length [mm],highest line speed [m/min],perfect axis at most [m/min],bears the line's ramp,checks"
+CHANGES_HEADER = "from cam,to cam,how,highest line speed [m/min],times in the list"
+
+_DECIMALS = 6
+"""Decimals of a line speed in a table for a controller (m/min), rounded down: never faster than what was computed."""
+
+
+def list_answer(study: ListStudy) -> dict[str, Any]:
+    """Answer of ``camwright cutlist``."""
+    job, asked, plan = study.job, study.asked, study.plan
+    jump = NO_JUMP
+    for table in study.tables:
+        jump = jump.worst(table.jump)
+    return {
+        "job": job.name,
+        "pieces": asked.pieces,
+        "cams": len(study.cams),
+        "transitions": len(study.transitions),
+        "time_s": plan.time,
+        "time_at_slowest_s": study.time_at_slowest,
+        "scrap_mm": asked.scrap * 1e3,
+        "matrix": [_change(change) for change in study.changes.values()],
+        "seams": {
+            "velocity_jump_m_per_s": jump.velocity,
+            "acceleration_jump_m_per_s2": jump.acceleration,
+            "position_jump_m": jump.position,
+            "by_target": {
+                table.name: {
+                    "number_format": table.number_format,
+                    "velocity_jump_m_per_s": table.jump.velocity,
+                    "acceleration_jump_m_per_s2": table.jump.acceleration,
+                    "position_jump_m": table.jump.position,
+                    "passed": table.passed,
+                    "withheld": {str(number): why for number, why in table.withheld.items()},
+                    "refused": list(table.refused),
+                }
+                for table in study.tables
+            },
+        },
+        "crops": int(asked.crops.sum()),
+        "material_m": float(asked.gaps.sum()),
+        "line_acceleration_m_per_s2": job.line.acceleration,
+        "cam_list": [
+            {
+                "cam": cam.number,
+                "length_mm": cam.length * 1e3,
+                "pieces": int((study.of == cam.number - 1).sum()),
+                "line_speed_m_per_s": cam.line_speed,
+                "highest_line_speed_m_per_s": cam.perfect,
+                "bears_ramps": cam.bears_ramps,
+                "failed_checks": [check.name for check in cam.report.checks if not check.passed],
+            }
+            for cam in study.cams
+        ],
+        "servo": {
+            "greatest_sync_error_m": float(study.run.sync_errors.max()),
+            "greatest_length_error_m": float(np.abs(study.run.lengths - asked.gaps).max()),
+            "pieces_outside_tolerance": study.off,
+            "sync_tolerance_m": job.cut.sync_tolerance,
+        },
+        "passed": study.passed,
+    }
+
+
+def _change(change: Change) -> dict[str, Any]:
+    return {
+        "from": change.before,
+        "to": change.after,
+        "how": change.how,
+        "line_speed_m_per_s": change.line_speed,
+        "times": change.times,
+        "velocity_jump_m_per_s": change.jump.velocity,
+        "acceleration_jump_m_per_s2": change.jump.acceleration,
+        "position_jump_m": change.jump.position,
+    }
+
+
+def list_files(study: ListStudy) -> dict[str, str]:
+    """Texts of the files for the controller by name."""
+    head = [
+        f"# camwright {camwright_version()}: {study.job.name}",
+        f"# job SHA-256: {study.job.sha256}",
+        "# highest line speeds are rounded down; a cam begins at the end of the sync zone before it",
+    ]
+    ramp = f"the line's ramp: {study.job.line.acceleration:.9g} m/s^2"
+    return {
+        "cut-list.csv": "\n".join([*head, PLC_HEADER, *_pieces(study)]) + "\n",
+        "cams.csv": "\n".join([*head, CAMS_HEADER, *_cams(study)]) + "\n",
+        "changes.csv": "\n".join([*head, CHANGES_HEADER, *_changes(study)]) + "\n",
+        "line-speed.csv": line_run_text(study.plan, [line.removeprefix("# ") for line in head[:2]] + [ramp]),
+    }
+
+
+def _speed(value: float) -> str:
+    """Write a line speed in m/min, rounded down."""
+    return f"{math.floor(value * 60 * 10**_DECIMALS) / 10**_DECIMALS:.{_DECIMALS}f}"
+
+
+def _pieces(study: ListStudy) -> list[str]:
+    """Rows of the table of pieces."""
+    first = {(change.before, change.after): f"T{change.before}-{change.after}" for change in study.transitions}
+    rows, before = [], 0
+    crops = study.asked.crops.tolist()
+    numbers = zip((study.of + 1).tolist(), study.asked.gaps.tolist(), study.highest.tolist(), strict=True)
+    for piece, (cam, length, highest) in enumerate(numbers):
+        kind = "crop" if crops[piece] else "cut"
+        rows.append(f"{piece + 1},{length * 1e3:.10g},{kind},{cam},{first.get((before, cam), '')},{_speed(highest)}")
+        before = cam
+    return rows
+
+
+def _cams(study: ListStudy) -> list[str]:
+    """Rows of the table of cams."""
+    return [
+        f"{cam.number},{cam.length * 1e3:.10g},{_speed(cam.line_speed)},{_speed(cam.perfect)},"
+        f"{'yes' if cam.bears_ramps else 'no'},{'passed' if cam.report.passed else 'FAILED'}"
+        for cam in study.cams
+    ]
+
+
+def _changes(study: ListStudy) -> list[str]:
+    """Rows of the table of changes."""
+    return [
+        f"{change.before},{change.after},{change.how},{_speed(change.line_speed)},{change.times}"
+        for change in study.changes.values()
+    ]
