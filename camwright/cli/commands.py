@@ -103,6 +103,11 @@ COMMANDS: dict[str, Command] = {
         PRODUCTION,
         "camwright cutlist board.toml order.csv --line-acceleration '1 m/s^2'",
     ),
+    "simulate": Command(
+        "Simulate a shift: each piece's length and sync error, with the optimised cams and with linear returns.",
+        PRODUCTION,
+        "camwright simulate board.toml --list order.csv --line-acceleration '1 m/s^2' --slip 0.0002",
+    ),
     "export": Command(
         "Write a design for drives; every file is read back and judged as the drive will run it.",
         DRIVE,

@@ -101,10 +101,11 @@ def _written(study: ListStudy, directory: Path, *, figures: bool) -> list[Path]:
 
 def _views(study: ListStudy) -> list[RenderableType]:
     """Show cams, changes, time and seams."""
-    units = study.job.units
+    planned = study.planned
+    units = planned.job.units
     speed = unit_shown("m/s", units)
     cams = new_table(
-        title=f"{study.job.name}: {len(study.cams)} cams for {study.asked.pieces} pieces", title_justify="left"
+        title=f"{planned.job.name}: {len(planned.cams)} cams for {planned.asked.pieces} pieces", title_justify="left"
     )
     for name in (
         "cam",
@@ -115,17 +116,17 @@ def _views(study: ListStudy) -> list[RenderableType]:
         "checks",
     ):
         cams.add_column(name, justify="left" if name == "checks" else "right")
-    for cam in study.cams:
+    for cam in planned.cams:
         failed = [check.name for check in cam.report.checks if not check.passed]
         cams.add_row(
             str(cam.number),
             f"{converted(cam.length, 'm', units):.6g}",
-            str(int((study.of == cam.number - 1).sum())),
+            str(int((planned.of == cam.number - 1).sum())),
             f"{converted(cam.line_speed, 'm/s', units):.5g}",
             "yes" if cam.bears_ramps else "no",
             new_text(f"FAILED: {', '.join(failed)}", "bold red") if failed else new_text("passed", "green"),
         )
-    made = [change for change in study.changes.values() if change.times]
+    made = [change for change in planned.changes.values() if change.times]
     changes = new_table(title="Changes", title_justify="left")
     for name in ("from", "to", "how", f"line speed\n{speed}", "times"):
         changes.add_column(name, justify="left" if name == "how" else "right")
@@ -155,18 +156,19 @@ def _seams(study: ListStudy) -> RenderableType:
 
 def _said(study: ListStudy, changes: int) -> str:
     """Say the time, the scrap, and what the servo makes of it."""
-    units, plan = study.job.units, study.plan
+    planned = study.planned
+    units, plan = planned.job.units, planned.line
     lines = [
-        f"{plan.time:.5g} s on a line that ramps with {study.job.line.acceleration:.4g} m/s²",
-        f"{study.time_at_slowest:.5g} s at the slowest piece's speed",
-        f"scrap {with_unit(study.asked.scrap, 'm', 5, units)}",
+        f"{plan.time:.5g} s on a line that ramps with {planned.job.line.acceleration:.4g} m/s²",
+        f"{planned.time_at_slowest:.5g} s at the slowest piece's speed",
+        f"scrap {with_unit(planned.asked.scrap, 'm', 5, units)}",
     ]
     if changes > _MOST_SHOWN:
         lines.append(f"{changes - _MOST_SHOWN} more changes stand in changes.csv")
-    worst, tolerance = float(study.run.sync_errors.max()), study.job.cut.sync_tolerance
+    worst, tolerance = float(study.run.sync_errors.max()), planned.job.cut.sync_tolerance
     lines.append(
         f"servo: off by {with_unit(worst, 'm', 4, units)} at most in the shear zone, "
-        f"{study.off} of {study.asked.pieces} pieces outside {with_unit(tolerance, 'm', 4, units)}"
+        f"{study.off} of {planned.asked.pieces} pieces outside {with_unit(tolerance, 'm', 4, units)}"
     )
     if study.off:
         lines.append(

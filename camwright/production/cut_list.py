@@ -19,25 +19,25 @@ from camwright.production.changes import Change, find_changes
 from camwright.production.tables import TargetSeams, list_tables
 from camwright.profiles.cut_list import CutList
 from camwright.profiles.errors import InfeasibleError, InputError
-from camwright.profiles.line import STEADY, Line
+from camwright.profiles.line import STEADY
 from camwright.profiles.line_run import LineRun
-from camwright.profiles.polynomial.profile import FloatArray
+from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.studies.reach import stand_in
 from camwright.validation.production.motion_table import ShiftCam, motion_table
 from camwright.validation.production.shift import Shift, ShiftRun, run_shift
 
-_STEADY = 1e-12
+_STEADY = 1e-9
 """Share by which the line's speed may change within a piece that counts as steady."""
 
 
 @dataclass(frozen=True, eq=False)
-class ListStudy:
-    """A cut list worked out.
+class ListPlan:
+    """The cams of a cut list, the changes between them, and the speed of the line.
 
     Parameters
     ----------
     job
-        The job, the line's ramp in it.
+        The job.
     asked
         The list.
     cams
@@ -48,12 +48,8 @@ class ListStudy:
         What each change between two cams takes, by their numbers.
     highest
         Highest line speed on each piece (m/s), shape ``(pieces,)``.
-    plan
-        The fastest line speed over the list.
-    tables
-        The tables of each target.
-    run
-        What the job's servo makes of the list on this plan.
+    line
+        The speed of the line over the list: the fastest plan, or the one that was given.
     """
 
     job: Job
@@ -62,9 +58,7 @@ class ListStudy:
     of: NDArray[np.intp]
     changes: dict[tuple[int, int], Change]
     highest: FloatArray
-    plan: LineRun
-    tables: tuple[TargetSeams, ...]
-    run: ShiftRun
+    line: LineRun
 
     @property
     def transitions(self) -> tuple[Change, ...]:
@@ -76,20 +70,38 @@ class ListStudy:
         """Time if the whole list ran at its slowest piece's speed (s)."""
         return float(self.asked.gaps.sum() / self.highest.min())
 
+    def first_pieces(self, change: Change) -> NDArray[np.intp]:
+        """Pieces, counted from 0, which a change begins."""
+        return first_pieces(self.of, change)
+
+
+@dataclass(frozen=True, eq=False)
+class ListStudy:
+    """A cut list worked out: planned, its tables written, its servo run.
+
+    Parameters
+    ----------
+    planned
+        Cams, changes and the fastest line speed.
+    tables
+        The tables of each target.
+    run
+        What the job's servo makes of the list on this plan.
+    """
+
+    planned: ListPlan
+    tables: tuple[TargetSeams, ...]
+    run: ShiftRun
+
     @property
     def off(self) -> int:
         """Pieces cut outside the sync tolerance."""
-        return int((self.run.sync_errors > self.job.cut.sync_tolerance).sum())
+        return int((self.run.sync_errors > self.planned.job.cut.sync_tolerance).sum())
 
     @property
     def passed(self) -> bool:
-        """Whether every cam passes its checks, all tables are released and meet, and every piece is cut within the tolerance."""
-        cams = all(cam.report.passed for cam in self.cams)
-        return cams and all(table.passed for table in self.tables) and not self.off
-
-    def shift(self) -> Shift:
-        """Put the list into one command over the material."""
-        return list_shift(self.cams, self.of, self.changes)
+        """Whether every cam passes its checks, and all tables are released and meet."""
+        return all(cam.report.passed for cam in self.planned.cams) and all(table.passed for table in self.tables)
 
 
 def line_of(job: Job, acceleration: float | None) -> Job:
@@ -111,16 +123,27 @@ def line_of(job: Job, acceleration: float | None) -> Job:
 
 
 def study_list(job: Job, asked: CutList, names: Sequence[str], step: Step = ignore) -> ListStudy:
-    """Work a cut list out.
+    """Work a cut list out; arguments and errors as `plan_list`, and the names of the tables' targets."""
+    planned = plan_list(job, asked, step=step)
+    step("writing the tables and running their seams")
+    tables = list_tables(planned.cams, planned.changes, names)
+    step("running the servo")
+    run = run_shift(list_shift(planned.cams, planned.of, planned.changes), planned.line, job.servo)
+    return ListStudy(planned, tables, run)
+
+
+def plan_list(job: Job, asked: CutList, line: LineRun | None = None, step: Step = ignore) -> ListPlan:
+    """Design the cams of a cut list and plan the speed of the line over it.
 
     Parameters
     ----------
     job
-        The job, `Line.acceleration` of its line known; its line speed is that above which the line never runs.
+        The job, `Line.acceleration` of its line known unless the line's speed is given; its line speed is that above which the line never
+        runs.
     asked
         The list.
-    names
-        Targets of the tables.
+    line
+        Speed of the line; the fastest plan if not given.
     step
         Told what begins now.
 
@@ -137,40 +160,62 @@ def study_list(job: Job, asked: CutList, names: Sequence[str], step: Step = igno
     _require_room(job, asked)
     lengths, first, inverse = np.unique(gaps, return_index=True, return_inverse=True)
     order = np.argsort(first, kind="stable")
-    rank = np.argsort(order)
-    lengths, of = lengths[order], rank[inverse].astype(np.intp)
+    lengths, of = lengths[order], np.argsort(order)[inverse].astype(np.intp)
     step("finding the highest line speeds")
-    speeds = [highest_speeds(job, length) for length in lengths.tolist()]
-    _require_possible(job, asked, of, speeds)
+    speeds = np.array([highest_speeds(job, length) for length in lengths.tolist()])
+    _require_possible(job, asked, of, speeds[:, 0])
     step("designing the cams")
-    cams = _designed(job, lengths, gaps, of, speeds)
+    acceleration = job.line.acceleration
+    if line is None and acceleration is not None:
+        ramps = _ramping(gaps, of, speeds, job.cut.line_speed, acceleration)
+    else:
+        ramps = np.full(len(lengths), job.line.ramps)
+    cams = _designed(job, lengths, ramps, speeds)
     step("looking at the changes")
     pairs = collections.Counter((a + 1, b + 1) for a, b in pairwise(of.tolist()) if a != b)
     changes = find_changes(cams, pairs, stand_in(job))
     _require_running(job, asked, of, changes, cams)
     step("planning the speed of the line")
     highest = _highest(cams, of, changes)
-    plan = fastest_line(gaps, highest, float(job.line.acceleration or 0.0))
-    step("writing the tables and running their seams")
-    tables = list_tables(cams, changes, names)
-    step("running the servo")
-    run = run_shift(list_shift(cams, of, changes), plan, job.servo)
-    return ListStudy(job, asked, cams, of, changes, highest, plan, tables, run)
+    run = fastest_line(gaps, highest, acceleration or 0.0) if line is None else line
+    return ListPlan(job, asked, cams, of, changes, highest, run)
 
 
-def list_shift(cams: Sequence[ListCam], of: NDArray[np.intp], changes: dict[tuple[int, int], Change]) -> Shift:
-    """Put cams and transitions one after the other, as a list runs them."""
-    parts = [ShiftCam(cam.solution.profile, cam.running.zero) for cam in cams]
+def first_pieces(of: NDArray[np.intp], change: Change) -> NDArray[np.intp]:
+    """Pieces, counted from 0, which a change of a list begins; ``of`` as in `ListPlan`."""
+    return 1 + np.flatnonzero((of[:-1] == change.before - 1) & (of[1:] == change.after - 1))
+
+
+def list_shift(
+    cams: Sequence[ListCam],
+    of: NDArray[np.intp],
+    changes: dict[tuple[int, int], Change],
+    profiles: Sequence[CamProfile] | None = None,
+    longer: FloatArray | None = None,
+) -> Shift:
+    """Put cams and transitions one after the other, as a list runs them.
+
+    Parameters
+    ----------
+    cams, of, changes
+        As in `ListPlan`.
+    profiles
+        Cycles to run instead of the cams' own and the transitions', in this order; all begin and end like those.
+    longer
+        By how much each piece is longer than its cam (m), shape ``(pieces,)``; nothing of it if not given.
+    """
+    through = [change for change in changes.values() if change.transition is not None]
+    own = [cam.solution.profile for cam in cams]
+    own += [change.transition.profile for change in through if change.transition is not None]
+    zeros = [cam.running.zero for cam in cams] + [cams[change.after - 1].running.zero for change in through]
     order = of.copy()
-    for change in changes.values():
-        if change.transition is not None:
-            here = 1 + np.flatnonzero((of[:-1] == change.before - 1) & (of[1:] == change.after - 1))
-            order[here] = len(parts)
-            parts.append(ShiftCam(change.transition.profile, cams[change.after - 1].running.zero))
+    for number, change in enumerate(through):
+        order[first_pieces(of, change)] = len(cams) + number
+    parts = [ShiftCam(profile, zero) for profile, zero in zip(profiles or own, zeros, strict=True)]
     places = {cam.running.zero: cam.job.task for cam in cams}
-    tasks = list(places.values())
     kinds = np.array([list(places).index(cam.running.zero) for cam in cams], dtype=np.intp)
-    return Shift(motion_table(parts, order, cams[0].job.machine.pitch), tasks, kinds[of])
+    table = motion_table(parts, order, cams[0].job.machine.pitch, cams[0].job.cut.sync_zone, longer)
+    return Shift(table, list(places.values()), kinds[of])
 
 
 def _require_room(job: Job, asked: CutList) -> None:
@@ -187,31 +232,37 @@ def _require_room(job: Job, asked: CutList) -> None:
         )
 
 
-def _require_possible(job: Job, asked: CutList, of: NDArray[np.intp], speeds: Sequence[tuple[float, float]]) -> None:
+def _require_possible(job: Job, asked: CutList, of: NDArray[np.intp], perfect: FloatArray) -> None:
     """Refuse gaps that no line speed allows."""
-    for number, (perfect, _) in enumerate(speeds):
-        if perfect <= 0.0:
-            at = int(np.flatnonzero(of == number)[0])
-            raise InfeasibleError(
-                f"line {asked.lines[at]}: {with_unit(float(asked.gaps[at]), 'm', 4, job.units)} cannot be cut at any line speed; "
-                "a shorter sync zone or a longer piece would help: ask camwright limits",
-                "cut_length",
-                None,
-                "m",
-                (),
-            )
+    for number in np.flatnonzero(perfect <= 0.0).tolist():
+        at = int(np.flatnonzero(of == number)[0])
+        raise InfeasibleError(
+            f"line {asked.lines[at]}: {with_unit(float(asked.gaps[at]), 'm', 4, job.units)} cannot be cut at any line speed; "
+            "a shorter sync zone or a longer piece would help: ask camwright limits",
+            "cut_length",
+            None,
+            "m",
+            (),
+        )
 
 
-def _designed(
-    job: Job, lengths: FloatArray, gaps: FloatArray, of: NDArray[np.intp], speeds: Sequence[tuple[float, float]]
-) -> tuple[ListCam, ...]:
-    """Design the cams: each at its own highest speed where the line is steady whenever it runs, else below what bears the ramps."""
+def _designed(job: Job, lengths: FloatArray, ramps: NDArray[np.bool_], speeds: FloatArray) -> tuple[ListCam, ...]:
+    """Design the cams: each at its own highest speed where the line is steady whenever it runs, else below what bears the ramps.
+
+    Parameters
+    ----------
+    lengths
+        Their gaps (m).
+    ramps
+        Which of them run while the line ramps.
+    speeds
+        Highest line speed of a perfect axis, steady and ramping (m/s), shape ``(cams, 2)``.
+    """
     cap = job.cut.line_speed
-    ramps = _ramping(gaps, of, np.array(speeds), cap, float(job.line.acceleration or 0.0))
     cams = []
     for number, length in enumerate(lengths.tolist()):
-        perfect, bearing = speeds[number]
-        line: Line = job.line if ramps[number] or bearing >= min(cap, perfect) else STEADY
+        perfect, bearing = speeds[number].tolist()
+        line = job.line if ramps[number] or bearing >= min(cap, perfect) else STEADY
         cams.append(list_cam(number + 1, job, length, (perfect, bearing), cap, line))
     return tuple(cams)
 
@@ -221,17 +272,15 @@ def _ramping(
 ) -> NDArray[np.bool_]:
     """Say which cams run while the line ramps: those may run no faster than what bears it, which may make others ramp."""
     ramps = np.zeros(len(speeds), dtype=bool)
+    ends = np.concatenate([[0.0], np.cumsum(gaps)])
     while True:
         highest = np.minimum(cap, np.where(ramps, speeds[:, 1], speeds[:, 0]))
         plan = fastest_line(gaps, highest[of], acceleration)
-        ends = np.concatenate([[0.0], np.cumsum(gaps)])
-        moment = plan.when(ends)
-        inner = plan.speed(plan.when(0.5 * (ends[1:] + ends[:-1])))
-        at = plan.speed(moment)
-        low, high = (pick(pick(at[:-1], at[1:]), inner) for pick in (np.minimum, np.maximum))
+        places = np.stack([ends[:-1], 0.5 * (ends[:-1] + ends[1:]), ends[1:]])
+        at = plan.speed(plan.when(places))
+        changing = at.max(axis=0) > at.min(axis=0) * (1.0 + _STEADY)
         found = ramps.copy()
-        found[np.unique(of[high > low * (1.0 + 1e-9)])] = True
-        found |= ramps
+        found[np.unique(of[changing])] = True
         if (found == ramps).all():
             return ramps
         ramps = found
@@ -243,7 +292,7 @@ def _require_running(
     """Refuse a list with a change that no motion makes while the line runs."""
     for change in changes.values():
         if change.times and change.how == "stop":
-            at = 1 + int(np.flatnonzero((of[:-1] == change.before - 1) & (of[1:] == change.after - 1))[0])
+            at = int(first_pieces(of, change)[0])
             one, other = (
                 with_unit(cams[number - 1].length, "m", 4, job.units) for number in (change.before, change.after)
             )
@@ -269,6 +318,6 @@ def _highest(cams: Sequence[ListCam], of: NDArray[np.intp], changes: dict[tuple[
     highest = np.array([cam.line_speed for cam in cams])[of]
     for change in changes.values():
         if change.transition is not None:
-            here = 1 + np.flatnonzero((of[:-1] == change.before - 1) & (of[1:] == change.after - 1))
+            here = first_pieces(of, change)
             highest[here] = np.minimum(highest[here], change.line_speed)
     return highest

@@ -9,7 +9,7 @@ import numpy as np
 
 from camwright.house.provenance import camwright_version
 from camwright.production.changes import Change
-from camwright.production.cut_list import ListStudy
+from camwright.production.cut_list import ListPlan, ListStudy
 from camwright.production.list_file import line_run_text
 from camwright.validation.production.seams import NO_JUMP
 
@@ -23,19 +23,20 @@ _DECIMALS = 6
 
 def list_answer(study: ListStudy) -> dict[str, Any]:
     """Answer of ``camwright cutlist``."""
-    job, asked, plan = study.job, study.asked, study.plan
+    planned = study.planned
+    job, asked, line = planned.job, planned.asked, planned.line
     jump = NO_JUMP
     for table in study.tables:
         jump = jump.worst(table.jump)
     return {
         "job": job.name,
         "pieces": asked.pieces,
-        "cams": len(study.cams),
-        "transitions": len(study.transitions),
-        "time_s": plan.time,
-        "time_at_slowest_s": study.time_at_slowest,
+        "cams": len(planned.cams),
+        "transitions": len(planned.transitions),
+        "time_s": line.time,
+        "time_at_slowest_s": planned.time_at_slowest,
         "scrap_mm": asked.scrap * 1e3,
-        "matrix": [_change(change) for change in study.changes.values()],
+        "matrix": [_change(change) for change in planned.changes.values()],
         "seams": {
             "velocity_jump_m_per_s": jump.velocity,
             "acceleration_jump_m_per_s2": jump.acceleration,
@@ -60,13 +61,13 @@ def list_answer(study: ListStudy) -> dict[str, Any]:
             {
                 "cam": cam.number,
                 "length_mm": cam.length * 1e3,
-                "pieces": int((study.of == cam.number - 1).sum()),
+                "pieces": int((planned.of == cam.number - 1).sum()),
                 "line_speed_m_per_s": cam.line_speed,
                 "highest_line_speed_m_per_s": cam.perfect,
                 "bears_ramps": cam.bears_ramps,
                 "failed_checks": [check.name for check in cam.report.checks if not check.passed],
             }
-            for cam in study.cams
+            for cam in planned.cams
         ],
         "servo": {
             "greatest_sync_error_m": float(study.run.sync_errors.max()),
@@ -94,16 +95,16 @@ def _change(change: Change) -> dict[str, Any]:
 def list_files(study: ListStudy) -> dict[str, str]:
     """Texts of the files for the controller by name."""
     head = [
-        f"# camwright {camwright_version()}: {study.job.name}",
-        f"# job SHA-256: {study.job.sha256}",
+        f"# camwright {camwright_version()}: {study.planned.job.name}",
+        f"# job SHA-256: {study.planned.job.sha256}",
         "# highest line speeds are rounded down; a cam begins at the end of the sync zone before it",
     ]
-    ramp = f"the line's ramp: {study.job.line.acceleration:.9g} m/s^2"
+    ramp = f"the line's ramp: {study.planned.job.line.acceleration:.9g} m/s^2"
     return {
-        "cut-list.csv": "\n".join([*head, PLC_HEADER, *_pieces(study)]) + "\n",
-        "cams.csv": "\n".join([*head, CAMS_HEADER, *_cams(study)]) + "\n",
-        "changes.csv": "\n".join([*head, CHANGES_HEADER, *_changes(study)]) + "\n",
-        "line-speed.csv": line_run_text(study.plan, [line.removeprefix("# ") for line in head[:2]] + [ramp]),
+        "cut-list.csv": "\n".join([*head, PLC_HEADER, *_pieces(study.planned)]) + "\n",
+        "cams.csv": "\n".join([*head, CAMS_HEADER, *_cams(study.planned)]) + "\n",
+        "changes.csv": "\n".join([*head, CHANGES_HEADER, *_changes(study.planned)]) + "\n",
+        "line-speed.csv": line_run_text(study.planned.line, [line.removeprefix("# ") for line in head[:2]] + [ramp]),
     }
 
 
@@ -112,12 +113,12 @@ def _speed(value: float) -> str:
     return f"{math.floor(value * 60 * 10**_DECIMALS) / 10**_DECIMALS:.{_DECIMALS}f}"
 
 
-def _pieces(study: ListStudy) -> list[str]:
+def _pieces(planned: ListPlan) -> list[str]:
     """Rows of the table of pieces."""
-    first = {(change.before, change.after): f"T{change.before}-{change.after}" for change in study.transitions}
+    first = {(change.before, change.after): f"T{change.before}-{change.after}" for change in planned.transitions}
     rows, before = [], 0
-    crops = study.asked.crops.tolist()
-    numbers = zip((study.of + 1).tolist(), study.asked.gaps.tolist(), study.highest.tolist(), strict=True)
+    crops = planned.asked.crops.tolist()
+    numbers = zip((planned.of + 1).tolist(), planned.asked.gaps.tolist(), planned.highest.tolist(), strict=True)
     for piece, (cam, length, highest) in enumerate(numbers):
         kind = "crop" if crops[piece] else "cut"
         rows.append(f"{piece + 1},{length * 1e3:.10g},{kind},{cam},{first.get((before, cam), '')},{_speed(highest)}")
@@ -125,18 +126,18 @@ def _pieces(study: ListStudy) -> list[str]:
     return rows
 
 
-def _cams(study: ListStudy) -> list[str]:
+def _cams(planned: ListPlan) -> list[str]:
     """Rows of the table of cams."""
     return [
         f"{cam.number},{cam.length * 1e3:.10g},{_speed(cam.line_speed)},{_speed(cam.perfect)},"
         f"{'yes' if cam.bears_ramps else 'no'},{'passed' if cam.report.passed else 'FAILED'}"
-        for cam in study.cams
+        for cam in planned.cams
     ]
 
 
-def _changes(study: ListStudy) -> list[str]:
+def _changes(planned: ListPlan) -> list[str]:
     """Rows of the table of changes."""
     return [
         f"{change.before},{change.after},{change.how},{_speed(change.line_speed)},{change.times}"
-        for change in study.changes.values()
+        for change in planned.changes.values()
     ]

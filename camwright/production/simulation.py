@@ -1,0 +1,260 @@
+"""A shift of production simulated: each piece's length and sync error, the optimised cam beside the linear return, over servos."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from camwright.design.production.line_plan import fastest_line
+from camwright.house.progress import Step, ignore
+from camwright.jobs.job import Job
+from camwright.production.cut_list import ListPlan, list_shift, plan_list
+from camwright.profiles.cut_list import CutList
+from camwright.profiles.errors import InputError
+from camwright.profiles.line_run import LineRun
+from camwright.profiles.polynomial.profile import CamProfile, FloatArray, join
+from camwright.profiles.servo import Servo
+from camwright.validation.production.shift import Disturbance, Shift, ShiftRun, run_shift
+
+MOTIONS = ("optimised", "linear_return")
+"""What is compared."""
+
+BINS = 40
+"""Bins of the histogram of lengths."""
+
+_NOISES = 2**20
+"""Readings of the encoder that are drawn; after them the noise begins anew."""
+
+_FARTHEST = 4.0
+"""Standard deviations beyond which nothing is drawn: a mark or a slip beyond is another fault."""
+
+
+@dataclass(frozen=True)
+class Disturbances:
+    """What goes wrong in a shift, all normally distributed and drawn from one seed.
+
+    Parameters
+    ----------
+    noise
+        Of the encoder, at each sample (m, RMS).
+    slip
+        Share by which the wheel measures too little, from piece to piece (RMS).
+    marks
+        By which marks are off their place, so that pieces become longer or shorter (m, RMS).
+    servos
+        Servos drawn from the job's ranges, beside its own.
+    seed
+        Seed of all draws.
+    """
+
+    noise: float = 0.0
+    slip: float = 0.0
+    marks: float = 0.0
+    servos: int = 0
+    seed: int = 1
+
+
+@dataclass(frozen=True, eq=False)
+class MotionRuns:
+    """What servos make of one kind of cams.
+
+    Parameters
+    ----------
+    nominal
+        The job's own servo.
+    length_errors
+        Length less what was asked of each piece, with the job's own servo (m), shape ``(pieces,)``.
+    worst_length_errors, worst_sync_errors
+        Greatest magnitudes over all servos (m), shape ``(pieces,)``.
+    """
+
+    nominal: ShiftRun
+    length_errors: FloatArray
+    worst_length_errors: FloatArray
+    worst_sync_errors: FloatArray
+
+    def outside(self, tolerance: float) -> int:
+        """Pieces whose sync error leaves the tolerance, with the job's own servo."""
+        return int((self.nominal.sync_errors > tolerance).sum())
+
+
+@dataclass(frozen=True, eq=False)
+class ShiftStudy:
+    """A simulated shift.
+
+    Parameters
+    ----------
+    planned
+        Cams, changes and the speed of the line.
+    given
+        Whether the line's speed was given, and not planned.
+    disturbances
+        What went wrong.
+    lengths
+        What was asked of each piece, its mark counted (m), shape ``(pieces,)``.
+    cut_times
+        When each piece is cut (s), shape ``(pieces,)``.
+    too_fast
+        Pieces on which the line ran faster than the cam may.
+    servos
+        Servos that were run.
+    runs
+        What became of it, by `MOTIONS`.
+    """
+
+    planned: ListPlan
+    given: bool
+    disturbances: Disturbances
+    lengths: FloatArray
+    cut_times: FloatArray
+    too_fast: int
+    servos: int
+    runs: dict[str, MotionRuns]
+
+    @property
+    def edges(self) -> FloatArray:
+        """Edges of the bins of length errors (m), shape ``(BINS + 1,)``, the same for all motions."""
+        widest = max(float(np.abs(run.length_errors).max()) for run in self.runs.values())
+        return np.linspace(-widest, widest, BINS + 1) if widest > 0.0 else np.linspace(-1e-9, 1e-9, BINS + 1)
+
+    def histogram(self, motion: str) -> FloatArray:
+        """Count the pieces by their length error, with the job's own servo; shape ``(BINS,)``."""
+        return np.histogram(self.runs[motion].length_errors, self.edges)[0].astype(np.float64)
+
+
+def simulate_shift(
+    job: Job, asked: CutList, line: LineRun | None, disturbances: Disturbances, step: Step = ignore
+) -> ShiftStudy:
+    """Simulate a shift.
+
+    Parameters
+    ----------
+    job
+        The job; where the line's speed is planned its ramp is known.
+    asked
+        The list.
+    line
+        Speed of the line; the fastest plan if not given.
+    disturbances
+        What goes wrong.
+    step
+        Told what begins now.
+
+    Raises
+    ------
+    InputError
+        The line stops before the list is cut, marks move where the ratio in sync is not constant, or as `plan_list`.
+    InfeasibleError, SolverError
+        As `plan_list`.
+    """
+    _require_simple(job, disturbances)
+    planned = plan_list(job, asked, line, step)
+    draw = np.random.default_rng(disturbances.seed)
+    pieces = asked.pieces
+    longer = _normal(draw, pieces) * disturbances.marks if disturbances.marks else None
+    lengths = asked.gaps if longer is None else asked.gaps + longer
+    _require_long(lengths, job)
+    if line is None and longer is not None:  # the line follows the pieces as they come
+        ramp = job.line.acceleration or 0.0
+        planned = replace(planned, line=fastest_line(lengths, planned.highest, ramp))
+    slip = _normal(draw, pieces) * disturbances.slip if disturbances.slip else np.zeros(0)
+    noise = _normal(draw, _NOISES) * disturbances.noise if disturbances.noise else np.zeros(0)
+    wrong = Disturbance(noise, slip)
+    servos = _servos(job, disturbances)
+    _require_passed(lengths, planned.line)
+    runs, shift = {}, None
+    for motion in MOTIONS:
+        step(f"running {motion.replace('_', ' ')}")
+        shift = list_shift(planned.cams, planned.of, planned.changes, _profiles(planned, motion), longer)
+        runs[motion] = _runs(shift, planned.line, servos, wrong, lengths)
+    assert shift is not None  # noqa: S101 - there are motions
+    times = planned.line.when(shift.places()[:, 1])
+    fast = _too_fast(planned, lengths)
+    return ShiftStudy(planned, line is not None, disturbances, lengths, times, fast, len(servos), runs)
+
+
+def _normal(draw: np.random.Generator, count: int) -> FloatArray:
+    """Draw from a normal distribution cut off far out."""
+    return np.clip(draw.standard_normal(count), -_FARTHEST, _FARTHEST)
+
+
+def _require_simple(job: Job, disturbances: Disturbances) -> None:
+    """Refuse what cannot be simulated: marks on a machine whose ratio changes in sync, servos without ranges."""
+    faults = []
+    if disturbances.marks and (not job.machine.placed or not job.task.straight or job.cut.shaped):
+        faults.append(
+            "--marks: pieces are made longer by stretching the return, which needs a constant ratio in sync and a command that is in sync; "
+            "leave it out for this job"
+        )
+    if disturbances.servos and (job.servo_tolerance is None or not job.servo_tolerance.varying):
+        faults.append("--servos: the job gives no ranges to draw servos from; add [servo.tolerance], or leave it out")
+    if faults:
+        raise InputError(*faults)
+
+
+def _require_long(lengths: FloatArray, job: Job) -> None:
+    """Refuse marks that leave no room for the sync zone."""
+    if lengths.min() <= job.cut.sync_zone:
+        raise InputError(
+            f"--marks: the shortest piece becomes {lengths.min() * 1e3:.6g} mm long, no more than the sync zone; draw smaller deviations"
+        )
+
+
+def _require_passed(lengths: FloatArray, line: LineRun) -> None:
+    """Refuse a line that stands still before the list is cut."""
+    needed = float(lengths.sum())
+    if line.length < needed and line.speeds[-1] == 0.0:
+        raise InputError(
+            f"the line stands still after {line.length:.6g} m, the list needs {needed:.6g} m; let it run longer, or shorten the list"
+        )
+
+
+def _servos(job: Job, disturbances: Disturbances) -> tuple[Servo, ...]:
+    """Give the job's servo and those drawn from its ranges."""
+    ranges = job.servo_tolerance
+    if ranges is None or not disturbances.servos:
+        return (job.servo,)
+    return (job.servo, *ranges.draw(job.servo, disturbances.servos, disturbances.seed))
+
+
+def _profiles(planned: ListPlan, motion: str) -> list[CamProfile]:
+    """Cycles of the cams and the transitions: as designed, or with straight returns between the same states."""
+    own = [(cam.solution.profile, cam.running.zone_start) for cam in planned.cams]
+    own += [
+        (change.transition.profile, planned.cams[change.after - 1].running.zone_start)
+        for change in planned.transitions
+        if change.transition is not None
+    ]
+    return [profile if motion == "optimised" else _straight_return(profile, zone) for profile, zone in own]
+
+
+def _straight_return(profile: CamProfile, zone: float) -> CamProfile:
+    """Replace the return of a cycle by a straight line: the linear return, with the speed stepping at both its ends."""
+    start, end = float(profile(profile.start)), float(profile(zone))
+    back = CamProfile.from_arrays([profile.start, zone], [[start, (end - start) / (zone - profile.start)]])
+    return join(back, profile.restrict(zone, profile.end))
+
+
+def _runs(shift: Shift, line: LineRun, servos: Sequence[Servo], wrong: Disturbance, lengths: FloatArray) -> MotionRuns:
+    """Run all servos over a shift, the job's own first."""
+    nominal = run_shift(shift, line, servos[0], wrong)
+    errors = nominal.lengths - lengths
+    worst_lengths, worst_sync = np.abs(errors), nominal.sync_errors
+    for servo in servos[1:]:
+        found = run_shift(shift, line, servo, wrong)
+        worst_lengths = np.maximum(worst_lengths, np.abs(found.lengths - lengths))
+        worst_sync = np.maximum(worst_sync, found.sync_errors)
+    return MotionRuns(nominal, errors, worst_lengths, worst_sync)
+
+
+def _too_fast(planned: ListPlan, lengths: FloatArray) -> int:
+    """Count the pieces on which the line runs faster than they may."""
+    line = planned.line
+    ends = np.concatenate([[0.0], np.cumsum(lengths)])
+    at = line.speed(line.when(ends))
+    fastest = np.maximum(at[:-1], at[1:])
+    inside = (line.positions > 0.0) & (line.positions < ends[-1])
+    np.maximum.at(fastest, np.searchsorted(ends, line.positions[inside], side="left") - 1, line.speeds[inside])
+    return int((fastest > planned.highest * (1.0 + 1e-9)).sum())
