@@ -25,6 +25,7 @@ from camwright.jobs.line_speeds import line_speeds_text
 from camwright.jobs.toml_text import toml_text
 from camwright.profiles.errors import InputError
 from camwright.profiles.objective import OBJECTIVES
+from camwright.profiles.task import Task
 
 MOST_DESIGNS = 100_000
 """Most combinations of a book."""
@@ -151,6 +152,12 @@ class Book:
             "objective": {**data.get("objective", {}), **_line_speeds(self.toml), "minimise": of.objective},
         }
         return read_job(own, toml_text(own), self.name)  # what is written is read back as it was
+
+    def tasks(self, job: Job) -> list[Task]:
+        """Tasks of a job at the book's cut lengths, each at the book's highest line speed: what a common place is looked for by."""
+        speed = float(max(self.line_speeds[k] for k in range(len(self.line_speeds))))
+        lengths = [float(self.lengths[k]) for k in range(len(self.lengths))]
+        return [job.task.with_length(length).at_speed(speed) for length in lengths if length > job.cut.sync_zone]
 
     def parameters(self) -> dict[str, Any]:
         """Name what makes two books the same, as it is told and stored."""

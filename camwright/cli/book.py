@@ -18,6 +18,7 @@ from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.house.output import Voice, complain
 from camwright.jobs.job import load_job
+from camwright.production.common_place import placed_for
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -43,6 +44,9 @@ def run(
             help="Targets of the tables, separated by commas, or all; else the job's, else csv.",
         ),
     ] = None,
+    common_place: Annotated[
+        bool, typer.Option("--common-place", help="Place the sync zone of a crank at one place for all designs.")
+    ] = False,
     resume: Annotated[bool, typer.Option("--resume", help="Go on with the book in the output directory.")] = False,
     jobs: Annotated[
         int | None, typer.Option("--jobs", metavar="N", min=1, max=512, help="Processes; one a processor if left out.")
@@ -59,6 +63,9 @@ def run(
     """Design every combination of cut lengths, line speeds and objectives, check it, write its tables, and an index."""
     asked = load_job(job)
     plan = plan_book(asked, length, line_speed, objective or (), targets)
+    place = placed_for(asked, plan.tasks(asked)) if common_place else None
+    if place is not None and place.found is not None:
+        plan = plan_book(place.job, length, line_speed, objective or (), targets)
     directory = Path("out") / f"{asked.name}-book" if out is None else out
     here = local_crew(min(jobs or default_jobs(), len(plan)))
     crews = contextlib.nullcontext(here) if cluster is None else cluster_crew(cluster)
@@ -68,7 +75,10 @@ def run(
     except KeyboardInterrupt:
         complain(f"camwright: interrupted; what is done lies in {directory}, --resume goes on with it")
         raise
-    Voice(as_json, quiet).answer(answer.to_dict, lambda: _view(answer))
+    Voice(as_json, quiet).answer(
+        lambda: answer.to_dict() | ({} if place is None else {"common_place": place.answer()}),
+        lambda: _view(answer) if place is None else stacked(new_text(place.words()), _view(answer)),
+    )
     return answer.exit_code
 
 

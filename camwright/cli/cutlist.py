@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, final_paths
+from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, final_paths, job_work
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.drives.options import chosen_targets
 from camwright.figures.line_plan import line_plan_figure
-from camwright.house.files import staged, write_files
 from camwright.house.numbers import converted, number, unit_shown, with_unit
-from camwright.house.output import Voice
+from camwright.house.output import Voice, complain
+from camwright.house.owned import Work, owned
 from camwright.house.units import quantity
 from camwright.jobs.job import load_job
 from camwright.production.common_place import placed_alike
@@ -75,27 +75,32 @@ def run(
     with voice.progress(_STEPS) as step:
         study = study_list(asked if place is None else place.job, rows, chosen_targets(targets, given), step)
     directory = Path("out") / f"{given.name}-cutlist" if out is None else out
-    files = _written(study, directory, figures=not no_figures)
+    files = _written(study, directory, job_work("cutlist", given, job, out), figures=not no_figures)
 
     def data() -> dict[str, Any]:
         common = {} if place is None else {"common_place": place.answer()}
         return {**list_answer(study), **common, "files": [str(file) for file in files]}
 
-    voice.answer(data, lambda: stacked(*_views(study), files_view(files)))
+    said = [] if place is None else [new_text(place.words())]
+    voice.answer(data, lambda: stacked(*_views(study), *said, files_view(files)))
     return 0 if study.passed else 1
 
 
-def _written(study: ListStudy, directory: Path, *, figures: bool) -> list[Path]:
+def _written(study: ListStudy, directory: Path, work: Work, *, figures: bool) -> list[Path]:
     """Write the tables of each target into a folder of its own, and beside them what the controller needs to run the list."""
-    with staged(directory) as aside:
+    with owned(directory, work, complain) as aside:
         for name, text in list_files(study).items():
             (aside / name).write_bytes(text.encode())
         if figures:
             line_plan_figure(study, aside)
         files = final_paths(aside, directory)
     for table in study.tables:
-        if table.files:
-            files += write_files(directory / table.name, table.files)
+        folder = directory / table.name
+        if table.files or folder.exists():  # older tables of what is withheld now go
+            with owned(folder, work, complain) as aside:
+                for name, text in table.files.items():
+                    (aside / name).write_bytes(text.encode())
+            files += [folder / name for name in sorted(table.files)]
     return files
 
 

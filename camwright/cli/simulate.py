@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, final_paths
+from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, final_paths, job_work
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.figures.shift import shift_figure
 from camwright.figures.style import title
-from camwright.house.files import staged
 from camwright.house.numbers import number, unit_shown
-from camwright.house.output import Voice
+from camwright.house.output import Voice, complain
+from camwright.house.owned import owned
 from camwright.house.units import quantity
 from camwright.jobs.job import load_job
 from camwright.production.cut_list import line_of
@@ -98,7 +98,7 @@ def run(
         else:
             study = simulate_shift(given, rows, read_line_run(line), wrong, step)
     directory = Path("out") / f"{given.name}-shift" if out is None else out
-    with staged(directory) as aside:
+    with owned(directory, job_work("simulate", given, job, out), complain) as aside:
         (aside / "pieces.csv").write_bytes(pieces_text(study).encode())
         if not no_figures:
             shift_figure(study, aside)

@@ -180,6 +180,8 @@ def read_sheet(
         first = layout.above([cells for _, cells in split])
     headings, rows = split[:first], split[first:]
     width = _width(headings, rows)
+    if layout is not None:  # rows may end early, so their usual width says little
+        width = max((len(_trimmed(cells)) for _, cells in headings or rows), default=0)
     if not headings and remarks:
         near = remarks[-1]
         cells = _cells(near[1], separator)
@@ -294,7 +296,10 @@ def _columns(
     scope = [k for k, (_, cells) in enumerate(headings) if cells and cells[0].strip() == "Name" and len(cells) >= width]
     if scope and len(headings[scope[-1]][1]) >= width > 1:
         return _scope_columns(headings, scope[-1], width), headings[scope[-1]][0]
-    lines = [(number, _padded(cells, width)) for number, cells in headings if len(_trimmed(cells)) > 1]
+    lines: list[tuple[int, list[str]]] = []
+    for number, cells in headings:  # a unit may stand alone below the names
+        if len(_trimmed(cells)) > 1 or (lines and _is_unit_row(cells)):
+            lines.append((number, _padded(cells, width)))
     if not lines:
         return (Column(""),) * width, 0
     known = [

@@ -29,6 +29,7 @@ BOOKS = {
 """Cut lengths (mm) and line speeds (m/min) of the books; an example that is not here gets none."""
 
 SUBCOMMANDS = (
+    "cutlist", "simulate",
     "new", "examples", "keys", "schema",
     "design", "compare", "limits", "ramps", "marks", "validate", "check", "quick", "envelope", "identify", "trace", "book",
     "export", "audit", "targets",

@@ -56,7 +56,9 @@ def dense(lengths: FloatArray, highest: FloatArray, ramp: float, levels: int = 3
         v0, v1, vp = np.sqrt(first), np.sqrt(last), np.sqrt(peak)
         ramps = (peak - first) / (2 * ramp) + (peak - last) / (2 * ramp)
         time = (2 * vp - v0 - v1) / ramp + (length - ramps) / vp
-        ok = (np.abs(first - last) <= 2 * ramp * length * (1 + 1e-12)) & (np.maximum(first, last) <= speed**2 * (1 + 1e-12))
+        ok = (np.abs(first - last) <= 2 * ramp * length * (1 + 1e-12)) & (
+            np.maximum(first, last) <= speed**2 * (1 + 1e-12)
+        )
         cost = np.where(ok, cost[:, None] + time, math.inf).min(axis=0)
     return float(cost.min())
 
@@ -91,6 +93,11 @@ def test_a_plan_keeps_speeds_and_ramp(found: list[tuple[float, float]], ramp: fl
 
 def test_what_is_no_plan_is_refused() -> None:
     one = np.array([1.0])
-    for lengths, highest, ramp in ((one, one, 0.0), (one, one, 2 * HARDEST), (one, 0 * one, 1.0), (one[:0], one[:0], 1.0)):
+    for lengths, highest, ramp in (
+        (one, one, 0.0),
+        (one, one, 2 * HARDEST),
+        (one, 0 * one, 1.0),
+        (one[:0], one[:0], 1.0),
+    ):
         with pytest.raises(InputError, match="a plan of the line needs at least one piece"):
             fastest_line(lengths, highest, ramp)

@@ -23,7 +23,9 @@ V = 80 / 60
 def test_cams_in_sync_meet_to_rounding_on_every_knife() -> None:
     task = load_job().task
     for machine in (task.machine, RotaryKnife(0.4, sync="horizontal")):
-        there = task.with_machine(machine).with_cut(replace(task.cut, sync_zone=0.05, shear_zone=0.02, shear_zone_at=0.02))
+        there = task.with_machine(machine).with_cut(
+            replace(task.cut, sync_zone=0.05, shear_zone=0.02, shear_zone_at=0.02)
+        )
         cams = [solve(there.with_length(length), "peak_acceleration", suggest=False).profile for length in (0.6, 0.9)]
         jump = seam_jump(cams[0], there.slave_at_start, cams[1], there.slave_at_start, there, V)
         assert jump.position < 1e-12
@@ -56,7 +58,9 @@ def test_a_seam_outside_the_sync_zone_is_felt() -> None:
 
 def test_a_crank_that_is_elsewhere_steps_at_the_carriage() -> None:
     crank = CrankSlider(0.15, 0.6)
-    task = Task(crank.placed_at(1.7), replace(load_job().cut, sync_zone=0.15, shear_zone=0.04), Limits(30.0, 400.0, 2e4))
+    task = Task(
+        crank.placed_at(1.7), replace(load_job().cut, sync_zone=0.15, shear_zone=0.04), Limits(30.0, 400.0, 2e4)
+    )
     moved = task.placed_at(1.71)
     cams = [baseline("poly_3_4_5", each.with_length(0.9)) for each in (task, moved)]
     jump = seam_jump(cams[0], task.slave_at_start, cams[1], moved.slave_at_start, moved, 0.5)

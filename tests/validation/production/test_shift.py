@@ -71,7 +71,7 @@ def naive(
         for point in range(points if cutting else 0):
             x = float(line.passed((number - before + point / points) * dt))
             k = int(np.searchsorted(last, x))
-            if 0.0 <= x and k < len(ORDER) and first[k] <= x <= last[k]:
+            if x >= 0.0 and k < len(ORDER) and first[k] <= x <= last[k]:
                 error = state[2] - (zero + pitch * (k + 1) + x - joints[k + 1])
                 error -= (slip[k] if len(slip) else 0.0) * (x - middle[k])
                 peaks[k] = max(peaks[k], abs(error))
@@ -106,7 +106,9 @@ def test_a_shift_is_what_one_sample_after_the_other_makes(change: dict[str, floa
 def test_pieces_longer_than_a_chunk_of_the_run_are_seen_whole() -> None:
     job = load_job()
     profiles = cams(job)
-    slow = LineRun(np.array([0.0, 1e6]), np.array([0.002, 0.002]))  # a shear zone of 5000 samples, a chunk boundary within
+    slow = LineRun(
+        np.array([0.0, 1e6]), np.array([0.002, 0.002])
+    )  # a shear zone of 5000 samples, a chunk boundary within
     run = run_shift(shift_of(job, profiles, np.array([1, 1, 1])), slow, job.servo)
     task = job.task.with_length(LENGTHS[1]).at_speed(0.002)
     assert run.sync_errors == pytest.approx(greatest_shear_zone_error(profiles[1], task, job.servo), abs=1e-9)

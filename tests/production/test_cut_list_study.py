@@ -1,0 +1,158 @@
+"""Cut lists worked out: cams, changes, transitions, plans, seams, and what the servo makes of them."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from camwright.jobs.job import Job, load_job
+from camwright.production.common_place import placed_alike
+from camwright.production.cut_list import ListStudy, line_of, plan_list, study_list
+from camwright.production.list_answer import list_answer, list_files
+from camwright.production.list_file import parse_cut_list, parse_line_run
+from camwright.profiles.cut_list import CutList, ListRow
+from camwright.profiles.errors import InfeasibleError, InputError
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+THE_LIST = CutList((ListRow(0.6, 3, line=1), ListRow(0.3, 3, line=2), ListRow(0.6, 3, line=3)))
+
+
+def study(job: Job, asked: CutList, targets: tuple[str, ...] = ("csv",), ramp: float = 1.0) -> ListStudy:
+    return study_list(line_of(job, ramp), asked, targets)
+
+
+@pytest.fixture(scope="module")
+def known() -> ListStudy:
+    return study(load_job(), THE_LIST, ("csv", "codesys", "logix"))
+
+
+def test_the_answer_of_the_published_list(known: ListStudy) -> None:
+    answer = list_answer(known)
+    assert (answer["pieces"], answer["cams"], answer["transitions"], answer["scrap_mm"]) == (9, 2, 0, 0.0)
+    assert answer["time_s"] == pytest.approx(4.051, abs=5e-4)
+    assert answer["time_at_slowest_s"] == pytest.approx(5.666, abs=5e-4)
+    assert [(cell["from"], cell["to"], cell["how"]) for cell in answer["matrix"]] == [
+        (1, 2, "slow_down"),
+        (2, 1, "direct"),
+    ]
+
+
+def test_tables_of_cams_in_sync_meet_in_float64_and_to_their_rounding_in_float32(known: ListStudy) -> None:
+    for table in known.tables:
+        exact = table.number_format == "float64"
+        assert table.jump.position < 1e-12
+        assert table.jump.velocity < (1e-12 if exact else 1e-6)
+        assert table.jump.acceleration < (1e-9 if exact else 0.01)
+        assert table.within
+        assert not table.withheld
+
+
+def test_the_servo_is_off_where_the_line_ramps(known: ListStudy) -> None:
+    off = known.run.sync_errors > known.planned.job.cut.sync_tolerance
+    assert np.flatnonzero(off).tolist() == [2, 6]  # the last piece before the short ones, and the first after
+    assert known.off == 2
+
+
+def test_files_for_the_controller(known: ListStudy) -> None:
+    files = list_files(known)
+    rows = [line.split(",") for line in files["cut-list.csv"].splitlines() if line[:1].isdigit()]
+    assert [row[0] for row in rows] == [str(k) for k in range(1, 10)]
+    assert [row[3] for row in rows] == list("111222111")
+    for row, highest in zip(rows, known.planned.highest.tolist(), strict=True):
+        assert float(row[5]) / 60 <= highest
+        assert float(row[5]) / 60 == pytest.approx(highest, abs=1e-6)
+    again = parse_line_run(files["line-speed.csv"], "plan")
+    assert again.time == pytest.approx(known.planned.line.time, rel=1e-12)
+
+
+def test_crops_and_skips() -> None:
+    asked = parse_cut_list("200 mm,1,skip\n300 mm,1,crop\n600 mm,2\n", "L")
+    found = plan_list(line_of(load_job(), 0.5), asked)
+    assert [cam.length for cam in found.cams] == pytest.approx([0.5, 0.6])
+    assert asked.scrap == pytest.approx(0.5)
+    assert found.line.length == pytest.approx(1.7)
+
+
+def test_a_plan_without_a_stated_ramp_is_refused() -> None:
+    with pytest.raises(InputError, match="how hard the line ramps is not stated"):
+        line_of(load_job(), None)
+    assert line_of(load_job(), 0.3).line.acceleration == 0.3
+
+
+def test_lengths_without_room_for_the_zone_are_refused_by_line() -> None:
+    with pytest.raises(InputError) as caught:
+        study(load_job(), CutList((ListRow(0.6, 1, line=2), ListRow(0.2, 1, line=3), ListRow(0.15, 1, line=5))))
+    assert [fault.split(":")[0] for fault in caught.value.faults] == ["line 3", "line 5"]
+
+
+def crank() -> Job:
+    job = load_job(EXAMPLES / "chasing-shear.toml")
+    return replace(job, objective="peak_acceleration")
+
+
+def test_cranks_that_lie_elsewhere_go_through_transitions_or_share_a_place() -> None:
+    asked = CutList((ListRow(0.9, 2), ListRow(0.5, 2), ListRow(0.9, 1)))
+    job = crank()
+    own = study(job, asked)
+    changes = own.planned.changes
+    places = {cam.job.machine.place for cam in own.planned.cams}
+    assert len(places) == 2
+    assert [change.how for change in changes.values()] == ["transition", "transition"]
+    assert all(change.jump.position > 1e-5 for change in changes.values())
+    assert all(change.transition is not None and change.transition.passed for change in changes.values())
+    assert own.tables[0].jump.position < 1e-9  # through the transitions' tables nothing steps
+    assert own.tables[0].jump.velocity < 1e-9
+    assert own.off == 0
+    place = placed_alike(line_of(job, 1.0), asked)
+    assert place.found is not None
+    assert place.found.compared == 2
+    assert place.found.cost >= 0.0
+    alike = study(place.job, asked)
+    assert [change.how for change in alike.planned.changes.values()] == ["direct", "direct"]
+    worst = max(
+        one.solution.minimised / other.solution.minimised - 1.0
+        for one, other in zip(alike.planned.cams, own.planned.cams, strict=True)
+    )
+    assert place.found.cost == pytest.approx(worst, abs=1e-3)
+
+
+def test_nothing_is_placed_where_nothing_is_free() -> None:
+    place = placed_alike(line_of(load_job(), 1.0), THE_LIST)
+    assert place.found is None
+    assert place.words() == "the sync zone lies at one place for all lengths already"
+
+
+@pytest.mark.slow
+def test_shaped_commands_do_not_meet_and_go_through_transitions_on_a_slower_line() -> None:
+    job = load_job(EXAMPLES / "short-cut.toml")
+    asked = CutList((ListRow(0.3, 2), ListRow(0.267, 2)))
+    found = study(job, asked, ramp=0.2)
+    change = found.planned.changes[1, 2]
+    assert change.jump.velocity > 0.1
+    assert change.how == "transition"
+    assert change.line_speed < job.cut.line_speed
+    assert found.tables[0].jump.velocity < 1e-6
+
+
+def test_a_change_that_needs_a_stop_is_refused_with_a_way_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("camwright.production.changes.transition_speed", lambda *_cams: None)
+    with pytest.raises(
+        InfeasibleError, match=r"line 7: from 900 mm to 500 mm no motion .* --common-place, or \[machine\] sync_at"
+    ):
+        study(crank(), CutList((ListRow(0.9, 1, line=6), ListRow(0.5, 1, line=7))))
+
+
+def test_a_thousand_pieces_of_fifty_lengths_in_ten_seconds() -> None:
+    draw = np.random.default_rng(3)
+    lengths = np.round(np.linspace(0.3, 1.2, 50), 4)
+    asked = CutList(tuple(ListRow(float(draw.choice(lengths))) for _ in range(1000)))
+    begun = time.process_time()
+    found = study(load_job(), asked)
+    assert time.process_time() - begun < 10.0
+    assert len(found.planned.cams) == 50
+    assert {change.how for change in found.planned.changes.values()} == {"direct", "slow_down"}
+    assert found.tables[0].jump.velocity < 1e-12
