@@ -5,14 +5,21 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from camwright.design.feasible.extremes import max_line_speed, placed_fastest
+from camwright.design.line.refusal import can_ramp
 from camwright.design.optimise import Solution
+from camwright.design.production.drawn_in import solve_drawn_in, surely_bears
 from camwright.design.production.transition import RunningCam
 from camwright.jobs.job import Job
+from camwright.jobs.wording import in_job_words
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InfeasibleError
 from camwright.profiles.line import STEADY, Line
+from camwright.profiles.objective import of_command
 from camwright.studies.axis_study import solve_job
 from camwright.validation.report import ValidationReport, judge
+
+_SLOWEST, _HALVINGS = 0.05, 10
+"""Share of a line speed from which one that bears the line's ramps is looked for, and how closely."""
 
 _INSIDE = 1e-9
 """Share by which a cam's line speed stays below what the perfect axis can do at most: rounding."""
@@ -33,8 +40,6 @@ class ListCam:
         The list's job for this gap: its cut length and line speed, its sync zone placed, the origin at the end of the zone.
     perfect
         Highest line speed of a perfect axis on a line that keeps its speed (m/s).
-    ramping
-        The same where the line's own ramps are to be borne (m/s).
     solution
         The optimal cycle.
     report
@@ -44,7 +49,6 @@ class ListCam:
     number: int
     job: Job
     perfect: float
-    ramping: float
     solution: Solution
     report: ValidationReport
 
@@ -69,17 +73,40 @@ class ListCam:
         return RunningCam(self.job.task, self.solution.profile)
 
 
-def highest_speeds(job: Job, length: float) -> tuple[float, float]:
-    """Highest line speed of a perfect axis for a gap: on a steady line, and on one that ramps as the job says (m/s); 0 where none works."""
-    task = job.task.from_return().with_length(length)
-    steady = task.with_line(STEADY)
-    perfect = max_line_speed(placed_fastest(steady)) or 0.0
-    if not job.line.ramps or perfect == 0.0:
-        return perfect, perfect
-    return perfect, min(perfect, max_line_speed(placed_fastest(task)) or 0.0)
+def highest_speed(job: Job, length: float) -> float:
+    """Highest line speed of a perfect axis for a gap, on a line that keeps its speed (m/s); 0 where none works."""
+    task = job.task.from_return().with_length(length).with_line(STEADY)
+    return (max_line_speed(placed_fastest(task)) or 0.0) * (1.0 - _INSIDE)
 
 
-def list_cam(number: int, job: Job, length: float, speeds: tuple[float, float], cap: float, line: Line) -> ListCam:
+def ramping_speed(job: Job, length: float, top: float) -> float:
+    """Highest line speed up to a given one at which a cam for a gap bears the line's ramps (m/s); 0 where none was found.
+
+    Of a servo-aware job only its design tells: the given speed.
+    """
+    if job.servo_aware or not job.line.ramps:
+        return top
+    task = placed_fastest(job.task.from_return().with_length(length).at_speed(top).with_line(STEADY)).with_line(
+        job.line
+    )
+
+    def bears(line_speed: float) -> bool:
+        there = task.at_speed(line_speed)
+        return surely_bears(there) or can_ramp(there)
+
+    if bears(top):
+        return top
+    low = _SLOWEST * top
+    if not bears(low):
+        return 0.0
+    high = top
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if bears(middle) else (low, middle)
+    return low
+
+
+def list_cam(number: int, job: Job, length: float, perfect: float, top: float, line: Line) -> ListCam:
     """Design the cam of a gap.
 
     Parameters
@@ -90,10 +117,10 @@ def list_cam(number: int, job: Job, length: float, speeds: tuple[float, float], 
         The list's job.
     length
         The gap (m).
-    speeds
-        What `highest_speeds` gives for it.
-    cap
-        Line speed above which it need not run (m/s).
+    perfect
+        What `highest_speed` gives for it (m/s).
+    top
+        Line speed that it is designed for (m/s).
     line
         Ramps of the line that it is to bear.
 
@@ -104,14 +131,13 @@ def list_cam(number: int, job: Job, length: float, speeds: tuple[float, float], 
     SolverError
         The solver failed.
     """
-    top = min(cap, (speeds[1] if line.ramps else speeds[0]) * (1.0 - _INSIDE))
     for stride in range(_STRIDES):
         asked = replace(
             job, name=cam_name(number, length, job), cut=_cut(job, length, top * _STRIDE**stride), line=line
         )
         asked = replace(asked, slowest=min(1.0, job.line_speeds[0] / asked.cut.line_speed))
         try:
-            solution = solve_job(asked, suggest=False)
+            solution = _quick(asked) or solve_job(asked, suggest=False)
         except InfeasibleError:
             if not job.servo_aware or stride == _STRIDES - 1:
                 raise
@@ -121,7 +147,15 @@ def list_cam(number: int, job: Job, length: float, speeds: tuple[float, float], 
     report = judge(
         solution.profile, placed.task, job.servo, sweep=False, servo_aware=job.servo_aware, slowest=placed.slowest
     )
-    return ListCam(number, placed, *speeds, solution, report)
+    return ListCam(number, placed, perfect, solution, report)
+
+
+def _quick(job: Job) -> Solution | None:
+    """Design a cam that bears the line's ramps by drawn-in limits, where the job allows that; ``None`` elsewhere."""
+    if job.servo_aware or not job.line.ramps or job.limits.motor is not None or job.objective == "sync_error":
+        return None
+    with in_job_words(job.units):
+        return solve_drawn_in(job.task, of_command(job.objective))
 
 
 def _cut(job: Job, length: float, line_speed: float) -> Cut:

@@ -14,7 +14,7 @@ from camwright.design.production.line_plan import fastest_line
 from camwright.house.numbers import with_unit
 from camwright.house.progress import Step, ignore
 from camwright.jobs.job import Job
-from camwright.production.cams import ListCam, highest_speeds, list_cam
+from camwright.production.cams import ListCam, highest_speed, list_cam, ramping_speed
 from camwright.production.changes import Change, find_changes
 from camwright.production.tables import TargetSeams, list_tables
 from camwright.profiles.cut_list import CutList
@@ -162,15 +162,18 @@ def plan_list(job: Job, asked: CutList, line: LineRun | None = None, step: Step 
     order = np.argsort(first, kind="stable")
     lengths, of = lengths[order], np.argsort(order)[inverse].astype(np.intp)
     step("finding the highest line speeds")
-    speeds = np.array([highest_speeds(job, length) for length in lengths.tolist()])
-    _require_possible(job, asked, of, speeds[:, 0])
-    step("designing the cams")
+    perfect = np.array([highest_speed(job, length) for length in lengths.tolist()])
+    _require_possible(job, asked, of, perfect)
+    step("finding which cams run while the line ramps")
     acceleration = job.line.acceleration
-    if line is None and acceleration is not None:
-        ramps = _ramping(gaps, of, speeds, job.cut.line_speed, acceleration)
-    else:
-        ramps = np.full(len(lengths), job.line.ramps)
-    cams = _designed(job, lengths, ramps, speeds)
+    tops, bears = _tops(job, gaps, lengths, of, np.minimum(perfect, job.cut.line_speed), planned=line is None)
+    step("designing the cams")
+    cams = tuple(
+        list_cam(number + 1, job, length, most, top, job.line if bears[number] else STEADY)
+        for number, (length, most, top) in enumerate(
+            zip(lengths.tolist(), perfect.tolist(), tops.tolist(), strict=True)
+        )
+    )
     step("looking at the changes")
     pairs = collections.Counter((a + 1, b + 1) for a, b in pairwise(of.tolist()) if a != b)
     changes = find_changes(cams, pairs, stand_in(job))
@@ -246,44 +249,63 @@ def _require_possible(job: Job, asked: CutList, of: NDArray[np.intp], perfect: F
         )
 
 
-def _designed(job: Job, lengths: FloatArray, ramps: NDArray[np.bool_], speeds: FloatArray) -> tuple[ListCam, ...]:
-    """Design the cams: each at its own highest speed where the line is steady whenever it runs, else below what bears the ramps.
+def _tops(
+    job: Job, gaps: FloatArray, lengths: FloatArray, of: NDArray[np.intp], tops: FloatArray, *, planned: bool
+) -> tuple[FloatArray, NDArray[np.bool_]]:
+    """Find the line speed that each cam is designed for, and whether it is to bear the line's ramps there.
+
+    A cam that runs while the line ramps may run no faster than what bears it, which may make others ramp. One that runs at a steady line
+    only need not bear its ramps.
 
     Parameters
     ----------
+    gaps, of
+        The list, and which cam makes each piece.
     lengths
-        Their gaps (m).
-    ramps
-        Which of them run while the line ramps.
-    speeds
-        Highest line speed of a perfect axis, steady and ramping (m/s), shape ``(cams, 2)``.
+        Lengths of the cams (m).
+    tops
+        Their line speeds on a line that keeps its speed (m/s).
+    planned
+        Whether the line's speed is planned; where it is given every cam that can is to bear the ramps.
+
+    Returns
+    -------
+    (tops, bears)
+        Shapes ``(cams,)``.
+
+    Raises
+    ------
+    InfeasibleError
+        A cam that runs while the line ramps bears it at no line speed.
     """
-    cap = job.cut.line_speed
-    cams = []
-    for number, length in enumerate(lengths.tolist()):
-        perfect, bearing = speeds[number].tolist()
-        line = job.line if ramps[number] or bearing >= min(cap, perfect) else STEADY
-        cams.append(list_cam(number + 1, job, length, (perfect, bearing), cap, line))
-    return tuple(cams)
-
-
-def _ramping(
-    gaps: FloatArray, of: NDArray[np.intp], speeds: FloatArray, cap: float, acceleration: float
-) -> NDArray[np.bool_]:
-    """Say which cams run while the line ramps: those may run no faster than what bears it, which may make others ramp."""
-    ramps = np.zeros(len(speeds), dtype=bool)
+    found = np.array(
+        [ramping_speed(job, length, top) for length, top in zip(lengths.tolist(), tops.tolist(), strict=True)]
+    )
+    bears = found == tops
+    ramp = job.line.acceleration
+    if not planned or ramp is None:
+        return tops, bears & job.line.ramps
     ends = np.concatenate([[0.0], np.cumsum(gaps)])
+    places = np.stack([ends[:-1], 0.5 * (ends[:-1] + ends[1:]), ends[1:]])
+    slower = np.zeros(len(tops), dtype=bool)
     while True:
-        highest = np.minimum(cap, np.where(ramps, speeds[:, 1], speeds[:, 0]))
-        plan = fastest_line(gaps, highest[of], acceleration)
-        places = np.stack([ends[:-1], 0.5 * (ends[:-1] + ends[1:]), ends[1:]])
+        plan = fastest_line(gaps, np.where(slower, found, tops)[of], ramp)
         at = plan.speed(plan.when(places))
-        changing = at.max(axis=0) > at.min(axis=0) * (1.0 + _STEADY)
-        found = ramps.copy()
-        found[np.unique(of[changing])] = True
-        if (found == ramps).all():
-            return ramps
-        ramps = found
+        ramping = np.zeros(len(tops), dtype=bool)
+        ramping[np.unique(of[at.max(axis=0) > at.min(axis=0) * (1.0 + _STEADY)])] = True
+        more = ramping & ~bears & ~slower
+        if not more.any():
+            return np.where(slower, found, tops), bears | slower
+        if (found[more] <= 0.0).any():
+            length = float(lengths[more][found[more] <= 0.0][0])
+            raise InfeasibleError(
+                f"no cam of {with_unit(length, 'm', 4, job.units)} bears the line's ramp of {ramp:.4g} m/s^2; let it ramp more gently",
+                "line.acceleration",
+                None,
+                "m/s^2",
+                (),
+            )
+        slower |= more
 
 
 def _require_running(
