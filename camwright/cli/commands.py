@@ -99,7 +99,7 @@ COMMANDS: dict[str, Command] = {
         "camwright quick --circumference 400mm --sync 200mm --length 900mm",
     ),
     "cutlist": Command(
-        "Work a cut list out: its cams, the changes between them, the fastest line speed, tables and their seams.",
+        "Work a cut list out: cams, changes, the fastest line speed, tables whose seams are run, and a table for the PLC.",
         PRODUCTION,
         "camwright cutlist board.toml order.csv --line-acceleration '1 m/s^2'",
     ),

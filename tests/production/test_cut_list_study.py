@@ -41,6 +41,15 @@ def test_the_answer_of_the_published_list(known: ListStudy) -> None:
     ]
 
 
+def test_cams_bear_the_ramp_where_it_is_made(known: ListStudy) -> None:
+    assert [cam.bears_ramps for cam in known.planned.cams] == [True, False]  # the short one runs at a steady line only
+    assert known.passed
+    ramping = plan_list(line_of(load_job(), 1.0), CutList((ListRow(0.3), ListRow(0.302), ListRow(0.6))))
+    plain = plan_list(load_job(), CutList((ListRow(0.3), ListRow(0.302))), known.planned.line)
+    assert ramping.cams[1].bears_ramps
+    assert ramping.cams[1].line_speed < plain.cams[1].line_speed  # its highest leaves no room for a ramp
+
+
 def test_tables_of_cams_in_sync_meet_in_float64_and_to_their_rounding_in_float32(known: ListStudy) -> None:
     for table in known.tables:
         exact = table.number_format == "float64"
