@@ -87,6 +87,20 @@ def example_cases(example: str) -> Iterator[Case]:
     yield case("limits", "limits", job, slow=example == "short-cut")
     yield case("ramps", "ramps", job, *out("ramps"), slow=example == "short-cut")
     yield case("marks", "marks", job, *out("marks"), "--delay", "2", slow=example == "short-cut")
+    ramp, order = ("--line-acceleration", "0.2 m/s^2"), "lists/order.csv"
+    yield case("cutlist", "cutlist", job, order, *ramp, *out("cutlist"), slow=example == "short-cut")
+    yield case(
+        "simulate",
+        "simulate",
+        job,
+        "--list",
+        order,
+        *ramp,
+        "--slip",
+        "0.0002",
+        *out("simulate"),
+        slow=example == "short-cut",
+    )
     yield case("envelope", "envelope", job, "--points", "3", *out("envelope"))
     yield case("validate-design", "validate", made, "--job", job, needs=["design"])
     yield case("validate-table", "validate", f"{runs}/design/cam.csv", "--job", job, needs=["design"])
@@ -232,6 +246,11 @@ def misuse_cases() -> Iterator[Case]:
         "unknown-law": ("compare", job, "--with", "quintic", "--no-figures", "--json"),
         "law-and-objectives": ("compare", job, "--objectives", "--with", "poly_3_4_5", "--json"),
         "laws-of-others": ("compare", job, "--with", "crank_tabulated", "--json"),
+        "cutlist-no-ramp": ("cutlist", job, "lists/order.csv", "--json"),
+        "cutlist-faulty": ("cutlist", job, "lists/faulty.csv", "--line-acceleration", "1 m/s^2", "--json"),
+        "simulate-two-lines": (
+            "simulate", job, "--list", "lists/order.csv", "--line", "lists/line.csv", "--line-acceleration", "1 m/s^2", "--json"
+        ),
         "envelope-points": ("envelope", job, "--points", "1", "--json"),
         "validate-no-file": ("validate", "cams/none.csv", "--job", job, "--json"),
         "validate-plain": ("validate", "cams/plain.csv", "--job", job, "--json"),

@@ -231,6 +231,9 @@ def inputs(examples: dict[str, str]) -> dict[str, str | bytes]:
     good, (run, quintic) = trace(1.0, 15.0), run_and_cam()
     lines = good.splitlines(keepends=True)
     files |= {
+        "lists/order.csv": "length [mm],quantity,kind\n1400,2,cut\n900,1,skip\n900,1,crop\n1400,1,cut\n",
+        "lists/faulty.csv": "length,quantity\n600 mm,3\n300,3\n",
+        "lists/line.csv": "time [s],speed [m/min]\n0,0\n20,10\n60,10\n",
         "traces/assumed.csv": good,
         "traces/run.csv": run,
         "traces/run-without-master.csv": "\n".join(
