@@ -24,6 +24,9 @@ from camwright.validation.servo.response import greatest_shear_zone_error
 
 LEAST_WRAPS = 3
 
+RUN = 10_000
+"""Cuts of a run over which what a written table lacks of the pitch adds up; stated in every report."""
+
 ALLOWANCE = 0.01
 """What a limit may be exceeded by, relative to the limit: interpolation and number format, stated in every report."""
 
@@ -70,20 +73,21 @@ class TableJudgement:
         return all(check.passed for check in self.checks)
 
 
-def one_cycle(rebuilt: CamProfile, cut: Cut) -> CamProfile:
-    """Put a rebuilt cycle over the master period ``[0, x_c]`` exactly; its slave positions stay.
+def one_cycle(rebuilt: CamProfile, cut: Cut, cuts: int = 1) -> CamProfile:
+    """Put a rebuilt cycle over the master period of so many cuts exactly; its slave positions stay.
 
     Raises
     ------
     InputError
         The table's period is not the cut length, to `_SAME_PERIOD`.
     """
-    if abs(rebuilt.length - cut.length) > _SAME_PERIOD * cut.length:
+    length = cuts * cut.length
+    if abs(rebuilt.length - length) > _SAME_PERIOD * length:
         raise InputError(
             f"the table's master period is {rebuilt.length * 1e3:.10g} mm, but the cut length is "
             f"{cut.length * 1e3:.10g} mm; check the units, or name the job that the table was made for"
         )
-    return rebuilt.shift(-rebuilt.start).scale(master=cut.length / rebuilt.length).over(0.0, cut.length)
+    return rebuilt.shift(-rebuilt.start).scale(master=length / rebuilt.length).over(0.0, length)
 
 
 def judge_table(
@@ -91,6 +95,8 @@ def judge_table(
     task: Task,
     servo: Servo,
     wraps: int = LEAST_WRAPS,
+    run: int = 0,
+    stored: float = 0.0,
     *,
     count: float = 0.0,
 ) -> TableJudgement:
@@ -111,6 +117,11 @@ def judge_table(
         What it is judged by.
     wraps
         Number of cycles to run, at least `LEAST_WRAPS`.
+    run
+        Cuts over which the advance may fall short of the pitch by the sync tolerance; those of the wraps if more.
+    stored
+        Size of the counts of the user's encoder that a table is written in (slave unit), its motion with their rounding: like
+        `count`, and acceleration and jerk beyond what rounding to counts makes of their differences, which the sources state.
     count
         Size of the counts that the positions are given in (slave unit), if that is coarse: then acceleration and speed in
         sync are judged by differences at the sample time, the speed beyond what one count makes of it.
@@ -122,45 +133,64 @@ def judge_table(
     """
     if wraps < LEAST_WRAPS:
         raise InputError(f"a table is run over at least {LEAST_WRAPS} wraps; got {wraps}")
-    cycle = one_cycle(rebuilt, task.cut)
-    run = rebuilt.shift(-rebuilt.start).repeat(wraps)
+    cuts = cuts_in(rebuilt, task.cut)
+    whole = one_cycle(rebuilt, task.cut, cuts)
+    cycles = _each_cut(whole, task, cuts)
+    periods = -(-wraps // cuts)
+    wrapped = rebuilt.shift(-rebuilt.start).repeat(periods)
     checks = (
-        *_closing(rebuilt, task, wraps),
-        *_sync(run, task, wraps, count, servo.sample_time),
-        *_limits(cycle, run, task, servo, count > 0.0),
-        *_stroke(cycle, task),
-        _shear_zone(cycle, task, servo),
+        *_closing(rebuilt, task, cuts, wraps, max(run, wraps)),
+        *_sync(wrapped, task, periods * cuts, max(count, stored), servo.sample_time),
+        *_limits(whole, wrapped, task, servo, counted=count > 0.0 or stored > 0.0, stored=stored),
+        *_stroke(whole, task),
+        _shear_zone(cycles, task, servo),
     )
-    return TableJudgement(checks, cycle, wraps)
+    return TableJudgement(checks, cycles[0], periods * cuts)
+
+
+def cuts_in(rebuilt: CamProfile, cut: Cut) -> int:
+    """Count the cuts in a table: several where its counts close after several only."""
+    return max(1, round(rebuilt.length / cut.length))
+
+
+def _each_cut(whole: CamProfile, task: Task, cuts: int) -> list[CamProfile]:
+    """Take a table of several cuts apart, each over ``[0, x_c]`` and from its own pitch on."""
+    length, pitch = task.cut.length, task.machine.pitch
+    if cuts == 1:
+        return [whole]
+    ends = [float(whole.breaks[np.abs(whole.breaks - k * length).argmin()]) for k in range(cuts + 1)]
+    ends = [near if abs(near - k * length) <= _STEP * length else k * length for k, near in enumerate(ends)]
+    return [whole.restrict(ends[k], ends[k + 1]).shift(-ends[k], -k * pitch).over(0.0, length) for k in range(cuts)]
 
 
 def _at_most(name: str, value: float, limit: float, unit: str, at: float | None, source: str) -> Check:
     return Check(name, value <= limit, value, limit, unit, at, source)
 
 
-def _closing(rebuilt: CamProfile, task: Task, wraps: int) -> list[Check]:
-    """Give what period and advance are off, added up over the wraps, and steps at the joins."""
+def _closing(rebuilt: CamProfile, task: Task, cuts: int, wraps: int, run: int) -> list[Check]:
+    """Give what period and advance are off, the latter added up over a run, and steps at the joins."""
     machine, cut = task.machine, task.cut
     step = greatest_jump(rebuilt, 0)
-    over = f"over {wraps} wraps, in the target's number format"
+    number = "in the target's number format"
+    of = "" if cuts == 1 else f" of {cuts} cuts"
     zone = task.slave_at_sync_start + task.sync(np.linspace(0.0, cut.sync_zone, 33))
     lever = float(np.abs(machine.tool_ratio(zone)).max())
     return [
         _at_most(
             "period",
-            wraps * abs(rebuilt.length - cut.length),
+            wraps * abs(rebuilt.length - cuts * cut.length) / cuts,
             cut.sync_tolerance,
             "m",
             None,
-            f"period against cut length {over}",
+            f"period{of} against cut length over {wraps} wraps, {number}",
         ),
         _at_most(
             "closure",
-            wraps * abs(rebuilt.advance - machine.pitch) * lever,
+            run * abs(rebuilt.advance - cuts * machine.pitch) / cuts * lever,
             cut.sync_tolerance,
             "m",
             None,
-            f"advance against pitch, at the tool in sync, {over}",
+            f"advance{of} against pitch, at the tool in sync, over a run of {run} cuts, {number}",
         ),
         _at_most(
             "position_joins",
@@ -272,8 +302,13 @@ def _places(run: CamProfile, start: float, end: float) -> FloatArray:
     return np.unique(np.concatenate([(breaks[:-1, None] + np.diff(breaks)[:, None] * _NODES).ravel(), [end]]))
 
 
-def _limits(cycle: CamProfile, run: CamProfile, task: Task, servo: Servo, counted: bool) -> list[Check]:
-    """Speed, acceleration and reversal of the cycle; differences over all wraps."""
+def _limits(
+    cycle: CamProfile, run: CamProfile, task: Task, servo: Servo, *, counted: bool, stored: float
+) -> list[Check]:
+    """Speed, acceleration and reversal of the cycle; differences over all wraps.
+
+    A position is off by half a count at most, so a second difference by two counts, a third by four.
+    """
     machine, limits = task.machine, task.limits
     v = task.cut.line_speed
     speed, least = _extremes(cycle, 1)
@@ -288,11 +323,15 @@ def _limits(cycle: CamProfile, run: CamProfile, task: Task, servo: Servo, counte
         how = "differences at the servo's sample time"
     jerk, jerk_at = sampled[1]
     allowed = 1.0 + ALLOWANCE
+    shake = 2.0 * stored / servo.sample_time**2
+    jolt = 4.0 * stored / servo.sample_time**3
+    made = [f"; {off:.4g} of the limit is what counts make of it" if off else "" for off in (shake, jolt)]
+    sampled_how = "differences at the servo's sample time"
     backward = limits.speed if task.reverses else ALLOWANCE * v * scale
     return [
         _at_most("speed", v * speed.value, allowed * limits.speed, f"{unit}/s", speed.at, "exact"),
-        _at_most("acceleration", acceleration, allowed * limits.acceleration, f"{unit}/s^2", at, how),
-        _at_most("jerk", jerk, allowed * limits.jerk, f"{unit}/s^3", jerk_at, "differences at the servo's sample time"),
+        _at_most("acceleration", acceleration, allowed * limits.acceleration + shake, f"{unit}/s^2", at, how + made[0]),
+        _at_most("jerk", jerk, allowed * limits.jerk + jolt, f"{unit}/s^3", jerk_at, sampled_how + made[1]),
         _at_most("reversal", max(0.0, -v * least.value), backward, f"{unit}/s", least.at, "greatest backward speed"),
     ]
 
@@ -330,12 +369,12 @@ def _stroke(cycle: CamProfile, task: Task) -> list[Check]:
     ]
 
 
-def _shear_zone(cycle: CamProfile, task: Task, servo: Servo) -> Check:
-    """Tool of the real axis against material in the shear zone; no value if the servo is unstable."""
+def _shear_zone(cycles: list[CamProfile], task: Task, servo: Servo) -> Check:
+    """Tool of the real axis against material in the shear zone, the worst of all cuts; no value if the servo is unstable."""
     cut = task.cut
     worst = None
     if spectral_radius(servo) < 1.0:
-        worst = greatest_shear_zone_error(cycle, task, servo)
+        worst = max(greatest_shear_zone_error(cycle, task, servo) for cycle in cycles)
     return Check(
         "shear_zone_error",
         worst is not None and worst <= cut.sync_tolerance,

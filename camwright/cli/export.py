@@ -37,7 +37,11 @@ def run(
     ] = None,
     units: Annotated[
         str | None,
-        typer.Option("--units", metavar="M,S", help="Units of master and slave, for example mm,deg; mm if left out."),
+        typer.Option(
+            "--units",
+            metavar="M,S",
+            help="Units of master and slave: mm,deg; or counts: mm,9.25 um or mm,36000/rev. mm if left out.",
+        ),
     ] = None,
     max_error: Annotated[str, typer.Option("--max-error", metavar="LENGTH", help="Greatest position error.")] = "1 um",
     out: Annotated[
@@ -120,6 +124,19 @@ def _view(written: TableFiles, directory: Path) -> RenderableType:
                     f"{result.target.name} rounds to float32: {points} points would be off by {rough * 100:.3g} % of the acceleration"
                 )
             )
+    notes += [
+        new_text(f"{result.target.name}: one table for {result.cuts} cuts, after which its counts close")
+        for result in written.results
+        if result.cuts > 1
+    ]
+    notes += [
+        new_text(
+            f"{result.target.name}: {result.drift * 1e6:+.3g} u{result.units.slave.si} beyond the pitch in each cut",
+            "yellow",
+        )
+        for result in written.results
+        if abs(result.drift) > 1e-12
+    ]
     if any(not result.accurate for result in written.results):
         notes.insert(0, new_text("* the nearest that this target can come; the error asked for is exceeded somewhere"))
     return stacked(table, *notes, new_text(f"in {directory}"), new_text(note))

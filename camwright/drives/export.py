@@ -20,17 +20,20 @@ from camwright.profiles.tables.knots import (
     Accuracy,
     Choice,
     choose,
+    closing_cuts,
     table_units,
 )
 from camwright.profiles.tables.target import Header, Target
 from camwright.profiles.tables.targets import TARGETS, read_table, target_of
 from camwright.profiles.tables.text import decode
-from camwright.validation.rebuilt import TableJudgement, judge_table
+from camwright.validation.rebuilt import LEAST_WRAPS, RUN, TableJudgement, cuts_in, judge_table
 
 DENSE = 1001
 """Points of a table that one might take for finer: in float32 its acceleration is worse."""
 
 _PLACES = 20_001
+_NO_DRIFT = 1e-12
+"""A drift in a cut (m, or rad) that is rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +60,10 @@ class Exported:
         Texts by file name; none if the table was not released.
     dense
         What a table of `DENSE` points would be like, for targets that round points to float32 and take any number.
+    cuts
+        Cuts in the table: several where its counts close after several only.
+    drift
+        What it goes beyond the pitch in a cut (slave unit).
     """
 
     target: Target
@@ -68,6 +75,8 @@ class Exported:
     judgement: TableJudgement
     files: dict[str, str]
     dense: Choice | None = None
+    cuts: int = 1
+    drift: float = 0.0
 
     @property
     def passed(self) -> bool:
@@ -88,13 +97,13 @@ class Stretch:
     slave_start
         Slave coordinate of the machine at its start (slave unit).
     judge
-        Judges the motion that a drive makes of its table.
+        Judges the motion that a drive makes of its table; the second argument as ``stored`` of `judge_table`.
     """
 
     name: str
     zones: tuple[float, ...]
     slave_start: float
-    judge: Callable[[CamProfile], TableJudgement]
+    judge: Callable[[CamProfile, float], TableJudgement]
 
 
 def export(
@@ -160,7 +169,7 @@ def export_possible(
 ) -> tuple[list[Exported], dict[str, tuple[str, ...]]]:
     """Write a cycle for drives like `export`, or a motion that is run once, and say of those that cannot take it why not."""
     targets = [target_of(name) for name in dict.fromkeys(names)]
-    wanted = units or default_units(job.machine)
+    wanted = _Wanted(units or default_units(job.machine), asked=units is not None)
     judge = _Judge(profile, job, stretch or _running(job))
     asked = _in_slave_units(accuracy or Accuracy(), judge)
     results, refused = [], {}
@@ -177,7 +186,11 @@ def _running(job: Job) -> Stretch:
     """Describe the cycle of a job like a motion that is run once; its tables are called as the job."""
     cut = job.cut
     zones = (cut.return_zone,) if cut.origin == "return" else (0.5 * cut.sync_zone, cut.length - 0.5 * cut.sync_zone)
-    return Stretch("", zones, job.task.slave_at_start, lambda rebuilt: judge_table(rebuilt, job.task, job.servo))
+
+    def judge(rebuilt: CamProfile, stored: float) -> TableJudgement:
+        return judge_table(rebuilt, job.task, job.servo, LEAST_WRAPS, RUN, stored)
+
+    return Stretch("", zones, job.task.slave_at_start, judge)
 
 
 def _in_slave_units(accuracy: Accuracy, judge: _Judge) -> Accuracy:
@@ -189,6 +202,14 @@ def _in_slave_units(accuracy: Accuracy, judge: _Judge) -> Accuracy:
     lever = float(np.abs(job.machine.tool_ratio(y)).max())
     in_sync = abs(float(job.task.sync(0.0, 1)))
     return replace(accuracy, position=accuracy.position / lever, ratio=accuracy.ratio * in_sync)
+
+
+@dataclass(frozen=True)
+class _Wanted:
+    """Units of tables, and whether the user named them."""
+
+    units: Units
+    asked: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -204,13 +225,15 @@ class _Judge:
     stretch: Stretch
     _known: dict[tuple[bytes, ...], tuple[Deviation, float, TableJudgement]] = field(default_factory=dict)
 
-    def __call__(self, rebuilt: CamProfile) -> tuple[Deviation, float, TableJudgement]:
+    def __call__(self, rebuilt: CamProfile, stored: float = 0.0) -> tuple[Deviation, float, TableJudgement]:
         """Deviation from the profile, `position_error`, and the checks."""
-        key = tuple((numbers + 0.0).tobytes() for numbers in (rebuilt.breaks, rebuilt.coefficients))  # no negative zero
+        numbers = (rebuilt.breaks, rebuilt.coefficients, np.array([stored]))
+        key = tuple((each + 0.0).tobytes() for each in numbers)  # no negative zero
         if key not in self._known:
-            off = deviation(self.profile, rebuilt)
-            error = position_error(self.profile, rebuilt, off, self.job, self.stretch.slave_start)
-            self._known[key] = off, error, self.stretch.judge(rebuilt)
+            meant = self.profile if self.stretch.name else covering(self.profile, rebuilt, self.job)
+            off = deviation(meant, rebuilt)
+            error = position_error(meant, rebuilt, off, self.job, self.stretch.slave_start)
+            self._known[key] = off, error, self.stretch.judge(rebuilt, stored)
         return self._known[key]
 
 
@@ -218,41 +241,69 @@ def _export(
     profile: CamProfile,
     judge: _Judge,
     target: Target,
-    wanted: Units,
+    wanted: _Wanted,
     accuracy: Accuracy,
     points: int | None,
     force: bool,
 ) -> Exported:
     job, zones, name = judge.job, judge.stretch.zones, judge.stretch.name
-    choice = choose(profile, target, table_units(target, profile, wanted), accuracy, points, zones)
+    units = table_units(target, profile, wanted.units, asked=wanted.asked, travel=job.machine.pitch)
+    cuts = 1 if name else closing_cuts(target, profile, units)
+    if cuts > 1:
+        zones = tuple(at + k * job.cut.length for k in range(cuts) for at in zones)
+        profile = profile.repeat(cuts)
+    choice = choose(profile, target, units, accuracy, points, zones)
     if name:
         choice = replace(choice, table=replace(choice.table, periodic=False))
-    _, error, expected = judge(choice.rebuilt)
-    head = Header(
-        f"{name}-{job.name}" if name else job.name, camwright_version(), job.sha256, _facts(expected, job, error)
-    )
-    result = _written(judge, choice, target, head, accuracy)
+    stored = units.slave.size if wanted.asked and target.counts else 0.0
+    _, error, expected = judge(choice.rebuilt, stored)
+    facts = _facts(expected, job, error)
+    if stored and not name:
+        facts += (("cuts in this table", str(cuts)), ("drift of the slave in a cut", _drift_words(choice.rebuilt, job)))
+    link = f"{profile.length / wanted.units.master.size:.12g}" if wanted.asked else ""
+    head = Header(f"{name}-{job.name}" if name else job.name, camwright_version(), job.sha256, facts, link=link)
+    result = _written(judge, choice, target, head, accuracy, stored)
     if target.number_format == "float32" and target.spacing == "free":
-        dense = choose(profile, target, table_units(target, profile, wanted), accuracy, DENSE, zones)
+        dense = choose(profile, target, units, accuracy, DENSE, zones)
         result = replace(result, dense=dense)
     if result.passed:
         return result
     if not force:
         return replace(result, files={})
     failed = tuple(f"check {check.name} failed" for check in result.judgement.checks if not check.passed)
-    forced = _written(judge, choice, target, replace(head, warnings=failed), accuracy)
+    forced = _written(judge, choice, target, replace(head, warnings=failed), accuracy, stored)
     return replace(forced, dense=result.dense)
 
 
-def _written(judge: _Judge, choice: Choice, target: Target, head: Header, accuracy: Accuracy) -> Exported:
+def _written(
+    judge: _Judge, choice: Choice, target: Target, head: Header, accuracy: Accuracy, stored: float
+) -> Exported:
     """Write the table, read it back, and judge what the drive makes of it."""
     units = choice.table.units
     if units is None:
         raise InputError("the table's units were lost")
     files = target.write(choice.table, head)
     table, rebuilt = read_back(target, files, units)
-    off, error, judgement = judge(rebuilt)
-    return Exported(target, table, table.units or units, off, error, accuracy.kept_by(off), judgement, files)
+    off, error, judgement = judge(rebuilt, stored)
+    kept, once = accuracy.kept_by(off), bool(judge.stretch.name)
+    cuts, lost = (1, 0.0) if once else (cuts_in(rebuilt, judge.job.cut), drift(rebuilt, judge.job))
+    return Exported(target, table, table.units or units, off, error, kept, judgement, files, cuts=cuts, drift=lost)
+
+
+def covering(profile: CamProfile, rebuilt: CamProfile, job: Job) -> CamProfile:
+    """Give the cycle, so often repeated as a table holds cuts."""
+    cuts = cuts_in(rebuilt, job.cut)
+    return profile if cuts == 1 else profile.repeat(cuts)
+
+
+def drift(rebuilt: CamProfile, job: Job) -> float:
+    """Tell what a table goes beyond the pitch in a cut (slave unit); negative where it falls short."""
+    return rebuilt.advance / cuts_in(rebuilt, job.cut) - job.machine.pitch
+
+
+def _drift_words(rebuilt: CamProfile, job: Job) -> str:
+    off = drift(rebuilt, job)
+    return "none" if abs(off) < _NO_DRIFT else f"{off:.3g} {job.machine.slave_unit}"
 
 
 def position_error(profile: CamProfile, rebuilt: CamProfile, off: Deviation, job: Job, begin: float) -> float:
@@ -314,6 +365,8 @@ def export_report(
         entry["ratio_error"] = result.deviation.ratio
         entry["within_asked_error"] = result.accurate
         entry["wraps"] = result.judgement.wraps
+        entry["cuts"] = result.cuts
+        entry["drift_per_cut"] = {"value": result.drift, "unit": job.machine.slave_unit, "run_cuts": RUN}
         entry["number_format"] = result.target.number_format
         entry["interpolation"] = result.target.interpolation
         entry["tested_on_controller"] = result.target.tested_on_controller

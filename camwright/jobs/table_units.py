@@ -13,6 +13,7 @@ from camwright.profiles.tables.cam_table import CamTable, Unit, Units
 from camwright.profiles.task import Task
 
 _ANGLE = re.compile(r"([+-]?[0-9]{1,9}(?:\.[0-9]{1,9})?(?:e-?[0-9])?) ?(deg|rev)")
+_COUNTS = re.compile(r"([1-9][0-9]{0,9})(?: counts?)? ?/ ?rev")
 _LENGTHS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "um": 1e-6, "in": 0.0254, "ft": 0.3048}
 
 
@@ -26,7 +27,8 @@ def parse_units(text: str, task: Task, period: float | None = None) -> Units:
     """Read ``mm,deg`` into the units of master and slave.
 
     A degree or a turn (``rev``) of the master is that part of the cycle, one of the slave that part of a turn of the
-    drum or the crank. A quantity is a unit, too: ``0.5 um`` for a count of an encoder, ``0.0001 deg`` for a kernel's.
+    drum or the crank. A quantity is a unit, too: ``0.5 um`` for a count of an encoder, ``0.0001 deg`` for a kernel's; so is the
+    number of counts in a turn: ``36000/rev``.
 
     Parameters
     ----------
@@ -178,6 +180,8 @@ def _unit(name: str, known: dict[str, float], kind: str, turn: float | None) -> 
     """Find a unit's size by its name, or read a quantity; one of an angle is part of a turn."""
     if name in known:
         return name, known[name]
+    if (counts := _COUNTS.fullmatch(name)) is not None and "rev" in known:
+        return f"1/{counts[1]}rev", known["rev"] / int(counts[1])
     if name[:1].isdigit() and len(name) <= 20:
         size = _part_of_turn(name, turn) if kind == "length" else None
         return name.replace(" ", ""), quantity(name, kind) if size is None else size

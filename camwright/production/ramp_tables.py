@@ -112,7 +112,7 @@ def stretch_of(found: Ramps, kind: str, profile: CamProfile) -> Stretch:
     whole, half = found.one_shot, found.seam
     cut_at = start.end + (at.zone.length if half is None else half)  # where one table hands over to the next
 
-    def judged(rebuilt: CamProfile) -> TableJudgement:
+    def judged(rebuilt: CamProfile, stored: float = 0.0) -> TableJudgement:
         own = rebuilt.shift(-rebuilt.start, -float(rebuilt(rebuilt.start)))
         if kind == "ramp_in":
             run = _continued(own, whole.restrict(cut_at, whole.end))
@@ -123,7 +123,7 @@ def stretch_of(found: Ramps, kind: str, profile: CamProfile) -> Stretch:
         cycle, task = one_shot_cycle(at, run, found.zone_end, waiting(found.job))
         nominal, _ = one_shot_cycle(at, whole, found.zone_end, waiting(found.job))
         meant = task.with_length(nominal.length)
-        return judge_table(cycle, meant, found.job.servo)
+        return judge_table(cycle, meant, found.job.servo, stored=stored)
 
     zones: tuple[float, ...]
     if kind == "ramp_in":

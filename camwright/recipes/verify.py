@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from camwright.drives.export import position_error
+from camwright.drives.export import covering, position_error
 from camwright.house.provenance import camwright_version
 from camwright.jobs.numbers import job_numbers
 from camwright.profiles.errors import InputError
@@ -34,7 +34,7 @@ from camwright.recipes.sheet_faults import differs, sheet_faults
 from camwright.recipes.signature import SIGNATURE_FILE, is_signed
 from camwright.recipes.xlsx import recipe_xlsx
 from camwright.stored.design_file import MOST_BYTES, StoredDesign
-from camwright.validation.rebuilt import judge_table
+from camwright.validation.rebuilt import RUN, judge_table
 
 _OF_THE_SYSTEM = ("thumbs.db", "ehthumbs.db", ".ds_store", "desktop.ini")
 """Files that a desktop puts into folders by itself, by their names in small letters."""
@@ -313,13 +313,14 @@ def _number_faults(table: RecipeTable, read: CamTable, units: Units, design: Sto
         yield f"units are {_units(read.units)}, recorded {_units(units)}"
         units = read.units
     rebuilt = units.to_si(TARGETS[table.target].rebuild(read))
+    profile = covering(profile, rebuilt, job)
     off = deviation(profile, rebuilt)
     error = position_error(profile, rebuilt, off, job, job.task.slave_at_start)
     scale = float(np.ptp(profile(profile.breaks))) or 1.0
     yield from differs("position error (m)", error, table.position_error, scale)
     yield from differs("ratio error", off.ratio, table.ratio_error, float(np.abs(profile(profile.breaks, 1)).max()))
     yield from differs("acceleration error", off.acceleration, table.acceleration_error, 1.0)
-    judgement = judge_table(rebuilt, job.task, job.servo, table.wraps)
+    judgement = judge_table(rebuilt, job.task, job.servo, table.wraps, RUN)
     again = {check.name: check for check in judgement.checks}
     recorded = {check.name: check for check in table.checks}
     if again.keys() != recorded.keys():

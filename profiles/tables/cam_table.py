@@ -42,6 +42,11 @@ class Unit:
     size: float
     si: SlaveUnit = "m"
 
+    @property
+    def counted(self) -> bool:
+        """Whether it is the size of a count, ``9.25um`` or ``1/36000rev``, not a unit by name."""
+        return self.symbol[:1].isdigit()
+
     def __post_init__(self) -> None:
         if not (np.isfinite(self.size) and self.size > 0):
             raise InputError(f"the size of the unit {self.symbol!r} must be a positive number; got {self.size!r}")

@@ -23,6 +23,9 @@ from camwright.profiles.tables.text import check_count, lines_of
 
 MOST_POINTS = 32_767
 
+CSV_LENGTHS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "um": 1e-6, "in": 0.0254, "ft": 0.3048}
+"""Units that a user may name for this table: metres by name."""
+
 _METRIC = "x [mm],y [mm],dy/dx [1],d2y/dx2 [1/m]"
 _TURNED = "x [mm],y [rad],dy/dx [rad/m],d2y/dx2 [rad/m^2]"
 
@@ -39,6 +42,8 @@ def write(table: CamTable, header: Header) -> dict[str, str]:
         raise InputError("a CSV table states millimetres: say what the units of this table are")
     master, slave = table.units.master.size, table.units.slave.size
     turned = table.units.slave.si == "rad"
+    if {table.units.master.symbol, table.units.slave.symbol} <= CSV_LENGTHS.keys():
+        return {f"{header.identifier}_cam.csv": _in_units(table, table.units, header)}
     columns = (
         _millimetres(table.x * master),
         table.y * slave if turned else _millimetres(table.y * slave),
@@ -51,6 +56,20 @@ def write(table: CamTable, header: Header) -> dict[str, str]:
     head = [f"# {line}" for line in header.lines(TARGET.title, metric)]
     lines = [*head, _TURNED if turned else _METRIC, *rows]
     return {f"{header.identifier}_cam.csv": "\n".join(lines) + "\n"}
+
+
+def _in_units(table: CamTable, units: Units, header: Header) -> str:
+    """Write a table in units that the user named; its derivatives in those that the readers know."""
+    master, slave = units.master, units.slave
+    columns = (
+        table.x,
+        table.y,
+        table.ratio * (slave.size / master.size),
+        table.ratio_slope * (slave.size / master.size**2),
+    )
+    rows = [",".join(map(repr, row)) for row in zip(*((column + 0.0).tolist() for column in columns), strict=True)]
+    title = f"x [{master.symbol}],y [{slave.symbol}],dy/dx [1],d2y/dx2 [1/m]"
+    return "\n".join([*(f"# {line}" for line in header.lines(TARGET.title, table)), title, *rows]) + "\n"
 
 
 def read(text: str, place: str) -> CamTable:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
 
 from camwright.profiles.errors import InputError
+from camwright.profiles.machines.machine import SlaveUnit
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.tables.cam_table import (
     CamTable,
@@ -19,10 +20,20 @@ from camwright.profiles.tables.cam_table import (
     sample_profile,
 )
 from camwright.profiles.tables.candidates import candidates, required_points, zone_ends
+from camwright.profiles.tables.csv_target import CSV_LENGTHS
 from camwright.profiles.tables.deviation import Deviation, deviation, glance
 from camwright.profiles.tables.interpolation import in_format
 from camwright.profiles.tables.number_formats import NumberFormat, rounded
 from camwright.profiles.tables.target import Target
+
+_STEP = "step"
+"""Symbol of a master unit that is one step of an evenly spaced table."""
+
+_MOST_CUTS = 24
+"""Most cuts in one table."""
+
+_WHOLE = 1e-6
+"""What a whole number of counts may be off by rounding."""
 
 
 @dataclass(frozen=True)
@@ -103,7 +114,12 @@ def choose(
     peak = max(-least.value, greatest.value, 1e-300)
     allowed = np.array([accuracy.position, accuracy.ratio, accuracy.acceleration * peak])
     tried: list[tuple[float, int, FloatArray]] = []
-    for x in candidates(profile, target, required, allowed, points):
+    places: Iterable[FloatArray]
+    if target.master_steps and units.master.symbol != _STEP:
+        places = _whole_steps(profile, target, units.master, points)
+    else:
+        places = candidates(profile, target, required, allowed, points)
+    for x in places:
         table, rebuilt = _rebuilt(profile, target, units, x)
         bound = _misses(glance(profile, rebuilt, peak), accuracy)
         if points is None and bound <= 1.0:
@@ -157,9 +173,8 @@ def _chosen(profile: CamProfile, target: Target, units: Units, x: FloatArray) ->
 
 def _rebuilt(profile: CamProfile, target: Target, units: Units, x: FloatArray) -> tuple[CamTable, CamProfile]:
     """Sample the profile where the target's number format can put its points, and rebuild the motion."""
-    if target.spacing == "equidistant" and target.number_format == "int32":  # the drive counts points
-        finest = Unit("0.1um", 1e-7) if units.slave.si == "m" else Unit("1e-5deg", math.radians(1e-5), "rad")
-        units = Units(Unit("step", profile.length / (len(x) - 1)), finest)
+    if units.master.symbol == _STEP:  # the drive counts points
+        units = Units(Unit(_STEP, profile.length / (len(x) - 1)), units.slave)
     # the chord between two points in float32 has not quite the ratio that its neighbours end with
     straight = target.states_laws and target.number_format == "float64"
     return _sampled(profile, target.law, target.number_format, target.rebuild, units, x.tobytes(), straight)
@@ -184,7 +199,58 @@ def _sampled(
     return table, units.to_si(rebuild(stored))
 
 
-def table_units(target: Target, profile: CamProfile, units: Units) -> Units:
+def _whole_steps(profile: CamProfile, target: Target, master: Unit, points: int | None) -> list[FloatArray]:
+    """Even spacings of whole counts of the master, wide ones first.
+
+    Raises
+    ------
+    InputError
+        The cycle is no whole number of counts, or no spacing of the target's divides it into few enough points.
+    """
+    count = round(profile.length / master.size)
+    if not _is_whole(profile.length / master.size):
+        raise InputError(
+            f"{target.name} stores the master in whole counts, and the cycle of {profile.length * 1e3:.10g} mm is "
+            f"{profile.length / master.size:.10g} of {master.symbol}; name a count that divides it with --units"
+        )
+    most = min(points or target.max_points or count + 1, target.max_points or count + 1)
+    found = [
+        np.linspace(profile.start, profile.end, count // step + 1)
+        for step in sorted(target.master_steps, reverse=True)
+        if count % step == 0 and max(2, target.min_points) <= count // step + 1 <= most
+    ]
+    if not found:
+        raise InputError(
+            f"{target.name} takes at most {most} points spaced by {', '.join(map(str, target.master_steps))} counts, and none of "
+            f"these divides the {count} counts of {master.symbol} in the cycle; name another count with --units"
+        )
+    return found
+
+
+def closing_cuts(target: Target, profile: CamProfile, units: Units) -> int:
+    """Count the cuts after which whole counts of the user's encoders close: the cycle of the table; 1 if there are none up to 24."""
+    if not target.counts or units.master.symbol == units.slave.symbol == _STEP:
+        return 1
+    spans = [(profile.advance, units.slave.size)]
+    if target.master_steps and units.master.symbol != _STEP:
+        spans.append((profile.length, units.master.size))
+    return next((cuts for cuts in range(1, _MOST_CUTS + 1) if all(_is_whole(cuts * a / size) for a, size in spans)), 1)
+
+
+def _is_whole(number: float) -> bool:
+    return abs(number - round(number)) <= _WHOLE
+
+
+def _finest(travel: float, si: SlaveUnit) -> Unit:
+    """Give the count of a drive whose encoder nobody named: a ten-thousandth of a millimetre, or so near to it that the cycle closes."""
+    finest = Unit("0.1um", 1e-7) if si == "m" else Unit("1e-5deg", math.radians(1e-5), "rad")
+    counts = travel / finest.size
+    return finest if _is_whole(counts) else Unit("count", travel / round(counts), si)
+
+
+def table_units(
+    target: Target, profile: CamProfile, units: Units, *, asked: bool = False, travel: float | None = None
+) -> Units:
     """Give the units that a target needs: the user's, or where it counts in its own, those.
 
     Parameters
@@ -195,18 +261,46 @@ def table_units(target: Target, profile: CamProfile, units: Units) -> Units:
         One cycle, in SI units.
     units
         The user's units.
+    asked
+        Whether the user named them: they are obeyed, or refused.
+    travel
+        What is to be a whole number of counts where no unit was named (slave unit): the pitch of the machine, for its ramps too;
+        the profile's advance if not given.
 
     Raises
     ------
     InputError
-        A target with whole periods, and no decimal part of the user's units in which both periods are whole.
+        A target with whole periods, and no decimal part of the user's units in which both periods are whole; or one that cannot
+        have the units that the user named.
     """
     turned = units.slave.si == "rad"
     if target.name == "twincat-cnc":
+        if asked:
+            raise InputError(
+                f"{target.name} counts the master in 1e-4 deg and the slave in {'1e-4 deg' if turned else '1e-4 mm'}; leave --units out"
+            )
         slave = Unit("1e-4deg", math.radians(1e-4), "rad") if turned else Unit("1e-4mm", 1e-7)
         return Units(Unit("1e-4deg", profile.length / 3_600_000), slave)
+    if target.name == "csv" and asked:
+        if turned or not {units.master.symbol, units.slave.symbol} <= CSV_LENGTHS.keys():
+            raise InputError(
+                f"csv takes {', '.join(CSV_LENGTHS)} by name for a slave that is a length, and writes rad for one that turns; "
+                f"got {units.master.symbol},{units.slave.symbol}"
+            )
+        return units
+    if target.counts:
+        if not asked:
+            return Units(
+                Unit(_STEP, profile.length), _finest(profile.advance if travel is None else travel, units.slave.si)
+            )
+        if not units.slave.counted:
+            raise InputError(
+                f"{target.name} stores whole counts of the slave, and {units.slave.symbol} is no count; write the size of one, as in "
+                '--units "mm,9.25 um", or the counts of a turn, as in --units mm,36000/rev'
+            )
+        return units if target.master_steps else Units(Unit(_STEP, profile.length), units.slave)
     if target.name == "csv":
-        return Units(Unit("m", 1.0), Unit("rad", 1.0, "rad") if turned else Unit("m", 1.0))
+        return Units(Unit("metre", 1.0), Unit("rad", 1.0, "rad") if turned else Unit("metre", 1.0))
     if target.name == "br":
         return Units(_whole(units.master, profile.length), _whole(units.slave, profile.advance))
     return units

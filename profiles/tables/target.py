@@ -48,6 +48,8 @@ class Header:
         Further lines, ``(what, value)``: peak values, number of wraps judged.
     warnings
         Why the table was not released, if it was written all the same.
+    link
+        The master's period in the unit that the user named for it, or ``""`` where none was named.
     """
 
     name: str
@@ -55,6 +57,7 @@ class Header:
     job_sha256: str = ""
     facts: tuple[tuple[str, str], ...] = ()
     warnings: tuple[str, ...] = ()
+    link: str = ""
 
     def lines(self, target: str, table: CamTable) -> list[str]:
         """Write the head's lines, plain text without control characters; a target's writer puts them into comments."""
@@ -175,6 +178,8 @@ class Target:
         Least distance of two points as a part of the master period.
     states_laws
         Whether its tables say of each piece what law it follows; else all follow `law`.
+    master_steps
+        Spacings of the master that it takes, in whole units of the table; none where the file holds no master positions.
     """
 
     name: str
@@ -194,6 +199,12 @@ class Target:
     min_points: int = 2
     least_step: float = 0.0
     states_laws: bool = False
+    master_steps: tuple[int, ...] = ()
+
+    @property
+    def counts(self) -> bool:
+        """Whether it stores whole counts of the slave, and the master by evenly spaced steps."""
+        return self.spacing == "equidistant" and self.number_format == "int32"
 
     def file_names(self, header: Header) -> tuple[str, ...]:
         """Names of the files that `write` makes."""

@@ -106,4 +106,5 @@ TARGET = Target(
     write=write,
     read=read,
     rebuild=chords,
+    master_steps=STEPS,
 )

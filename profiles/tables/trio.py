@@ -42,7 +42,7 @@ def write(table: CamTable, header: Header) -> dict[str, str]:
     rows = [f"TABLE({k}, {', '.join(map(str, y[k : k + 8]))})" for k in range(0, len(y), 8)]
     name = header.identifier
     beside = companion(header.lines(TARGET.title, table), TARGET.steps)
-    link = f"\nCAMBOX(0, {table.points - 1}, 1, <link distance>, <link axis>, 4)\n"
+    link = f"\nCAMBOX(0, {table.points - 1}, 1, {header.link or '<link distance>'}, <link axis>, 4)\n"
     return {f"{name}_trio.bas": "\n".join(rows) + "\n", f"{name}_trio.txt": beside + link}
 
 
@@ -129,7 +129,7 @@ TARGET = Target(
         "Run the TABLE lines once; they fill the addresses from 0 on.",
         (
             "Call CAMBOX as the text beside the file shows: link distance is the master period in user units of the "
-            "link axis."
+            "link axis, a number where --units named these."
         ),
         "Table values are encoder edges from the start of the cycle: the text beside the file states how long one is.",
     ),

@@ -33,7 +33,7 @@ from camwright.profiles.tables import cam_rows, text, trace_csv
 from camwright.profiles.tables.knots import Accuracy
 from camwright.profiles.tables.targets import TARGETS
 from camwright.profiles.task import Task
-from camwright.recipes import verify
+from camwright.recipes import sheet_faults
 from camwright.stored import design_file, profile_files
 from camwright.studies import axis_lengths, screw
 from camwright.validation import motion, motor, rebuilt, report
@@ -104,7 +104,7 @@ NUMBERS: dict[str, tuple[object, object, str, str]] = {
     "position of a table": (Accuracy().position, 1e-6, "targets", "(1 um if left"),
     "ratio of a table": (Accuracy().ratio, 1e-3, "targets", "a thousandth for the ratio"),
     "acceleration of a table": (Accuracy().acceleration, 0.01, "targets", "a hundredth of the peak for the acceleration"),
-    "recorded values": (verify.SAME, 1e-6, "recipes", "must be the recorded values, to 1e-6 of them"),
+    "recorded values": (sheet_faults.SAME, 1e-6, "recipes", "must be the recorded values, to 1e-6 of them"),
 }  # fmt: skip
 
 CONTROLLERS: dict[str, tuple[int, int | None, str]] = {

@@ -17,6 +17,7 @@ from camwright.drives.audit import Audit, audit, audit_answer
 from camwright.drives.export import export
 from camwright.drives.options import with_slopes
 from camwright.figures.audit import audit_figures
+from camwright.house.owned import LIST
 from camwright.jobs.job import Job
 from camwright.profiles.cut import Origin
 from camwright.profiles.errors import InputError
@@ -181,7 +182,7 @@ def test_the_command_writes_the_figure(tmp_path: Path, capsys: pytest.CaptureFix
     assert main([*call, "--out", str(tmp_path / "out"), "--json"]) == 0
     answer = json.loads(capsys.readouterr().out)
     assert [Path(name).name for name in answer["files"]] == ["audit.svg", "audit.png"]
-    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["audit.png", "audit.svg"]
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == [LIST, "audit.png", "audit.svg"]
     assert main([*call, "--out", str(tmp_path / "none"), "--no-figures"]) == 0
     assert "peak acceleration (m/s²)" in capsys.readouterr().out
     assert not (tmp_path / "none").exists()

@@ -20,6 +20,7 @@ from camwright.drives.export import (
     targets_answer,
 )
 from camwright.drives.options import parse_targets
+from camwright.house.owned import LIST
 from camwright.jobs.table_units import default_units, parse_units
 from camwright.profiles.errors import InputError
 from camwright.profiles.limits import Limits
@@ -138,7 +139,7 @@ def test_the_commands(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
     assert answer["codesys"]["knots"] <= 24
     assert answer["logix"]["acceleration_error_rel"] <= 0.01
     assert {path.name for path in (tmp_path / "tables").iterdir()} == {
-        "report.json", *answer["codesys"]["files"], *answer["logix"]["files"]
+        LIST, "report.json", *answer["codesys"]["files"], *answer["logix"]["files"]
     }  # fmt: skip
     assert "Tables as the drives" in said("export", str(file), "--to", "br")
 

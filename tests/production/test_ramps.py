@@ -108,8 +108,8 @@ def test_a_table_that_hands_over_badly_is_withheld() -> None:
     found = ramps(PAPER)
     cam = found.start_table
     judge = stretch_of(found, "ramp_in", cam).judge
-    assert judge(cam).passed
-    assert not judge(cam.scale(slave=1.003)).passed
+    assert judge(cam, 0.0).passed
+    assert not judge(cam.scale(slave=1.003), 0.0).passed
 
 
 def test_where_the_running_cam_begins_at_the_cut_so_the_tables_end_there() -> None:

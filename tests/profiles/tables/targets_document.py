@@ -35,8 +35,19 @@ ends of the sync zone always are points, unless a target's points must be evenly
 near, the nearest table is written and marked with `*`. `--points N` asks for a number of points.
 
 `--units M,S` states the units of master and slave: m, mm, um, in, deg, rev, or a quantity like `0.5 um` for a count of
-an encoder. A degree of the master is 1/360 of the cycle; a degree of the slave is one of the drum or the crank (of the
-motor for a carriage). Some targets count in units of their own. All files state their units.
+an encoder, or the counts of a turn, `36000/rev`.
+A degree of the master is 1/360 of the cycle; a degree of the slave is one of the drum or the crank (of the
+motor for a carriage). Each target obeys, or refuses with the reason: `csv` takes lengths by name, `twincat-cnc` has units of
+its own. All files state their units.
+
+`trio` and `technosoft` store whole counts. Asked for `--units mm,36000/rev` or `--units 'mm,9.25 um'` they are counts of
+your encoder: the last value of a cycle that closes on whole counts is that count, the link distance of CAMBOX is the period
+in the master's unit, and Technosoft's master positions are whole counts of it. Where blades do not divide the counts of a
+turn, the table holds several cuts (up to 24), after which it closes exactly. What the slave lacks of the pitch in each cut
+stands in the report (`drift_per_cut`, `cuts`); added up over a run of 10 000 cuts it must stay within the sync tolerance, or
+`closure` fails. Limits of acceleration and jerk may be exceeded by what rounding to counts makes of their differences (two
+counts over the sample time squared, four over its cube); the check says how much. Without `--units` a count is 0.1 um, or so
+near to it that the cycle closes, and the axis must be scaled so.
 
 ## Auditing a cam
 
