@@ -143,7 +143,7 @@ def _transition_table(
 ) -> tuple[dict[str, str], CamProfile]:
     """Write a transition's table, which runs once; its texts, and the motion that the drive makes of it."""
     target, job = target_of(name), after.job
-    units = table_units(target, transition.profile, default_units(job.machine))
+    units = table_units(target, transition.profile, default_units(job.machine), travel=job.machine.pitch)
     choice = choose(transition.profile, target, units, Accuracy(), None, (job.cut.return_zone,))
     facts = (
         ("runs once, from cam", str(change.before)),
