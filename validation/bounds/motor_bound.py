@@ -9,6 +9,7 @@ import numpy as np
 from camwright.profiles.objective import OBJECTIVES, MotionObjective, MotorObjective
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.task import Task
+from camwright.validation.bounds.bent_peaks import least_bent_acceleration, least_bent_jerk
 from camwright.validation.bounds.bound import NONE, Bound
 from camwright.validation.bounds.constant_inertia import drawn, peak_with_friction, square_with_friction
 from camwright.validation.bounds.path_convex import least_square_in_time
@@ -29,6 +30,7 @@ STANDING = "closed form, standing"
 FRICTION = "closed form, friction"
 SPEEDS = "closed form, change of speed"
 ZONE = "peak of the sync zone"
+BENT = "closed form, from end to end of the sync zone"
 BELOW = 0.985
 """Share of the cost of standing still below which a value function is asked where standing is cheaper than what was found."""
 PLACES = 2001
@@ -66,12 +68,15 @@ def motor_bound(profile: CamProfile, task: Task, objective: MotorObjective, moti
 def bent_bound(profile: CamProfile, task: Task, objective: MotionObjective) -> Bound:
     """Bound of an objective of the motion where the slave's ratio changes in sync.
 
-    A peak is that of the cycle, so the sync zone's own bounds it; the RMS acceleration is an RMS torque of inertia one.
+    A peak is that of the cycle: the greater of the sync zone's own and the return's least. The RMS acceleration is an RMS torque of
+    inertia one.
     """
     table = OBJECTIVES[objective]
     if table.form == "peak":
         zone = max(abs(extremum.value) for extremum in task.sync.extrema(table.order))
-        return Bound(table.over_time(zone, task.cut.line_speed), ZONE)
+        own = table.over_time(zone, task.cut.line_speed)
+        back = least_bent_acceleration(task) if table.order == 2 else least_bent_jerk(task)
+        return Bound(own, ZONE) if own >= back or not math.isfinite(back) else Bound(back, BENT)
     if objective != "rms_acceleration" or task.height <= 0 or task.reverses:
         return Bound(math.nan, NONE)
     path, cut = _path(task, np.ones(PLACES)), task.cut
