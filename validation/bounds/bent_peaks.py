@@ -1,7 +1,8 @@
 """Least peaks of a return whose ends are not at rest relative to the material: closed form, by bisection.
 
-With the acceleration limited to ``a`` (or the jerk to ``j``) the ways that motions cover from end to end in the given time are an interval
-(`camwright.profiles.closed_forms.transfer`), so whether the return is possible is known; the least ``a`` at which it is bounds every motion.
+With the acceleration limited to ``a``, or the jerk to ``j``, the ways motions cover from end to end in a given time are an interval
+(`camwright.profiles.closed_forms.transfer`), so whether the return is possible is known; the least ``a`` at which it is bounds every
+motion.
 """
 
 from __future__ import annotations

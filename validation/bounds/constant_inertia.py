@@ -17,6 +17,8 @@ ROUNDING = 1e-9
 """Share by which a bound that a design may reach is lowered."""
 STOPS = 400
 """Times and ways of a stop that are looked at."""
+SPLITS = 200
+"""Moments of a standstill that are looked at."""
 BETWEEN = 2e-3
 """Share by which a bound that is the least over such places is lowered, for what lies between them."""
 
@@ -74,7 +76,7 @@ def square_with_friction(task: Task, softest_square: float) -> float:
     Parameters
     ----------
     task
-        The job, its slave turning one way, its ratio constant in sync.
+        The job, its slave turning one way.
     softest_square
         Least integral of the squared acceleration of any return (m²/s³).
 
@@ -82,21 +84,28 @@ def square_with_friction(task: Task, softest_square: float) -> float:
     are the softest, or cubics that stop sooner where these would run backwards.
     """
     inertia, friction = float(task.machine.inertia(task.slave_at_sync_start)), task.machine.friction
-    pace = float(task.sync(0.0, 1)) * task.cut.line_speed
+    out, into = (float(task.sync(at, 1)) * task.cut.line_speed for at in (task.sync.end, task.sync.start))
     time = task.cut.return_zone / task.cut.line_speed
     moving = inertia**2 * softest_square + friction**2 * time
     way = task.height * np.linspace(1e-4, 1.0 - 1e-4, STOPS)
-    stop = _stop(way, pace, time, inertia, friction)
-    standing = float((stop + stop[::-1]).min()) * (1 - BETWEEN)
+    times = time * np.geomspace(1e-4, 1.0, 4 * STOPS)
+    stop, start = (_stop(way, pace, times, inertia, friction) for pace in (out, into))
+    # between two moments of the standstill the later one leaves the stop most time, the earlier one the start
+    split = np.linspace(0.0, time, SPLITS + 1)
+    before, after = (
+        np.searchsorted(times, split[1:] * (1 - ROUNDING)),
+        np.searchsorted(times, (time - split[:-1]) * (1 - ROUNDING)),
+    )
+    standing = float((stop[before] + start[after, ::-1]).min()) * (1 - BETWEEN)
     return min(moving, standing)
 
 
-def _stop(way: FloatArray, pace: float, time: float, inertia: float, friction: float) -> FloatArray:
-    """Least cost of coming to rest over ways, in any time up to a given one."""
-    t = time * np.geomspace(1e-4, 1.0, 4 * STOPS)[:, None]
+def _stop(way: FloatArray, pace: float, times: FloatArray, inertia: float, friction: float) -> FloatArray:
+    """Least cost of coming to rest over ways in any time up to given ones, shape ``(times, ways)``."""
+    t = times[:, None]
     used = np.minimum(t, 3.0 * way / pace)  # beyond that the cubic would run backwards: it stops sooner
     square = 4 * pace**2 / used - 12 * pace * way / used**2 + 12 * way**2 / used**3
-    return np.asarray((inertia**2 * square + friction**2 * used).min(axis=0))
+    return np.asarray(np.minimum.accumulate(inertia**2 * square + friction**2 * used, axis=0))
 
 
 def peak_with_friction(task: Task) -> float:

@@ -12,6 +12,7 @@ from camwright.profiles.task import Task
 from camwright.validation.bounds.bent_peaks import least_bent_acceleration, least_bent_jerk
 from camwright.validation.bounds.bound import NONE, Bound
 from camwright.validation.bounds.constant_inertia import drawn, peak_with_friction, square_with_friction
+from camwright.validation.bounds.mean_square import mean_square_bound
 from camwright.validation.bounds.path_convex import least_square_in_time
 from camwright.validation.bounds.path_dual import (
     least_drawn,
@@ -60,6 +61,8 @@ def motor_bound(profile: CamProfile, task: Task, objective: MotorObjective, moti
         return Bound(math.nan, NONE)
     if machine.constant_inertia and task.straight:
         return _constant(profile, task, objective, motion)
+    if machine.constant_inertia and objective != "energy":
+        return _bent_constant(profile, task, objective, motion)
     if machine.friction > 0 or task.height <= 0:
         return Bound(math.nan, NONE)
     return _along_path(profile, task, objective)
@@ -68,22 +71,15 @@ def motor_bound(profile: CamProfile, task: Task, objective: MotorObjective, moti
 def bent_bound(profile: CamProfile, task: Task, objective: MotionObjective) -> Bound:
     """Bound of an objective of the motion where the slave's ratio changes in sync.
 
-    A peak is that of the cycle: the greater of the sync zone's own and the return's least. The RMS acceleration is an RMS torque of
-    inertia one.
+    A peak is that of the cycle: the greater of the sync zone's own and the return's least.
     """
     table = OBJECTIVES[objective]
-    if table.form == "peak":
-        zone = max(abs(extremum.value) for extremum in task.sync.extrema(table.order))
-        own = table.over_time(zone, task.cut.line_speed)
-        back = least_bent_acceleration(task) if table.order == 2 else least_bent_jerk(task)
-        return Bound(own, ZONE) if own >= back or not math.isfinite(back) else Bound(back, BENT)
-    if objective != "rms_acceleration" or task.height <= 0 or task.reverses:
-        return Bound(math.nan, NONE)
-    path, cut = _path(task, np.ones(PLACES)), task.cut
-    back = profile.restrict(cut.return_start, cut.return_start + cut.return_zone)
-    level = back.mean_square(2) * cut.line_speed**4 * path.time
-    found, method = _least_square(path, level)
-    return Bound(math.sqrt(max(found, 0.0) / path.time), method)
+    if table.form != "peak":
+        return mean_square_bound(profile, task, objective)
+    zone = max(abs(extremum.value) for extremum in task.sync.extrema(table.order))
+    own = table.over_time(zone, task.cut.line_speed)
+    back = least_bent_acceleration(task) if table.order == 2 else least_bent_jerk(task)
+    return Bound(own, ZONE) if own >= back or not math.isfinite(back) else Bound(back, BENT)
 
 
 def _path(task: Task, inertia: FloatArray) -> PathTask:
@@ -115,6 +111,33 @@ def _constant(profile: CamProfile, task: Task, objective: MotorObjective, motion
     return Bound(math.sqrt((square / machine.motor_ratio**2 + zone) / cut.period), method)
 
 
+def _bent_constant(profile: CamProfile, task: Task, objective: MotorObjective, motion: Bound) -> Bound:
+    """Bound of a torque where the inertia is constant and the ratio changes in sync.
+
+    Over the return the integral of ``ÿ sign(ẏ)`` is what the speed gains, so friction adds that and its square while the slave moves.
+    """
+    machine, cut = task.machine, task.cut
+    inertia, friction = float(machine.inertia(task.slave_at_sync_start)), machine.friction
+    if objective == "peak_torque":
+        zone, back = _zone_peak(profile, task), (inertia * motion.value - friction) / machine.motor_ratio
+        return Bound(zone, ZONE) if zone >= back else Bound(back, motion.method)
+    v, time = cut.line_speed, cut.return_zone / cut.line_speed
+    gained = (float(task.sync(task.sync.start, 1)) - float(task.sync(task.sync.end, 1))) * v
+    softest = motion.value**2 * time
+    square = inertia**2 * softest + friction**2 * min(abs(task.height) / task.limits.speed, time)
+    if friction and not task.reverses:
+        square = max(square, square_with_friction(task, softest))
+    square += 2 * inertia * friction * gained
+    zone = _zone_square(motor_torque(profile, task), task)
+    return Bound(math.sqrt((square / machine.motor_ratio**2 + zone) / cut.period), motion.method)
+
+
+def _zone_square(torque: CamProfile, task: Task) -> float:
+    """Integral of the squared torque over the sync zone (N² m² s)."""
+    parts = task.cut.sync_parts
+    return sum(torque.restrict(*part).mean_square(0) * (part[1] - part[0]) for part in parts) / task.cut.line_speed
+
+
 def _along_path(profile: CamProfile, task: Task, objective: MotorObjective) -> Bound:
     """Bound where the inertia or the ratio in sync changes along the way, for a slave that goes one way and has no friction."""
     machine = task.machine
@@ -143,7 +166,7 @@ def _square(path: PathTask, torque: CamProfile, task: Task) -> Bound:
     """Bound of the RMS torque of a cycle: that of its zone, and the better of what a value function says at two levels."""
     cut, ratio = task.cut, task.machine.motor_ratio
     whole = torque.mean_square(0) * cut.period
-    zone = sum(torque.restrict(*part).mean_square(0) * (part[1] - part[0]) for part in cut.sync_parts) / cut.line_speed
+    zone = _zone_square(torque, task)
     level = max(whole - zone, 1e-300) * ratio**2
     if task.reverses:
         around = task.machine.inertia(np.linspace(0.0, task.machine.pitch, PLACES))

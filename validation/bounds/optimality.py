@@ -12,7 +12,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from camwright.profiles.closed_forms.overshoot import shortest_stop
 from camwright.profiles.closed_forms.reach import least_acceleration, least_jerk
@@ -24,9 +23,10 @@ from camwright.profiles.objective import OBJECTIVES, MotionObjective, ObjectiveN
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.task import Task
 from camwright.validation.bounds.bound import NONE, Bound
+from camwright.validation.bounds.mean_square import mean_square_bound
 from camwright.validation.bounds.motor_bound import bent_bound, motor_bound
-from camwright.validation.bounds.quadratic import multipliers
 from camwright.validation.bounds.ramped import ramped_bound
+from camwright.validation.bounds.return_dual import DualTask, least_square_jerk
 
 INTERVALS = 140
 """Intervals of half a motion."""
@@ -60,8 +60,8 @@ def lower_bound(profile: CamProfile, task: Task, objective: ObjectiveName) -> Bo
 
     With a line that ramps the bound is that of its ramps too (`camwright.validation.bounds.ramped`), where that is the sharper.
 
-    Bounds are known where the slave's ratio is constant in sync: then the return is a straight line plus a motion from rest to rest. Of the
-    stroke of a carriage only that it must turn round within it is looked at, by itself, which can only lower them. Elsewhere there is none.
+    Where the slave's ratio is constant in sync the return is a straight line plus a motion from rest to rest, and closed forms hold. Of the
+    stroke of a carriage they know only that it must turn round within it, by itself; weak duality knows all of it.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ def lower_bound(profile: CamProfile, task: Task, objective: ObjectiveName) -> Bo
         raise InputError(f"there is no objective {objective!r}; the objectives are {', '.join(OBJECTIVES)}")
     if objective == "rms_torque" or objective == "peak_torque" or objective == "energy":
         motion = Bound(math.nan, NONE)
-        if task.straight and objective != "energy":
+        if task.machine.constant_inertia and objective != "energy":
             motion = lower_bound(
                 profile, task, "peak_acceleration" if objective == "peak_torque" else "rms_acceleration"
             )
@@ -122,7 +122,8 @@ def _steady_bound(profile: CamProfile, task: Task, objective: MotionObjective) -
         way = task.sync.advance
         braking = Bound(_braking(ratio * v, room, way, time, task.limits, objective), BRAKING)
         free = _free_bound(profile, task, objective, height)
-        return braking if braking.value > free.value else free
+        found = max(braking, free, key=lambda bound: bound.value)
+        return mean_square_bound(profile, task, objective, found) if OBJECTIVES[objective].form != "peak" else found
     return _free_bound(profile, task, objective, height)
 
 
@@ -212,50 +213,8 @@ def _dual_bound(motion: CamProfile, job: _Return) -> float:
     The dual function is that of the half's integral; what the jerk adds to it at ``s``, with the price ``c(s)`` of the constraints
     that lie ahead, is the least of ``j² / 2 + c j`` over ``|j| <= J``.
     """
-    x = _half_grid(motion)
-    slope_price, speed_price, (turn, way), constant = _multipliers(x, job, math.sqrt(motion.mean_square(3)))
-    cell: NDArray[np.intp] = np.arange(len(x) - 1)
-    lever, later = (_beyond(values)[cell + 1] for values in (speed_price, speed_price * x))
-    atoms, spread = _spread(slope_price)
-
-    def price(s: FloatArray) -> FloatArray:
-        ahead = _beyond(atoms)[cell + 1] + _spread_ahead(spread, x, cell, s)
-        return np.asarray(ahead + later - s * lever - turn - way * (0.5 - s) ** 2 / 2)
-
-    # three values on each interval make the quadratic that the price is there
-    h = np.diff(x)
-    inside = 1e-9 * h
-    prices = price(x[:-1] + inside), price(0.5 * (x[:-1] + x[1:])), price(x[1:] - inside)
-    return 4 * (constant - float(_integral_of_least(*prices, h, job.jerk).sum()))
-
-
-def _beyond(values: FloatArray) -> FloatArray:
-    """Add up from each place on; last comes zero."""
-    return np.append(np.cumsum(values[::-1])[::-1], 0.0)
-
-
-def _spread(price: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Split prices at nodes into single ones and such as belong to an arc along which the limit is active.
-
-    On an arc the true price is a density; left at the nodes it would make the price of the jerk a saw-tooth.
-    """
-    active = np.abs(price) > 1e-9 * np.abs(price).max(initial=1e-300)
-    same = np.sign(price[1:]) == np.sign(price[:-1])
-    inner = np.zeros(len(price), dtype=bool)
-    inner[1:-1] = active[1:-1] & active[:-2] & active[2:] & same[:-1] & same[1:]
-    inner[[1, -2]] = False  # the ends are fixed, their prices are no part of an arc
-    return np.where(inner, 0.0, price), np.where(inner, price, 0.0)
-
-
-def _spread_ahead(spread: FloatArray, x: FloatArray, cell: NDArray[np.intp], s: FloatArray) -> FloatArray:
-    """Integral beyond ``s`` of densities that rise from the node before and fall to the node after, one for each price."""
-    h = np.concatenate([[0.0], np.diff(x), [0.0]])  # h[k + 1] is the cell after node k
-    width = h[:-1] + h[1:]  # the two cells at each node
-    here = h[cell + 1]
-    beyond = np.append(np.cumsum(spread[::-1])[::-1], [0.0, 0.0])[cell + 2]
-    rising = spread[cell + 1] * (1.0 - (s - x[cell]) ** 2 / (here * width[cell + 1]))
-    falling = spread[cell] * (x[cell + 1] - s) ** 2 / (here * width[cell])
-    return np.asarray(beyond + rising + falling)
+    half = DualTask(0.5, (0.0, 0.0), (0.5, None, 0.0), (job.low, job.high), job.slope, job.jerk)
+    return 4 * least_square_jerk(half, _half_grid(motion), math.sqrt(motion.mean_square(3)))
 
 
 def _half_grid(motion: CamProfile) -> FloatArray:
@@ -270,70 +229,3 @@ def _half_grid(motion: CamProfile) -> FloatArray:
         near = np.abs(nodes[:, None] - own[None, :]).min(axis=1)
         nodes = np.union1d(nodes[near > 0.02 / INTERVALS], own)
     return nodes
-
-
-def _multipliers(x: FloatArray, job: _Return, unit: float) -> tuple[FloatArray, FloatArray, FloatArray, float]:
-    """Solve the quadratic programme of half a motion on a grid with the jerk constant on each interval, ``unit`` its jerk that counts as 1.
-
-    Returns
-    -------
-    (slope prices, speed prices, end prices, constant of the dual function)
-        Multipliers of ``q''`` and ``q'`` at the nodes; of ``q''`` and ``q`` in the middle.
-    """
-    from scipy.sparse import block_array, csr_array, diags_array, eye_array
-
-    n, h = len(x) - 1, np.diff(x)
-    slope = min(job.slope, GREATEST) / unit
-    high, low = min(job.high, GREATEST) / unit, max(job.low, -GREATEST) / unit
-    jerk = min(job.jerk / unit, GREATEST)
-    # unknowns: the jerk of each interval, then q'', q', q at its end, all over the unit
-    ahead = eye_array(n) - eye_array(n, k=-1)
-    before = eye_array(n, k=-1)
-    end = np.zeros((1, n))
-    end[0, -1] = 1.0
-    system = block_array(
-        [
-            [-diags_array(h), ahead, None, None],
-            [-diags_array(h**2 / 2), -diags_array(h) @ before, ahead, None],
-            [-diags_array(h**3 / 6), -diags_array(h**2 / 2) @ before, -diags_array(h) @ before, ahead],
-            [None, csr_array(end), None, None],
-            [None, None, None, csr_array(end)],
-        ],
-        format="csr",
-    )
-    none = np.full(n, np.inf)
-    slopes = np.append(np.full(n - 1, slope), np.inf)
-    top = np.concatenate([np.full(n, jerk), slopes, np.full(n, high), none])
-    bottom = np.concatenate([np.full(n, -jerk), -slopes, np.full(n, low), -none])
-    goal = np.append(np.zeros(3 * n + 1), 0.5 / unit)
-    upper, lower, prices = multipliers(np.concatenate([h, np.zeros(3 * n)]), bottom, top, system, goal)
-    limited = np.isfinite(top) & (np.arange(4 * n) >= n)
-    constant = goal[-1] * prices[-1] - float(upper[limited] @ top[limited] - lower[limited] @ bottom[limited])
-    price = np.concatenate([[0.0], (upper - lower)[n : 2 * n], [0.0], (upper - lower)[2 * n : 3 * n]])
-    return unit * price[: n + 1], unit * price[n + 1 :], unit * prices[-2:], unit**2 * constant
-
-
-def _integral_of_least(
-    first: FloatArray, centre: FloatArray, last: FloatArray, h: FloatArray, limit: float
-) -> FloatArray:
-    """Integral of ``-min(j² / 2 + c j)`` over ``|j| <= limit``, ``c`` quadratics given at both ends and the middle of intervals ``h``.
-
-    That is ``c² / 2`` up to ``|c| = limit``, beyond it ``limit |c| - limit² / 2``; between the places where it changes Gauss-Legendre
-    with three points is exact.
-    """
-    b = -3 * first + 4 * centre - last
-    a = 2 * first - 4 * centre + 2 * last
-    places = [np.zeros_like(h), np.ones_like(h)]
-    for level in (limit, -limit):
-        c = first - level
-        root = np.sqrt(np.maximum(b * b - 4 * a * c, 0.0))
-        q = -0.5 * (b + np.where(b >= 0, root, -root))
-        with np.errstate(divide="ignore", invalid="ignore"):
-            found = np.nan_to_num(q / a), np.nan_to_num(c / q)
-        places += [np.where((b * b > 4 * a * c) & (r > 0) & (r < 1), r, 0.0) for r in found]
-    edges = np.sort(np.stack(places), axis=0)
-    node, weight = np.polynomial.legendre.leggauss(3)
-    s = edges[:-1, None] + np.diff(edges, axis=0)[:, None] * (0.5 * (node + 1))[:, None]
-    size = np.abs(first + s * (b + s * a))
-    least = np.where(size <= limit, 0.5 * size**2, limit * size - 0.5 * limit**2)
-    return np.asarray((np.diff(edges, axis=0) * (least * weight[:, None] / 2).sum(axis=1)).sum(axis=0) * h)

@@ -40,11 +40,13 @@ def test_designs_reach_the_bound_with_over_speed(machine: Machine, objective: st
     assert bound.value == pytest.approx(found.minimised, rel=1e-3)
 
 
-def test_a_stroke_leaves_the_bound_below() -> None:
+def test_the_bound_knows_the_stroke() -> None:
     narrow, limits = replace(WIDE, stroke=0.25), Limits(200 / 60, 200.0, 60_000.0)
     found = solve(Task(narrow, CUT, limits), "rms_acceleration")
     bound = lower_bound(found.profile, Task(narrow, CUT, limits), "rms_acceleration")
-    assert 0.0 < bound.value < 0.999 * found.minimised
+    assert 0.999 * found.minimised < bound.value <= found.minimised * (1 + 1e-9)
+    free = lower_bound(found.profile, Task(WIDE, CUT, limits), "rms_acceleration")
+    assert free.value < 0.98 * bound.value
 
 
 @pytest.mark.parametrize("objective", ["peak_acceleration", "rms_acceleration", "peak_jerk"])
@@ -56,8 +58,10 @@ def test_a_long_cut_is_as_good_as_braking_within_the_stroke_allows(objective: Co
     bound = lower_bound(found.profile, Task(saw, cut, limits), objective)
     assert bound.value <= found.minimised * (1 + 1e-9)
     if length == 7.0:  # there is time to spare: braking is all that counts
-        assert bound.method == "closed form, braking within the stroke"
-        assert bound.value == pytest.approx(found.minimised, rel=2e-9 if objective != "rms_acceleration" else 0.02)
+        square = objective == "rms_acceleration"
+        known = "weak duality, multipliers by an interior point" if square else "closed form, braking within the stroke"
+        assert bound.method == known
+        assert bound.value == pytest.approx(found.minimised, rel=1e-3 if square else 2e-9)
 
 
 @pytest.mark.parametrize(
@@ -117,13 +121,8 @@ def test_no_motion_goes_below_its_bound_where_the_ratio_changes_in_sync(machine:
     task = Task(machine, CUT, Limits(100.0, 1e5, 1e8))
     found = solve(task, objective)
     bound = lower_bound(found.profile, task, objective)
-    if objective == "rms_jerk":
-        assert math.isnan(bound.value)
-        assert bound.method == "none"
-    else:
-        assert bound.value <= found.minimised * (1 + 1e-9)
-    if objective == "rms_acceleration":
-        assert bound.value > 0.9 * found.minimised
+    assert bound.value <= found.minimised * (1 + 1e-9)
+    assert bound.value > 0.998 * found.minimised
     if objective.startswith("peak"):
         assert bound.method in ("peak of the sync zone", "closed form, from end to end of the sync zone")
         assert bound.value == pytest.approx(found.minimised, rel=1e-5)

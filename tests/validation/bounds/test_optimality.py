@@ -29,11 +29,11 @@ from camwright.validation.bounds.optimality import (
     QUINTIC,
     SOFTEST,
     _dual_bound,
-    _integral_of_least,
     _Return,
     lower_bound,
 )
 from camwright.validation.bounds.quadratic import multipliers
+from camwright.validation.bounds.return_dual import integral_of_least
 
 KNIFE = RotaryKnife(0.4)
 CUT = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4)
@@ -180,7 +180,7 @@ def test_integral_of_the_least() -> None:
     h = np.abs(h) + 0.1
     s = np.linspace(0, 1, 200_001)
     jerk = np.linspace(-1.3, 1.3, 5001)
-    found = _integral_of_least(first, centre, last, h, 1.3)
+    found = integral_of_least(first, centre, last, h, 1.3)
     for i in range(0, 200, 10):
         c, b = first[i], -3 * first[i] + 4 * centre[i] - last[i]
         a = 2 * first[i] - 4 * centre[i] + 2 * last[i]
