@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import secrets
 import socket
 import sys
@@ -19,6 +20,7 @@ from camwright.house.json_text import to_json
 from camwright.house.toml_file import MOST_BYTES
 from camwright.jobs.job import BUNDLED_JOB, parse_job
 from camwright.profiles.errors import InputError
+from camwright.workbench.runner import Runner
 from camwright.workbench.server import application
 
 
@@ -35,15 +37,31 @@ def run(
     listening = _listen(port)
     token = secrets.token_urlsafe(32)
     url = f"http://127.0.0.1:{listening.getsockname()[1]}/?token={token}"
-    server = uvicorn.Server(
-        uvicorn.Config(application(text, Path(), token, main), log_level="error", timeout_graceful_shutdown=1)
+    runner = Runner(main)
+    server = _Server(
+        uvicorn.Config(application(text, Path(), token, runner), log_level="error", timeout_graceful_shutdown=1), runner
     )
     sys.stdout.write(to_json({"url": url}) if as_json else f"{url}\nCtrl-C ends the workbench.\n")
     sys.stdout.flush()
     if not no_browser:
         webbrowser.open(url)
-    server.run(sockets=[listening])
+    with contextlib.suppress(KeyboardInterrupt):  # that is how it ends
+        server.run(sockets=[listening])
+    runner.close()
     return 0
+
+
+class _Server(uvicorn.Server):
+    """A server that ends the solve that may run before it waits for its calls, so that all of them are answered."""
+
+    def __init__(self, config: uvicorn.Config, runner: Runner) -> None:
+        super().__init__(config)
+        self._runner = runner
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        """End."""
+        self._runner.close()
+        await super().shutdown(sockets)
 
 
 def _listen(port: int) -> socket.socket:

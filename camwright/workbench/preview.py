@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from camwright.design.optimise import solve
+from camwright.design.draft import draft
 from camwright.jobs.job import Job, parse_job
 from camwright.profiles.objective import OBJECTIVES, MotionObjective
 from camwright.profiles.polynomial.profile import CamProfile
@@ -20,10 +20,10 @@ _STAND_IN: MotionObjective = "rms_acceleration"
 """What is minimised where the job's own objective takes longer than a hand waits: of the motor, or of the axis."""
 
 _TOUCHED = 1e-6
-"""Share by which a peak may stay below its limit and yet count as touching it."""
+"""Share by which a peak may stay below its limit and yet count as touching it; a draft on a grid stays further away."""
 
 
-def preview(text: str, laws: Sequence[str] = ()) -> dict[str, Any]:
+def preview(text: str, laws: Sequence[str] = (), place: float | None = None) -> dict[str, Any]:
     """Draw the cam of a job at once.
 
     Parameters
@@ -32,13 +32,17 @@ def preview(text: str, laws: Sequence[str] = ()) -> dict[str, Any]:
         The job file's text.
     laws
         Baselines to draw beside it, those that the machine can have.
+    place
+        Where the sync zone lies (slave unit) if the job leaves that free: the place of the last design, say. In the middle of where the
+        machine can have it if this is nothing, or no place for it.
 
     Returns
     -------
     dict
-        ``objective`` (name, value, unit), ``exact`` (whether it is the job's own objective on the job's own terms), ``binding`` (the
-        limits that are touched), ``slave_unit`` and ``turn`` (slave travel of a turn, null where nothing turns), ``line_speed_m_per_s``,
-        ``zones_m``, ``limits`` in SI units, ``samples`` of the cam and of the ``laws``.
+        ``objective`` (name, value, unit), ``exact`` (whether it is what a design gives: the optimum of the job's own objective),
+        ``binding`` (the limits that are touched), ``slave_unit`` and ``turn`` (slave travel of a turn, null where nothing turns), ``place``
+        (where a sync zone lies that has a place), ``line_speed_m_per_s``, ``zones_m``, ``limits`` in SI units, ``samples`` of the cam and
+        of the ``laws``.
 
     Raises
     ------
@@ -51,18 +55,18 @@ def preview(text: str, laws: Sequence[str] = ()) -> dict[str, Any]:
     """
     job = parse_job(text, "job")
     own = OBJECTIVES[job.objective].of == "motion" and not job.servo_aware and job.limits.motor is None
-    placed = job.task if job.machine.placed else job.task.placed_midway()
+    placed = job.task if job.machine.placed else _placed(job.task, place)
     placed = placed.with_cut(replace(placed.cut, shaped=False))
     task = placed.with_limits(replace(placed.limits, motor=None))
     name: MotionObjective = job.objective if own else _STAND_IN  # type: ignore[assignment]
-    solution = solve(task, name, suggest=False)
-    return _drawn(replace(job, machine=placed.machine), placed, solution.profile, laws) | {
+    found = draft(task, name)
+    return _drawn(replace(job, machine=placed.machine), placed, found.profile, laws) | {
         "objective": {
             "name": name,
-            "value": solution.minimised,
+            "value": found.value,
             "unit": OBJECTIVES[name].unit(job.machine.slave_unit),
         },
-        "exact": own and job.machine.placed,
+        "exact": own and job.machine.placed and found.exact,
     }
 
 
@@ -90,6 +94,12 @@ def designed(text: str, laws: Sequence[str] = ()) -> dict[str, Any]:
     return _drawn(stored.job, stored.job.task, stored.profile, laws) | {"exact": True}
 
 
+def _placed(task: Task, place: float | None) -> Task:
+    """Put a free sync zone where it is asked for, if it can be there."""
+    least, greatest = task.machine.place_range(task.cut)
+    return task.placed_at(place) if place is not None and least < place < greatest else task.placed_midway()
+
+
 def _drawn(job: Job, task: Task, profile: CamProfile, laws: Sequence[str]) -> dict[str, Any]:
     """Gather what plots show of a cycle."""
     known = baseline_names(task)
@@ -98,6 +108,7 @@ def _drawn(job: Job, task: Task, profile: CamProfile, laws: Sequence[str]) -> di
         "binding": _binding(profile, task),
         "slave_unit": job.machine.slave_unit,
         "turn": job.machine.slave_turn,
+        "place": task.machine.place if task.machine.place_name else None,
         "line_speed_m_per_s": job.cut.line_speed,
         "zones_m": zones(job),
         "limits": limits_of(job),

@@ -68,6 +68,7 @@ class Runner:
         self._child = self._spawn()
         self._newest: dict[str, int] = {}
         self._running: str | None = None
+        self._closed = False
         self._free = asyncio.Lock()
 
     def _spawn(self) -> _Child:
@@ -100,7 +101,7 @@ class Runner:
             self._stop()
             self._running, self._child = None, self._spawn()
         async with self._free:
-            if call != self._newest[kind]:
+            if self._closed or call != self._newest[kind]:
                 raise StaleError
             self._running, child = kind, self._child
             child.line.send((tuple(tuple(command) for command in commands), inputs))
@@ -114,12 +115,12 @@ class Runner:
     def _stop(self) -> None:
         """End the process, whatever it does."""
         self._child.process.terminate()
-        self._child.process.join()
+        self._child.process.join()  # the line ends with it, which whoever waits there is told
 
     def close(self) -> None:
-        """End the process."""
+        """End the process; calls that wait for it are told that they are stale, and so are all that come later."""
+        self._closed = True
         self._stop()
-        self._child.line.close()
 
 
 @contextlib.contextmanager

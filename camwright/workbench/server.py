@@ -40,7 +40,7 @@ from camwright.workbench.calls import (
 from camwright.workbench.guard import Guard
 from camwright.workbench.overlay import overlay
 from camwright.workbench.preview import designed, preview
-from camwright.workbench.runner import JOB_FILE, CommandLine, Ran, Runner, StaleError
+from camwright.workbench.runner import JOB_FILE, Ran, Runner, StaleError
 from camwright.workbench.saving import Saved
 from camwright.workbench.servo import servo_view
 
@@ -149,7 +149,7 @@ class Workbench:
         return JSONResponse({"files": [JOB_FILE, "design.json"]})
 
 
-def application(text: str, folder: Path, token: str, command_line: CommandLine) -> Guard:
+def application(text: str, folder: Path, token: str, runner: Runner) -> Guard:
     """Make the application.
 
     Parameters
@@ -158,10 +158,9 @@ def application(text: str, folder: Path, token: str, command_line: CommandLine) 
         As of `Workbench`.
     token
         What callers must know.
-    command_line
-        What answers their calls.
+    runner
+        What answers their calls; it is closed with the application.
     """
-    runner = Runner(command_line)
     bench = Workbench(text, folder, runner)
 
     @contextlib.asynccontextmanager
@@ -183,7 +182,8 @@ def application(text: str, folder: Path, token: str, command_line: CommandLine) 
 
 def _preview(body: dict[str, Any]) -> Callable[[], dict[str, Any]]:
     text, laws = job_text(body), laws_of(body)
-    return lambda: preview(text, laws)
+    place = None if body.get("place") is None else number_of(body, "place", 0.0)
+    return lambda: preview(text, laws, place)
 
 
 def _cam(body: dict[str, Any]) -> Callable[[], dict[str, Any]]:

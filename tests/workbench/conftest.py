@@ -16,6 +16,7 @@ from starlette.testclient import TestClient
 
 from camwright.cli.main import main
 from camwright.jobs.job import BUNDLED_JOB
+from camwright.workbench.runner import Runner
 from camwright.workbench.server import application
 
 PAPER = BUNDLED_JOB.read_text(encoding="utf-8")
@@ -29,7 +30,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def bench(folder: Path) -> Iterator[TestClient]:
-    with TestClient(application(PAPER, folder, TOKEN, main), base_url="http://127.0.0.1:8765") as client:
+    with TestClient(application(PAPER, folder, TOKEN, Runner(main)), base_url="http://127.0.0.1:8765") as client:
         client.headers["X-Camwright-Token"] = TOKEN
         yield client
 

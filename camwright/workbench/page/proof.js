@@ -8,7 +8,7 @@ const REST = 120; // ms without a change after which a design begins: keys that 
 const refusedAs = (data) => (data.status === "infeasible" ? "infeasible" : data.status === "gone" ? "gone" : "faulty");
 
 const preview = newestOnly(async (text) => {
-  const { ok, data } = await post("preview", { toml: text, laws: state.laws });
+  const { ok, data } = await post("preview", { toml: text, laws: state.laws, place: state.drawn?.place ?? null });
   if (text !== state.text) return; // a newer one is on its way
   state.refusal = ok ? null : data;
   if (ok && state.proof === null) state.drawn = data;

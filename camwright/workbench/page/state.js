@@ -2,6 +2,8 @@
 
 import { withValue } from "./toml.js";
 
+const MOST = 200; // steps that are kept to be undone
+
 const told = new Set();
 
 export const state = {
@@ -47,7 +49,7 @@ export function commit(text = state.text) {
   state.text = text;
   if (text !== state.history[state.at]) {
     keepGhost();
-    state.history = [...state.history.slice(0, state.at + 1), text];
+    state.history = [...state.history.slice(0, state.at + 1), text].slice(-MOST);
     state.at = state.history.length - 1;
   }
   moving = false;
