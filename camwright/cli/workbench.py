@@ -41,11 +41,11 @@ def run(
     server = _Server(
         uvicorn.Config(application(text, Path(), token, runner), log_level="error", timeout_graceful_shutdown=1), runner
     )
-    sys.stdout.write(to_json({"url": url}) if as_json else f"{url}\nCtrl-C ends the workbench.\n")
-    sys.stdout.flush()
-    if not no_browser:
-        webbrowser.open(url)
     with contextlib.suppress(KeyboardInterrupt):  # that is how it ends
+        sys.stdout.write(to_json({"url": url}) if as_json else f"{url}\nCtrl-C ends the workbench.\n")
+        sys.stdout.flush()
+        if not no_browser:
+            webbrowser.open(url)
         server.run(sockets=[listening])
     runner.close()
     return 0

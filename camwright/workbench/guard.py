@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import hmac
 from collections.abc import Awaitable, Callable, MutableMapping
 from typing import Any
@@ -16,6 +17,9 @@ App = Callable[[Scope, Receive, Send], Awaitable[None]]
 
 MOST_BYTES = 8 << 20
 """The most bytes that a call may have."""
+
+MOST_SECONDS = 30.0
+"""How long the body of a call may take to come."""
 
 POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; frame-src blob:; "
@@ -60,21 +64,20 @@ class Guard:
         if refused is not None:
             await _answer(*refused)(scope, receive, sending)
             return
-        body = bytearray()
-        more = scope["method"] == "POST"
-        while more:
-            message = await receive()
-            if message["type"] == "http.disconnect":
-                return
-            body += message.get("body", b"")
-            more = message.get("more_body", False)
-            if len(body) > MOST_BYTES:
-                await _answer(413, f"a call has at most {MOST_BYTES} bytes")(scope, receive, sending)
-                return
-
-        waiting = (
-            [{"type": "http.request", "body": bytes(body), "more_body": False}] if scope["method"] == "POST" else []
-        )
+        if scope["method"] != "POST":
+            await self._app(scope, receive, sending)
+            return
+        try:
+            async with asyncio.timeout(MOST_SECONDS):
+                body = await _body(receive)
+        except TimeoutError:
+            body = (408, f"the body of a call did not come within {MOST_SECONDS:g} s")
+        if body is None:
+            return
+        if isinstance(body, tuple):
+            await _answer(*body)(scope, receive, sending)
+            return
+        waiting = [{"type": "http.request", "body": body, "more_body": False}]
 
         async def received() -> MutableMapping[str, Any]:
             return waiting.pop() if waiting else await receive()
@@ -103,6 +106,20 @@ class Guard:
         return None
 
 
+async def _body(receive: Receive) -> bytes | tuple[int, str] | None:
+    """Read the body of a call; a status and why where it is too large, nothing where the caller has gone."""
+    body = bytearray()
+    while True:
+        message = await receive()
+        if message["type"] == "http.disconnect":
+            return None
+        body += message.get("body", b"")
+        if len(body) > MOST_BYTES:
+            return 413, f"a call has at most {MOST_BYTES} bytes"
+        if not message.get("more_body", False):
+            return bytes(body)
+
+
 def _answer(status: int, message: str) -> JSONResponse:
-    """Answer a call that is refused."""
-    return JSONResponse({"status": "error", "message": message}, status_code=status)
+    """Answer a call that is refused, and listen to it no longer."""
+    return JSONResponse({"status": "error", "message": message}, status, {"connection": "close"})

@@ -97,9 +97,7 @@ class Runner:
         """
         call = self._newest.get(kind, 0) + 1
         self._newest[kind] = call
-        if self._running == kind:
-            self._stop()
-            self._running, self._child = None, self._spawn()
+        self._end(kind)
         async with self._free:
             if self._closed or call != self._newest[kind]:
                 raise StaleError
@@ -111,6 +109,17 @@ class Runner:
         if ran is None or call != self._newest[kind]:
             raise StaleError
         return ran
+
+    def forget(self, kind: str) -> None:
+        """End what is asked for, for nobody waits for it any more."""
+        self._newest[kind] = self._newest.get(kind, 0) + 1
+        self._end(kind)
+
+    def _end(self, kind: str) -> None:
+        """End a call of a kind if it runs, and start a process anew for those that wait."""
+        if self._running == kind and not self._closed:
+            self._stop()
+            self._running, self._child = None, self._spawn()
 
     def _stop(self) -> None:
         """End the process, whatever it does."""

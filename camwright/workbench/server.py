@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import base64
 import contextlib
 import json
@@ -28,6 +29,7 @@ from camwright.profiles.tables.targets import TARGETS
 from camwright.recipes.catalogue import LANGUAGES, catalogue
 from camwright.workbench.calls import (
     NAMES,
+    Call,
     call_of,
     file_of,
     flag_of,
@@ -126,9 +128,19 @@ class Workbench:
         except InputError as error:
             return _refusal(error, _NO_CALL)
         try:
-            return _answered(await self._runner.run(name, call.commands, call.inputs))
+            return _answered(await self._run(request, name, call))
         except StaleError:
             return _STALE
+
+    async def _run(self, request: Request, name: str, call: Call) -> Ran:
+        """Run a call as long as somebody waits for it."""
+        run = asyncio.create_task(self._runner.run(name, call.commands, call.inputs))
+        gone = asyncio.create_task(_gone(request))
+        await asyncio.wait({run, gone}, return_when=asyncio.FIRST_COMPLETED)
+        gone.cancel()
+        if not run.done():
+            self._runner.forget(name)
+        return await run
 
     async def save(self, request: Request) -> Response:
         """Design a job, and write both where the workbench was started."""
@@ -211,6 +223,12 @@ _AT_ONCE: dict[str, Callable[[dict[str, Any]], Callable[[], dict[str, Any]]]] = 
 """Calls that are answered beside the command that may run, each made from what the page sends."""
 
 
+async def _gone(request: Request) -> None:
+    """Wait until the caller has gone."""
+    while (await request.receive())["type"] != "http.disconnect":
+        pass
+
+
 async def _body(request: Request) -> dict[str, Any]:
     """Read the body of a call.
 
@@ -221,8 +239,8 @@ async def _body(request: Request) -> dict[str, Any]:
     """
     try:
         body = json.loads(await request.body())
-    except ValueError as error:
-        raise InputError("the body is no JSON") from error
+    except (ValueError, RecursionError) as error:
+        raise InputError("the body is no JSON, or nested too deeply") from error
     if not isinstance(body, dict):
         raise InputError('the body is no JSON object; send {"toml": "…"}')
     return body

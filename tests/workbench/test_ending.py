@@ -5,10 +5,12 @@ from __future__ import annotations
 import json
 import os
 import signal
+import socket
 import subprocess
 import sys
 import threading
 import time
+import urllib.parse
 import urllib.request
 from pathlib import Path
 from typing import Any
@@ -29,7 +31,7 @@ def ask(url: str, call: str, body: dict[str, Any]) -> Any:
 
 
 def alive() -> dict[int, int]:
-    """Processes that run, each with its parent."""
+    """Look up the processes that run, each with its parent."""
     found = {}
     for place in Path("/proc").glob("[0-9]*"):
         try:
@@ -76,6 +78,18 @@ def test_ctrl_c_ends_it_cleanly_with_its_process(busy: bool, tmp_path: Path) -> 
     if busy:
         caller.join()
         assert answers[0]["status"] == "stale"
+
+
+def test_who_goes_away_is_not_worked_for(address: str) -> None:
+    parts = urllib.parse.urlsplit(address)
+    body = json.dumps({"toml": SLOW}).encode()
+    head = f"POST /api/design?{parts.query} HTTP/1.1\r\nHost: {parts.netloc}\r\nContent-Length: {len(body)}\r\n\r\n"
+    with socket.create_connection((parts.hostname or "", parts.port or 0)) as line:
+        line.sendall(head.encode() + body)
+        time.sleep(1.0)
+    begun = time.perf_counter()
+    assert ask(address, "check", {"toml": PAPER})["exit_code"] == 0
+    assert time.perf_counter() - begun < 15
 
 
 def test_a_newer_design_ends_an_older_one_and_leaves_other_calls_alone(address: str) -> None:

@@ -15,13 +15,14 @@ export async function get(path) {
   }
 }
 
-export async function post(name, body) {
+/** Call by name; what is aborted is no longer worked on. */
+export async function post(name, body, signal) {
   try {
-    const answer = await fetch(`api/${name}`, { method: "POST", headers: { ...HEADERS, "Content-Type": "application/json" }, body: JSON.stringify(body) });
+    const answer = await fetch(`api/${name}`, { method: "POST", signal, headers: { ...HEADERS, "Content-Type": "application/json" }, body: JSON.stringify(body) });
     const data = await answer.json();
     return { ok: answer.ok && !(data.exit_code > 1) && data.status !== "stale", data };
-  } catch {
-    return gone();
+  } catch (error) {
+    return error.name === "AbortError" ? { ok: false, data: { status: "stale" } } : gone();
   }
 }
 

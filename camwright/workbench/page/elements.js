@@ -62,9 +62,17 @@ export const row = (box, number) => box.querySelector("tbody").rows[number];
 
 export const waiting = () => make("p", "…", "waiting");
 
-/** Take a file by choosing or by dropping it. */
-export function dropZone(text, accept, take) {
+const MOST_BYTES = 6e6; // a call has at most 8 MiB, and base64 makes four letters of three bytes
+
+/** Take a file by choosing or by dropping it; one that no call could bring is refused here. */
+export function dropZone(text, tooLarge, accept, taken) {
   const box = make("label", text, "drop");
+  const refused = make("p", "", "failed");
+  box.append(refused);
+  const take = (file) => {
+    refused.textContent = file.size > MOST_BYTES ? tooLarge : "";
+    if (file.size <= MOST_BYTES) taken(file);
+  };
   const input = Object.assign(make("input"), { type: "file", accept });
   box.append(input);
   input.addEventListener("change", () => input.files[0] && take(input.files[0]));

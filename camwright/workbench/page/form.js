@@ -48,7 +48,7 @@ function choices(key) {
 
 function choice(key) {
   const select = make("select");
-  if (!key.required) select.append(Object.assign(make("option", key.default ? `${name(plain(key.default))} *` : "–"), { value: "" }));
+  if (!key.required) select.append(Object.assign(make("option", key.default ? `${name(plain(key.default))} (${word("default")})` : "–"), { value: "" }));
   for (const each of choices(key)) if (key.required || each !== plain(key.default)) select.append(Object.assign(make("option", name(each)), { value: each }));
   return select;
 }

@@ -12,7 +12,7 @@ import * as readings from "./readings.js";
 import * as sliders from "./sliders.js";
 import { begin, changed, commit, onChange, state, step } from "./state.js";
 import { plain, values } from "./toml.js";
-import { outdated } from "./views/asking.js";
+import { callOff, outdated } from "./views/asking.js";
 import { FOLLOWING, VIEWS } from "./views/index.js";
 import { speak, word } from "./words.js";
 
@@ -34,6 +34,7 @@ function render() {
   readings.show($("readings"), place, state.drawn);
   legend();
   units();
+  $("panel").classList.toggle("earlier", FOLLOWING.has(view) && state.proof === null && state.status !== "faulty" && state.status !== "infeasible");
   $("outdated").hidden = FOLLOWING.has(view) || !outdated($("panel"));
 }
 
@@ -86,7 +87,9 @@ function open(name) {
   tabs();
   $("panel").setAttribute("aria-labelledby", `tab-${name}`);
   $("outdated").hidden = true;
+  callOff();
   $("panel").replaceChildren();
+  delete $("panel").dataset.text;
   VIEWS[name]($("panel"));
 }
 
@@ -104,6 +107,7 @@ onChange((what) => {
   if (what === "drawn" || what === "status") render();
   else if (what === "proof" && FOLLOWING.has(view)) VIEWS[view]($("panel"));
   if (what !== "draft" && what !== "commit") return;
+  if (FOLLOWING.has(view)) callOff(); // it is asked anew for the next design
   form.refresh($("form"));
   sliders.refresh($("sliders"));
   if ($("toml") !== document.activeElement) $("toml").value = state.text;

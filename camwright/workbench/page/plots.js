@@ -133,7 +133,7 @@ function grips(drawing, shown, place, onGrip) {
     const told = withUnit(metres * lengthUnit().factor, lengthUnit().name);
     const group = svg("g", { tabindex: 0, role: "slider", "aria-label": word(name), "aria-valuenow": metres, "aria-valuetext": told, "data-path": key });
     group.append(svg("rect", { class: "handle", x: here - 7, y: TOP, width: 14, height: place.bottom - TOP }), svg("path", { class: "grip", d: `M${here - 9} 2h18l-9 15z` }));
-    group.append(svg("text", { class: "mark", x: here - 13, y: 13, "text-anchor": "end" }, `${word(name)} ${told}`));
+    group.append(svg("text", { class: "mark", x: here - 13, y: 13, "text-anchor": "end" }, place.width < 520 ? told : `${word(name)} ${told}`));
     onGrip(group, { path: key, vertical: false, share: (way * length) / metres / (place.right - place.left) });
     drawing.append(group);
   }

@@ -19,12 +19,13 @@ const preview = newestOnly(async (text) => {
 
 let asked = 0;
 let waiting = 0;
+let running = new AbortController(); // of the design that runs
 
 async function prove() {
   const mine = (asked += 1);
   state.status = "proving";
   changed("status");
-  const { ok, data } = await post("design", { toml: state.text });
+  const { ok, data } = await post("design", { toml: state.text }, running.signal);
   if (mine !== asked || data.status === "stale") return;
   state.refusal = ok ? null : data;
   state.status = ok ? (data.passed ? "proved" : "failed") : refusedAs(data);
@@ -41,6 +42,8 @@ async function prove() {
 /** The text changed under a hand: show it, prove nothing. */
 export function drafted() {
   asked += 1;
+  running.abort();
+  running = new AbortController();
   clearTimeout(waiting);
   state.proof = null;
   if (state.status !== "infeasible" && state.status !== "faulty") state.status = "preview";

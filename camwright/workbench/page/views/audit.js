@@ -30,7 +30,7 @@ export function show(panel) {
     ask(more, "identify", body, servo);
     return ask(place, "trace", body, cuts);
   };
-  panel.replaceChildren(dropZone(word("drop"), "", take), label, notes, place, more);
+  panel.replaceChildren(dropZone(word("drop"), word("too large"), "", take), label, notes, place, more);
 }
 
 function judged(data) {

@@ -14,8 +14,8 @@ export function show(panel) {
   let bender = null;
   const take = async (file) => ask(place, "bend", { ...(await sent(file)), ...(bender ? { toml: await bender.text() } : {}) }, bent);
   const job = make("details");
-  job.append(make("summary", word("bender job")), dropZone(word("drop bender"), ".toml", (file) => { bender = file; job.firstChild.textContent = `${word("bender job")}: ${file.name}`; }));
-  panel.replaceChildren(dropZone(word("drop drawing"), ".dxf", take), job, place);
+  job.append(make("summary", word("bender job")), dropZone(word("drop bender"), word("too large"), ".toml", (file) => { bender = file; job.firstChild.textContent = `${word("bender job")}: ${file.name}`; }));
+  panel.replaceChildren(dropZone(word("drop drawing"), word("too large"), ".dxf", take), job, place);
 }
 
 function bent(data) {

@@ -15,4 +15,4 @@ import { show as tradeoff } from "./tradeoff.js";
 export const VIEWS = { checks, servo, compare, tradeoff, limits, envelope, export: tables, recipe, audit, machine, bender };
 
 /** Views that are made anew for each design; the others say that they are of an earlier job. */
-export const FOLLOWING = new Set(["checks", "servo", "compare", "tradeoff", "limits"]);
+export const FOLLOWING = new Set(["checks", "servo", "compare", "limits"]);
