@@ -9,9 +9,13 @@ from pathlib import Path
 import pytest
 from starlette.testclient import TestClient
 
+from camwright.jobs.job import load_job
+from camwright.jobs.keys import job_keys
 from camwright.profiles.laws import LAWS
 from camwright.profiles.objective import OBJECTIVES
+from camwright.studies.comparison import law_names
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
 PAGE = Path(__file__).parents[2] / "camwright" / "workbench" / "page"
 ASKED = {
     word
@@ -37,6 +41,10 @@ def test_what_the_page_asks_for_is_there(words: dict[str, str]) -> None:
 def test_names_of_the_program_have_words(words: dict[str, str]) -> None:
     assert {f"word.{name}" for name in OBJECTIVES} <= words.keys()
     assert set(LAWS) - {"linear"} <= words.keys()
+    assert {f"table.{key.table}" for key in job_keys() if key.table} <= words.keys()
+    for example in EXAMPLES.glob("*.toml"):
+        job = load_job(example)
+        assert set(law_names(job.task if job.machine.placed else job.task.placed_midway())) <= words.keys()
     assert words["check.sync_ratio"]  # of the recipes' catalogue
 
 

@@ -128,13 +128,16 @@ function grips(drawing, shown, place, onGrip) {
   const list = [{ path: "cut.length", name: "cut length", metres: length, at: x[x.length - 1], way: 1 }];
   const sync = shown.zones_m.sync;
   if (sync.length === 1) list.push({ path: "cut.sync_zone", name: "sync zone", metres: sync[0][1] - sync[0][0], at: sync[0][0], way: -1 });
-  for (const { path: key, name, metres, at, way } of list) {
-    const here = acrossMaster(shown, place, at);
+  const places = list.map(({ at }) => acrossMaster(shown, place, at));
+  list.forEach(({ path: key, name, metres, way }, number) => {
+    const here = places[number];
+    const room = here - Math.max(0, ...places.filter((other) => other < here));
     const told = withUnit(metres * lengthUnit().factor, lengthUnit().name);
+    const whole = `${word(name)} ${told}`;
     const group = svg("g", { tabindex: 0, role: "slider", "aria-label": word(name), "aria-valuenow": metres, "aria-valuetext": told, "data-path": key });
     group.append(svg("rect", { class: "handle", x: here - 7, y: TOP, width: 14, height: place.bottom - TOP }), svg("path", { class: "grip", d: `M${here - 9} 2h18l-9 15z` }));
-    group.append(svg("text", { class: "mark", x: here - 13, y: 13, "text-anchor": "end" }, place.width < 520 ? told : `${word(name)} ${told}`));
+    group.append(svg("text", { class: "mark", x: here - 13, y: 13, "text-anchor": "end" }, room > 6.4 * whole.length + 26 ? whole : room > 6.4 * told.length + 26 ? told : ""));
     onGrip(group, { path: key, vertical: false, share: (way * length) / metres / (place.right - place.left) });
     drawing.append(group);
-  }
+  });
 }

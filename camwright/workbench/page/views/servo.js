@@ -1,7 +1,7 @@
 // What the servo makes of the cam: every sampling phase, the axis against the material, at any line speed of the band.
 
 import { newestOnly, post } from "../api.js";
-import { make, svg, table } from "../elements.js";
+import { make, svg, table, waiting } from "../elements.js";
 import { digits, lengthUnit, shownSi } from "../numbers.js";
 import { path, plot } from "../scale.js";
 import { state } from "../state.js";
@@ -33,6 +33,7 @@ export function show(panel) {
     over.querySelector(".here")?.setAttribute("visibility", "hidden");
   });
   slider.addEventListener("change", () => ask(true));
+  figures.append(waiting());
   panel.replaceChildren(label, figures, over);
   return ask(true);
 }
