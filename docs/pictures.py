@@ -62,7 +62,20 @@ def recipe(place: Path) -> None:
     subprocess.run([*command, str(FIGURES / "recipe-page")], check=True)
 
 
+def production(place: Path) -> None:
+    """Draw the plan of a cut list, and a shift."""
+    order, shift = place / "order.csv", place / "shift.csv"
+    order.write_text("length [mm],quantity\n600,3\n300,3\n600,3\n", encoding="utf-8")
+    shift.write_text("length [mm],quantity\n600,600\n300,200\n450,200\n", encoding="utf-8")
+    job, ramp = EXAMPLES / "paper-600.toml", ("--line-acceleration", "0.2 m/s^2")
+    run("cutlist", job, order, "--line-acceleration", "1 m/s^2", "--out", place / "list", "--quiet")
+    wrong = ("--noise", "2 um", "--slip", "0.0002", "--marks", "0.3 mm", "--seed", "7")
+    run("simulate", job, "--list", shift, *ramp, *wrong, "--out", place / "shift", "--quiet")
+    shutil.copyfile(place / "list" / "line-plan.png", FIGURES / "line-plan.png")
+    shutil.copyfile(place / "shift" / "shift.png", FIGURES / "shift.png")
+
+
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as folder:
-        for draw in (designs, audit, recipe):
+        for draw in (designs, audit, recipe, production):
             draw(Path(folder))

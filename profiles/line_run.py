@@ -10,6 +10,9 @@ from numpy.typing import ArrayLike
 
 from camwright.profiles.polynomial.profile import FloatArray
 
+_TRIFLE = 1e-9
+"""Material (m) that is none: a ramp that ends at a joint is not on the piece behind it."""
+
 
 @dataclass(frozen=True, eq=False)
 class LineRun:
@@ -52,6 +55,43 @@ class LineRun:
     def length(self) -> float:
         """Material passed until then (m)."""
         return float(self.positions[-1])
+
+    @property
+    def hardest(self) -> float:
+        """Greatest magnitude of its acceleration (m/s²)."""
+        return float(np.abs(self._accelerations).max())
+
+    def fastest_between(self, places: FloatArray) -> FloatArray:
+        """Greatest speed from each place on the material to the next (m/s); arguments as `hardest_between`."""
+        at = self.speed(self.when(places))
+        found = np.maximum(at[:-1], at[1:])
+        inside = (self.positions > places[0]) & (self.positions < places[-1])
+        np.maximum.at(found, np.searchsorted(places, self.positions[inside], side="left") - 1, self.speeds[inside])
+        return np.asarray(found)
+
+    def hardest_between(self, places: FloatArray) -> FloatArray:
+        """Greatest magnitude of its acceleration from each place on the material to the next (m/s²).
+
+        Parameters
+        ----------
+        places
+            Ascending (m), shape ``(n + 1,)``.
+
+        Returns
+        -------
+        ndarray
+            Shape ``(n,)``.
+        """
+        found = np.zeros(len(places) - 1)
+        firsts = np.searchsorted(places, self.positions[:-1] + _TRIFLE, side="right") - 1
+        lasts = np.searchsorted(places, self.positions[1:] - _TRIFLE, side="left")
+        for size, first, last in zip(
+            np.abs(self._accelerations).tolist(), firsts.tolist(), lasts.tolist(), strict=True
+        ):
+            if size:
+                part = found[max(first, 0) : max(last, first + 1)]
+                np.maximum(part, size, out=part)
+        return found
 
     def _at(self, time: ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Material and speed at the corner before a time, the acceleration from there on, and the time since."""

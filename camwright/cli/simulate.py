@@ -108,7 +108,7 @@ def run(
         return {**shift_answer(study), "files": [str(file) for file in files]}
 
     voice.answer(data, lambda: stacked(*_views(study), files_view(files)))
-    return 1 if study.too_fast else 0
+    return 0
 
 
 def _length(text: str | None) -> float:
@@ -126,12 +126,12 @@ def _views(study: ShiftStudy) -> list[RenderableType]:
     )
     heads = (
         "",
-        "length error\nspread",
-        "length error\nworst",
-        "sync error\nof 99 %",
+        "length\nspread",
+        "length\nworst",
+        "sync error\n99 %",
         "sync error\nworst",
-        "pieces outside\ntolerance",
-        "worst of\nall servos",
+        "pieces\noutside",
+        "of all\nservos",
     )
     for name in heads:
         table.add_column(name, justify="right" if name else "left")
@@ -150,5 +150,9 @@ def _views(study: ShiftStudy) -> list[RenderableType]:
     if study.too_fast:
         said.append(
             f"the line runs faster than the cam may on {study.too_fast} pieces: camwright cutlist gives the highest speeds"
+        )
+    if study.too_hard:
+        said.append(
+            f"the line ramps harder than the cam bears on {study.too_hard} pieces: camwright limits says what it bears"
         )
     return [table, new_text("\n".join(said))]

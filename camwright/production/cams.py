@@ -73,6 +73,11 @@ class ListCam:
         return RunningCam(self.job.task, self.solution.profile)
 
 
+def list_job(job: Job) -> Job:
+    """Give a job as a list takes it: zones that last a time are as long on the material as at the job's line speed, for all cams alike."""
+    return replace(job, cut=replace(job.cut, sync_time=None, shear_time=None)) if job.cut.timed else job
+
+
 def highest_speed(job: Job, length: float) -> float:
     """Highest line speed of a perfect axis for a gap, on a line that keeps its speed (m/s); 0 where none works."""
     task = job.task.from_return().with_length(length).with_line(STEADY)

@@ -11,7 +11,7 @@ import numpy as np
 from camwright.design.production.common_place import CommonPlace, common_place
 from camwright.jobs.job import Job
 from camwright.jobs.wording import in_job_words
-from camwright.production.cams import highest_speed, ramping_speed
+from camwright.production.cams import highest_speed, list_job, ramping_speed
 from camwright.profiles.cut_list import CutList
 from camwright.profiles.objective import of_command
 from camwright.profiles.task import Task
@@ -68,7 +68,7 @@ def placed_alike(job: Job, asked: CutList) -> PlacedAlike:
     """Place the sync zone of a job at one place for all lengths of a list, each at the line speed that it may run at."""
     if job.machine.placed:
         return PlacedAlike(job, None)
-    tasks = []
+    job, tasks = list_job(job), []
     for length in np.unique(asked.gaps).tolist():
         speed = min(job.cut.line_speed, max(highest_speed(job, length), 1e-9))
         tasks.append(job.task.from_return().with_length(length).at_speed(ramping_speed(job, length, speed)))

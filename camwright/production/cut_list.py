@@ -14,7 +14,7 @@ from camwright.design.production.line_plan import fastest_line
 from camwright.house.numbers import with_unit
 from camwright.house.progress import Step, ignore
 from camwright.jobs.job import Job
-from camwright.production.cams import ListCam, highest_speed, list_cam, ramping_speed
+from camwright.production.cams import ListCam, highest_speed, list_cam, list_job, ramping_speed
 from camwright.production.changes import Change, find_changes
 from camwright.production.tables import TargetSeams, list_tables
 from camwright.profiles.cut_list import CutList
@@ -23,8 +23,15 @@ from camwright.profiles.line import STEADY
 from camwright.profiles.line_run import LineRun
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.studies.reach import stand_in
+from camwright.validation.production.line_ramp import line_ramp
 from camwright.validation.production.motion_table import ShiftCam, motion_table
 from camwright.validation.production.shift import Shift, ShiftRun, run_shift
+
+_ALLOWED = 1e-3
+"""Share by which a ramp may be harder than what is borne: what a solver's margin leaves."""
+
+_MORE = 1.02
+"""Factor on the speed of a given line for which its cams are designed: marks move the pieces along it."""
 
 _STEADY = 1e-9
 """Share by which the line's speed may change within a piece that counts as steady."""
@@ -69,6 +76,17 @@ class ListPlan:
     def time_at_slowest(self) -> float:
         """Time if the whole list ran at its slowest piece's speed (s)."""
         return float(self.asked.gaps.sum() / self.highest.min())
+
+    def ramped_too_hard(self, joints: FloatArray) -> NDArray[np.bool_]:
+        """Say on which pieces the line ramps harder than their cam bears at its highest line speed.
+
+        Parameters
+        ----------
+        joints
+            Where the pieces begin on the material, and the end of the last (m), shape ``(pieces + 1,)``.
+        """
+        borne = np.array([line_ramp(cam.solution.profile, cam.job.task).ramp.value for cam in self.cams])
+        return np.asarray(self.line.hardest_between(joints) > borne[self.of] * (1.0 + _ALLOWED))
 
     def first_pieces(self, change: Change) -> NDArray[np.intp]:
         """Pieces, counted from 0, which a change begins."""
@@ -156,8 +174,10 @@ def plan_list(job: Job, asked: CutList, line: LineRun | None = None, step: Step 
     SolverError
         The solver failed.
     """
-    gaps = asked.gaps
+    job, gaps = list_job(job), asked.gaps
     _require_room(job, asked)
+    if line is not None:
+        require_passed(gaps, line)
     lengths, first, inverse = np.unique(gaps, return_index=True, return_inverse=True)
     order = np.argsort(first, kind="stable")
     lengths, of = lengths[order], np.argsort(order)[inverse].astype(np.intp)
@@ -165,8 +185,12 @@ def plan_list(job: Job, asked: CutList, line: LineRun | None = None, step: Step 
     perfect = np.array([highest_speed(job, length) for length in lengths.tolist()])
     _require_possible(job, asked, of, perfect)
     step("finding which cams run while the line ramps")
-    acceleration = job.line.acceleration
-    tops, bears = _tops(job, gaps, lengths, of, np.minimum(perfect, job.cut.line_speed), planned=line is None)
+    acceleration, tops = job.line.acceleration, np.minimum(perfect, job.cut.line_speed)
+    if line is not None:  # for the speeds that they will see
+        fastest = np.zeros(len(lengths))
+        np.maximum.at(fastest, of, line.fastest_between(np.concatenate([[0.0], np.cumsum(gaps)])))
+        tops = np.minimum(tops, np.where(fastest > 0.0, _MORE * fastest, tops))
+    tops, bears = _tops(job, gaps, lengths, of, tops, planned=line is None)
     step("designing the cams")
     cams = tuple(
         list_cam(number + 1, job, length, most, top, job.line if bears[number] else STEADY)
@@ -232,6 +256,15 @@ def _require_room(job: Job, asked: CutList) -> None:
                 f"{with_unit(zone, 'm', 4, units)}; cut longer pieces, or shorten [cut] sync_zone"
                 for line, gap in bad[:20]
             )
+        )
+
+
+def require_passed(lengths: FloatArray, line: LineRun) -> None:
+    """Refuse a line that stands still before the list is cut."""
+    needed = float(lengths.sum())
+    if line.length < needed and line.speeds[-1] == 0.0:
+        raise InputError(
+            f"the line stands still after {line.length:.6g} m, the list needs {needed:.6g} m; let it run longer, or shorten the list"
         )
 
 

@@ -26,6 +26,7 @@ def shift_answer(study: ShiftStudy) -> dict[str, Any]:
         "time_s": float(study.cut_times[-1]),
         "line": "given" if study.given else "planned",
         "pieces_too_fast": study.too_fast,
+        "pieces_ramped_too_hard": study.too_hard,
         "servos": study.servos,
         "sync_tolerance_m": tolerance,
         "disturbances": {"noise_m": wrong.noise, "slip": wrong.slip, "marks_m": wrong.marks, "seed": wrong.seed},

@@ -10,7 +10,7 @@ import numpy as np
 from camwright.design.production.line_plan import fastest_line
 from camwright.house.progress import Step, ignore
 from camwright.jobs.job import Job
-from camwright.production.cut_list import ListPlan, list_shift, plan_list
+from camwright.production.cut_list import ListPlan, list_shift, plan_list, require_passed
 from camwright.profiles.cut_list import CutList
 from camwright.profiles.errors import InputError
 from camwright.profiles.line_run import LineRun
@@ -20,6 +20,8 @@ from camwright.validation.production.shift import Disturbance, Shift, ShiftRun, 
 
 MOTIONS = ("optimised", "linear_return")
 """What is compared."""
+
+_ROUNDING = 1e-9
 
 BINS = 40
 """Bins of the histogram of lengths."""
@@ -96,8 +98,8 @@ class ShiftStudy:
         What was asked of each piece, its mark counted (m), shape ``(pieces,)``.
     cut_times
         When each piece is cut (s), shape ``(pieces,)``.
-    too_fast
-        Pieces on which the line ran faster than the cam may.
+    too_fast, too_hard
+        Pieces on which the line ran faster than the cam may, and on which it ramped harder than the cam bears.
     servos
         Servos that were run.
     runs
@@ -110,6 +112,7 @@ class ShiftStudy:
     lengths: FloatArray
     cut_times: FloatArray
     too_fast: int
+    too_hard: int
     servos: int
     runs: dict[str, MotionRuns]
 
@@ -132,7 +135,8 @@ def simulate_shift(
     Parameters
     ----------
     job
-        The job; where the line's speed is planned its ramp is known.
+        The job; where the line's speed is planned its ramp is known, where it is given and the job states no ramp the cams are to bear its
+        hardest.
     asked
         The list.
     line
@@ -150,6 +154,8 @@ def simulate_shift(
         As `plan_list`.
     """
     _require_simple(job, disturbances)
+    if line is not None and job.line.acceleration is None and line.hardest > 0.0:
+        job = replace(job, line=replace(job.line, acceleration=line.hardest))
     planned = plan_list(job, asked, line, step)
     draw = np.random.default_rng(disturbances.seed)
     pieces = asked.pieces
@@ -163,7 +169,7 @@ def simulate_shift(
     noise = _normal(draw, _NOISES) * disturbances.noise if disturbances.noise else np.zeros(0)
     wrong = Disturbance(noise, slip)
     servos = _servos(job, disturbances)
-    _require_passed(lengths, planned.line)
+    require_passed(lengths, planned.line)
     runs, shift = {}, None
     for motion in MOTIONS:
         step(f"running {motion.replace('_', ' ')}")
@@ -171,8 +177,10 @@ def simulate_shift(
         runs[motion] = _runs(shift, planned.line, servos, wrong, lengths)
     assert shift is not None  # noqa: S101 - there are motions
     times = planned.line.when(shift.places()[:, 1])
-    fast = _too_fast(planned, lengths)
-    return ShiftStudy(planned, line is not None, disturbances, lengths, times, fast, len(servos), runs)
+    joints = shift.table.joints
+    fast = int((planned.line.fastest_between(joints) > planned.highest * (1.0 + _ROUNDING)).sum())
+    hard = int(planned.ramped_too_hard(joints).sum())
+    return ShiftStudy(planned, line is not None, disturbances, lengths, times, fast, hard, len(servos), runs)
 
 
 def _normal(draw: np.random.Generator, count: int) -> FloatArray:
@@ -199,15 +207,6 @@ def _require_long(lengths: FloatArray, job: Job) -> None:
     if lengths.min() <= job.cut.sync_zone:
         raise InputError(
             f"--marks: the shortest piece becomes {lengths.min() * 1e3:.6g} mm long, no more than the sync zone; draw smaller deviations"
-        )
-
-
-def _require_passed(lengths: FloatArray, line: LineRun) -> None:
-    """Refuse a line that stands still before the list is cut."""
-    needed = float(lengths.sum())
-    if line.length < needed and line.speeds[-1] == 0.0:
-        raise InputError(
-            f"the line stands still after {line.length:.6g} m, the list needs {needed:.6g} m; let it run longer, or shorten the list"
         )
 
 
@@ -247,14 +246,3 @@ def _runs(shift: Shift, line: LineRun, servos: Sequence[Servo], wrong: Disturban
         worst_lengths = np.maximum(worst_lengths, np.abs(found.lengths - lengths))
         worst_sync = np.maximum(worst_sync, found.sync_errors)
     return MotionRuns(nominal, errors, worst_lengths, worst_sync)
-
-
-def _too_fast(planned: ListPlan, lengths: FloatArray) -> int:
-    """Count the pieces on which the line runs faster than they may."""
-    line = planned.line
-    ends = np.concatenate([[0.0], np.cumsum(lengths)])
-    at = line.speed(line.when(ends))
-    fastest = np.maximum(at[:-1], at[1:])
-    inside = (line.positions > 0.0) & (line.positions < ends[-1])
-    np.maximum.at(fastest, np.searchsorted(ends, line.positions[inside], side="left") - 1, line.speeds[inside])
-    return int((fastest > planned.highest * (1.0 + 1e-9)).sum())

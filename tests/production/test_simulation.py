@@ -58,8 +58,9 @@ def test_the_same_seed_gives_the_same_bytes_and_another_other_ones() -> None:
 
 
 def test_servos_of_the_ranges_are_never_better_than_the_worst_of_them() -> None:
-    job = replace(load_job(EXAMPLES / "short-cut.toml"), servo_aware=False, objective="peak_acceleration")
-    job = replace(job, cut=replace(job.cut, shaped=False), slowest=1.0)
+    job = load_job(EXAMPLES / "short-cut.toml")
+    cut = replace(job.cut, shaped=False)
+    job = replace(job, cut=cut, servo_aware=False, objective="peak_acceleration", slowest=1.0)
     few, many = (simulate_shift(job, CutList((ListRow(0.45, 30),)), STEADY, Disturbances(servos=n)) for n in (0, 6))
     assert many.servos == 7
     assert (many.runs["optimised"].worst_sync_errors >= few.runs["optimised"].worst_sync_errors).all()
@@ -69,6 +70,17 @@ def test_servos_of_the_ranges_are_never_better_than_the_worst_of_them() -> None:
 def test_a_line_that_is_too_fast_is_told() -> None:
     study = simulate_shift(load_job(), CutList((ListRow(0.6, 5), ListRow(0.3, 4))), STEADY, Disturbances())
     assert study.too_fast == 4  # 1 m/s is more than 47.66 m/min
+    assert study.too_hard == 0
+
+
+def test_cams_of_a_given_line_bear_its_ramps_or_it_is_told() -> None:
+    asked = CutList((ListRow(0.6, 5), ListRow(0.3, 4)))
+    gentle = LineRun(np.array([0.0, 4.0, 8.0, 30.0]), np.array([0.0, 0.6, 0.6, 0.6]))
+    assert simulate_shift(load_job(), asked, gentle, Disturbances()).too_hard == 0
+    hard = LineRun(
+        np.array([0.0, 4.36, 4.41, 60.0]), np.array([0.7, 0.7, 0.785, 0.785])
+    )  # on a cam that is at its limits
+    assert simulate_shift(load_job(), asked, hard, Disturbances()).too_hard >= 1
 
 
 def test_planned_lines_follow_marks() -> None:

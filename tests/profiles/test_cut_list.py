@@ -73,6 +73,15 @@ def test_a_line_run_adds_up_like_a_sum_of_small_steps() -> None:
     assert np.abs(run.speed(t) - v).max() < 1e-12
 
 
+def test_fastest_and_hardest_between_places() -> None:
+    run = LineRun(np.array([0.0, 1.0, 2.0, 4.0]), np.array([1.0, 1.0, 2.0, 0.0]))
+    places = np.array([0.0, 0.5, 1.0, 2.5, 4.5])  # corners at 0, 1, 2.5 and 4.5 m
+    assert run.fastest_between(places) == pytest.approx([1.0, 1.0, 2.0, 2.0])
+    assert run.hardest_between(places) == pytest.approx([0.0, 0.0, 1.0, 1.0])
+    assert run.hardest == 1.0
+    assert run.hardest_between(np.array([0.9, 1.1, 1.2])) == pytest.approx([1.0, 1.0])
+
+
 def test_where_the_line_stands_the_first_moment_counts_and_beyond_its_end_none() -> None:
     run = LineRun(np.array([0.0, 1.0, 4.0, 5.0, 6.0]), np.array([2.0, 0.0, 0.0, 2.0, 0.0]))
     assert run.when([1.0]).tolist() == [1.0]

@@ -1,0 +1,108 @@
+"""``camwright cutlist`` and ``camwright simulate``: files, answers, exit codes, a second run, figures."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from camwright.cli.main import main
+from camwright.jobs.job import BUNDLED_JOB
+
+JOB = str(BUNDLED_JOB)
+RAMP = ("--line-acceleration", "1 m/s^2")
+
+
+@pytest.fixture
+def order(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "order.csv").write_text("length [mm],quantity,kind\n600,3\n300,3\n600,2\n600,1,crop\n")
+    return "order.csv"
+
+
+def said(capsys: pytest.CaptureFixture[str]) -> dict[str, object]:
+    answer: dict[str, object] = json.loads(capsys.readouterr().out)
+    return answer
+
+
+def test_a_list_is_worked_out_and_written(order: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["cutlist", JOB, order, *RAMP, "--targets", "csv,codesys,logix", "--json"]) == 0
+    answer = said(capsys)
+    assert {"pieces", "cams", "transitions", "time_s", "time_at_slowest_s", "scrap_mm", "matrix", "seams"} <= set(
+        answer
+    )
+    assert answer["scrap_mm"] == pytest.approx(600.0)
+    files = [Path(str(file)) for file in answer["files"]]  # type: ignore[attr-defined]
+    assert all((tmp_path / file).is_file() for file in files)
+    assert {"cut-list.csv", "cams.csv", "changes.csv", "line-speed.csv", "line-plan.svg", "line-plan.png"} <= {
+        file.name for file in files
+    }
+    assert {file.parent.name for file in files if file.parent.parent.name} >= {"csv", "codesys", "logix"}
+
+
+def test_the_same_list_gives_the_same_bytes_and_a_shorter_one_leaves_no_old_table(
+    order: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    call = ["cutlist", JOB, order, *RAMP, "--out", "made", "--json", "--no-figures"]
+    assert main(call) == 0
+    before = {file: file.read_bytes() for file in (tmp_path / "made").rglob("*") if file.is_file()}
+    assert main(call) == 0
+    assert {file: file.read_bytes() for file in (tmp_path / "made").rglob("*") if file.is_file()} == before
+    assert len(list((tmp_path / "made" / "csv").glob("*.csv"))) == 2
+    (tmp_path / "order.csv").write_text("length [mm],quantity\n600,3\n")
+    assert main(call) == 0
+    assert len(list((tmp_path / "made" / "csv").glob("*.csv"))) == 1
+    capsys.readouterr()
+
+
+def test_the_plan_runs_in_the_simulation(order: str, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    assert main(["cutlist", JOB, order, *RAMP, "--out", "made", "--quiet", "--no-figures"]) == 0
+    assert main(["simulate", JOB, "--list", order, "--line", "made/line-speed.csv", "--json"]) == 0
+    answer = said(capsys)
+    assert (answer["line"], answer["pieces"], answer["pieces_too_fast"], answer["pieces_ramped_too_hard"]) == (
+        "given",
+        9,
+        0,
+        0,
+    )
+    assert (tmp_path / "out" / "paper-600-shift" / "shift.png").is_file()
+    assert main(["simulate", JOB, "--list", order, *RAMP, "--no-figures", "--json", "--out", "planned"]) == 0
+    again = said(capsys)
+    assert again["line"] == "planned"
+    assert again["time_s"] == pytest.approx(answer["time_s"], rel=1e-9)
+
+
+def test_tables_fit_a_narrow_terminal(order: str, capsys: pytest.CaptureFixture[str]) -> None:
+    for call in (["cutlist", JOB, order], ["simulate", JOB, "--list", order]):
+        assert main([*call, *RAMP, "--no-figures"]) == 0
+        tables = [line for line in capsys.readouterr().out.splitlines() if line[:1] in "┏┃│└"]
+        assert tables
+        assert max(map(len, tables)) <= 84
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (["cutlist", JOB, "order.csv"], "how hard the line ramps is not stated"),
+        (["cutlist", JOB, "none.csv", *RAMP], "none.csv: there is no such cut list"),
+        (["cutlist", JOB, "order.csv", "--line-acceleration", "1 m"], "a length, but an acceleration is expected"),
+        (["simulate", JOB, "--list", "order.csv"], "how hard the line ramps is not stated"),
+        (
+            ["simulate", JOB, "--list", "order.csv", "--line", "order.csv", *RAMP],
+            "--line-acceleration: the line's speed is given by --line",
+        ),
+        (
+            ["simulate", JOB, "--list", "order.csv", "--line", "order.csv"],
+            "order.csv, line 2: 2 cells where the header has 3",
+        ),
+        (["simulate", JOB, "--list", "order.csv", *RAMP, "--servos", "3"], "--servos: the job gives no ranges"),
+    ],
+)
+def test_bad_input_is_refused_in_words(
+    call: list[str], message: str, order: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(call) == 2
+    error = capsys.readouterr().err
+    assert message in error
+    assert "Traceback" not in error
