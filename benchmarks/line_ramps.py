@@ -71,6 +71,8 @@ def draw(rng: np.random.Generator, kind: str) -> tuple[Task, str] | None:
 
 def programme(task: Task, objective: str) -> float:
     """Least value of an objective by cvxpy on even intervals; infinite where it finds none, not a number where it fails."""
+    if exceeded(task.sync, task) > TOUCHED:
+        return math.inf  # no return makes up for what the sync zone asks
     cut, limits, line, v = task.cut, task.limits, task.line, task.cut.line_speed
     sync, time = task.sync, cut.return_zone / cut.line_speed
     h = 1.0 / GRID
@@ -139,7 +141,7 @@ def programme(task: Task, objective: str) -> float:
 def exceeded(profile: CamProfile, task: Task) -> float:
     """Share by which the slave exceeds a limit while the line ramps: every phase, speed, direction and sign of the line's jerk."""
     line, limits = task.line, task.limits
-    x = np.arange(PHASES * 20) / (PHASES * 20) * task.cut.length
+    x = profile.start + np.arange(PHASES * 20) / (PHASES * 20) * profile.length
     ratio, bend, third = (profile(x, order) for order in (1, 2, 3))
     worst = 0.0
     for v in task.cut.line_speed * np.arange(1, SPEEDS + 1) / SPEEDS:
