@@ -58,6 +58,9 @@ _TITLES = {
     "axis_in_tolerance_binding": "fails beyond",
 }
 
+_INCHES = {"_in": "in", "_ft_per_min": "ft/min", "_ft_per_s2": "ft/s²", "_ft_per_s3": "ft/s³"}
+"""Units of an inch book by the endings of its columns."""
+
 _HEAD, _MIDDLE, _END = COLUMNS[:5], COLUMNS[5:17], ("binding", "folder")
 
 _STATUS = {"passed": "passed", "check_failed": "check failed", "infeasible": "infeasible", "failed": "solver failed"}
@@ -78,9 +81,9 @@ def html_pieces(
         "where the cam of that line speed passes every check. “Limits alone” is what the limits of speed, acceleration, jerk and "
         "reversal allow; the servo may not settle there.</p>\n"
     )
-    yield from _table(LIMIT_COLUMNS, map(_limit, limits))
+    yield from _table(book, LIMIT_COLUMNS, map(_limit, limits))
     yield "<h2>Designs</h2>\n"
-    yield from _table((*_HEAD, *_MIDDLE, *_END), map(_design, designs))
+    yield from _table(book, (*_HEAD, *_MIDDLE, *_END), map(_design, designs))
     yield "</body>\n</html>\n"
 
 
@@ -97,12 +100,24 @@ def _facts(book: Book, counts: Counts) -> Iterator[tuple[str, str]]:
     yield "made by", ", ".join(f"{name} {version}" for name, version in book.versions)
 
 
-def _table(columns: Sequence[str], rows: Iterable[str]) -> Iterator[str]:
-    """Write a table of rows that are written."""
-    heads = "".join(f"<th>{escape(_TITLES.get(column, column))}</th>" for column in columns)
+def _table(book: Book, columns: Sequence[str], rows: Iterable[str]) -> Iterator[str]:
+    """Write a table of rows that are written, its heads with the units of the book."""
+    named = zip(columns, book.units.named(columns), strict=True)
+    heads = "".join(f"<th>{escape(_title(metric, own))}</th>" for metric, own in named)
     yield f"<table>\n<thead><tr>{heads}</tr></thead>\n<tbody>\n"
     yield from rows
     yield "</tbody>\n</table>\n"
+
+
+def _title(metric: str, own: str) -> str:
+    """Write the head of a column: its title, in an inch book with the unit that its own name ends with."""
+    words = _TITLES.get(metric, metric)
+    if metric == own:
+        return words
+    for ending, unit in _INCHES.items():
+        if own.endswith(ending):
+            return f"{words.rpartition(' ')[0]} {unit}"
+    return words
 
 
 def _limit(row: Sequence[Cell]) -> str:

@@ -31,8 +31,8 @@ def write_workbook(path: Path, book: Book, designs: Iterable[Sequence[Cell]], li
     bold = workbook.add_format({"bold": True, "text_wrap": True, "valign": "top"})
     about: list[tuple[str, Cell]] = [("job", book.name), ("job_sha256", book.job_sha256)]
     about += [(key, _plain(value)) for key, value in book.parameters().items() if key != "job_sha256"]
-    _sheet(workbook, "designs", COLUMNS, designs, bold)
-    _sheet(workbook, "limits", LIMIT_COLUMNS, limits, bold)
+    _sheet(workbook, "designs", book.units.named(COLUMNS), designs, bold)
+    _sheet(workbook, "limits", book.units.named(LIMIT_COLUMNS), limits, bold)
     _sheet(workbook, "about", ("name", "value of"), about, bold)
     workbook.close()
 

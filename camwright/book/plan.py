@@ -17,7 +17,9 @@ from camwright.book.ranges import (
     distinct,
     parse_range,
 )
+from camwright.book.units import BookUnits, book_units
 from camwright.drives.options import chosen_targets
+from camwright.house.numbers import units_of
 from camwright.house.provenance import provenance
 from camwright.house.units import shown
 from camwright.jobs.job import Job, parse_job, read_job
@@ -52,6 +54,8 @@ class Combination:
         What is made least.
     first
         Whether it is the first of its cut length.
+    units
+        Units of the book.
     """
 
     number: int
@@ -59,21 +63,23 @@ class Combination:
     line_speed: Fraction
     objective: str
     first: bool
+    units: BookUnits
 
     @property
-    def length_mm(self) -> str:
-        """Cut length in millimetres, as it is written."""
-        return decimal(self.length * 1000)
+    def length_text(self) -> str:
+        """Cut length in the unit of the book, as it is written."""
+        return decimal(self.length * self.units.per_metre)
 
     @property
-    def speed_m_per_min(self) -> str:
-        """Line speed in metres a minute, as it is written."""
-        return decimal(self.line_speed * 60)
+    def speed_text(self) -> str:
+        """Line speed in the unit of the book, as it is written."""
+        return decimal(self.line_speed * self.units.per_metre_per_second)
 
     @property
     def folder(self) -> str:
         """Where its files lie in the book's folder."""
-        return f"designs/{self.length_mm}mm/{self.speed_m_per_min}m-per-min/{self.objective}"
+        speed = self.units.speed.replace("/", "-per-")
+        return f"designs/{self.length_text}{self.units.length}/{self.speed_text}{speed}/{self.objective}"
 
 
 @dataclass(frozen=True)
@@ -109,6 +115,11 @@ class Book:
     targets: tuple[str, ...]
     versions: tuple[tuple[str, str], ...]
 
+    @property
+    def units(self) -> BookUnits:
+        """Units in which it is read: those of its job."""
+        return book_units(units_of(_data(self.toml)))
+
     def __len__(self) -> int:
         """Count the combinations."""
         return len(self.lengths) * len(self.line_speeds) * len(self.objectives)
@@ -127,6 +138,7 @@ class Book:
             self.line_speeds[speed],
             self.objectives[objective],
             first=speed == objective == 0,
+            units=self.units,
         )
 
     def job(self, combination: Combination) -> Job:
@@ -140,14 +152,14 @@ class Book:
             The combination is no job: its zones do not fit into its cut length, for example.
         """
         of, data = combination, _data(self.toml)
-        name = f"C{of.number:05d} L{of.length_mm} V{of.speed_m_per_min} {self.name}"
+        name = f"C{of.number:05d} L{of.length_text} V{of.speed_text} {self.name}"
         own = {
             **data,
             "name": name[:_LONGEST_NAME].rstrip(" ."),
             "cut": {
                 **data["cut"],
-                "length": _written(of.length, 1000, "mm", "m"),
-                "line_speed": _written(of.line_speed, 60, "m/min", "m/s"),
+                "length": _written(of.length, self.units.per_metre, self.units.length, "m"),
+                "line_speed": _written(of.line_speed, self.units.per_metre_per_second, self.units.speed, "m/s"),
             },
             "objective": {**data.get("objective", {}), **_line_speeds(self.toml), "minimise": of.objective},
         }
@@ -164,8 +176,8 @@ class Book:
         return {
             "layout": LAYOUT,
             "job_sha256": self.job_sha256,
-            "length": _range_text(self.lengths, 1000, "mm"),
-            "line_speed": _range_text(self.line_speeds, 60, "m/min"),
+            "length": _range_text(self.lengths, self.units.per_metre, self.units.length),
+            "line_speed": _range_text(self.line_speeds, self.units.per_metre_per_second, self.units.speed),
             "objective": list(self.objectives),
             "targets": list(self.targets),
             "versions": dict(self.versions),
@@ -190,7 +202,8 @@ def plan_book(
     job
         The job; its cut length, line speed and, if some are given, its objective are replaced.
     length, line_speed
-        Ranges as `camwright.book.ranges.parse_range` reads them; bare numbers are mm and m/min.
+        Ranges as `camwright.book.ranges.parse_range` reads them; bare numbers are mm and m/min, in
+        an inch job inches and feet a minute.
     objectives
         Objectives; the job's if none is given.
     targets
@@ -203,7 +216,7 @@ def plan_book(
     """
     faults: list[str] = []
 
-    def gathered(text: str, option: str, kind: str, unit: str, scale: int) -> Range:
+    def gathered(text: str, option: str, kind: str, unit: str, scale: Fraction) -> Range:
         try:
             values = parse_range(text, option, kind, unit)
         except InputError as error:
@@ -213,8 +226,9 @@ def plan_book(
             faults.append(f"{option} {shown(text)}: neighbouring values are the same to 15 digits; take a larger step")
         return values
 
-    lengths = gathered(length, "--length", "length", "mm", 1000)
-    speeds = gathered(line_speed, "--line-speed", "speed", "m/min", 60)
+    units = book_units(job.units)
+    lengths = gathered(length, "--length", "length", units.length, units.per_metre)
+    speeds = gathered(line_speed, "--line-speed", "speed", units.speed, units.per_metre_per_second)
     asked = tuple(dict.fromkeys(objectives)) or (job.objective,)
     for name in asked:
         faults += _objective_faults(job, name)
@@ -265,7 +279,7 @@ def _data(toml: str) -> dict[str, Any]:
     return tomllib.loads(toml.removeprefix("\ufeff"))
 
 
-def _written(value: Fraction, scale: int, unit: str, si: str) -> str:
+def _written(value: Fraction, scale: Fraction, unit: str, si: str) -> str:
     """Write a value so that it is read back exactly, or where it is no decimal number, to the nearest float."""
     scaled = value * scale
     power = next((power for power in range(16) if (scaled * 10**power).denominator == 1), None)
@@ -275,7 +289,7 @@ def _written(value: Fraction, scale: int, unit: str, si: str) -> str:
     return f"{whole}.{part:0{power}d} {unit}" if power else f"{whole} {unit}"
 
 
-def _range_text(values: Range, scale: int, unit: str) -> str:
+def _range_text(values: Range, scale: Fraction, unit: str) -> str:
     """Write a range for people, or its one value."""
     if len(values) == 1:
         return f"{decimal(values.first * scale)} {unit}"

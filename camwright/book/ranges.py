@@ -132,6 +132,6 @@ def decimal(value: Fraction, digits: int = 15) -> str:
     return f"{float(value):.{digits}g}"
 
 
-def distinct(values: Range, scale: int) -> bool:
+def distinct(values: Range, scale: Fraction) -> bool:
     """Whether no two values are written alike in a unit of which the SI unit holds ``scale``."""
     return len({decimal(value * scale) for value in values}) == len(values)

@@ -7,9 +7,9 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import groupby
 
-from camwright.answers.measures import millimetres
 from camwright.book.entry import Entry, Limit
 from camwright.book.plan import Book
+from camwright.book.units import BookUnits
 
 Cell = str | float | int | None
 """A text, a number, or nothing."""
@@ -36,8 +36,8 @@ COLUMNS = (
     "reason",
     "folder",
 )
-"""Columns of the index. ``released_m_per_min`` are the line speeds at which this very cam passes every check; ``tables`` names each
-target with the points of its table."""
+"""Columns of the index, of a metric book. ``released_m_per_min`` are the line speeds at which this very cam passes every check; ``tables``
+names each target with the points of its table."""
 
 LIMIT_COLUMNS = (
     "length_mm",
@@ -52,7 +52,7 @@ LIMIT_COLUMNS = (
     "axis_in_tolerance_line_speed_m_per_min",
     "axis_in_tolerance_binding",
 )
-"""Columns of the limit table, see `limit_rows`."""
+"""Columns of the limit table of a metric book, see `limit_rows`."""
 
 
 @dataclass(frozen=True)
@@ -75,25 +75,28 @@ def count(entries: Iterable[Entry]) -> Counts:
 
 
 def index_rows(book: Book, entries: Iterable[Entry]) -> Iterator[list[Cell]]:
-    """Give a row of `COLUMNS` for every combination."""
+    """Give a row of `COLUMNS` for every combination, in the units of the book."""
+    units = book.units
+    length = float(units.per_metre)
     for entry in entries:
         of = book.combination(entry.number)
+        value, unit = units.valued(entry.objective, entry.unit)
         yield [
             entry.number,
-            float(of.length * 1000),
-            float(of.line_speed * 60),
+            float(of.length * units.per_metre),
+            float(of.line_speed * units.per_metre_per_second),
             of.objective,
             entry.status,
-            entry.objective,
-            entry.unit or None,
-            entry.peak_speed,
-            entry.peak_acceleration,
-            entry.rms_acceleration,
-            entry.peak_jerk,
-            millimetres(entry.following_error),
-            millimetres(entry.settling),
-            millimetres(entry.shear_zone_error),
-            _released(entry.speed_band),
+            value,
+            unit or None,
+            _times(entry.peak_speed, units.velocity),
+            _times(entry.peak_acceleration, units.acceleration),
+            _times(entry.rms_acceleration, units.acceleration),
+            _times(entry.peak_jerk, units.jerk),
+            _times(entry.following_error, length),
+            _times(entry.settling, length),
+            _times(entry.shear_zone_error, length),
+            _released(entry.speed_band, units),
             " ".join(f"{name}:{points}" for name, points in entry.tables) or None,
             "; ".join(entry.failed_checks) or None,
             entry.binding or None,
@@ -103,7 +106,7 @@ def index_rows(book: Book, entries: Iterable[Entry]) -> Iterator[list[Cell]]:
 
 
 def limit_rows(book: Book, entries: Iterable[Entry]) -> Iterator[list[Cell]]:
-    """Give a row of `LIMIT_COLUMNS` for every cut length and objective.
+    """Give a row of `LIMIT_COLUMNS` for every cut length and objective, in the units of the book.
 
     The highest line speed is the highest of the book's own at which every check passed and every table was released; how many lower
     ones of the book do not is said beside it. Beside it, too, stand the line speeds at which the cam of that highest speed passes every
@@ -126,18 +129,19 @@ def _limit_row(book: Book, entries: list[Entry], objective: str, limit: Limit | 
     highest = works[-1] if works else None
     beyond = 0 if highest is None else highest + 1
     next_one = entries[beyond] if beyond < len(entries) else None
-    of = book.combination(entries[0].number)
+    of, units = book.combination(entries[0].number), book.units
+    speed = units.per_metre_per_second
     return [
-        float(of.length * 1000),
+        float(of.length * units.per_metre),
         objective,
-        None if highest is None else float(book.combination(entries[highest].number).line_speed * 60),
-        None if highest is None else _released(entries[highest].speed_band),
+        None if highest is None else float(book.combination(entries[highest].number).line_speed * speed),
+        None if highest is None else _released(entries[highest].speed_band, units),
         0 if highest is None else highest + 1 - len(works),
-        None if next_one is None else float(book.combination(next_one.number).line_speed * 60),
+        None if next_one is None else float(book.combination(next_one.number).line_speed * speed),
         None if next_one is None else _binding(next_one),
-        None if limit is None or limit.line_speed is None else _rounded_down(limit.line_speed * 60),
+        None if limit is None or limit.line_speed is None else _rounded_down(limit.line_speed * float(speed)),
         None if limit is None else limit.binding,
-        None if limit is None or limit.in_tolerance is None else _rounded_down(limit.in_tolerance * 60),
+        None if limit is None or limit.in_tolerance is None else _rounded_down(limit.in_tolerance * float(speed)),
         None if limit is None else limit.failing,
     ]
 
@@ -155,9 +159,14 @@ def _rounded_down(value: float) -> float:
     return math.floor(value * scale) / scale
 
 
-def _released(band: tuple[tuple[float, float], ...]) -> str | None:
-    """Write the line speeds at which a cam passes every check (m/min), each end rounded to its inside; nothing where there are none."""
-    parts = [(_rounded_up(60.0 * low), _rounded_down(60.0 * high)) for low, high in band]
+def _times(value: float | None, factor: float) -> float | None:
+    return None if value is None else value * factor
+
+
+def _released(band: tuple[tuple[float, float], ...], units: BookUnits) -> str | None:
+    """Write the line speeds at which a cam passes every check, each end rounded to its inside; nothing where there are none."""
+    speed = float(units.per_metre_per_second)
+    parts = [(_rounded_up(speed * low), _rounded_down(speed * high)) for low, high in band]
     return "; ".join(f"{low:.7g} to {high:.7g}" for low, high in parts) or None
 
 

@@ -29,8 +29,12 @@ def write_index(book: Book, journal: Journal, folder: BookFolder) -> Counts:
     """Write a book's own files out of its journal, the list of all files last."""
     counts = count(journal.entries())
     digests = {
-        "index.csv": folder.write("index.csv", csv_lines(book, COLUMNS, index_rows(book, journal.entries()))),
-        "limits.csv": folder.write("limits.csv", csv_lines(book, LIMIT_COLUMNS, limit_rows(book, journal.entries()))),
+        "index.csv": folder.write(
+            "index.csv", csv_lines(book, book.units.named(COLUMNS), index_rows(book, journal.entries()))
+        ),
+        "limits.csv": folder.write(
+            "limits.csv", csv_lines(book, book.units.named(LIMIT_COLUMNS), limit_rows(book, journal.entries()))
+        ),
         "index.html": folder.write(
             "index.html",
             html_pieces(book, counts, limit_rows(book, journal.entries()), index_rows(book, journal.entries())),

@@ -70,23 +70,23 @@ def _view(result: Audit, file: Path, files: list[Path]) -> RenderableType:
     table = new_table(title=f"{file}: {result.target.title}, {result.table.points} points", title_justify="left")
     for name in ("", "this cam", "optimum", "saving"):
         table.add_column(name, justify="left" if not name else "right")
-    unit = result.job.machine.slave_unit
-    for (measure, title), power in zip(MEASURES.items(), ("/s", "/s²", "/s²", "/s³", "/s³"), strict=True):
+    unit, units = result.job.machine.slave_unit, result.job.units
+    for (measure, title), power in zip(MEASURES.items(), ("/s", "/s^2", "/s^2", "/s^3", "/s^3"), strict=True):
         (own, best), saving = result.pair(measure), result.saving(measure)
-        mark = " *" if result.is_sampled(measure) else ""
+        mark, shown = " *" if result.is_sampled(measure) else "", units.measure(unit + power)
         table.add_row(
-            f"{title} ({unit}{power}){mark}",
-            f"{own:.5g}",
-            f"{best:.5g}",
-            "–" if saving is None else f"{saving * 100:.1f} %",
+            f"{title} ({shown.printed}){mark}",
+            f"{own * shown.factor:.5g}",
+            f"{best * shown.factor:.5g}",
+            "–" if saving is None else f"{round(saving * 100, 1) + 0.0:.1f} %",
         )
     reports = (result.report, result.optimum_report)
     slips = [f"{1e6 * report.motion.sync_ratio_error:.4g}" for report in reports]
     table.add_row("sync error of the tool's speed (1e-6)", *slips, "")
-    servos = [report.servo for report in reports]
+    servos, length = [report.servo for report in reports], units.shown["m"]
     for title, name in (("following error", "peak_following_error"), ("shear-zone error", "shear_zone_error")):
-        values = ["unstable" if servo is None else f"{1e3 * getattr(servo, name):.4g}" for servo in servos]
-        table.add_row(f"{title} of the servo (mm)", *values, "")
+        values = ["unstable" if servo is None else f"{length.factor * getattr(servo, name):.4g}" for servo in servos]
+        table.add_row(f"{title} of the servo ({length.printed})", *values, "")
     notes = [new_text(f"Note: {note}") for note in result.notes]
     if any(result.is_sampled(measure) for measure in MEASURES):
         time = result.job.servo.sample_time * 1e3

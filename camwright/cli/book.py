@@ -27,10 +27,18 @@ if TYPE_CHECKING:
 def run(
     job: GivenJob,
     length: Annotated[
-        str, typer.Option("--length", metavar="START:STOP:STEP", help="Cut lengths, mm unless a unit is given.")
+        str,
+        typer.Option(
+            "--length", metavar="START:STOP:STEP", help="Cut lengths, mm (in an inch job in) unless with units."
+        ),
     ],
     line_speed: Annotated[
-        str, typer.Option("--line-speed", metavar="START:STOP:STEP", help="Line speeds, m/min unless a unit is given.")
+        str,
+        typer.Option(
+            "--line-speed",
+            metavar="START:STOP:STEP",
+            help="Line speeds, m/min (ft/min) unless with units.",
+        ),
     ],
     objective: Annotated[
         list[str] | None,

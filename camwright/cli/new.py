@@ -14,8 +14,8 @@ from camwright.cli.views.parts import new_text
 from camwright.house.files import write_files
 from camwright.house.output import Voice
 from camwright.jobs.examples import Example, example, examples
-from camwright.jobs.job import parse_job
-from camwright.jobs.keys import JobKey, job_keys
+from camwright.jobs.job import BUNDLED_JOB, parse_job
+from camwright.jobs.keys import JobKey, job_keys, written
 from camwright.jobs.machine_tables import either_of
 from camwright.jobs.template import job_template, values_of
 from camwright.profiles.errors import InputError
@@ -47,12 +47,29 @@ _OPTIONS = {
 }
 """Keys that have an option of their own."""
 
-_Text = Annotated[str | None, typer.Option(metavar="VALUE", help="As it stands in a job file.", show_default=False)]
+_OWN = ("machine.", "cut.", "limits.", "servo.")
+"""Tables whose numbers are the user's machine's own."""
+
+_FIRST = ("paper-600", "flying-saw", "chasing-shear")
+"""Examples that lend their values to a job of which only the machine is said."""
+
+
+def _key(place: str) -> Any:
+    """Make the option of a key: what the key means, and what is written there."""
+    key = next(each for each in job_keys() if each.path == place)
+    paper = values_of(BUNDLED_JOB.read_text(encoding="utf-8"))
+    value = written(paper[place]) if place in paper else key.example
+    meaning = key.meaning[0].upper() + key.meaning[1:]
+    return typer.Option(metavar="VALUE", help=f"{meaning}, e.g. {value}.", show_default=False)
 
 
 def run(
     machine: Annotated[
-        str | None, typer.Argument(metavar="[MACHINE]", help="rotary_knife, linear_carriage or crank_slider.")
+        str | None,
+        typer.Argument(
+            metavar="[MACHINE]",
+            help="rotary_knife, linear_carriage or crank_slider; or an example: flying-saw, chasing-shear, thick-product …",
+        ),
     ] = None,
     like: Annotated[
         str | None,
@@ -61,24 +78,24 @@ def run(
     out: Annotated[
         Path | None, typer.Option("--out", metavar="FILE", help="The job file; NAME.toml if left out.")
     ] = None,
-    name: _Text = None,
-    circumference: _Text = None,
-    diameter: _Text = None,
-    stroke: _Text = None,
-    crank: _Text = None,
-    rod: _Text = None,
-    length: _Text = None,
-    line_speed: _Text = None,
-    sync_zone: _Text = None,
-    shear_zone: _Text = None,
-    speed: _Text = None,
-    acceleration: _Text = None,
-    jerk: _Text = None,
-    bandwidth: _Text = None,
-    damping: _Text = None,
-    position_gain: _Text = None,
-    sample_time: _Text = None,
-    velocity_feedforward: _Text = None,
+    name: Annotated[str | None, _key("name")] = None,
+    circumference: Annotated[str | None, _key("machine.circumference")] = None,
+    diameter: Annotated[str | None, _key("machine.diameter")] = None,
+    stroke: Annotated[str | None, _key("machine.stroke")] = None,
+    crank: Annotated[str | None, _key("machine.crank")] = None,
+    rod: Annotated[str | None, _key("machine.rod")] = None,
+    length: Annotated[str | None, _key("cut.length")] = None,
+    line_speed: Annotated[str | None, _key("cut.line_speed")] = None,
+    sync_zone: Annotated[str | None, _key("cut.sync_zone")] = None,
+    shear_zone: Annotated[str | None, _key("cut.shear_zone")] = None,
+    speed: Annotated[str | None, _key("limits.speed")] = None,
+    acceleration: Annotated[str | None, _key("limits.acceleration")] = None,
+    jerk: Annotated[str | None, _key("limits.jerk")] = None,
+    bandwidth: Annotated[str | None, _key("servo.bandwidth")] = None,
+    damping: Annotated[str | None, _key("servo.damping")] = None,
+    position_gain: Annotated[str | None, _key("servo.position_gain")] = None,
+    sample_time: Annotated[str | None, _key("servo.sample_time")] = None,
+    velocity_feedforward: Annotated[str | None, _key("servo.velocity_feedforward")] = None,
     others: Annotated[
         list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help='Any key, e.g. "cut.sync_tolerance=0.2 mm".')
     ] = None,
@@ -99,39 +116,56 @@ def run(
         if place not in known:
             raise InputError(f"a {base.machine} job has no key {place!r}; camwright keys lists them")
     if sys.stdin.isatty() and not as_json and not quiet:
-        values |= _asked(
+        given |= _asked(
             [key for key in known.values() if key.required and key.path not in given and key.path in values], values
         )
+        values |= given
     text = job_template(values, f"A job of a {base.machine}, made from the example {base.name}.")
     parse_job(text, "the new job")  # refuses numbers that do not go together, with their places
     file = Path(f"{values['name']}.toml") if out is None else out
     _write(file, text)
-    Voice(as_json, quiet).answer(lambda: _answer(file, base, values), lambda: _view(file))
+    lent = {
+        place: value
+        for place, value in values.items()
+        if place not in given
+        and place.startswith(_OWN)
+        and place != "machine.kind"
+        and written(value) != known[place].default
+    }
+    Voice(as_json, quiet).answer(lambda: _answer(file, base, values, lent), lambda: _view(file, base, lent))
     return 0
 
 
 def _base(machine: str | None, like: str | None) -> Example:
     """Find the example that lends its values."""
+    known = examples()
+    kind = "rotary_knife" if machine is None else _joined(machine, "_")
     if like is not None:
         base = example(like)
-        if machine is not None and _kind(machine) != base.machine:
-            raise InputError(
-                f"the example {base.name} is of a {base.machine}, not of a {_kind(machine)}; leave one of them out"
-            )
+        if (
+            machine is not None
+            and (known[named].machine if (named := _joined(machine, "-")) in known else kind) != base.machine
+        ):
+            raise InputError(f"the example {base.name} is of a {base.machine}, not of a {kind}; leave one of them out")
         return base
-    kind = "rotary_knife" if machine is None else _kind(machine)
-    preferred = [each for each in examples().values() if each.machine == kind]
+    if machine is not None and _joined(machine, "-") in known:
+        return known[_joined(machine, "-")]
+    if kind not in MACHINES:
+        raise InputError(
+            f"there is no machine {machine!r}; the machines are {', '.join(MACHINES)}, "
+            f"and each example may be named in their place: {', '.join(known)}"
+        )
+    preferred = sorted(
+        (each for each in known.values() if each.machine == kind), key=lambda each: each.name not in _FIRST
+    )
     if not preferred:
         raise InputError(f"no example has a {kind}; write the job by hand: camwright keys lists its keys")
-    return next((each for each in preferred if each.name == "paper-600"), preferred[0])
+    return preferred[0]
 
 
-def _kind(word: str) -> str:
-    """Read the kind of a machine, however its words are joined."""
-    kind = word.lower().replace("-", "_").replace(" ", "_")
-    if kind not in MACHINES:
-        raise InputError(f"there is no machine {word!r}; the machines are {', '.join(MACHINES)}")
-    return kind
+def _joined(word: str, by: str) -> str:
+    """Join the words of a name, however they were joined."""
+    return word.strip().lower().replace("-", " ").replace("_", " ").replace(" ", by)
 
 
 def _value(text: str) -> object:
@@ -167,16 +201,18 @@ def _write(file: Path, text: str) -> None:
     write_files(file.parent, {file.name: text})
 
 
-def _answer(file: Path, base: Example, values: dict[str, Any]) -> dict[str, Any]:
+def _answer(file: Path, base: Example, values: dict[str, Any], lent: dict[str, Any]) -> dict[str, Any]:
     """Say as JSON what was written."""
-    return {"file": str(file), "name": values["name"], "machine": base.machine, "like": base.name}
+    return {"file": str(file), "name": values["name"], "machine": base.machine, "like": base.name, "lent": lent}
 
 
-def _view(file: Path) -> RenderableType:
-    """Say what was written, and what comes next."""
+def _view(file: Path, base: Example, lent: dict[str, Any]) -> RenderableType:
+    """Say what was written, what the example lent, and what comes next."""
+    taken = ", ".join(f"{place} = {written(value)}" for place, value in lent.items())
     return new_text(
         f"wrote {file}\n"
-        f"Next: camwright check {file}    reads it again after you edited it\n"
+        + (f"Of the example {base.name}, which are not your machine's until you say so: {taken}\n" if lent else "")
+        + f"Next: camwright check {file}    reads it again after you edited it\n"
         f"      camwright design {file}   designs it\n"
         f"      camwright recipe {file}   makes the sheet and tables for the machine"
     )

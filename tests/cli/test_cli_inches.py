@@ -80,3 +80,40 @@ def test_faults_are_told_in_inches(change: str, told: str) -> None:
 def test_units_are_no_part_of_the_numbers() -> None:
     job = load_job()
     assert replace(job, units=INCH) == job
+
+
+def test_a_book_of_an_inch_job_is_in_inches(job: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    cut = parse_job(JOB, "boards.toml").cut
+    inches, feet = round(cut.length / 0.0254), round(cut.line_speed * 60 / 0.3048)
+    book = tmp_path / "book"
+    call = ["book", str(job), "--length", f"{inches}:{inches + 1}:1", "--line-speed", str(feet), "--jobs", "1"]
+    assert main([*call, "--out", str(book), "--quiet"]) == 0
+    lines = [line for line in (book / "index.csv").read_text().splitlines() if not line.startswith("#")]
+    first = dict(zip(lines[0].split(","), lines[1].split(","), strict=True))
+    assert not [name for name in first if re.search(r"_mm|_m_per", name)]
+    assert (float(first["length_in"]), float(first["line_speed_ft_per_min"])) == (inches, feet)
+    assert first["unit"] == "ft/s^2"
+    assert float(first["value"]) == pytest.approx(float(first["peak_acceleration_ft_per_s2"]))
+    assert first["folder"] == f"designs/{inches}in/{feet}ft-per-min/peak_acceleration"
+    own = json.loads((book / first["folder"] / "design.json").read_text())
+    assert f'length = "{inches} in"' in own["job"]["toml"]
+    page = re.sub("<[^>]+>", "|", (book / "index.html").read_text())
+    assert "length in" in page
+    assert "highest line speed of the book ft/min" in page
+    assert not re.search(r"\b(mm|m/min|m/s[²³]?)\b", page.partition("recipe book|")[2].replace("12mm", ""))
+    limits = (book / "limits.csv").read_text()
+    assert "physical_line_speed_ft_per_min" in limits
+
+
+def test_an_audit_of_an_inch_job_is_in_inches(job: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    design = tmp_path / "out"
+    assert main(["design", str(job), "--no-figures", "--quiet", "--out", str(design)]) == 0
+    assert main(["export", str(design / "design.json"), "--to", "csv", "--quiet", "--out", str(tmp_path / "t")]) == 0
+    (table,) = (tmp_path / "t").glob("*.csv")
+    capsys.readouterr()
+    assert main(["audit", str(table), "--job", str(job), "--no-figures", "--out", str(tmp_path / "a")]) == 0
+    said = capsys.readouterr().out
+    assert "peak speed (ft/min)" in said
+    assert "following error of the servo (in)" in said
+    assert "-0.0 %" not in said
+    assert not re.search(r"\((mm|m/s[²³]?)\)", said)

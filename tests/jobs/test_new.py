@@ -79,12 +79,9 @@ def test_without_a_terminal_nothing_is_asked_and_the_job_passes_check(
 ) -> None:
     code, out, _ = said(capsys, "new", kind.replace("_", "-"), "--name", "mine", "--json")
     assert code == 0
-    assert json.loads(out) == {
-        "file": "mine.toml",
-        "name": "mine",
-        "machine": kind,
-        "like": json.loads(out)["like"],
-    }
+    answer = json.loads(out)
+    assert (answer["file"], answer["name"], answer["machine"]) == ("mine.toml", "mine", kind)
+    assert set(answer) == {"file", "name", "machine", "like", "lent"}
     assert load_job("mine.toml").machine.kind == kind
     assert said(capsys, "check", "mine.toml")[0] == 0
 
@@ -172,3 +169,48 @@ def test_a_diameter_takes_the_place_of_the_examples_circumference(capsys: pytest
     assert code == 0
     made = load_job(Path("by-diameter.toml"))
     assert made.machine.slave_turn == pytest.approx(np.pi * 0.15, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("words", "kind", "like"),
+    [
+        (["flying saw"], "linear_carriage", "flying-saw"),
+        (["Chasing-Shear"], "crank_slider", "chasing-shear"),
+        (["thick_product"], "rotary_knife", "thick-product"),
+        (["linear carriage"], "linear_carriage", "flying-saw"),
+        (["rotary-knife"], "rotary_knife", "paper-600"),
+        (["crank_slider"], "crank_slider", "chasing-shear"),
+        (["flying-saw", "--like", "flying-punch"], "linear_carriage", "flying-punch"),
+    ],
+)
+def test_a_machine_is_known_by_its_kind_and_by_the_names_of_examples(
+    words: list[str], kind: str, like: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code, out, _ = said(capsys, "new", *words, "--json")
+    answer = json.loads(out)
+    assert (code, answer["machine"], answer["like"]) == (0, kind, like)
+
+
+def test_what_the_example_lent_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    own = ["--length", "2.4 m", "--stroke", "900 mm", "--set", "machine.mass=75 kg"]
+    code, out, _ = said(capsys, "new", "flying-saw", *own, "--json", "--name", "tube")
+    lent = json.loads(out)["lent"]
+    example_values = values_of(examples()["flying-saw"].text)
+    assert code == 0
+    assert lent["servo.bandwidth"] == example_values["servo.bandwidth"]
+    assert not {"cut.length", "machine.stroke", "machine.mass", "machine.kind", "name"} & set(lent)
+    assert all(place.startswith(("machine.", "cut.", "limits.", "servo.")) for place in lent)
+    code, out, _ = said(capsys, "new", "flying-saw", *own, "--name", "pipe")
+    words = " ".join(out.split())
+    assert f'servo.bandwidth = "{lent["servo.bandwidth"]}"' in words
+    assert "which are not your machine's until you say so" in words
+
+
+def test_each_option_says_what_its_key_means(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "160")
+    assert main(["new", "--help"]) == 0
+    words = " ".join(capsys.readouterr().out.replace("│", " ").split())
+    assert 'Circumference of the blade circle, e.g. "400 mm".' in words
+    assert 'Length of material over which the tool moves with it, e.g. "200 mm".' in words
