@@ -18,7 +18,7 @@ from camwright.design.place_cost import place_for
 from camwright.design.returns.curve_limits import motor_limits, motor_speed_limits
 from camwright.design.returns.ipopt import SolveStatus
 from camwright.design.servo_aware.axis_motion import AxisMotion, design_axis, motion_of, servo_blind_optimum
-from camwright.design.servo_aware.axis_problem import AxisProblem
+from camwright.design.servo_aware.axis_problem import AxisProblem, thinned
 from camwright.design.servo_aware.command_basis import Command
 from camwright.design.servo_aware.programme import AxisProgramme
 from camwright.design.servo_aware.rows import RATIO
@@ -39,8 +39,9 @@ from camwright.profiles.returns import assemble
 from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
 
-# Suggested values are searched to this share, and stand aside by it from the edge.
-ASIDE = 2e-3
+# Suggested values are searched to this share, and stand aside by it from the edge; and to that one where there are many line speeds, of
+# which each so many-th is looked at for a way out.
+ASIDE, ASIDE_EACH, LOOKED = 2e-3, 4e-2, 6
 # What works by a programme alone is designed; where that fails it is taken further by these factors.
 FURTHER = (1.0, 1.02, 1.1)
 # Shares of the least tolerance that a programme keeps, tried in turn.
@@ -100,11 +101,7 @@ def solve_axis(
     cost = _cost(machine, objective)
 
     def designs(other: Task) -> bool:
-        try:
-            solve_axis(other, objective, command, servos, between, shares, suggest=False)
-        except (InfeasibleError, InputError, SolverError):
-            return False
-        return True
+        return _designs(lambda: solve_axis(other, objective, command, servos, between, shares, suggest=False))
 
     blind = None
     if command == "in_sync" or not machine.placed:
@@ -129,16 +126,21 @@ def solve_axis(
         loosest = _within(replace(problem, axis_limits=False), motor_speed_limits(placed, limits))
 
         def narrower(fewer: tuple[float, ...]) -> bool:
-            try:
-                solve_axis(task, objective, command, servos, between, fewer, suggest=False)
-            except (InfeasibleError, InputError, SolverError):
-                return False
-            return True
+            return _designs(lambda: solve_axis(task, objective, command, servos, between, fewer, suggest=False))
 
         raise _infeasible(loosest, (lambda cut: designs(task.with_cut(cut)), narrower) if suggest else None)
     motion = min(motions, key=lambda each: each.value)
     status = blind.status if blind is not None and not motion.programmes else SolveStatus.BEST_FOUND
     return _solution(motion, status, task.with_machine(placed), objective, order)
+
+
+def _designs(design: Callable[[], Solution]) -> bool:
+    """Whether a job can be designed so that its axis keeps its limits too."""
+    try:
+        found = design()
+    except (InfeasibleError, InputError, SolverError):
+        return False
+    return found.axis is None or found.axis.axis_limits
 
 
 def _servo_blind(task: Task, cost: ObjectiveName, designs: Callable[[Task], bool] | None) -> Solution:
@@ -252,15 +254,22 @@ def _infeasible(problem: AxisProblem, settles: _Ways | None) -> InfeasibleError:
         only = assemble(problem.structure, problem.task.from_return())
         share = motion_of(AxisProgramme(problem), only, axis_limits=False).error / tolerance
     needed = max(1.0, share) * tolerance
-    suggestions = (
-        () if settles is None else (*_suggestions(problem, needed, settles[0]), *_narrower(problem, settles[1]))
+    kept, suggestions = None, tuple[Suggestion, ...]()
+    if settles is not None:  # what is offered keeps the limits of the axis too
+        strict = replace(problem, axis_limits=True)
+        kept, suggestions = _kept_part(strict, settles[1]), tuple(_suggestions(strict, needed, settles[0]))
+    if kept is not None:
+        suggestions = (*suggestions[:1], Suggestion("line_speeds", kept * 60, "m/min"), *suggestions[1:])
+    ways = "; ".join(
+        f"{each.change}{' from' if each.change == 'line_speeds' else ''} {{{each.change}}}" for each in suggestions
     )
-    ways = "; ".join(f"{each.change} {{{each.change}}}" for each in suggestions)
     excess = (needed - tolerance) * 1e3
     text = (
         f"{{@sync_tolerance}} = {{tolerance}}: no {problem.command} command within the limits holds the axis to it in the shear zone and "
         f"the ratio of the axis to {_percent(cut, tolerance)} (twice the tolerance over the shear zone); the least that one holds is "
-        f"{{needed}} and {_percent(cut, needed)}, {{excess}} too much" + (f"; what works: {ways}" if ways else "")
+        f"{{needed}} and {_percent(cut, needed)}, {{excess}} too much"
+        + ("" if kept is None or kept == cut.line_speed else "; one is held to it from {line_speeds} up")
+        + (f"; what works: {ways}" if ways else "")
     )
     values = (
         ("tolerance", Value(tolerance, "m", 6)),
@@ -273,21 +282,26 @@ def _infeasible(problem: AxisProblem, settles: _Ways | None) -> InfeasibleError:
         excess,
         "mm",
         suggestions,
+        None if kept is None else (kept, cut.line_speed),
     )
 
 
 def _offered(suggestion: Suggestion, cut: Cut) -> Value:
     """Give the value of a suggestion for a `Message`: as it was designed in its unit, in another one beyond it."""
     chosen = f"{suggestion.value:.6g} {suggestion.unit}"
-    if suggestion.change == "line_speed":
-        return Value(suggestion.value / 60.0, "m/s", 6, "below", chosen)
+    if suggestion.change in ("line_speed", "line_speeds"):
+        return Value(
+            suggestion.value / 60.0, "m/s", 6, "below" if suggestion.change == "line_speed" else "above", chosen
+        )
     up = suggestion.change == "sync_tolerance" or suggestion.value > cut.length * 1e3
     return Value(suggestion.value / 1e3, "m", 6, "above" if up else "below", chosen)
 
 
 def _suggestions(problem: AxisProblem, needed: float, settles: Callable[[Cut], bool]) -> Iterator[Suggestion]:
-    """Search a tolerance, a line speed and a cut length that work, each alone and each designed once."""
+    """Search a tolerance, a line speed and a cut length that work, each alone and each designed once; ``needed`` (m) is too small."""
     cut = problem.task.cut
+    share = AxisProgramme(problem).least_share()
+    needed = needed if share is None else max(needed, share * cut.sync_tolerance)
     for factor in WIDER:
         if settles(replace(cut, sync_tolerance=factor * needed)):
             yield Suggestion("sync_tolerance", factor * needed * 1e3, "mm")
@@ -301,7 +315,7 @@ def _suggestions(problem: AxisProblem, needed: float, settles: Callable[[Cut], b
         def works(share: float, changed: Callable[[float], Cut] = changed) -> bool:
             return _works(replace(problem, task=problem.task.with_cut(changed(share)), structure=None))
 
-        found = _nearest(works, most)
+        found = _nearest(works, most, ASIDE if len(problem.shares) == 1 else ASIDE_EACH)
         if found is None:
             continue
         for factor in FURTHER:
@@ -311,8 +325,8 @@ def _suggestions(problem: AxisProblem, needed: float, settles: Callable[[Cut], b
                 break
 
 
-def _narrower(problem: AxisProblem, settles: Callable[[tuple[float, ...]], bool]) -> Iterator[Suggestion]:
-    """Search the widest part of the band of line speeds, up to its upper end, that works; designed once."""
+def _kept_part(problem: AxisProblem, settles: Callable[[tuple[float, ...]], bool]) -> float | None:
+    """Search the least line speed (m/s) from which up to the full one a command keeps the tolerance; designed once."""
     shares = problem.shares
     low, high = 0, len(shares)  # so many work, or are not known to; so many do not
     while high - low > 1:
@@ -321,8 +335,9 @@ def _narrower(problem: AxisProblem, settles: Callable[[tuple[float, ...]], bool]
             low = middle
         else:
             high = middle
-    if low and len(shares) > 1 and settles(shares[:low]):
-        yield Suggestion("line_speeds_from", shares[low - 1] * problem.task.cut.line_speed * 60, "m/min")
+    if not low or len(shares) == 1 or not settles(shares[:low]):
+        return None
+    return shares[low - 1] * problem.task.cut.line_speed
 
 
 def _percent(cut: Cut, tolerance: float) -> str:
@@ -331,24 +346,22 @@ def _percent(cut: Cut, tolerance: float) -> str:
 
 
 def _works(problem: AxisProblem) -> bool:
-    """Whether a command brings the axis into the tolerance; what the nominal servo misses at three line speeds is told soon."""
-    every = problem.shares
-    some = tuple(sorted({every[0], every[len(every) // 2], every[-1]}, reverse=True))
-    few = replace(problem, servos=problem.servos[:1], between=(), shares=some)
+    """Whether a command brings the axis into the tolerance at some of the line speeds; what is offered is designed for all of them."""
+    some = thinned(problem.shares, LOOKED)
     try:
-        return AxisProgramme(few).reaches() and (len(every) == 1 or AxisProgramme(problem).reaches())
+        return AxisProgramme(replace(problem, between=(), shares=some)).reaches()
     except (InputError, SolverError):
         return False
 
 
-def _nearest(works: Callable[[float], bool], most: float) -> float | None:
-    """Least share above 1 found to work: grown until it does, then bisected; ``None`` if none up to ``most`` works."""
-    low, high = 1.0, 1.0 + ASIDE
+def _nearest(works: Callable[[float], bool], most: float, aside: float) -> float | None:
+    """Least share above 1 found to work, to a share of itself: grown until it does, then bisected; ``None`` if none does up to ``most``."""
+    low, high = 1.0, 1.0 + aside
     while not works(high):
         low, high = high, 1.0 + GROWN * (high - 1.0)
         if high > most:
             return None
-    while high - low > ASIDE * high:
+    while high - low > aside * high:
         middle = 0.5 * (low + high)
         low, high = (low, middle) if works(middle) else (middle, high)
     return high

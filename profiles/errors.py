@@ -57,9 +57,9 @@ class Suggestion:
     Parameters
     ----------
     change
-        What to change: ``"line_speed"``, ``"length"``, or the name of a limit.
+        What to change: ``"line_speed"``, ``"length"``, ``"line_speeds"``, or the name of a limit.
     value, unit
-        The nearest value that works, in the unit named; for ``"reversal"`` 1 and no unit.
+        The nearest value that works, in the unit named; for ``"reversal"`` 1 and no unit; for ``"line_speeds"`` where they begin.
     """
 
     change: str
@@ -80,6 +80,9 @@ class InfeasibleError(CamwrightError):
         By how much the limit would have to be exceeded, in the unit named; None if no value of this limit alone would do.
     suggestions
         Single changes that work, each checked.
+    kept
+        Line speeds (m/s), the least and the job's own, over which a command keeps the tolerance that none keeps over the whole band;
+        ``None`` where that was not looked for or there is no such part.
 
     Examples
     --------
@@ -96,7 +99,13 @@ class InfeasibleError(CamwrightError):
     exit_code = 3
 
     def __init__(
-        self, message: str | Message, binding: str, excess: float | None, unit: str, suggestions: tuple[Suggestion, ...]
+        self,
+        message: str | Message,
+        binding: str,
+        excess: float | None,
+        unit: str,
+        suggestions: tuple[Suggestion, ...],
+        kept: tuple[float, float] | None = None,
     ) -> None:
         super().__init__(str(message))
         self.message = message
@@ -104,6 +113,7 @@ class InfeasibleError(CamwrightError):
         self.excess = excess
         self.unit = unit
         self.suggestions = suggestions
+        self.kept = kept
 
 
 class SolverError(CamwrightError):

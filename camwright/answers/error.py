@@ -15,4 +15,5 @@ def error_answer(exit_code: int, message: str, failure: CamwrightError | None) -
         answer["status"] = "infeasible"
         answer |= {"binding": failure.binding, "excess": {"value": failure.excess, "unit": failure.unit}}
         answer["suggestions"] = [asdict(suggestion) for suggestion in failure.suggestions]
+        answer["line_speeds_kept_m_per_s"] = None if failure.kept is None else list(failure.kept)
     return answer

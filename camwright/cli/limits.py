@@ -13,6 +13,7 @@ from camwright.house.numbers import Units, converted, unit_shown, with_unit
 from camwright.house.output import Voice
 from camwright.jobs.job import load_job
 from camwright.studies.axis_lengths import AxisLengths
+from camwright.studies.band_lengths import BandLengths
 from camwright.studies.limits import LIMITS_STEPS, MachineLimits, limits
 
 if TYPE_CHECKING:
@@ -50,25 +51,34 @@ def _view(found: MachineLimits) -> RenderableType:
     if lengths is not None:
         views.append(lengths_view(lengths, units))
     if axis is not None:
-        views.append(_axis_view(axis, units))
+        views.append(_axis_view(axis, found.over_band, units))
     if found.ramps is not None:
         views.append(line_ramps_view(found.ramps))
     return stacked(*views)
 
 
-def _axis_view(lengths: AxisLengths, units: Units) -> RenderableType:
+def _axis_view(lengths: AxisLengths, band: BandLengths | None, units: Units) -> RenderableType:
     """Show how short a piece can be cut with the axis within the tolerance, the sync zone chosen best each time."""
     table = new_table(title="Minimum cut length with the axis in sync", title_justify="left")
+    unit = unit_shown("m", units)
     table.add_column("by")
-    table.add_column(f"limits of the command\n{unit_shown('m', units)}", justify="right")
-    table.add_column(f"of the axis too\n{unit_shown('m', units)}", justify="right")
-    for name, value, strict in (
+    table.add_column(f"limits of the command\n{unit}", justify="right")
+    table.add_column(f"of the axis too\n{unit}", justify="right")
+    if band is not None:
+        low, high = (with_unit(speed, "m/s", units=units) for speed in band.line_speeds)
+        table.add_column(f"from {low} to {high}\n{unit}", justify="right")
+    rows = (
         ("linear return (limit of speed alone)", lengths.linear_return, ""),
         ("polynomial 3-4-5", lengths.poly_3_4_5, ""),
         ("servo-aware, command in sync", lengths.in_sync, _hundredths(units, lengths.in_sync_axis_limits)),
         ("servo-aware, command shaped", lengths.shaped, _hundredths(units, lengths.shaped_axis_limits)),
-    ):
-        table.add_row(name, _hundredths(units, value), strict)
+    )
+    over: list[list[str]] = [[]] * len(rows)
+    if band is not None:
+        by = (band.linear_return, band.poly_3_4_5, band.in_sync, band.shaped)
+        over = [[_hundredths(units, length)] for length in by]
+    for (name, value, strict), also in zip(rows, over, strict=True):
+        table.add_row(name, _hundredths(units, value), strict, *also)
     return table
 
 

@@ -7,12 +7,12 @@ import math
 import numpy as np
 
 from camwright.figures.panel import LEFT, RIGHT, WIDTH, across, first_frame, head, page, profile_line, thin_line
-from camwright.figures.strokes import GREY
+from camwright.figures.strokes import GREY, Stroke
 from camwright.figures.style import title
-from camwright.house.numbers import unit_shown
+from camwright.house.numbers import unit_shown, with_unit
 from camwright.house.pictures import Band, Frame, Item, Line, Picture, Tick
 from camwright.profiles.polynomial.profile import FloatArray
-from camwright.studies.axis_study import servos_of
+from camwright.studies.axis_study import cam_for_one_speed, servos_of
 from camwright.studies.design import Design
 from camwright.validation.servo.line_speeds import line_speed_errors
 
@@ -32,6 +32,9 @@ _DEEPEST = 1e-3
 _PANEL = 168.0
 """Height of the panel (pt)."""
 
+_ALONE = Stroke("#7a4fa3", 1.1, (2.5, 2.5))
+"""How the cam that was designed for the job's line speed alone is drawn."""
+
 
 def speed_band_figure(design: Design) -> Picture:
     """Draw the sync error over the line speed, by powers of ten, the tolerance as a line, the released speeds shaded.
@@ -39,7 +42,7 @@ def speed_band_figure(design: Design) -> Picture:
     Parameters
     ----------
     design
-        A design whose servo is stable.
+        A design whose servo is stable; one for several line speeds has the same job's design for its own alone beside it.
     """
     job, band, units = design.job, design.band, design.job.units
     length, speed = units.shown["m"].factor, units.shown["m/s"].factor
@@ -55,6 +58,12 @@ def speed_band_figure(design: Design) -> Picture:
         if len(servos) > 1:
             worst = np.stack([speeds * speed, floored.max(axis=0)], axis=1)
             curves.append(thin_line(name, worst, f"{title(name)}, worst servo of its ranges"))
+    alone = cam_for_one_speed(job)
+    if alone is not None:
+        errors = line_speed_errors(*alone, servos[:1], speeds)[0] * length
+        points = np.stack([speeds * speed, np.log10(np.maximum(errors, _DEEPEST * tolerance))], axis=1)
+        own_speed = with_unit(job.cut.line_speed, "m/s", units=units)
+        curves.append(Line(points, _ALONE.colour, _ALONE.width, f"designed for {own_speed} alone", _ALONE.dash))
     low = math.log10(0.7 * _DEEPEST * tolerance)
     high = max(math.log10(tolerance), *(float(line.points[:, 1].max()) for line in curves)) + 0.15
     bands = [

@@ -14,7 +14,7 @@ TABLES: dict[str, tuple[str, ...]] = {
     "limits": ("speed", "acceleration", "jerk", "reversal", "motor"),
     "line": ("stop",),
     "servo": ("position_gain", "sample_time", "bandwidth", "damping"),
-    "objective": ("minimise",),
+    "objective": ("minimise", "line_speeds"),
     "output": ("points",),
 }
 """Tables of a job file that hold the quantities which messages name; a machine names its own as ``machine.stroke``."""
@@ -60,7 +60,9 @@ def in_job_words(units: Units = METRIC) -> Iterator[None]:
         yield
     except InfeasibleError as error:
         message = words(error.message, units)
-        raise InfeasibleError(message, error.binding, error.excess, error.unit, error.suggestions) from error
+        raise InfeasibleError(
+            message, error.binding, error.excess, error.unit, error.suggestions, error.kept
+        ) from error
     except InputError as error:
         if not any(isinstance(message, Message) for message in error.messages):
             raise

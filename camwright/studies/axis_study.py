@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,9 +11,10 @@ from camwright.design.optimise import Solution, solve
 from camwright.design.optimise_axis import solve_axis
 from camwright.jobs.job import Job
 from camwright.jobs.wording import in_job_words
-from camwright.profiles.errors import InputError
+from camwright.profiles.errors import InfeasibleError, InputError, SolverError
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.servo import Servo
+from camwright.profiles.task import Task
 from camwright.validation.servo.line_speeds import line_speed_errors
 from camwright.validation.servo.monte_carlo import shear_zone_errors
 from camwright.validation.servo.response import shear_zone_error
@@ -134,6 +135,17 @@ def solve_job(job: Job, *, suggest: bool = True) -> Solution:
                 'e.g. "peak_acceleration"'
             )
         return solve(job.task, job.objective, suggest=suggest)
+
+
+def cam_for_one_speed(job: Job) -> tuple[CamProfile, Task] | None:
+    """Design a job of several line speeds for its own alone, to be shown beside; ``None`` for other jobs, and where that cannot be."""
+    if not job.servo_aware or job.slowest == 1.0:
+        return None
+    try:
+        solution = solve_job(replace(job, slowest=1.0), suggest=False)
+    except (InfeasibleError, SolverError):
+        return None
+    return solution.profile, job.task.with_machine(solution.machine)
 
 
 def sync_error(profile: CamProfile, job: Job) -> float | None:

@@ -8,11 +8,12 @@ from camwright.design.feasible.extremes import Extremes, extremes, placed_fastes
 from camwright.house.progress import Step, ignore
 from camwright.jobs.job import Job
 from camwright.studies.axis_lengths import AxisLengths, axis_lengths
+from camwright.studies.band_lengths import BandLengths, band_lengths
 from camwright.studies.cut_lengths import CutLengths, cut_lengths
 from camwright.studies.line_ramps import LineRamps, designed_ramps
 from camwright.studies.reach import Reach, placed_as, reach
 
-LIMITS_STEPS = 5
+LIMITS_STEPS = 6
 """Steps that `limits` tells."""
 
 
@@ -33,7 +34,9 @@ class MachineLimits:
     lengths
         Published minimum cut lengths, by which the axis settles; ``None`` for machines that the equations are not about.
     axis
-        Minimum cut lengths with the axis in the sync tolerance; ``None`` for such machines.
+        Minimum cut lengths with the axis in the sync tolerance at the job's line speed; ``None`` for such machines.
+    over_band
+        The same at every line speed of the job; ``None`` for such machines, and for jobs of one line speed.
     ramps
         How hard the line may ramp on the cam that the job's design is; ``None`` where there is none.
     """
@@ -43,6 +46,7 @@ class MachineLimits:
     within: Reach
     lengths: CutLengths | None
     axis: AxisLengths | None
+    over_band: BandLengths | None
     ramps: LineRamps | None
 
 
@@ -75,5 +79,7 @@ def limits(job: Job, step: Step = ignore) -> MachineLimits:
     lengths = cut_lengths(job)
     step("finding minimum cut lengths with the axis in sync")
     axis = axis_lengths(job)
+    step("finding them over the band of line speeds")
+    over_band = band_lengths(job, axis)
     step("finding how hard the line may ramp")
-    return MachineLimits(job, far, within, lengths, axis, designed_ramps(job))
+    return MachineLimits(job, far, within, lengths, axis, over_band, designed_ramps(job))

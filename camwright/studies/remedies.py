@@ -10,7 +10,7 @@ from time import process_time
 from typing import Any
 
 from camwright.design.optimise import Solution
-from camwright.house.numbers import METRIC, Units, inside
+from camwright.house.numbers import METRIC, Units, inside, with_unit
 from camwright.jobs.job import Job, read_job
 from camwright.jobs.wording import place_of
 from camwright.profiles.errors import CamwrightError, InfeasibleError, Suggestion
@@ -18,7 +18,7 @@ from camwright.studies.axis_study import solve_job, sync_error
 from camwright.studies.speed_band import SpeedBand
 from camwright.validation.report import ValidationReport, judge
 
-SECONDS = 5.0
+SECONDS = 8.0
 """Processor time after which no more changes are tried; the one that is being tried is finished."""
 
 _SLOWER = (1.0, 0.97, 0.9, 0.8, 0.65, 0.5, 0.35, 0.25, 0.15, 0.1, 0.05)
@@ -51,7 +51,7 @@ class Remedy:
     change
         Key of the job file. ``"command"`` goes with ``servo_aware = true``.
     value, unit
-        What to write: a number and its unit, or a word, or true, without one.
+        What to write: a number and its unit, or a word, or true, without one. For ``"line_speeds"`` it is where they begin.
     """
 
     change: str
@@ -78,7 +78,8 @@ class _Trial:
             return False
         data = deepcopy(self._data)
         table = data.setdefault(_table(remedy.change), {})
-        table[_key(remedy.change)] = f"{remedy.value:.15g} {remedy.unit}" if remedy.unit else remedy.value
+        value = f"{remedy.value:.15g} {remedy.unit}" if remedy.unit else remedy.value
+        table[_key(remedy.change)] = [value, "100 %"] if remedy.change == "line_speeds" else value
         if remedy.change == "command":
             table["servo_aware"] = True
         try:
@@ -164,7 +165,7 @@ def solve_or_advise(job: Job) -> Solution:
     try:
         return solve_job(job)
     except InfeasibleError as error:
-        offered = error.suggestions
+        offered, line_speeds = error.suggestions, error.kept
     trial = _Trial(job)
     found = [remedy for suggestion in offered for remedy in trial.first(_taken_further(suggestion, job.units))]
     if job.servo_aware and job.command != "shaped":
@@ -174,7 +175,13 @@ def solve_or_advise(job: Job) -> Solution:
         f"What works, each alone, designed and checked: {offers}" if offers else "No single change that was tried works"
     )
     kept = tuple(Suggestion(each.change, _number(each), each.unit) for each in found)
-    raise InfeasibleError(f"{reason.message}. {works}", reason.binding, reason.excess, reason.unit, kept) from reason
+    part = ""
+    if line_speeds is not None and line_speeds[0] < line_speeds[1]:
+        low, high = (with_unit(speed, "m/s", units=job.units) for speed in line_speeds)
+        part = f". One is held to it from {low} to {high}"
+    raise InfeasibleError(
+        f"{reason.message}{part}. {works}", reason.binding, reason.excess, reason.unit, kept, line_speeds
+    ) from reason
 
 
 def _taken_further(suggestion: Suggestion, units: Units) -> Iterator[Remedy]:
@@ -231,4 +238,6 @@ def _written(remedy: Remedy) -> str:
     value: Any = remedy.value
     if isinstance(value, bool):
         return "true"
+    if remedy.change == "line_speeds":
+        return f'["{value:.15g} {remedy.unit}", "100 %"]'
     return f'"{value}"' if isinstance(value, str) else f'"{value:.15g} {remedy.unit}"'

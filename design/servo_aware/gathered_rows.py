@@ -28,8 +28,10 @@ AXIS_MARGIN = 1e-3
 # Places in the shear zone that have rows from the start, one for each sample in it, at least so many, and times after a sample: few where
 # rounds are cheap, more for the linear programmes of a single servo.
 FEW, MORE = (6, 2), (12, 4)
-# Of several line speeds each so many-th has rows from the start, and has the axis' own motion looked at.
-BEGUN = 4
+# Of several line speeds about so many have rows from the start, and each so many-th has the axis' own motion looked at.
+BEGUN, OWN = 11, 4
+# Line speeds without rows are looked at where those with rows exceed their limit by less than this share of it.
+ASIDE = 0.05
 # Most line speeds of a servo that get rows in a round: those where it is worst, far from each other.
 MOST_SPEEDS = 16
 # Between line speeds where a servo comes so near to its limit (share of it) the one in the middle is looked at, down to this step (share of
@@ -67,7 +69,7 @@ class GatheredRows:
         first = FEW if in_sync or mean or self.problem.several else MORE
         if not any(table.begun for table in self._tables[0]):
             for tables in self._tables:
-                for table in thinned(tables, BEGUN):
+                for table in thinned(tables, max(1, len(tables) // BEGUN)):
                     self.bands.append(table.band_rows(table.spread(*first)))
         if ratio and not self.ratios and self.problem.task.cut.shear_zone:
             table = self._tables[0][0]
@@ -103,13 +105,14 @@ class GatheredRows:
     def _over(self, tables: list[ZoneTable], profile: CamProfile, limit: float) -> list[tuple[ZoneTable, FloatArray]]:
         """Give the line speeds at which a servo exceeds a limit, and by how much at their points.
 
-        Those with rows are looked at first; the others, then those between, only where none of these exceeds it.
+        Those with rows are looked at first; the others where these nearly keep it, those between where all do.
         """
         begun = [table for table in tables if table.begun]
-        worst = _worst(begun, [np.abs(table.errors(profile)) - limit for table in begun])
-        if worst:
-            return worst
-        excesses = [np.abs(table.errors(profile)) - limit for table in tables]
+        excesses = [np.abs(table.errors(profile)) - limit for table in begun]
+        if any(excess.max() > ASIDE * limit for excess in excesses):
+            return _worst(begun, excesses)
+        known = dict(zip(begun, excesses, strict=True))
+        excesses = [known[table] if table in known else np.abs(table.errors(profile)) - limit for table in tables]
         return _worst(tables, excesses) or self._finer(tables, excesses, profile, limit)
 
     def _finer(
@@ -168,14 +171,14 @@ class OwnRows:
         return all(
             axis.keeps_within(profile, order, low, high)
             or float(self._over(axis, profile, order).max()) <= AXIS_MARGIN * high
-            for axis in thinned(self.problem.axes[0], BEGUN)
+            for axis in thinned(self.problem.axes[0], OWN)
             for order, (low, high) in self.problem.own_limits(axis).items()
         )
 
     def add_worst(self, profile: CamProfile) -> bool:
         """Add rows where the nominal axis breaks a limit by half of what rows are drawn in by; whether there were any."""
         before = len(self.rows)
-        for axis in thinned(self.problem.axes[0], BEGUN):
+        for axis in thinned(self.problem.axes[0], OWN):
             for order, (low, high) in self.problem.own_limits(axis).items():
                 if axis.keeps_within(profile, order, low, high):
                     continue
@@ -237,8 +240,6 @@ class BetweenServos:
 
 def _worst(tables: list[ZoneTable], excesses: list[FloatArray]) -> list[tuple[ZoneTable, FloatArray]]:
     """Find, of a servo's tables by line speed, those that exceed a limit the most, and by how much at their points."""
-    if not tables:
-        return []
     worst: NDArray[np.intp] = worst_places(np.array([float(excess.max()) for excess in excesses]), MOST_SPEEDS)
     return [(tables[number], excesses[number]) for number in worst.tolist()]
 

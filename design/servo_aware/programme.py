@@ -102,6 +102,16 @@ class AxisProgramme:
                 return True
         return False
 
+    def keeps(self) -> bool:
+        """Whether some command brings every axis into the tolerance, whatever its ratio; a design of least sync error is one."""
+        for _ in range(ROUNDS):
+            found = self._solve_rows("sync_error", None, {})
+            if found is None or found[1] > 1.0:
+                return False
+            if not self._add_worst(found[0], 1.0, ratio=False):
+                return True
+        return False
+
     def holds(self, profile: CamProfile) -> bool:
         """Whether a command keeps its limits and the axes theirs; if not, later programmes begin with rows where it fails."""
         for order, (low, high) in self.problem.limits.items():

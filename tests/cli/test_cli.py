@@ -378,7 +378,15 @@ def test_a_job_that_physics_forbids_ends_with_3(tmp_path: Path, capsys: pytest.C
     shown = capsys.readouterr()
     answer = strict(shown.out)
     assert (answer["status"], answer["exit_code"]) == ("infeasible", 3)
-    assert answer.keys() == {"status", "exit_code", "message", "binding", "excess", "suggestions"}
+    assert answer.keys() == {
+        "status",
+        "exit_code",
+        "message",
+        "binding",
+        "excess",
+        "suggestions",
+        "line_speeds_kept_m_per_s",
+    }
     assert answer["binding"] == "acceleration"
     assert answer["excess"].keys() == {"value", "unit"}
     assert answer["excess"]["unit"] == "m/s^2"

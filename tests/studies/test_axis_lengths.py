@@ -163,6 +163,7 @@ def test_a_tolerance_out_of_reach_ends_with_exit_code_3(capsys: pytest.CaptureFi
         "command",
         "line_speed",
         "length",
+        "sync_tolerance",
     }  # each designs and passes
     assert not (tmp_path / "out").exists()
     with pytest.raises(InfeasibleError) as caught:  # a book does not search for ways out

@@ -142,3 +142,61 @@ def test_the_last_line_is_the_verdict(
     assert re.fullmatch(last, lines[-1].strip())
     advice: Callable[[str], bool] = lambda line: line.startswith("  [")  # noqa: E731
     assert any(map(advice, lines)) is bool(code)
+
+
+BAND = """
+name = "band"
+[machine]
+kind = "rotary_knife"
+circumference = "400 mm"
+[cut]
+length = "260 mm"
+line_speed = "80 m/min"
+sync_zone = "120 mm"
+shear_zone = "40 mm"
+sync_tolerance = "0.02 mm"
+[limits]
+speed = "200 m/min"
+acceleration = "100 m/s^2"
+jerk = "20000 m/s^3"
+[servo]
+bandwidth = "120 rad/s"
+damping = 0.7
+position_gain = "35 1/s"
+sample_time = "4 ms"
+velocity_feedforward = 1.0
+[objective]
+servo_aware = true
+command = "shaped"
+minimise = "rms_acceleration"
+[output]
+origin = "return"
+"""
+
+
+@pytest.mark.slow
+def test_a_band_that_no_command_keeps_is_told_its_least_tolerance_and_the_part_that_one_keeps() -> None:
+    job = parse_job(BAND, "band")
+    with pytest.raises(InfeasibleError, match=r"One is held to it from \d.* m/min to 80 m/min\. What works") as refused:
+        solve_or_advise(job)
+    error = refused.value
+    assert error.kept is not None
+    assert error.kept[0] < error.kept[1] == pytest.approx(job.cut.line_speed)
+    assert {each.change for each in error.suggestions} >= {"sync_tolerance", "line_speeds", "line_speed"}
+    assert '[objective] line_speeds = ["' in str(error)
+    low = next(each.value for each in error.suggestions if each.change == "line_speeds")
+    told = BAND.replace('"shaped"', f'"shaped"\nline_speeds = ["{low:.15g} m/min", "100 %"]')
+    narrow = parse_job(told, "band")
+    solution = solve_job(narrow, suggest=False)
+    assert judge(
+        solution.profile, narrow.task, narrow.servo, sweep=False, servo_aware=True, slowest=narrow.slowest
+    ).passed
+    # less than the tolerance that is told as the least is refused, a little more is kept
+    least = job.cut.sync_tolerance + (error.excess or 0.0) * 1e-3
+    for factor, holds in ((0.98, False), (1.02, True)):
+        other = parse_job(BAND.replace("0.02 mm", f"{factor * least * 1e3:.6f} mm"), "band")
+        if holds:
+            solve_job(other, suggest=False)
+        else:
+            with pytest.raises(InfeasibleError):
+                solve_job(other, suggest=False)

@@ -41,6 +41,9 @@ _GAIN_RESOLUTION = 1e-4
 _LENGTH_RESOLUTION = 3e-6
 """Accuracy of the cut length found for a sync zone, relative to the pitch; no smaller gain is looked for."""
 
+_BAND_RESOLUTIONS = 8, 2e-4, 4e-3
+"""Parts of the room, accuracy of the cut length and step of the sync zone where several line speeds are looked at."""
+
 _RELAXATION = 0.01
 """Part by which a quantity is eased to see how much the minimum gains by it."""
 
@@ -159,17 +162,49 @@ def quintic_to_tolerance(task: Task, servo: Servo) -> MinimumCutLength:
     return _minimum(_Laws(task, servo, "poly_3_4_5"))
 
 
+def over_line_speeds(
+    task: Task, servo: Servo, law: Literal["linear_return", "poly_3_4_5"], shares: tuple[float, ...]
+) -> float | None:
+    """Shortest cut length with the axis within tolerance in the whole shear zone at several line speeds, by a law, in its best sync zone.
+
+    As `linear_return_to_tolerance`, on a coarser grid of sync zones. A cam is fixed over the master, so a slower line is a quicker servo
+    (`camwright.profiles.servo.Servo.at_speed`); the limits bind at the full line speed.
+
+    Parameters
+    ----------
+    task, servo
+        As in `linear_return_to_tolerance`.
+    law
+        The return.
+    shares
+        Line speeds as shares of the cut's.
+
+    Returns
+    -------
+    float or None
+        Cut length (m); ``None`` where no cut below the pitch holds.
+    """
+    pitch = task.machine.pitch
+    _require_room(task)
+    if task.limits.speed <= task.cut.line_speed:
+        return None
+    laws = _Laws(task, servo, law, shares=shares)
+    best, zone = ZoneSearch(task.cut, pitch, laws.lower, laws.excess, *_BAND_RESOLUTIONS).find()
+    return None if zone == pitch else best
+
+
 @dataclass(frozen=True)
 class _Laws:
     """Cycles of one kind of return, and whether the axis follows them.
 
-    ``relief`` is the part of the transition by which it may end late.
+    ``relief`` is the part of the transition by which it may end late, ``shares`` the line speeds at which it follows.
     """
 
     task: Task
     servo: Servo
     law: Law
     relief: float = 0.0
+    shares: tuple[float, ...] = (1.0,)
 
     def search(self, zone_resolution: float) -> ZoneSearch:
         """Search for the minimum cut length."""
@@ -200,11 +235,19 @@ class _Laws:
         return assemble(motion.over(0.0, length).add_line(1.0), task)
 
     def excess(self, shape: Cut) -> float:
-        """Logarithm of the greatest sync error in the shear zone, over all phases, by the tolerance: the error dies away like a power."""
+        """Logarithm of the greatest sync error in the shear zone, over all phases, by the tolerance: the error dies away like a power.
+
+        Of several line speeds the first at which the axis does not follow decides.
+        """
         task = self.task.with_cut(shape)
         start = shape.shear_start + self.relief * shape.shear_zone_at
-        error = greatest_sync_error(self.cycle(task), task, self.servo, start, shape.length)
-        return math.log(error / shape.sync_tolerance) if error > 0.0 else -math.inf
+        cycle, greatest = self.cycle(task), 0.0
+        for share in self.shares:
+            error = greatest_sync_error(cycle, task, self.servo.at_speed(share), start, shape.length)
+            greatest = max(greatest, error)
+            if greatest > shape.sync_tolerance:
+                break
+        return math.log(greatest / shape.sync_tolerance) if greatest > 0.0 else -math.inf
 
 
 def _minimum(laws: _Laws) -> MinimumCutLength:

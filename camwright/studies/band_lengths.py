@@ -1,0 +1,130 @@
+"""`BandLengths`: how short a piece can be cut with the axis in sync at every line speed of a job."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from camwright.design.servo_aware.axis_problem import AxisProblem, thinned
+from camwright.design.servo_aware.command_basis import Command
+from camwright.design.servo_aware.programme import AxisProgramme
+from camwright.jobs.job import Job
+from camwright.profiles.cut import Cut
+from camwright.profiles.errors import SolverError
+from camwright.studies.axis_lengths import AxisLengths
+from camwright.studies.axis_study import servos_of, shares_of
+from camwright.validation.bounds.minimum_length import fastest_cut, over_line_speeds
+from camwright.validation.bounds.zone_search import ZoneSearch
+
+_FINE, _LENGTH_RESOLUTION, _ZONE_RESOLUTION = 8, 1e-3, 3e-2
+"""How finely sync zones and cut lengths are searched; see `camwright.validation.bounds.zone_search.ZoneSearch`."""
+
+_LAW_SPEEDS = 13
+"""Line speeds, evenly spread over the band, at which a return by a law is looked at."""
+
+_LOOKED = 6
+"""Each so many-th of the line speeds of a design is looked at while lengths are searched; at the length that is told, all."""
+
+_LONGER = 1.004
+"""Factor by which a length is made longer where it holds at those line speeds but not at all."""
+
+_TRIES = 8
+"""How often it is."""
+
+
+@dataclass(frozen=True)
+class BandLengths:
+    """Minimum cut lengths (m) with the axis within the sync tolerance at every line speed of a band.
+
+    Parameters
+    ----------
+    line_speeds
+        Least and greatest line speed (m/s).
+    linear_return, poly_3_4_5
+        With these returns, the first within the limit of speed, the second within all limits of the command.
+    in_sync, shaped
+        With a servo-aware command within the limits, which the axis keeps too; in sync itself in the whole sync zone, or shaped.
+
+    The sync zone is the best one each time; ``None`` where no cut up to the pitch holds. The tolerance is of the position, as a check of
+    the design has it; what minimises the sync error is designed there, other objectives ask for the ratio of the axis too.
+    """
+
+    line_speeds: tuple[float, float]
+    linear_return: float | None
+    poly_3_4_5: float | None
+    in_sync: float | None
+    shaped: float | None
+
+
+def band_lengths(job: Job, single: AxisLengths | None) -> BandLengths | None:
+    """Find how short a job's machine can cut with its axis in sync at all line speeds of the job.
+
+    Parameters
+    ----------
+    job
+        The job; the ranges of its servo count for the servo-aware commands.
+    single
+        The same at the job's line speed alone, where the ratio is asked for too.
+
+    Returns
+    -------
+    BandLengths or None
+        ``None`` for a job without a band of line speeds, and for machines that `axis_lengths` is not about.
+
+    Raises
+    ------
+    InputError
+        The shear zone leaves no room for a return, or the servo is unstable.
+    """
+    if single is None or job.slowest == 1.0:
+        return None
+    task = job.task.with_cut(replace(job.cut, shaped=False))
+    few = tuple(np.linspace(1.0, job.slowest, _LAW_SPEEDS).tolist())
+    return BandLengths(
+        line_speeds=job.line_speeds,
+        linear_return=over_line_speeds(task, job.servo, "linear_return", few),
+        poly_3_4_5=over_line_speeds(task, job.servo, "poly_3_4_5", few),
+        in_sync=_servo_aware(job, "in_sync"),
+        shaped=_servo_aware(job, "shaped"),
+    )
+
+
+def _servo_aware(job: Job, command: Command) -> float | None:
+    """Shortest cut of a servo-aware command, at some line speeds first, then at all."""
+    cut, pitch, servos, shares = (
+        replace(job.cut, shaped=False),
+        job.machine.pitch,
+        servos_of(job),
+        shares_of(job.slowest),
+    )
+    some = thinned(shares, _LOOKED)
+
+    def holds(shape: Cut, looked: tuple[float, ...]) -> bool:
+        try:
+            return AxisProgramme(AxisProblem(job.task.with_cut(shape), command, servos, True, shares=looked)).keeps()
+        except SolverError:  # at the edge of what double precision resolves
+            return False
+
+    def missed(shape: Cut) -> float:
+        return -np.inf if holds(shape, some) else np.inf
+
+    def lower(sync_zone: float) -> float:
+        if command == "shaped":  # a mean speed beyond the limit is all that forbids it
+            return max(sync_zone, pitch * cut.line_speed / job.limits.speed) * (1 + _LENGTH_RESOLUTION)
+        return fastest_cut(pitch, cut.line_speed, job.limits, sync_zone)
+
+    shear = max(cut.shear_zone, _LENGTH_RESOLUTION * pitch)
+    search = ZoneSearch(cut, pitch, lower, missed, _FINE, _LENGTH_RESOLUTION, _ZONE_RESOLUTION)
+    if command == "shaped":  # its sync zone is the shear zone
+        best, zone = search.shorter(shear, pitch), shear
+    else:
+        best, zone = search.find()
+        best = None if zone == pitch else best
+    for _ in range(_TRIES):
+        if best is None or best >= pitch:
+            return None
+        if holds(search.shape(best, zone), shares):
+            return best
+        best *= _LONGER
+    return None
