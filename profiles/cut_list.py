@@ -49,6 +49,13 @@ class CutList:
     Lengths, crops and skips are one thing: places on the material at which the slave must be in sync. A *gap* is the material from one
     such place to the next; a skip joins its length to the gap behind it.
 
+    Parameters
+    ----------
+    rows
+        The rows, one at least.
+    place
+        What messages about it begin with: its file.
+
     Examples
     --------
     >>> asked = CutList((ListRow(0.3, 2), ListRow(0.2, 1, "skip"), ListRow(0.5, 1), ListRow(0.3, 1, "crop")))
@@ -57,6 +64,7 @@ class CutList:
     """
 
     rows: tuple[ListRow, ...]
+    place: str = "cut list"
 
     @property
     def pieces(self) -> int:
@@ -98,6 +106,10 @@ class CutList:
     def lines(self) -> NDArray[np.intp]:
         """Line of the file that each cut comes from, shape ``(pieces,)``."""
         return self._gathered[2]
+
+    def where(self, piece: int) -> str:
+        """Name file and line of a cut, counted from 0, for messages."""
+        return f"{self.place}, line {self.lines[piece]}"
 
     @property
     def scrap(self) -> float:

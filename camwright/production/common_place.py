@@ -61,7 +61,8 @@ def placed_for(job: Job, tasks: Sequence[Task]) -> PlacedAlike:
     objective = of_command("rms_acceleration" if job.objective == "sync_error" else job.objective)
     with in_job_words(job.units):
         found = common_place(tasks, objective)
-    return PlacedAlike(replace(job, machine=job.machine.placed_at(found.place)), found)
+    # the text of a file that leaves the place free would do so again
+    return PlacedAlike(replace(job, machine=job.machine.placed_at(found.place), source=None), found)
 
 
 def placed_alike(job: Job, asked: CutList) -> PlacedAlike:

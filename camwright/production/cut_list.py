@@ -27,6 +27,11 @@ from camwright.validation.production.line_ramp import line_ramp
 from camwright.validation.production.motion_table import ShiftCam, motion_table
 from camwright.validation.production.shift import Shift, ShiftRun, run_shift
 
+MOST_CAMS = 300
+"""Most cams of a list."""
+
+_MOST_FAULTS = 20
+
 _ALLOWED = 1e-3
 """Share by which a ramp may be harder than what is borne: what a solver's margin leaves."""
 
@@ -246,16 +251,22 @@ def list_shift(
 
 
 def _require_room(job: Job, asked: CutList) -> None:
-    """Refuse lengths that leave no room for the sync zone, by their line."""
+    """Refuse lengths that leave no room for the sync zone, by their line, and more lengths than a list may have."""
     zone, units = job.cut.sync_zone, job.units
-    bad = sorted({(int(line), float(gap)) for line, gap in zip(asked.lines, asked.gaps, strict=True) if gap <= zone})
-    if bad:
+    short, first = np.unique(asked.lines[asked.gaps <= zone], return_index=True)
+    gaps = asked.gaps[asked.gaps <= zone][first].tolist()
+    if len(short):
         raise InputError(
             *(
-                f"line {line}: a length of {with_unit(gap, 'm', 4, units)} leaves no room for the sync zone of "
+                f"{asked.place}, line {line}: a length of {with_unit(gap, 'm', 4, units)} leaves no room for the sync zone of "
                 f"{with_unit(zone, 'm', 4, units)}; cut longer pieces, or shorten [cut] sync_zone"
-                for line, gap in bad[:20]
+                for line, gap in zip(short.tolist()[:_MOST_FAULTS], gaps, strict=False)
             )
+        )
+    lengths = len(np.unique(asked.gaps))
+    if lengths > MOST_CAMS:
+        raise InputError(
+            f"{asked.place}: {lengths} different gaps between cuts, the limit is {MOST_CAMS}; round the lengths, or split the list"
         )
 
 
@@ -273,7 +284,7 @@ def _require_possible(job: Job, asked: CutList, of: NDArray[np.intp], perfect: F
     for number in np.flatnonzero(perfect <= 0.0).tolist():
         at = int(np.flatnonzero(of == number)[0])
         raise InfeasibleError(
-            f"line {asked.lines[at]}: {with_unit(float(asked.gaps[at]), 'm', 4, job.units)} cannot be cut at any line speed; "
+            f"{asked.where(at)}: {with_unit(float(asked.gaps[at]), 'm', 4, job.units)} cannot be cut at any line speed; "
             "a shorter sync zone or a longer piece would help: ask camwright limits",
             "cut_length",
             None,
@@ -359,7 +370,7 @@ def _require_running(
                 else "put a length between them"
             )
             raise InfeasibleError(
-                f"line {asked.lines[at]}: from {one} to {other} no motion within the limits leads while the line runs; "
+                f"{asked.where(at)}: from {one} to {other} no motion within the limits leads while the line runs; "
                 + way.replace("{@machine}.", "[machine] "),
                 "change",
                 None,

@@ -93,7 +93,7 @@ def parse_cut_list(text: str, place: str) -> CutList:
     if faults:
         more = len(faults) - _MOST_FAULTS
         raise InputError(*faults[:_MOST_FAULTS], *([f"{place}: {more} more rows with faults"] if more > 0 else []))
-    return CutList(tuple(rows))
+    return CutList(tuple(rows), place)
 
 
 def read_line_run(path: Path) -> LineRun:

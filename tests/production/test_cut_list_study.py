@@ -95,7 +95,31 @@ def test_a_plan_without_a_stated_ramp_is_refused() -> None:
 def test_lengths_without_room_for_the_zone_are_refused_by_line() -> None:
     with pytest.raises(InputError) as caught:
         study(load_job(), CutList((ListRow(0.6, 1, line=2), ListRow(0.2, 1, line=3), ListRow(0.15, 1, line=5))))
-    assert [fault.split(":")[0] for fault in caught.value.faults] == ["line 3", "line 5"]
+    assert [fault.split(":")[0] for fault in caught.value.faults] == ["cut list, line 3", "cut list, line 5"]
+
+
+def test_more_lengths_than_a_list_may_have_are_refused() -> None:
+    many = CutList(tuple(ListRow(0.3 + 1e-4 * k) for k in range(301)), "order.csv")
+    with pytest.raises(
+        InputError, match=r"order\.csv: 301 different gaps between cuts, the limit is 300; round the lengths, or split"
+    ):
+        study(load_job(), many)
+
+
+def test_the_origin_of_the_job_does_not_matter() -> None:
+    job = load_job()
+    other = plan_list(line_of(replace(job, cut=replace(job.cut, origin="cut")), 1.0), THE_LIST)
+    same = plan_list(line_of(job, 1.0), THE_LIST)
+    for one, two in zip(other.cams, same.cams, strict=True):
+        assert one.solution.profile.breaks == pytest.approx(two.solution.profile.breaks)
+
+
+def test_zones_that_last_a_time_are_the_same_for_all_cams() -> None:
+    found = study(load_job(EXAMPLES / "flying-punch.toml"), CutList((ListRow(0.75, 2), ListRow(0.6, 2))))
+    assert len({cam.job.cut.sync_zone for cam in found.planned.cams}) == 1
+    assert found.planned.cams[1].line_speed < found.planned.cams[0].line_speed
+    assert [change.how for change in found.planned.changes.values()] == ["slow_down", "direct"]
+    assert found.passed
 
 
 def crank() -> Job:
@@ -150,7 +174,8 @@ def test_shaped_commands_do_not_meet_and_go_through_transitions_on_a_slower_line
 def test_a_change_that_needs_a_stop_is_refused_with_a_way_out(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("camwright.production.changes.transition_speed", lambda *_cams: None)
     with pytest.raises(
-        InfeasibleError, match=r"line 7: from 900 mm to 500 mm no motion .* --common-place, or \[machine\] sync_at"
+        InfeasibleError,
+        match=r"cut list, line 7: from 900 mm to 500 mm no motion .* --common-place, or \[machine\] sync_at",
     ):
         study(crank(), CutList((ListRow(0.9, 1, line=6), ListRow(0.5, 1, line=7))))
 

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from camwright.production.list_file import line_run_text, parse_cut_list, parse_line_run
 from camwright.profiles.cut_list import ListRow
@@ -71,6 +75,29 @@ def test_every_bad_row_is_refused_by_its_line(text: str, faults: tuple[str, ...]
     with pytest.raises(InputError) as caught:
         parse_cut_list(text, "L")
     assert caught.value.faults == faults
+
+
+cells = st.sampled_from(
+    ["600", "600 mm", "24,5", "3", "cut", "skip", "-1", "", "x", "1e3", "length [mm]", "quantity", '"', "9" * 30, "∞"]
+)
+texts = st.lists(st.lists(cells, min_size=1, max_size=4), max_size=6).flatmap(
+    lambda rows: st.sampled_from(",;\t| ").map(lambda sign: "\n".join(sign.join(row) for row in rows))
+)
+
+
+def faults(parse: Callable[[str, str], object], text: str) -> tuple[str, ...]:
+    """Faults that are told, nothing where it is read."""
+    try:
+        parse(text, "L")
+    except InputError as error:
+        return error.faults
+    return ()
+
+
+@given(texts | st.text(max_size=60))
+def test_any_text_is_a_list_or_refused_in_words(text: str) -> None:
+    for parse in (parse_cut_list, parse_line_run):
+        assert all(fault.startswith("L") for fault in faults(parse, text))
 
 
 def test_of_many_bad_rows_twenty_are_told() -> None:
