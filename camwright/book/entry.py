@@ -61,6 +61,9 @@ class Entry:
         How fast the cut length can be run; with the first combination of each cut length only.
     speed_band
         Line speeds at which this very cam passes every check (m/s): lowest and highest of each part. Of passed ones only.
+    mark_earliest, mark_latest
+        How early (not above zero) and how late a print mark may come, its return designed anew (m); no latest where the slave can wait. Of
+        passed ones only.
     files
         Names, SHA-256 of the files in its folder.
     """
@@ -82,6 +85,8 @@ class Entry:
     reason: str = ""
     limit: Limit | None = None
     speed_band: tuple[tuple[float, float], ...] = ()
+    mark_earliest: float | None = None
+    mark_latest: float | None = None
     files: tuple[tuple[str, str], ...] = ()
 
     def to_json(self) -> str:

@@ -56,6 +56,8 @@ _TITLES = {
     "physical_binding": "binds there",
     "axis_in_tolerance_line_speed_m_per_min": "axis in tolerance m/min",
     "axis_in_tolerance_binding": "fails beyond",
+    "mark_earliest_mm": "mark earliest mm",
+    "mark_latest_mm": "mark latest mm",
 }
 
 _INCHES = {"_in": "in", "_ft_per_min": "ft/min", "_ft_per_s2": "ft/s²", "_ft_per_s3": "ft/s³"}

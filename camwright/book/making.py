@@ -20,7 +20,9 @@ from camwright.house.json_text import to_json
 from camwright.house.provenance import provenance
 from camwright.jobs.job import Job
 from camwright.jobs.wording import error_words, unforeseen
+from camwright.production.marks import next_lengths
 from camwright.profiles.errors import InfeasibleError, InputError, SolverError
+from camwright.profiles.mark_range import MarkRange
 from camwright.stored.design_file import design_text
 from camwright.studies.axis_study import axis_study, solve_job
 from camwright.studies.comparison import Comparison
@@ -178,6 +180,7 @@ def _exported(number: int, design: Design, targets: Sequence[str], limit: Limit 
         **{name: text for result in results for name, text in result.files.items()},
     }
     tool, servo = design.report.tool, design.report.servo
+    marks = MarkRange(None, None) if failed else next_lengths(design.job)
     entry = Entry(
         number,
         "check_failed" if failed else "passed",
@@ -195,6 +198,8 @@ def _exported(number: int, design: Design, targets: Sequence[str], limit: Limit 
         reason="; ".join(f"{name}: {fault}" for name, faults in refused.items() for fault in faults),
         limit=limit,
         speed_band=design.band.parts,
+        mark_earliest=marks.earliest,
+        mark_latest=marks.latest,
         files=tuple((name, hashlib.sha256(text.encode()).hexdigest()) for name, text in sorted(texts.items())),
     )
     return entry, texts

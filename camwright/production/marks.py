@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from camwright.design.feasible.feasibility import is_feasible
 from camwright.design.optimise import solve
 from camwright.design.production.marks import redesigned
 from camwright.house.progress import Step, ignore
@@ -135,13 +136,32 @@ def marks(job: Job, delay: int = 0, step: Step = ignore) -> Marks:
     solution = solve_or_advise(job)
     placed = replace(job, machine=solution.machine)
     step("finding what it bears at each line speed")
-    by_speed = tuple(at_speed(solution.profile, placed, share * job.cut.line_speed) for share in SHARES)
+    by_speed = at_speeds(solution.profile, placed)
     alone = held(placed.task, acceleration_alone=True)
     phase, offset = (find(solution.profile, placed.task, alone) for find in (phase_range, offset_range))
     assert phase is not None  # noqa: S101 - a phase of the master is in sync on every machine
     step("proving both ends")
     proved = proven(placed.task, by_speed[-1].redesign)
     return Marks(placed, solution.profile, by_speed, phase, offset, proved, delay)
+
+
+def at_speeds(cam: CamProfile, job: Job) -> tuple[ByMethod, ...]:
+    """Find what a cam bears at shares of the line speed; the job's machine is placed."""
+    return tuple(at_speed(cam, job, share * job.cut.line_speed) for share in SHARES)
+
+
+def next_lengths(job: Job, task: Task | None = None) -> MarkRange:
+    """Find what a redesign of the return bears, of a placed machine; at the job's line speed, or that of a task of the same job.
+
+    A shaped command may cut shorter than one in sync can: then the range of these is none.
+
+    Raises
+    ------
+    InfeasibleError
+        The cut itself cannot be done.
+    """
+    task = job.task if task is None else task
+    return NONE if job.cut.shaped and not is_feasible(task) else redesigned(task)
 
 
 def at_speed(cam: CamProfile, job: Job, line_speed: float) -> ByMethod:
@@ -151,7 +171,7 @@ def at_speed(cam: CamProfile, job: Job, line_speed: float) -> ByMethod:
     offset = None if job.cut.shaped else offset_range(cam, task, limits)
     phase = NONE if job.cut.shaped else phase_range(cam, task, limits)
     return ByMethod(
-        line_speed, redesigned(task), phase, None if offset is None else offset.within(_arc(cam, job, task))
+        line_speed, next_lengths(job, task), phase, None if offset is None else offset.within(_arc(cam, job, task))
     )
 
 

@@ -155,6 +155,8 @@ def ramps(
     aim: Aim = "peak_acceleration",
     latency: float = LATENCY,
     step: Step = ignore,
+    *,
+    cam: CamProfile | None = None,
 ) -> Ramps:
     """Design the start and the stop of a job's machine, and judge them.
 
@@ -171,6 +173,8 @@ def ramps(
         Time from the sensor to the first set value that moves (s).
     step
         Told what begins now.
+    cam
+        The running cam, if it is known, with the sync zone of the job's machine placed; designed where it is needed.
 
     Raises
     ------
@@ -185,7 +189,7 @@ def ramps(
     (9.07177, 150.0, 0.6)
     """
     step("placing the sync zone")
-    placed, zone = _placed(job)
+    placed, zone = _placed(job, cam)
     step("designing start and stop")
     free = park is None
     at = stand(placed.task, zone, park)
@@ -216,22 +220,31 @@ def lower_bounds(at: Stand, aim: Aim) -> tuple[float | None, float | None]:
     return start, least_turn_peak(at.out_of.velocity, at.room, j) if aim == "peak_acceleration" else None
 
 
-def _placed(job: Job) -> tuple[Job, CamProfile | None]:
+def _placed(job: Job, cam: CamProfile | None) -> tuple[Job, CamProfile | None]:
     """Place the sync zone where the running cam has it, and take the zone of a shaped command from that cam."""
     if job.machine.placed and not job.cut.shaped:
         return job, None
-    solution = solve_or_advise(job)
-    placed = replace(job, machine=solution.machine)
-    if not job.cut.shaped:
-        return placed, None
-    task, cut, profile = placed.task, placed.cut, solution.profile
+    if cam is None:
+        solution = solve_or_advise(job)
+        job, cam = replace(job, machine=solution.machine), solution.profile
+    return (job, _zone_of(cam, job)) if job.cut.shaped else (job, None)
+
+
+def fastest_standing(job: Job) -> float | None:
+    """Highest line speed at which the slave of a placed machine can come to rest between two cuts (m/s); None where none was found."""
+    return fastest_line(stand(job.task), can_stand)
+
+
+def _zone_of(profile: CamProfile, placed: Job) -> CamProfile:
+    """Cut the sync zone out of a cam, the slave counted as the machine counts it."""
+    task, cut = placed.task, placed.cut
     start = cut.sync_start % cut.length
     cycle = profile.repeat(2)
     part = cycle.restrict(start, start + cut.sync_zone)
     back = 0.0 if cut.origin == "return" else task.machine.pitch
     # the cycle begins where the slave is one pitch short of where the zone that it ends with is
     shift = task.slave_zero(profile) - (task.machine.pitch if cut.origin == "return" else back)
-    return placed, part.shift(-start, shift)
+    return part.shift(-start, shift)
 
 
 def one_shot_cycle(at: Stand, run: CamProfile, zone_end: float, wait: float) -> tuple[CamProfile, Task]:

@@ -34,8 +34,8 @@ class Change:
     Parameters
     ----------
     group
-        ``"recipe"``, ``"machine"``, ``"product"``, ``"limits"``, ``"servo"``, ``"cam"``, ``"reached"``, ``"range"``, ``"speeds"`` or
-        ``"tables"``.
+        ``"recipe"``, ``"machine"``, ``"product"``, ``"limits"``, ``"servo"``, ``"cam"``, ``"reached"``, ``"range"``, ``"speeds"``,
+        ``"production"`` or ``"tables"``.
     name
         What differs.
     unit
@@ -104,6 +104,7 @@ def _pairs(before: Recipe, after: Recipe) -> Iterator[Change]:
     yield from _reached(before.checks, after.checks, shown)
     yield from _range(before, after, shown)
     yield from _speeds(before, after, shown)
+    yield from _production(before, after, shown)
     yield from _tables(before, after)
 
 
@@ -170,6 +171,22 @@ def _range(before: Recipe, after: Recipe, shown_in: Units) -> Iterator[Change]:
         yield _change("range", name, [unit], [end.value for end in ends], shown_in)
         yield Change("range", f"{name}: binding", "", *(end.binding for end in ends))
     yield Change("range", "released at", "m/min", *(_released(recipe) for recipe in (before, after)))
+
+
+def _production(before: Recipe, after: Recipe, shown_in: Units) -> Iterator[Change]:
+    """Compare start and stop, and what print marks may ask at the line speed."""
+    unit = before.slave_unit
+    both = [recipe.start_stop for recipe in (before, after)]
+    for name, of in (("standing_up_to", "m/s"), ("park", unit), ("one_shot_master", "m"), ("sensor_ahead", "m")):
+        values = [None if found is None else getattr(found, name) for found in both]
+        yield _change("production", name, [of], values, shown_in)
+    for name in ("ramp_in", "ramp_out"):
+        ramps = [None if found is None else getattr(found, name) for found in both]
+        peaks = [None if ramp is None else ramp.peak_acceleration for ramp in ramps]
+        yield _change("production", f"{name}: peak_acceleration", [f"{unit}/s^2"], peaks, shown_in)
+    for end in ("earliest", "latest"):
+        ends = [getattr(recipe.marks[-1].redesign, end) if recipe.marks else None for recipe in (before, after)]
+        yield _change("production", f"mark_{end}", ["m"], ends, shown_in)
 
 
 def _released(recipe: Recipe) -> str:

@@ -14,7 +14,8 @@ from camwright.profiles.cut import Cut
 from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.servo import mean_lag
-from camwright.recipes.model import AtSpeed, Objective, RecipeCheck, SpeedPart, WorkingRange, Zones
+from camwright.recipes.model import AtSpeed, MarksAt, Objective, RecipeCheck, SpeedPart, StartStop, WorkingRange, Zones
+from camwright.recipes.production import marks_of, start_stop
 from camwright.recipes.speeds import at_speeds
 from camwright.recipes.working_range import working_range
 from camwright.stored.design_file import StoredDesign
@@ -40,6 +41,8 @@ class Expected:
     lead_time: float
     speed_band: tuple[SpeedPart, ...]
     working_range: WorkingRange
+    start_stop: StartStop
+    marks: tuple[MarksAt, ...]
 
 
 def expected(design: StoredDesign, step: Step = ignore) -> Expected:
@@ -70,6 +73,8 @@ def expected(design: StoredDesign, step: Step = ignore) -> Expected:
         lead_time=mean_lag(job.servo),
         speed_band=tuple(SpeedPart(*part, *binds) for part, binds in zip(band.parts, band.binds, strict=True)),
         working_range=working_range(job),
+        start_stop=start_stop(design),
+        marks=marks_of(design),
     )
 
 

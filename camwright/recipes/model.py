@@ -156,6 +156,67 @@ class SpeedPart:
 
 
 @dataclass(frozen=True, config=_STRICT)
+class RampRecord:
+    """A start or a stop: slave travel (slave unit), master (m), time (s), peak acceleration (slave unit over s²)."""
+
+    arc: float
+    master: float
+    time: float
+    peak_acceleration: float
+
+
+@dataclass(frozen=True, config=_STRICT)
+class StartStop:
+    """How the machine starts into the running line and stops out of it, with least peak acceleration.
+
+    Parameters
+    ----------
+    standing_up_to
+        Highest line speed at which the slave can stand between two cuts (m/s); ``None`` where none was found.
+    park
+        Slave coordinate at which the slave stands (slave unit); like all below ``None`` where it cannot start and stop at the line speed.
+    ramp_in, ramp_out
+        Start and stop.
+    one_shot_master
+        Master that one piece on demand takes (m).
+    least_arc
+        Least way of a start (slave unit).
+    latency, sensor_ahead
+        Time from the sensor to the start (s), and how far ahead of the cut at mid sync zone the sensor must stand for this start (m).
+    passed
+        Whether every check of start and stop passed, the axis from rest among them.
+    """
+
+    standing_up_to: float | None
+    park: float | None = None
+    ramp_in: RampRecord | None = None
+    ramp_out: RampRecord | None = None
+    one_shot_master: float | None = None
+    least_arc: float | None = None
+    latency: float | None = None
+    sensor_ahead: float | None = None
+    passed: bool = False
+
+
+@dataclass(frozen=True, config=_STRICT)
+class MarkEnds:
+    """How early (not above zero) and how late a print mark may come (m); ``None`` for no limit."""
+
+    earliest: float | None
+    latest: float | None
+
+
+@dataclass(frozen=True, config=_STRICT)
+class MarksAt:
+    """How far a print mark may be off at a line speed (m/s), by what the controller does; no offset where it is not in sync."""
+
+    line_speed: float
+    redesign: MarkEnds
+    master_phase: MarkEnds
+    slave_offset: MarkEnds | None
+
+
+@dataclass(frozen=True, config=_STRICT)
 class TableFile:
     """A file of a table: path inside the recipe folder, SHA-256 of its bytes."""
 
@@ -318,6 +379,10 @@ class Recipe:
         Where it comes from.
     particulars
         Revision, customer, author and date.
+    start_stop
+        How the machine starts and stops; ``None`` in a recipe of an earlier version.
+    marks
+        What print marks may ask of it, over the line speed; none in a recipe of an earlier version.
     """
 
     schema_version: Literal[1]
@@ -342,3 +407,5 @@ class Recipe:
     refused: tuple[Refusal, ...]
     provenance: Origin
     particulars: Particulars = Particulars()
+    start_stop: StartStop | None = None
+    marks: tuple[MarksAt, ...] = ()

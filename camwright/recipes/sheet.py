@@ -29,6 +29,7 @@ from camwright.recipes.judgements import (
     table_checks,
 )
 from camwright.recipes.model import Edge, Recipe
+from camwright.recipes.production import mark_blocks, start_blocks
 from camwright.recipes.release import any_outside, boxed, marked, released_speeds, status_text, warnings
 from camwright.recipes.user_text import shortened, visible
 from camwright.recipes.working_range import LONGEST, NOT_FOUND
@@ -49,6 +50,8 @@ def sheet(recipe: Recipe, words: Catalogue) -> dict[str, Any]:
         ("section.reached", reached),
         ("section.speeds", _speeds),
         ("section.range", _range),
+        ("section.start_stop", start_blocks),
+        ("section.marks", mark_blocks),
         ("section.before", before),
         ("section.import", imports),
         ("section.checks", checks),
@@ -76,9 +79,16 @@ def sheet(recipe: Recipe, words: Catalogue) -> dict[str, Any]:
         ],
         "groups": [[_group(recipe, heading, words) for heading in column] for column in _COLUMNS],
         "page": words("page"),
-        "sections": [{"key": key, "heading": words(key), "blocks": make(recipe, words)} for key, make in makers],
+        "sections": [
+            {"key": key, "heading": words(key), "blocks": blocks}
+            for key, make in makers
+            if (blocks := make(recipe, words)) or key not in _MAY_LACK
+        ],
     }
 
+
+_MAY_LACK = ("section.start_stop", "section.marks")
+"""Sections that recipes of earlier versions have nothing for."""
 
 _PARTICULARS = {
     "revision": "head.revision",

@@ -11,6 +11,7 @@ from camwright.house.numbers import converted, unit_shown
 from camwright.recipes.catalogue import Catalogue, catalogue_of
 from camwright.recipes.facts import GROUPS, Fact, fact_text
 from camwright.recipes.model import Recipe, RecipeCheck, RecipeTable
+from camwright.recipes.production import mark_blocks, mark_cells, mark_head, start_blocks
 from camwright.recipes.release import released_at, status_text
 from camwright.recipes.sheet import objective_text, particular_rows, speed_columns
 from camwright.recipes.user_text import visible
@@ -45,6 +46,7 @@ def recipe_xlsx(recipe: Recipe) -> bytes:
     book.set_properties({"title": f"{words('recipe')} {visible(recipe.name)}", "created": _EPOCH})
     _parameters(_Page(book, words("sheet.parameters"), (44, 24, 10)), recipe, words)
     _speeds(_Page(book, words("sheet.speeds"), (14,) * 13), recipe, words)
+    _production(_Page(book, words("sheet.production"), (44, *(16,) * 6)), recipe, words)
     _checks(_Page(book, words("sheet.checks"), (18, 40, 14, 14, 8, 16, 10, 60)), recipe, words)
     for table in recipe.tables:
         page = _Page(book, words("sheet.points", target=table.target)[:31], (8, 22, 22, 22, 26))
@@ -124,6 +126,30 @@ def _parameters(page: _Page, recipe: Recipe, words: Catalogue) -> None:
     for table in recipe.tables:
         for file in table.files:
             page.row(file.path, file.sha256)
+
+
+def _production(page: _Page, recipe: Recipe, words: Catalogue) -> None:
+    """Write start and stop as on the sheet, and print marks as numbers; what has no limit stays empty."""
+    for key, blocks in (
+        ("section.start_stop", start_blocks(recipe, words)),
+        ("section.marks", mark_blocks(recipe, words)),
+    ):
+        page.head(words(key))
+        for block in blocks:
+            if block["kind"] == "text":
+                page.row(block["text"])
+            elif key == "section.start_stop":
+                page.head(*block["head"])
+                for row in block["rows"]:
+                    page.row(*row)
+        page.gap()
+    page.head(*mark_head(words))
+    for each in recipe.marks:
+        cells = (
+            None if isinstance(cell, str) or cell is None else converted(cell, "m", words.units)
+            for cell in mark_cells(each)
+        )
+        page.row(converted(each.line_speed, "m/s", words.units), *cells)
 
 
 def _value(fact: Fact, words: Catalogue) -> tuple[Cell, str]:

@@ -1,0 +1,132 @@
+"""What a recipe says of starting, stopping and print marks."""
+
+from __future__ import annotations
+
+from camwright.house.numbers import shown, unit_shown, with_unit
+from camwright.production.marks import at_speeds
+from camwright.production.ramps import fastest_standing, ramps
+from camwright.profiles.errors import InfeasibleError
+from camwright.profiles.mark_range import MarkRange
+from camwright.profiles.ramp import Ramp
+from camwright.recipes.blocks import Block, table_block, text_block
+from camwright.recipes.catalogue import Catalogue
+from camwright.recipes.model import MarkEnds, MarksAt, RampRecord, Recipe, StartStop
+from camwright.stored.design_file import StoredDesign
+
+
+def start_stop(design: StoredDesign) -> StartStop:
+    """Design start and stop of a cam's machine; where there are none, say up to which line speed there are."""
+    job = design.job
+    try:
+        found = ramps(job, cam=design.profile)
+    except InfeasibleError:
+        return StartStop(fastest_standing(job))
+    return StartStop(
+        standing_up_to=found.fastest,
+        park=float(found.stand.park),
+        ramp_in=_record(found.ramp_in),
+        ramp_out=_record(found.ramp_out),
+        one_shot_master=found.one_shot.length,
+        least_arc=None if found.arcs.run_up is None else found.arcs.run_up.arc,
+        latency=found.latency,
+        sensor_ahead=found.sensor,
+        passed=found.passed,
+    )
+
+
+def _record(ramp: Ramp) -> RampRecord:
+    return RampRecord(ramp.arc, ramp.master, ramp.time, float(ramp.peak_acceleration))
+
+
+def marks_of(design: StoredDesign) -> tuple[MarksAt, ...]:
+    """Find what print marks may ask of a cam, over the line speed."""
+    return tuple(
+        MarksAt(
+            float(each.line_speed),
+            _ends(each.redesign),
+            _ends(each.master_phase),
+            None if each.slave_offset is None else _ends(each.slave_offset),
+        )
+        for each in at_speeds(design.profile, design.job)
+    )
+
+
+def _ends(found: MarkRange) -> MarkEnds:
+    return MarkEnds(*(None if end is None else float(end) for end in (found.earliest, found.latest)))
+
+
+def start_blocks(recipe: Recipe, words: Catalogue) -> list[Block]:
+    """Set start and stop: a table of both, and what they ask of park, sensor and line speed."""
+    found, units = recipe.start_stop, words.units
+    if found is None:
+        return []
+    standing = shown(found.standing_up_to, "m/s", 5, units)
+    if found.ramp_in is None or found.ramp_out is None:
+        return [text_block(words("start.none", speed=standing))]
+    slave = recipe.slave_unit
+    units_of = (slave, "m", "s", f"{slave}/s^2")
+    names = ("start.arc", "start.master", "start.time", "start.peak")
+    rows = [
+        [words(key), *(shown(value, unit, 5, units) for value, unit in zip(_values(ramp), units_of, strict=True))]
+        for key, ramp in (("start.in", found.ramp_in), ("start.out", found.ramp_out))
+    ]
+    head = ["", *(words(name, unit=unit_shown(unit, units)) for name, unit in zip(names, units_of, strict=True))]
+    facts = words(
+        "start.facts",
+        park=_told(found.park, slave, words),
+        piece=_told(found.one_shot_master, "m", words),
+        least=_told(found.least_arc, slave, words),
+        speed=standing,
+        sensor=_told(found.sensor_ahead, "m", words),
+        latency=_told(found.latency, "s", words),
+    )
+    verdict = [] if found.passed else [text_block(words("start.failed"), strong=True)]
+    return [table_block(head, rows), *verdict, text_block(facts)]
+
+
+def _values(ramp: RampRecord) -> tuple[float, float, float, float]:
+    return ramp.arc, ramp.master, ramp.time, ramp.peak_acceleration
+
+
+def _told(value: float | None, unit: str, words: Catalogue) -> str:
+    return words("nothing") if value is None else with_unit(value, unit, 5, words.units)
+
+
+def mark_head(words: Catalogue) -> list[str]:
+    """List the headings of the table of print marks."""
+    speed, length = unit_shown("m/s", words.units), unit_shown("m", words.units)
+    methods = [words(f"marks.{method}") for method in ("redesign", "phase", "offset")]
+    return [
+        words("marks.line", unit=speed),
+        *(f"{method}, {words(end, unit=length)}" for method in methods for end in ("marks.earliest", "marks.latest")),
+    ]
+
+
+def mark_cells(row: MarksAt) -> list[float | str | None]:
+    """List the ends of a row (m): nothing for no limit, the word for a method that is not in sync."""
+    cells: list[float | str | None] = []
+    for part in (row.redesign, row.master_phase, row.slave_offset):
+        cells += ["marks.not_in_sync"] * 2 if part is None else [part.earliest, part.latest]
+    return cells
+
+
+def mark_blocks(recipe: Recipe, words: Catalogue) -> list[Block]:
+    """Set how far a print mark may be off, one row a line speed."""
+    if not recipe.marks:
+        return []
+    rows = [
+        [shown(row.line_speed, "m/s", 4, words.units), *(_mark_text(cell, words) for cell in mark_cells(row))]
+        for row in recipe.marks
+    ]
+    return [table_block(mark_head(words), rows, widths=[0.9, *(1.0,) * 6]), text_block(words("marks.note"))]
+
+
+def _mark_text(cell: float | str | None, words: Catalogue) -> str:
+    """Write one end, rounded towards zero: what is told can be done."""
+    if isinstance(cell, str):
+        return words(cell)
+    if cell is None:
+        return words("marks.no_limit")
+    factor = words.units.shown["m"].factor
+    tenths = 10.0 ** (1 if words.units.name == "metric" else 3)
+    return f"{int(cell * factor * tenths) / tenths:.{1 if tenths == 10.0 else 3}f}".replace("-", "−")
