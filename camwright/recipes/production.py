@@ -95,7 +95,7 @@ def _told(value: float | None, unit: str, words: Catalogue) -> str:
 def mark_head(words: Catalogue) -> list[str]:
     """List the headings of the table of print marks."""
     speed, length = unit_shown("m/s", words.units), unit_shown("m", words.units)
-    methods = [words(f"marks.{method}") for method in ("redesign", "phase", "offset")]
+    methods = [words(key) for key in ("marks.redesign", "marks.phase", "marks.offset")]
     return [
         words("marks.line", unit=speed),
         *(f"{method}, {words(end, unit=length)}" for method in methods for end in ("marks.earliest", "marks.latest")),
@@ -106,7 +106,7 @@ def mark_cells(row: MarksAt) -> list[float | str | None]:
     """List the ends of a row (m): nothing for no limit, the word for a method that is not in sync."""
     cells: list[float | str | None] = []
     for part in (row.redesign, row.master_phase, row.slave_offset):
-        cells += ["marks.not_in_sync"] * 2 if part is None else [part.earliest, part.latest]
+        cells += ["nothing"] * 2 if part is None else [part.earliest, part.latest]
     return cells
 
 

@@ -70,7 +70,7 @@ def _compared(place: str, found: Any, recorded: Any, share: float) -> Iterator[s
 
 def _leaf(place: str, found: Any, recorded: Any, share: float, scale: float) -> Iterator[str]:
     numbers = [isinstance(value, int | float) and not isinstance(value, bool) for value in (found, recorded)]
-    if isinstance(found, dict | tuple):
+    if isinstance(found, dict | tuple) and isinstance(recorded, dict | list | tuple):
         yield from _compared(place, found, recorded, share)
     elif all(numbers):
         yield from differs(place, float(found), float(recorded), scale, share)

@@ -23,7 +23,7 @@ from camwright.recipes.sheet import sheet
 ROOT = Path(__file__).parents[2]
 PLACEHOLDER = re.compile(r"\{(\w+)\}")
 SAME_IN_GERMAN = {
-    "head.revision",
+    "head.revision", "start.master",
     "nothing", "binding.none", "binding.not_found", "section.servo", "section.import", "head.camwright", "figure.master",
     "figure.position", "column.slave", "column.master", "record.name", "sheet.parameters",
 }  # fmt: skip

@@ -258,6 +258,11 @@ SHEET: dict[str, Callable[[dict], object]] = {
     "speed_band[0].high": lambda data: data["speed_band"][0].update(high=1.01 * data["speed_band"][0]["high"]),
     "speed_band[0].high_binding": lambda data: data["speed_band"][0].update(high_binding="none"),
     "working_range.max_line_speed.value": lambda data: data["working_range"]["max_line_speed"].update(value=3.0),
+    "start_stop.park": lambda data: data["start_stop"].update(park=-0.21),
+    "start_stop.ramp_in.peak_acceleration": lambda data: data["start_stop"]["ramp_in"].update(peak_acceleration=8.0),
+    "start_stop.ramp_out": lambda data: data["start_stop"].update(ramp_out=None),
+    "marks[9].redesign.earliest": lambda data: data["marks"][9]["redesign"].update(earliest=-0.3),
+    "marks[9].redesign.latest": lambda data: data["marks"][9]["redesign"].update(latest=0.3),
     "working_range.min_length.binding": lambda data: data["working_range"]["min_length"].update(binding="stroke"),
 }
 

@@ -21,7 +21,15 @@ def read(data: bytes) -> openpyxl.Workbook:
 
 def test_the_sheets(made: MadeRecipe) -> None:
     book = read(recipe_xlsx(made.recipe))
-    assert book.sheetnames == ["parameters", "speeds", "checks", "points codesys", "points logix", "points csv"]
+    assert book.sheetnames == [
+        "parameters",
+        "speeds",
+        "production",
+        "checks",
+        "points codesys",
+        "points logix",
+        "points csv",
+    ]
 
 
 def test_parameters_are_numbers_with_units(made: MadeRecipe) -> None:
