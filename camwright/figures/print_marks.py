@@ -40,8 +40,15 @@ def print_marks_figure(found: Marks) -> Figure:
         low = np.array([max(-edge, -edge if each.earliest is None else each.earliest) for each in shown]) * length
         high = np.array([min(edge, edge if each.latest is None else each.latest) for each in shown]) * length
         axes.fill_between(speeds, low, high, color=colour, alpha=0.12, linewidth=0)
-        axes.plot(speeds, low, color=colour, linestyle=dashes, linewidth=width, label=words)
-        axes.plot(speeds, np.where(high < edge * length, high, np.nan), color=colour, linestyle=dashes, linewidth=width)
+        axes.plot(speeds, low, color=colour, linestyle=dashes, linewidth=width, label=words, marker=".")
+        axes.plot(
+            speeds,
+            np.where(high < edge * length, high, np.nan),
+            color=colour,
+            linestyle=dashes,
+            linewidth=width,
+            marker=".",
+        )
     axes.axhline(0.0, color="black", linewidth=0.8)
     axes.set_xlim(0.0, float(speeds[-1]))
     lowest = min((each.redesign.earliest or 0.0) for each in found.by_speed)

@@ -23,6 +23,7 @@ from camwright.book.plan import Book, plan_book
 from camwright.book.run import make_book
 from camwright.design.feasible.extremes import extremes
 from camwright.design.optimise import Solution, solve
+from camwright.design.production.marks import redesigned
 from camwright.drives.export import export
 from camwright.jobs.job import load_job
 from camwright.jobs.wording import words
@@ -122,6 +123,14 @@ def test_the_limit_table_gives_the_highest_speed_and_what_forbids_the_next(done:
         assert far.max_line_speed * 60 * (1 - 1e-6) <= found <= far.max_line_speed * 60
         assert row["physical_binding"] == far.line_speed_binding
         assert highest is None or highest <= float(row["axis_in_tolerance_line_speed_m_per_min"]) <= found
+        if highest is None:
+            assert (row["mark_earliest_mm"], row["mark_latest_mm"]) == ("", "")
+        else:
+            cut = replace(job.cut, length=float(row["length_mm"]) / 1e3, line_speed=highest / 60)
+            marks = redesigned(job.task.with_cut(cut))
+            assert float(row["mark_earliest_mm"]) == pytest.approx(marks.earliest * 1e3, abs=1.001e-3)
+            assert float(row["mark_earliest_mm"]) >= marks.earliest * 1e3
+            assert row["mark_latest_mm"] == ("" if marks.latest is None else f"{int(marks.latest * 1e6) / 1e3}")
 
 
 def test_all_three_indexes_say_the_same(done: Path) -> None:
