@@ -14,17 +14,29 @@ from camwright.profiles.cut import Cut
 from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.servo import mean_lag
-from camwright.recipes.model import AtSpeed, MarksAt, Objective, RecipeCheck, SpeedPart, StartStop, WorkingRange, Zones
+from camwright.recipes.model import (
+    AtSpeed,
+    LineRampRecord,
+    MarksAt,
+    Objective,
+    RecipeCheck,
+    SpeedPart,
+    StartStop,
+    WorkingRange,
+    Zones,
+)
 from camwright.recipes.production import marks_of, start_stop
+from camwright.recipes.ramps import ramp_record
 from camwright.recipes.speeds import at_speeds
 from camwright.recipes.working_range import working_range
 from camwright.stored.design_file import StoredDesign
 from camwright.studies.axis_study import sync_error
+from camwright.studies.line_ramps import line_ramps
 from camwright.studies.speed_band import job_band
 from camwright.validation.check import Check
 from camwright.validation.report import ValidationReport, judge
 
-STEPS = 4
+STEPS = 5
 """Steps that `expected` tells."""
 
 
@@ -43,6 +55,7 @@ class Expected:
     working_range: WorkingRange
     start_stop: StartStop
     marks: tuple[MarksAt, ...]
+    line_ramp: LineRampRecord
 
 
 def expected(design: StoredDesign, step: Step = ignore) -> Expected:
@@ -62,6 +75,8 @@ def expected(design: StoredDesign, step: Step = ignore) -> Expected:
     speeds = at_speeds(profile, job, report)
     step("finding its line speeds")
     band = job_band(profile, job, report)
+    step("finding how hard the line may ramp")
+    ramps = ramp_record(line_ramps(profile, job))
     step("finding the working range")
     return Expected(
         slave_start=job.task.slave_at_start,
@@ -75,6 +90,7 @@ def expected(design: StoredDesign, step: Step = ignore) -> Expected:
         working_range=working_range(job),
         start_stop=start_stop(design),
         marks=marks_of(design),
+        line_ramp=ramps,
     )
 
 

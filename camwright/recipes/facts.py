@@ -55,6 +55,8 @@ PRODUCT = {
     "shaped": "word",
 }
 
+LINE = {"acceleration": "m/s^2", "stop": "m/s^2", "jerk": "m/s^3"}
+
 SERVO = {
     "bandwidth": "bandwidth",
     "damping": "1",
@@ -92,14 +94,15 @@ def product_facts(recipe: Recipe) -> list[Fact]:
 
 
 def limit_facts(recipe: Recipe) -> list[Fact]:
-    """List the limits of the slave."""
+    """List the limits of the slave, and the ramps of the line that it keeps them in."""
     limits, unit = recipe.job.si["limits"], recipe.slave_unit
     powers = {"speed": "/s", "acceleration": "/s^2", "jerk": "/s^3"}
     facts = [Fact(key, limits[key], unit + power) for key, power in powers.items()]
     facts.append(Fact("reversal", limits["reversal"], "word"))
     if limits["motor"] is not None:
         facts.append(Fact("motor", limits["motor"]["points"], "curve"))
-    return facts
+    line = recipe.job.si.get("line", {})
+    return [*facts, *(Fact(key, line[key], unit, "line") for key, unit in LINE.items() if line.get(key) is not None)]
 
 
 def servo_facts(recipe: Recipe) -> list[Fact]:

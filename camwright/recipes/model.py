@@ -320,6 +320,47 @@ class Origin:
 
 
 @dataclass(frozen=True, config=_STRICT)
+class RampAt:
+    """The greatest ramps of the line at one line speed (m/s, m/s²), ``None`` where nothing binds, and what binds."""
+
+    line_speed: float
+    acceleration: float | None
+    stop: float | None
+    binding: str
+
+
+@dataclass(frozen=True, config=_STRICT)
+class LineRampRecord:
+    """How hard the line may ramp on this cam, at any phase (SI units).
+
+    Parameters
+    ----------
+    acceleration
+        Greatest ramp up and down between standstill and the job's line speed; ``None`` where nothing binds.
+    stop
+        Greatest deceleration of an emergency stop from there.
+    binding
+        ``"acceleration"``, ``"jerk"``, ``"torque"`` or ``"none"``.
+    stop_length
+        Material that passes in the hardest stop; ``None`` where none is allowed.
+    by_acceleration_alone
+        What the limit of acceleration alone would allow at the job's line speed.
+    by_speed
+        The ramps at shares of the line speed, each at that speed alone.
+    sync_error
+        Greatest sync error while the line ramps as the job says; ``None`` where it says nothing.
+    """
+
+    acceleration: float | None
+    stop: float | None
+    binding: str
+    stop_length: float | None
+    by_acceleration_alone: float | None
+    by_speed: tuple[RampAt, ...]
+    sync_error: float | None
+
+
+@dataclass(frozen=True, config=_STRICT)
 class Particulars:
     """What the user gives to stand on the sheet, each any text and never taken from clock or machine."""
 
@@ -383,6 +424,8 @@ class Recipe:
         How the machine starts and stops; ``None`` in a recipe of an earlier version.
     marks
         What print marks may ask of it, over the line speed; none in a recipe of an earlier version.
+    line_ramp
+        How hard the line may ramp; ``None`` in recipes that were made before it was told.
     """
 
     schema_version: Literal[1]
@@ -409,3 +452,4 @@ class Recipe:
     particulars: Particulars = Particulars()
     start_stop: StartStop | None = None
     marks: tuple[MarksAt, ...] = ()
+    line_ramp: LineRampRecord | None = None

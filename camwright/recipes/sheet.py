@@ -30,6 +30,7 @@ from camwright.recipes.judgements import (
 )
 from camwright.recipes.model import Edge, Recipe
 from camwright.recipes.production import mark_blocks, start_blocks
+from camwright.recipes.ramps import ramp_blocks
 from camwright.recipes.release import any_outside, boxed, marked, released_speeds, status_text, warnings
 from camwright.recipes.user_text import shortened, visible
 from camwright.recipes.working_range import LONGEST, NOT_FOUND
@@ -49,6 +50,7 @@ def sheet(recipe: Recipe, words: Catalogue) -> dict[str, Any]:
         ("section.cam", _cam),
         ("section.reached", reached),
         ("section.speeds", _speeds),
+        ("section.line_ramp", ramp_blocks),
         ("section.range", _range),
         ("section.start_stop", start_blocks),
         ("section.marks", mark_blocks),

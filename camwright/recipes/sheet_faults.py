@@ -18,7 +18,7 @@ ROUNDING = 1e-9
 _SOUGHT = 1e-3
 """The same of what is found by search, to a tolerance of its own: line speeds and the working range."""
 
-_LATER = ("start_stop", "marks")
+_LATER = ("start_stop", "marks", "line_ramp")
 """Values that recipes of earlier versions do not hold."""
 
 _LEFT_OUT = ("at", "source")

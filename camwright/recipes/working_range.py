@@ -22,7 +22,7 @@ NO_END = "none"
 NOT_FOUND = "not_found"
 """What binds where no end was found up to `LONGEST`."""
 
-LIMITS = ("speed", "acceleration", "jerk", "reversal", "stroke", "sync_zone", "motor")
+LIMITS = ("speed", "acceleration", "jerk", "reversal", "stroke", "sync_zone", "motor", "line_ramp")
 AXIS = "axis"
 """What binds by the limits, and the name of what binds where the axis leaves its tolerance."""
 

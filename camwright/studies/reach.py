@@ -30,6 +30,9 @@ SLOWEST, LONGEST = 0.02, 4.0
 _INSIDE = 1e-6
 """What the perfect axis' own edge is asked with, relative to it: solvers need room."""
 
+RAMP = "line_ramp"
+"""What binds where no cam bears the ramps of the line: the check that would fail."""
+
 TOLERANCE = "sync_tolerance"
 """What binds where no servo-aware command brings the axis into the tolerance."""
 
@@ -114,7 +117,7 @@ def fails(job: Job, task: Task, objective: MotionObjective) -> str:
     try:
         solution = solve(task, objective, suggest=False)
     except InfeasibleError as error:
-        return error.binding
+        return RAMP if error.binding.startswith("line.") else error.binding
     except (InputError, SolverError):
         return "design"
     report = judge(

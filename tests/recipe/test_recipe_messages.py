@@ -74,7 +74,7 @@ def test_every_key_is_used_and_every_used_key_exists() -> None:
     machine_keys = {f"machine.{each.key}" for machine in MACHINES.values() for each in fields_of(machine)} | {
         "machine.kind"
     }
-    groups = ("column", "word", "binding", "before", "check", "record")  # put together from a group and a name
+    groups = ("column", "word", "binding", "before", "check", "record", "line")  # put together from a group and a name
     for key in catalogue("en").messages:
         assert key.partition(".")[0] in groups or key in machine_keys or f'"{key}"' in code, key
 
