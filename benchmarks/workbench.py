@@ -199,7 +199,9 @@ def main() -> int:
     rows: list[tuple[str, float, float, bool]] = []
 
     def promised(name: str, value: float, most: float, *, at_least: bool = False) -> None:
-        rows.append((name, value, most, value >= most if at_least else value <= most))
+        kept = value >= most if at_least else value <= most
+        rows.append((name, value, most, kept))
+        print(f"{name},{value:.4g},{most:.4g},{'kept' if kept else 'BROKEN'}", flush=True)
 
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
@@ -209,7 +211,6 @@ def main() -> int:
         promised("requests_to_other_hosts", foreign, 0)
         for machine, example in MACHINES.items():
             found = dragged(browser, example, options.moves)
-            rows.append((f"{machine}_previews", found["previews"], 0.0, True))
             promised(f"{machine}_preview_p95_s", found["preview_s"], PREVIEW)
             promised(f"{machine}_frames_per_s", found["frames_per_s"], FRAMES, at_least=True)
             promised(
@@ -224,8 +225,6 @@ def main() -> int:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(["measure", "value", "promise", "kept"])
         table.writerows((name, f"{value:.6g}", f"{most:.6g}" if most else "", kept) for name, value, most, kept in rows)
-    for name, value, most, kept in rows:
-        print(f"{name},{value:.4g},{most:.4g},{'kept' if kept else 'BROKEN'}")
     return 0 if all(kept for *_, kept in rows) else 1
 
 

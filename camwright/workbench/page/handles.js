@@ -31,7 +31,7 @@ export function onGrip(element, { path, vertical, share }) {
     const move = (now) => draft(changed(path, base, 1 + ((vertical ? -now.clientY : now.clientX) - from) * zoom * share));
     const end = () => {
       for (const [name, listener] of [["pointermove", move], ["pointerup", end], ["pointercancel", end]]) removeEventListener(name, listener);
-      commit();
+      commit(state.text, "release");
     };
     for (const [name, listener] of [["pointermove", move], ["pointerup", end], ["pointercancel", end]]) addEventListener(name, listener);
   });

@@ -106,12 +106,12 @@ function tabKeys(event) {
 onChange((what) => {
   if (what === "drawn" || what === "status") render();
   else if (what === "proof" && FOLLOWING.has(view)) VIEWS[view]($("panel"));
-  if (what !== "draft" && what !== "commit") return;
+  if (!["draft", "commit", "release"].includes(what)) return;
   if (FOLLOWING.has(view)) callOff(); // it is asked anew for the next design
   form.refresh($("form"));
   sliders.refresh($("sliders"));
   if ($("toml") !== document.activeElement) $("toml").value = state.text;
-  (what === "draft" ? drafted : committed)();
+  (what === "draft" ? drafted : committed)(what);
 });
 
 async function save() {

@@ -3,7 +3,7 @@
 import { newestOnly, post, textOf } from "./api.js";
 import { changed, state } from "./state.js";
 
-const REST = 120; // ms without a change after which a design begins: keys that are held down are one change
+const REST = 150; // ms without a change by keys after which a design begins: a key that is held down is one change
 
 const refusedAs = (data) => (data.status === "infeasible" ? "infeasible" : data.status === "gone" ? "gone" : "faulty");
 
@@ -50,10 +50,11 @@ export function drafted() {
   preview(state.text);
 }
 
-/** The text is one to keep: show it at once, and prove it when no other follows. */
-export function committed() {
+/** The text is one to keep: show it at once, and prove it, when no other follows if one may. */
+export function committed(what) {
   drafted();
-  waiting = setTimeout(prove, REST);
+  if (what === "release") prove();
+  else waiting = setTimeout(prove, REST);
 }
 
 /** Draw the same cam with other baselines. */

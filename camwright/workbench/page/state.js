@@ -44,8 +44,8 @@ export function draft(text) {
   changed("draft");
 }
 
-/** Keep the text as one step of the history. */
-export function commit(text = state.text) {
+/** Keep the text as one step of the history; a hand that let go ("release") has nothing to follow, a key may be pressed again. */
+export function commit(text = state.text, how = "commit") {
   state.text = text;
   if (text !== state.history[state.at]) {
     keepGhost();
@@ -53,10 +53,10 @@ export function commit(text = state.text) {
     state.at = state.history.length - 1;
   }
   moving = false;
-  changed("commit");
+  changed(how);
 }
 
-export const set = (path, value) => commit(withValue(state.text, path, value));
+export const set = (path, value) => commit(withValue(state.text, path, value), "release");
 
 export function step(by) {
   const to = state.at + by;

@@ -10,23 +10,28 @@ const MEASURES = {
   peak_acceleration: ["peak_acceleration_m_per_s2", "m/s^2"],
   rms_acceleration: ["rms_acceleration_m_per_s2", "m/s^2"],
   peak_jerk: ["peak_jerk_m_per_s3", "m/s^3"],
+  rms_torque: ["rms_torque_N_m", "N m"],
+  peak_torque: ["peak_torque_N_m", "N m"],
+  energy: ["energy_J", "J"],
   "sync error": ["shear_zone_error_mm", "mm"],
 };
+const OF_MOTOR = ["rms_torque", "peak_torque", "energy"];
 
 /** A profile's name; one that breaks a limit has a star. */
 export const profileName = (name, within) => (within ? name : `${name} *`);
 
-const valueOf = (each, key) => (key in each ? each[key] : (each.servo?.[key] ?? null));
+const valueOf = (each, key) => (key in each ? each[key] : (each.motor?.[key] ?? each.servo?.[key] ?? null));
 
 export function show(panel) {
-  ask(panel, "compare", { toml: state.text }, ({ profiles }) => {
+  ask(panel, "compare", { toml: state.text }, ({ profiles, sorted_by: first }) => {
     const names = Object.keys(profiles);
-    const headings = Object.entries(MEASURES).map(([name, [, unit]]) => `${word(name)} (${printed(unit)})`);
-    const lines = names.map((name) => [profileName(word(name), profiles[name].within_limits), ...Object.values(MEASURES).map(([key]) => valueOf(profiles[name], key) ?? make("td", "∞", "number"))]);
+    const shown = Object.entries(MEASURES).filter(([name, [key]]) => !OF_MOTOR.includes(name) || names.some((each) => valueOf(profiles[each], key) !== null));
+    const headings = shown.map(([name, [, unit]]) => `${word(name)} (${printed(unit)})`);
+    const lines = names.map((name) => [profileName(word(name), profiles[name].within_limits), ...shown.map(([, [key]]) => valueOf(profiles[name], key) ?? make("td", "∞", "number"))]);
     const list = table([word("profile"), ...headings], lines);
     row(list, names.indexOf("optimised")).className = "own";
     const place = make("div");
-    const choice = chooser(Object.keys(MEASURES).map((name) => [name, word(name)]), word("value"));
+    const choice = chooser(shown.map(([name]) => [name, word(name)]), word("value"), shown.some(([name]) => name === first) ? first : shown[0][0]);
     const draw = () => place.replaceChildren(bars(profiles, ...MEASURES[choice.value]));
     choice.addEventListener("change", draw);
     draw();
