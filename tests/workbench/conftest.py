@@ -49,9 +49,12 @@ CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 PATIENCE = 60_000
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
-    """Start Debian's Chromium by Playwright; who asks for it is skipped where one of them is missing."""
+    """Start Debian's Chromium by Playwright; who asks for it is skipped where one of them is missing.
+
+    A module long: its event loop runs in this thread, and other modules have loops of their own.
+    """
     api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
     if CHROMIUM is None:
         pytest.skip("no Chromium is installed: apt-get install chromium")

@@ -115,7 +115,7 @@ def test_what_is_no_table_is_refused_in_words(page: Any) -> None:
     page.set_input_files(
         "#panel input[type=file]", {"name": "a.csv", "mimeType": "text/csv", "buffer": b"<b>nothing</b>"}
     )
-    page.locator("#panel p.failed").wait_for()
+    page.locator("#panel p.failed", has_text="a.csv").wait_for()
     assert page.locator("#panel b").count() == 0
 
 
