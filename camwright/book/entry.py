@@ -64,6 +64,9 @@ class Entry:
     mark_earliest, mark_latest
         How early (not above zero) and how late a print mark may come, its return designed anew (m); no latest where the slave can wait. Of
         passed ones only.
+    line_ramp, line_stop
+        Greatest ramp of the line up and down, and greatest deceleration of an emergency stop, between standstill and this line speed
+        (m/s²); None where nothing binds. Of passed ones only.
     files
         Names, SHA-256 of the files in its folder.
     """
@@ -87,6 +90,8 @@ class Entry:
     speed_band: tuple[tuple[float, float], ...] = ()
     mark_earliest: float | None = None
     mark_latest: float | None = None
+    line_ramp: float | None = None
+    line_stop: float | None = None
     files: tuple[tuple[str, str], ...] = ()
 
     def to_json(self) -> str:

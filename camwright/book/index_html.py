@@ -56,6 +56,8 @@ _TITLES = {
     "physical_binding": "binds there",
     "axis_in_tolerance_line_speed_m_per_min": "axis in tolerance m/min",
     "axis_in_tolerance_binding": "fails beyond",
+    "line_ramp_m_per_s2": "line ramp m/s²",
+    "line_stop_m_per_s2": "line stop m/s²",
     "mark_earliest_mm": "mark earliest mm",
     "mark_latest_mm": "mark latest mm",
 }

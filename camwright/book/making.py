@@ -32,6 +32,7 @@ from camwright.studies.reach import highest_speed
 from camwright.studies.speed_band import SpeedBand, job_band
 from camwright.studies.within_limits import keeps_limits
 from camwright.validation.bounds.bound import Bound
+from camwright.validation.production.line_ramp import line_ramp
 from camwright.validation.report import judge
 
 _ONE_AT_A_TIME = threading.Lock()
@@ -180,6 +181,7 @@ def _exported(number: int, design: Design, targets: Sequence[str], limit: Limit 
         **{name: text for result in results for name, text in result.files.items()},
     }
     tool, servo = design.report.tool, design.report.servo
+    ramp = None if failed else line_ramp(design.profile, design.job.task)
     marks = MarkRange(None, None) if failed else next_lengths(design.job)
     entry = Entry(
         number,
@@ -200,9 +202,16 @@ def _exported(number: int, design: Design, targets: Sequence[str], limit: Limit 
         speed_band=design.band.parts,
         mark_earliest=marks.earliest,
         mark_latest=marks.latest,
+        line_ramp=_finite(ramp.ramp.value) if ramp else None,
+        line_stop=_finite(ramp.braking.value) if ramp else None,
         files=tuple((name, hashlib.sha256(text.encode()).hexdigest()) for name, text in sorted(texts.items())),
     )
     return entry, texts
+
+
+def _finite(value: float) -> float | None:
+    """Give a number; nothing for what is unlimited."""
+    return value if math.isfinite(value) else None
 
 
 def _report(design: Design, results: list[Exported], refused: dict[str, tuple[str, ...]]) -> dict[str, object]:

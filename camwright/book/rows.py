@@ -53,6 +53,8 @@ LIMIT_COLUMNS = (
     "axis_in_tolerance_binding",
     "mark_earliest_mm",
     "mark_latest_mm",
+    "line_ramp_m_per_s2",
+    "line_stop_m_per_s2",
 )
 """Columns of the limit table of a metric book, see `limit_rows`."""
 
@@ -115,7 +117,8 @@ def limit_rows(book: Book, entries: Iterable[Entry]) -> Iterator[list[Cell]]:
     check: it is released for no others, and starting up takes it through what lies below them. What binds is what forbids the next one
     of the book. The physical line speed is that of the limits of speed, acceleration, jerk and reversal alone, as ``camwright limits``
     finds it; the servo may not settle there. That with the axis in tolerance is the one to which a PLC may let an operator go, with a cam
-    designed for it. Last stand the corrections to which a PLC clamps print marks at the highest line speed of the book.
+    designed for it. Last stand the corrections to which a PLC clamps print marks at the highest line speed of the book,
+    and how hard its line may ramp and stop between standstill and that speed.
     """
     for _, group in groupby(entries, key=lambda entry: book.indices(entry.number)[0]):
         at_length = list(group)
@@ -146,6 +149,7 @@ def _limit_row(book: Book, entries: list[Entry], objective: str, limit: Limit | 
         None if limit is None or limit.in_tolerance is None else _rounded_down(limit.in_tolerance * float(speed)),
         None if limit is None else limit.failing,
         *((None, None) if highest is None else _mark_ends(entries[highest])),
+        *((None, None) if highest is None else _ramps(entries[highest], units)),
     ]
 
 
@@ -153,6 +157,15 @@ def _mark_ends(entry: Entry) -> tuple[float | None, float | None]:
     """Write both ends of what a print mark may ask (mm), rounded towards zero; nothing for no limit."""
     early, late = (None if end is None else int(end * 1e6) / 1e3 for end in (entry.mark_earliest, entry.mark_latest))
     return early, late
+
+
+def _ramps(entry: Entry, units: BookUnits) -> tuple[float | None, float | None]:
+    """Write how hard the line may ramp and stop, rounded down; nothing for no limit."""
+    ramp, stop = (
+        None if value is None else _rounded_down(value * units.acceleration) if value else 0.0
+        for value in (entry.line_ramp, entry.line_stop)
+    )
+    return ramp, stop
 
 
 def _binding(entry: Entry) -> str:

@@ -32,9 +32,10 @@ from camwright.profiles.errors import (
     InputError,
     SolverError,
 )
-from camwright.profiles.objective import CommandObjective
+from camwright.profiles.objective import CommandObjective, of_command
 from camwright.profiles.task import Task
 from camwright.stored.design_file import read_design
+from camwright.validation.production.line_ramp import line_ramp
 from camwright.validation.report import judge
 
 
@@ -125,12 +126,18 @@ def test_the_limit_table_gives_the_highest_speed_and_what_forbids_the_next(done:
         assert highest is None or highest <= float(row["axis_in_tolerance_line_speed_m_per_min"]) <= found
         if highest is None:
             assert (row["mark_earliest_mm"], row["mark_latest_mm"]) == ("", "")
+            assert (row["line_ramp_m_per_s2"], row["line_stop_m_per_s2"]) == ("", "")
         else:
             cut = replace(job.cut, length=float(row["length_mm"]) / 1e3, line_speed=highest / 60)
             marks = redesigned(job.task.with_cut(cut))
             assert float(row["mark_earliest_mm"]) == pytest.approx(marks.earliest * 1e3, abs=1.001e-3)
             assert float(row["mark_earliest_mm"]) >= marks.earliest * 1e3
             assert row["mark_latest_mm"] == ("" if marks.latest is None else f"{int(marks.latest * 1e6) / 1e3}")
+            cam = solve(job.task.with_cut(cut), of_command(row["objective"])).profile
+            allowed = line_ramp(cam, job.task.with_cut(cut))
+            for name, value in (("ramp", allowed.ramp.value), ("stop", allowed.braking.value)):
+                assert float(row[f"line_{name}_m_per_s2"]) == pytest.approx(value, rel=1e-6, abs=1e-5)
+                assert float(row[f"line_{name}_m_per_s2"]) <= value
 
 
 def test_all_three_indexes_say_the_same(done: Path) -> None:
