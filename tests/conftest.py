@@ -6,7 +6,6 @@ import os
 import sys
 from pathlib import Path
 
-import pytest
 from hypothesis import settings
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -21,9 +20,3 @@ else:
     # A source archive has no links to its floors, so it is no package by itself: what was installed of it is tested.
     sys.path[:] = [place for place in sys.path if Path(place).resolve() != ROOT]
     os.environ["PYTHONSAFEPATH"] = "1"  # nor do processes that a test starts look into the archive
-
-
-@pytest.fixture(autouse=True)
-def _no_display(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Draw figures without a display; read when matplotlib is first imported."""
-    monkeypatch.setenv("MPLBACKEND", "Agg")

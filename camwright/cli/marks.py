@@ -11,11 +11,11 @@ from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, final_paths,
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.figures.print_marks import print_marks_figure
-from camwright.figures.saving import written
 from camwright.house.json_text import to_json
 from camwright.house.numbers import Units, number, unit_shown, with_unit
 from camwright.house.output import Voice, complain
 from camwright.house.owned import owned
+from camwright.house.picture_files import write_pictures
 from camwright.house.units import quantity
 from camwright.jobs.job import load_job
 from camwright.jobs.wording import in_job_words
@@ -79,7 +79,7 @@ def run(
             (aside / "marks.csv").write_bytes(clamp_table(found).encode())
             (aside / "marks.json").write_bytes(to_json(marks_answer(found, dead, wander)).encode())
             if not no_figures:
-                written(lambda: print_marks_figure(found), aside, "marks")
+                write_pictures({"marks": print_marks_figure(found)}, aside)
             files = final_paths(aside, directory)
     voice.answer(lambda: marks_answer(found, dead, wander), lambda: _view(found, dead, wander, files))
     return 0 if found.proved else 1

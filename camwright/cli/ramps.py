@@ -14,11 +14,11 @@ from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.drives.options import chosen_targets, parse_targets
 from camwright.drives.withheld import copy_aside, remove
 from camwright.figures.ramps import AIMS, ramps_figure
-from camwright.figures.saving import written
 from camwright.house.json_text import to_json
 from camwright.house.numbers import number, with_unit
 from camwright.house.output import Voice, complain
 from camwright.house.owned import Work, owned
+from camwright.house.picture_files import write_pictures
 from camwright.house.units import quantity
 from camwright.jobs.job import Job, load_job
 from camwright.jobs.table_units import slave_length
@@ -114,7 +114,7 @@ def _write(found: Ramps, tables: RampTables, directory: Path, work: Work, *, fig
         for name, text in texts.items():
             (aside / name).write_bytes(text.encode())
         if figures:
-            written(lambda: ramps_figure(found), aside, "ramps")
+            write_pictures({"ramps": ramps_figure(found)}, aside)
         copy_aside(directory, aside, older)
         files = final_paths(aside, directory)
     remove(directory, older)

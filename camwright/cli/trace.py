@@ -13,11 +13,11 @@ from camwright.cli.options import Json, JudgedBy, NoFigures, Out, Quiet, job_wor
 from camwright.cli.views.checks import checks_view
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import new_table, new_text, stacked
-from camwright.figures.saving import written
 from camwright.figures.trace import trace_figure
 from camwright.house.numbers import Units, number, unit_shown
 from camwright.house.output import Voice, complain
 from camwright.house.owned import owned
+from camwright.house.picture_files import write_pictures
 from camwright.house.units import quantity
 from camwright.jobs.job import Job, load_job
 from camwright.jobs.wording import in_job_words
@@ -85,7 +85,7 @@ def run(
             step("drawing")
             directory = output_directory(out, asked)
             with owned(directory, job_work("trace", asked, job, out), complain) as aside:
-                files = [directory / figure.name for figure in written(lambda: trace_figure(found), aside, "trace")]
+                files = [directory / figure.name for figure in write_pictures({"trace": trace_figure(found)}, aside)]
     voice.answer(lambda: trace_answer(found, file, files), lambda: _view(found, file, files))
     return 0 if found.passed else 1
 

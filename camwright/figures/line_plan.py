@@ -3,50 +3,73 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camwright.figures.marks import blank_figure
-from camwright.figures.saving import written
-from camwright.figures.style import LIMIT, LINES
+from camwright.figures.panel import LEFT, RIGHT, WIDTH, across, first_frame, head, page, stroked
+from camwright.figures.strokes import LIMIT, LINES
 from camwright.house.numbers import unit_shown
+from camwright.house.picture_files import write_pictures
+from camwright.house.pictures import Frame, Marks, Picture
 from camwright.production.cut_list import ListStudy
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+_ABOVE, _BELOW, _GAP = 180.0, 120.0, 18.0
+"""Heights of the panels, and room between them (pt)."""
 
 
 def line_plan_figure(study: ListStudy, directory: Path) -> list[Path]:
     """Write the figure: ``line-plan.svg`` and ``line-plan.png`` in an existing directory."""
-    return written(lambda: draw_line_plan(study), directory, "line-plan")
+    return write_pictures({"line-plan": draw_line_plan(study)}, directory)
 
 
-def draw_line_plan(study: ListStudy) -> Figure:
+def draw_line_plan(study: ListStudy) -> Picture:
     """Draw the plan over time with each piece's highest speed, and below the sync error at each cut."""
     planned, run = study.planned, study.run
     job, plan = planned.job, planned.line
     units = job.units
     speed, length = units.shown["m/s"].factor, units.shown["m"].factor
     ends = plan.when(np.concatenate([[0.0], np.cumsum(planned.asked.gaps)]))
-    figure = blank_figure(4.6)
-    above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
     time = np.unique(np.concatenate([np.linspace(0.0, plan.time, 2001), plan.times]))
-    above.stairs(planned.highest * speed, ends, label="highest speed of each piece", baseline=None, **LIMIT)
-    above.plot(time, plan.speed(time) * speed, label="plan", **LINES["optimised"])
-    above.set_ylabel(f"line speed ({unit_shown('m/s', units)})")
-    above.set_ylim(0.0, 1.08 * float(planned.highest.max()) * speed)
-    below.plot(
-        ends[1:], run.sync_errors * length, linestyle="none", marker="o", markersize=3, color="#d55e00",
-        label="greatest sync error of each piece",
-    )  # fmt: skip
-    below.axhline(job.cut.sync_tolerance * length, color="black", linewidth=0.8, label="sync tolerance")
-    below.set(xlabel="time (s)", ylabel=f"sync error ({unit_shown('m', units)})", ylim=(0.0, None))
-    figure.suptitle(
-        f"{job.name}: {planned.asked.pieces} pieces in {plan.time:.4g} s, at the slowest piece's speed "
-        f"{planned.time_at_slowest:.4g} s",
-        fontsize=9.5,
+    last = float(max(ends[-1], plan.time))
+    steps = np.stack([np.repeat(ends, 2)[1:-1], np.repeat(planned.highest * speed, 2)], axis=1)
+    highest = stroked(LIMIT, steps, "highest speed of each piece")
+    drawn = stroked(LINES["optimised"], np.stack([time, plan.speed(time) * speed], axis=1), "plan")
+    words = "greatest sync error of each piece"
+    marks = Marks(
+        np.stack([ends[1:], run.sync_errors * length], axis=1), LINES["linear_return"].colour, 4.0, "disc", words
     )
-    handles = [*above.get_legend_handles_labels()[0], *below.get_legend_handles_labels()[0]]
-    figure.legend(handles=handles, loc="outside lower center", ncols=4)
-    return figure
+    tolerance = across(job.cut.sync_tolerance * length, 0.0, last, "sync tolerance")
+    heading = head(
+        job.name,
+        f"{planned.asked.pieces} pieces in {plan.time:.4g} s, at the slowest piece's speed {planned.time_at_slowest:.4g} s",
+    )
+    top, width = first_frame(heading), WIDTH - LEFT - RIGHT
+    fastest = 1.08 * float(planned.highest.max()) * speed
+    worst = 1.08 * float(max(run.sync_errors.max(), job.cut.sync_tolerance)) * length
+    frames = [
+        Frame(
+            LEFT,
+            top,
+            width,
+            _ABOVE,
+            np.zeros(2),
+            np.array([last, fastest]),
+            [highest, drawn],
+            "",
+            f"line speed ({unit_shown('m/s', units)})",
+            grid=True,
+        ),
+        Frame(
+            LEFT,
+            top + _ABOVE + _GAP,
+            width,
+            _BELOW,
+            np.zeros(2),
+            np.array([last, worst]),
+            [tolerance, marks],
+            "time (s)",
+            f"sync error ({unit_shown('m', units)})",
+            grid=True,
+        ),
+    ]
+    return page(heading, frames, [highest, drawn, marks, tolerance])

@@ -2,62 +2,70 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from camwright.figures.marks import blank_figure
+from camwright.figures.panel import LEFT, RIGHT, WIDTH, first_frame, head, page, stroked
+from camwright.figures.strokes import BLACK, LINES, Stroke
 from camwright.house.numbers import unit_shown
+from camwright.house.pictures import Area, Frame, Item, Line, Picture
+from camwright.house.pictures import Marks as Dots
 from camwright.production.marks import ByMethod, Marks
 from camwright.profiles.mark_range import MarkRange
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-_LOOKS = (
-    ("redesign", "next length designed anew", "#0072b2", "-", 1.7),
-    ("master_phase", "phase of the master", "#d55e00", "--", 1.3),
-    ("slave_offset", "offset of the slave", "#007a5a", "-.", 1.3),
+_LOOKS: tuple[tuple[str, str, Stroke, str], ...] = (
+    ("redesign", "next length designed anew", LINES["optimised"], "#e0eef6"),
+    ("master_phase", "phase of the master", LINES["linear_return"], "#faebe0"),
+    ("slave_offset", "offset of the slave", LINES["poly_3_4_5"], "#e0efeb"),
 )
+"""Of each method: its name, words for it, the stroke of its ends, and the colour of what lies between them."""
 
 _TALLEST = 1.5
 """Part of the cut length to which the picture is cut off where a range goes farther, or has no end."""
 
+_PANEL = 192.0
+"""Height of the panel (pt)."""
 
-def print_marks_figure(found: Marks) -> Figure:
+
+def print_marks_figure(found: Marks) -> Picture:
     """Draw the earliest and the latest correction over the line speed; a range without an end goes to the picture's edge."""
     job, units = found.job, found.job.units
     length, speed = units.shown["m"].factor, units.shown["m/s"].factor
     edge = _TALLEST * job.cut.length
-    figure = blank_figure(3.6)
-    axes = figure.add_subplot()
     speeds = np.array([each.line_speed for each in found.by_speed]) * speed
-    for method, words, colour, dashes, width in _LOOKS:
-        ranges = [_of(each, method) for each in found.by_speed]
-        if any(each is None for each in ranges):
+    areas: list[Item] = []
+    lines: list[Line] = []
+    dots: list[Item] = []
+    for method, words, stroke, colour in _LOOKS:
+        shown = [each for each in (_of(each, method) for each in found.by_speed) if each is not None]
+        if len(shown) < len(found.by_speed):
             continue
-        shown = [each for each in ranges if each is not None]
         low = np.array([max(-edge, -edge if each.earliest is None else each.earliest) for each in shown]) * length
         high = np.array([min(edge, edge if each.latest is None else each.latest) for each in shown]) * length
-        axes.fill_between(speeds, low, high, color=colour, alpha=0.12, linewidth=0)
-        axes.plot(speeds, low, color=colour, linestyle=dashes, linewidth=width, label=words, marker=".")
-        axes.plot(
-            speeds,
-            np.where(high < edge * length, high, np.nan),
-            color=colour,
-            linestyle=dashes,
-            linewidth=width,
-            marker=".",
-        )
-    axes.axhline(0.0, color="black", linewidth=0.8)
-    axes.set_xlim(0.0, float(speeds[-1]))
+        outline = np.concatenate([np.stack([speeds, low], axis=1), np.stack([speeds, high], axis=1)[::-1]])
+        areas.append(Area(outline, colour))
+        lines.append(stroked(stroke, np.stack([speeds, low], axis=1), words))
+        ends = np.stack([speeds, high], axis=1)[high < edge * length]
+        lines.append(stroked(stroke, ends))
+        # what was computed; between these it is drawn straight
+        dots += [Dots(points, stroke.colour, 3.5, "disc") for points in (np.stack([speeds, low], axis=1), ends)]
+    top = float(speeds[-1])
     lowest = min((each.redesign.earliest or 0.0) for each in found.by_speed)
-    axes.set_ylim(1.1 * max(lowest, -edge) * length, 0.6 * job.cut.length * length)
-    axes.set_xlabel(f"line speed ({unit_shown('m/s', units)})")
-    axes.set_ylabel(f"mark early (−) or late (+) ({unit_shown('m', units)})")
-    figure.suptitle(f"{job.name}: how far a print mark may move the cut", fontsize=9.5)
-    figure.legend(loc="outside lower center", ncols=3)
-    return figure
+    heights = np.array([1.1 * max(lowest, -edge), 0.6 * job.cut.length]) * length
+    zero = Line(np.array([[0.0, 0.0], [top, 0.0]]), BLACK, 1.0)
+    heading = head(job.name, "how far a print mark may move the cut")
+    frame = Frame(
+        LEFT,
+        first_frame(heading),
+        WIDTH - LEFT - RIGHT,
+        _PANEL,
+        np.array([0.0, heights[0]]),
+        np.array([top, heights[1]]),
+        [*areas, zero, *lines, *dots],
+        f"line speed ({unit_shown('m/s', units)})",
+        f"mark early (−)\nor late (+) ({unit_shown('m', units)})",
+        grid=True,
+    )
+    return page(heading, [frame], [line for line in lines if line.label])
 
 
 def _of(each: ByMethod, method: str) -> MarkRange | None:

@@ -2,65 +2,123 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from camwright.figures.marks import blank_figure
-from camwright.figures.saving import written
-from camwright.figures.style import LIMIT, LINES, title
+from camwright.figures.panel import LEFT, RIGHT, WIDTH, across, first_frame, head, page, profile_line
+from camwright.figures.strokes import BLACK, LINES
+from camwright.figures.style import title
 from camwright.house.numbers import unit_shown
+from camwright.house.picture_files import write_pictures
+from camwright.house.pictures import Frame, Line, Marks, Picture, Shape, Tick
 from camwright.production.simulation import MOTIONS, ShiftStudy
 from camwright.profiles.polynomial.profile import FloatArray
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 _DOTS = 600
 """Pieces drawn one by one; of more, the worst of each of so many stretches."""
 
-_MARKS = {"optimised": "o", "linear_return": "x"}
+_MARKS: dict[str, Shape] = {"optimised": "disc", "linear_return": "cross"}
+
+_SPEED, _ERRORS, _SPREAD = 96.0, 144.0, 144.0
+"""Heights of the panels (pt)."""
+
+_FEW = 0.5
+"""Number of pieces at which the axis of the histogram begins: below one."""
 
 
 def shift_figure(study: ShiftStudy, directory: Path) -> list[Path]:
     """Write the figure: ``shift.svg`` and ``shift.png`` in an existing directory."""
-    return written(lambda: draw_shift(study), directory, "shift")
+    return write_pictures({"shift": draw_shift(study)}, directory)
 
 
-def draw_shift(study: ShiftStudy) -> Figure:
+def draw_shift(study: ShiftStudy) -> Picture:
     """Draw speed and sync errors over time, and the histogram of the length errors."""
-    planned, units = study.planned, study.planned.job.units
-    speed, length = units.shown["m/s"].factor, units.shown["m"].factor
-    figure = blank_figure(6.2)
-    above, middle, below = figure.subplots(3, 1, height_ratios=(2, 3, 3))
-    line = planned.line
-    time = np.unique(np.concatenate([np.linspace(0.0, study.cut_times[-1], 2001), line.times]))
-    time = time[time <= study.cut_times[-1]]
-    above.plot(time, line.speed(time) * speed, color="black", linewidth=1.2)
-    above.set(ylabel=f"line speed\n({unit_shown('m/s', units)})", ylim=(0.0, None))
-    above.sharex(middle)
+    planned = study.planned
+    last = float(study.cut_times[-1])
+    heading = head(planned.job.name, f"{planned.asked.pieces} pieces, {last:.5g} s")
+    top = first_frame(heading)
+    second = top + _SPEED + 18.0
+    errors, marks = _errors(study, last, second)
+    frames = [_speed(study, last, top), errors, _spread(study, second + _ERRORS + 48.0)]
+    return page(heading, frames, [*marks, across(0.0, 0.0, 1.0, "sync tolerance")])
+
+
+def _speed(study: ShiftStudy, last: float, top: float) -> Frame:
+    """Draw the speed of the line."""
+    units, line = study.planned.job.units, study.planned.line
+    time = np.unique(np.concatenate([np.linspace(0.0, last, 2001), line.times]))
+    time = time[time <= last]
+    speeds = line.speed(time) * units.shown["m/s"].factor
+    high = 1.08 * float(speeds.max()) or 1.0
+    return Frame(
+        LEFT,
+        top,
+        WIDTH - LEFT - RIGHT,
+        _SPEED,
+        np.zeros(2),
+        np.array([last, high]),
+        [Line(np.stack([time, speeds], axis=1), BLACK, 1.5)],
+        "",
+        f"line speed\n({unit_shown('m/s', units)})",
+        grid=True,
+        apart=24.0,
+    )
+
+
+def _errors(study: ShiftStudy, last: float, top: float) -> tuple[Frame, list[Marks]]:
+    """Draw the sync error of each piece."""
+    job = study.planned.job
+    length = job.units.shown["m"].factor
+    marks = []
     for motion in MOTIONS:
         at, error = _thinned(study.cut_times, study.runs[motion].nominal.sync_errors)
-        look: dict[str, Any] = {"color": LINES[motion]["color"], "marker": _MARKS[motion], "markersize": 3}
-        middle.plot(at, error * length, linestyle="none", label=title(motion), **look)
-    middle.axhline(planned.job.cut.sync_tolerance * length, label="sync tolerance", **LIMIT)
-    middle.set(xlabel="time (s)", ylabel=f"sync error of each piece\n({unit_shown('m', units)})", ylim=(0.0, None))
-    _histogram(below, study, length)
-    below.set(xlabel=f"length less what was asked ({unit_shown('m', units)})", ylabel="pieces")
-    figure.suptitle(f"{planned.job.name}: {planned.asked.pieces} pieces, {study.cut_times[-1]:.5g} s", fontsize=9.5)
-    figure.legend(handles=middle.get_legend_handles_labels()[0], loc="outside lower center", ncols=3)
-    return figure
+        points = np.stack([at, error * length], axis=1)
+        marks.append(Marks(points, LINES[motion].colour, 4.0, _MARKS[motion], title(motion)))
+    tolerance = job.cut.sync_tolerance * length
+    high = 1.08 * max(tolerance, *(float(each.points[:, 1].max()) for each in marks))
+    frame = Frame(
+        LEFT,
+        top,
+        WIDTH - LEFT - RIGHT,
+        _ERRORS,
+        np.zeros(2),
+        np.array([last, high]),
+        [across(tolerance, 0.0, last), *marks],
+        "time (s)",
+        f"sync error of\neach piece ({unit_shown('m', job.units)})",
+        grid=True,
+        apart=24.0,
+    )
+    return frame, marks
 
 
-def _histogram(axes: Axes, study: ShiftStudy, length: float) -> None:
+def _spread(study: ShiftStudy, top: float) -> Frame:
     """Draw the histograms as outlines; the counts as powers of ten, so that the few bad pieces are seen."""
+    units = study.planned.job.units
+    edges = study.edges * units.shown["m"].factor
+    lines = []
     for motion in MOTIONS:
-        look = {name: LINES[motion][name] for name in ("color", "linestyle", "linewidth")}
-        axes.stairs(np.maximum(study.histogram(motion), 0.5), study.edges * length, baseline=0.5, **look)
-    axes.set_yscale("log")
-    axes.set_ylim(bottom=0.5)
+        counts = np.log10(np.maximum(study.histogram(motion), _FEW))
+        outline = np.stack([np.repeat(edges, 2)[1:-1], np.repeat(counts, 2)], axis=1)
+        lines.append(replace(profile_line(motion, outline), width=1.5))
+    low = math.log10(_FEW)
+    high = max(float(line.points[:, 1].max()) for line in lines) + 0.15
+    return Frame(
+        LEFT,
+        top,
+        WIDTH - LEFT - RIGHT,
+        _SPREAD,
+        np.array([float(edges[0]), low]),
+        np.array([float(edges[-1]), high]),
+        lines,
+        f"length less what was asked ({unit_shown('m', units)})",
+        "pieces",
+        grid=True,
+        yticks=[Tick(float(power), f"{10**power}") for power in range(math.floor(high) + 1)],
+    )
 
 
 def _thinned(time: FloatArray, error: FloatArray) -> tuple[FloatArray, FloatArray]:

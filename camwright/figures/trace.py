@@ -2,20 +2,30 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from camwright.figures.marks import blank_figure, line_mark, patch_mark
-from camwright.figures.style import LIMIT, SHEAR_COLOUR, SYNC_COLOUR, shade_shear_zone, shade_zones
-from camwright.house.numbers import with_unit
+from camwright.figures.panel import (
+    LEFT,
+    NOTHING,
+    RIGHT,
+    WIDTH,
+    across,
+    band,
+    first_frame,
+    head,
+    page,
+    stroked,
+    zone_bands,
+)
+from camwright.figures.strokes import BLACK, Stroke
+from camwright.house.numbers import converted, unit_shown, with_unit
+from camwright.house.pictures import Frame, Item, Line, Marks, Picture
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.studies.recording import RecordedRun
 from camwright.validation.recording.cut_errors import sync_parts
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 _MOST_POINTS = 20_000
 """Points drawn of a curve over all cycles."""
@@ -23,41 +33,32 @@ _MOST_POINTS = 20_000
 _MOST_CUTS = 60
 """Cuts whose sync error is drawn."""
 
-_DESIGN: dict[str, Any] = {"color": "black", "linewidth": 0.9, "zorder": 3}
-_COMMAND: dict[str, Any] = {"color": "#d55e00", "linewidth": 0.9, "zorder": 2}
-_AXIS: dict[str, Any] = {"color": "#0072b2", "linewidth": 0.9, "zorder": 2.5}
-_CUT: dict[str, Any] = {"color": "#0072b2", "linestyle": "none", "marker": "o", "markersize": 3.0, "zorder": 3}
-_LINE: dict[str, Any] = {"color": "#007a5a", "linewidth": 1.2, "zorder": 2}
+_DESIGN, _COMMAND, _AXIS = Stroke(BLACK, 1.2), Stroke("#d55e00", 1.2), Stroke("#0072b2", 1.2)
+_LINE = Stroke("#007a5a", 1.6)
+
+_PANEL = 126.0
+"""Height of a panel (pt)."""
 
 
-def trace_figure(found: RecordedRun) -> Figure:
+def trace_figure(found: RecordedRun) -> Picture:
     """Draw a recorded run over its design."""
     job = found.job
-    figure = blank_figure(9.2)
-    whole, apart, zone, cuts = figure.subplots(4, 1)
-    _positions(whole, found)
-    _beside(apart, found)
-    for axes in (whole, apart):
-        shade_zones(axes, job.cut)
-        axes.set_xlim(0.0, job.cut.length * 1e3)
-    apart.set_xlabel("master (mm)")
-    _zones(zone, found)
-    _cuts(cuts, found)
-    figure.suptitle(
-        f"{job.name}: {len(found.cuts)} recorded cuts at {with_unit(found.run.line_speed, 'm/s')}",
-        fontsize=9,
-    )
-    handles: list[Any] = [
-        line_mark(label="design", **_DESIGN),
-        line_mark(label="command", **_COMMAND),
-        line_mark(label="axis", **_AXIS),
-        line_mark(label="sync tolerance", **LIMIT),
-        line_mark(label="offset and drift", **_LINE),
-        patch_mark(facecolor=SYNC_COLOUR, label="sync zone"),
-        patch_mark(facecolor=SHEAR_COLOUR, edgecolor="#8c8c8c", hatch="////", linewidth=0, label="shear zone"),
+    words = f"{len(found.cuts)} recorded cuts at {with_unit(found.run.line_speed, 'm/s', units=job.units)}"
+    heading = head(job.name, words)
+    top = first_frame(heading) + 24.0
+    beside = top + _PANEL + 36.0
+    zones = beside + _PANEL + 60.0
+    frames = [_positions(found, top), _beside(found, beside), _zones(found, zones), _cuts(found, zones + _PANEL + 60.0)]
+    legend: list[Item] = [
+        stroked(_DESIGN, NOTHING, "design"),
+        stroked(_COMMAND, NOTHING, "command"),
+        stroked(_AXIS, NOTHING, "axis"),
+        across(0.0, 0.0, 1.0, "sync tolerance"),
+        stroked(_LINE, NOTHING, "offset and drift"),
+        band(0.0, 1.0, "sync zone", job.units),
+        band(0.0, 1.0, "shear zone", job.units),
     ]
-    figure.legend(handles=handles, loc="outside lower center", ncols=4)
-    return figure
+    return page(heading, frames, legend)
 
 
 def _folded(found: RecordedRun) -> tuple[FloatArray, FloatArray]:
@@ -69,68 +70,125 @@ def _folded(found: RecordedRun) -> tuple[FloatArray, FloatArray]:
     return place, cycle
 
 
-def _positions(axes: Axes, found: RecordedRun) -> None:
+def _curve(found: RecordedRun, place: FloatArray, values: FloatArray, stroke: Stroke) -> Line:
+    """Draw a curve of the slave over the master, in the units of the job."""
+    units = found.job.units
+    scale = [converted(1.0, "m", units), converted(1.0, found.job.machine.slave_unit, units)]
+    return stroked(stroke, np.stack([_thin(place), _thin(values)], axis=1) * scale)
+
+
+def _panel(found: RecordedRun, top: float, items: Sequence[Item], words: tuple[str, str, str]) -> Frame:
+    """Draw a panel over the cycle; words are those below, beside and above it."""
+    job = found.job
+    points = np.concatenate([item.points for item in items if isinstance(item, Line)])
+    low, high = float(np.nanmin(points[:, 1])), float(np.nanmax(points[:, 1]))
+    room = 0.05 * (high - low) or 1.0
+    end = converted(job.cut.length, "m", job.units)
+    return Frame(
+        LEFT,
+        top,
+        WIDTH - LEFT - RIGHT,
+        _PANEL,
+        np.array([0.0, low - room]),
+        np.array([end, high + room]),
+        [*zone_bands(job.cut, job.units), *items],
+        *words,
+        grid=True,
+        apart=24.0,
+    )
+
+
+def _positions(found: RecordedRun, top: float) -> Frame:
     """Draw command and axis over the master, all cycles over one another, on the design."""
-    factor, unit = _slave(found)
     place, cycle = _folded(found)
     grid = np.linspace(found.profile.start, found.profile.end, 801)
-    axes.plot(grid * 1e3, found.profile(grid) * factor, **_DESIGN)
-    for signal, look in ((found.run.command, _COMMAND), (found.run.axis, _AXIS)):
-        values = signal - cycle * found.profile.advance
-        axes.plot(_thin(place) * 1e3, _thin(values) * factor, **look)
-    axes.set_ylabel(f"slave ({unit})")
-    axes.set_title("command and axis over the master, all cycles")
+    lines = [
+        _curve(found, place, signal - cycle * found.profile.advance, stroke)
+        for signal, stroke in ((found.run.command, _COMMAND), (found.run.axis, _AXIS))
+    ]
+    lines.append(_curve(found, grid, found.profile(grid), _DESIGN))
+    return _panel(found, top, lines, ("", f"slave ({_slave(found)})", "command and axis over the master, all cycles"))
 
 
-def _beside(axes: Axes, found: RecordedRun) -> None:
+def _beside(found: RecordedRun, top: float) -> Frame:
     """Draw command and axis less the design."""
-    factor, unit = _slave(found)
     place, _ = _folded(found)
     design = found.profile(found.run.master, outside="repeat")
-    for signal, look in ((found.run.axis, _AXIS), (found.run.command, _COMMAND)):
-        axes.plot(_thin(place) * 1e3, _thin(signal - design) * factor, **{**look, "linewidth": 0.6})
-    axes.set_ylabel(f"off the design ({unit})")
-    axes.set_title("command and axis less the design")
+    lines = [
+        _curve(found, place, signal - design, replace(stroke, width=0.8))
+        for signal, stroke in ((found.run.command, _COMMAND), (found.run.axis, _AXIS))
+    ]
+    words = (f"off the design ({_slave(found)})", "command and axis less the design")
+    return _panel(found, top, lines, (f"master ({unit_shown('m', found.job.units)})", *words))
 
 
-def _zones(axes: Axes, found: RecordedRun) -> None:
+def _zones(found: RecordedRun, top: float) -> Frame:
     """Draw the sync error of each cut over the sync zone."""
     job, cut = found.job, found.job.cut
+    factor, length = converted(1.0, "m", job.units), unit_shown("m", job.units)
     parts = sync_parts(found.run, found.profile, job.task, 0.0, cut.sync_zone)
-    for _, part in parts[:: max(1, -(-len(parts) // _MOST_CUTS))]:
-        axes.plot(part.along * 1e3, part.error * 1e3, **{**_AXIS, "linewidth": 0.5})
-    shade_shear_zone(axes, cut.shear_zone_at, min(cut.shear_zone_at + cut.shear_zone, cut.sync_zone))
-    _tolerance(axes, found)
-    size = max([abs(each.greatest) for each in found.cuts] + [cut.sync_tolerance])
-    axes.set_ylim(-1.4e3 * size, 1.4e3 * size)
-    axes.set_xlim(0.0, cut.sync_zone * 1e3)
-    axes.set_xlabel("master from the start of the sync zone (mm)")
-    axes.set_ylabel("sync error (mm)")
-    axes.set_title("tool less material in the sync zone, every cut")
+    lines = [
+        stroked(replace(_AXIS, width=0.7), np.stack([part.along.ravel(), part.error.ravel()], axis=1) * factor)
+        for _, part in parts[:: max(1, -(-len(parts) // _MOST_CUTS))]
+    ]
+    size = 1.4 * factor * max([abs(each.greatest) for each in found.cuts] + [cut.sync_tolerance])
+    end = cut.sync_zone * factor
+    shear = band(cut.shear_zone_at, min(cut.shear_zone_at + cut.shear_zone, cut.sync_zone), "shear zone", job.units)
+    return Frame(
+        LEFT,
+        top,
+        WIDTH - LEFT - RIGHT,
+        _PANEL,
+        np.array([0.0, -size]),
+        np.array([end, size]),
+        [shear, *_tolerance(found, 0.0, end), *lines],
+        f"master from the start of the sync zone ({length})",
+        f"sync error ({length})",
+        "tool less material in the sync zone, every cut",
+        grid=True,
+        apart=24.0,
+    )
 
 
-def _cuts(axes: Axes, found: RecordedRun) -> None:
+def _cuts(found: RecordedRun, top: float) -> Frame:
     """Draw the error of each cut, and the line of offset and drift through them."""
-    total = found.total
+    total, units = found.total, found.job.units
+    factor = converted(1.0, "m", units)
     numbers = np.array([cut.number for cut in found.cuts], dtype=np.float64)
-    axes.plot(numbers, [cut.error * 1e3 for cut in found.cuts], **_CUT)
+    errors = np.array([cut.error for cut in found.cuts]) * factor
     middle = numbers - numbers.mean()
-    axes.plot(numbers, (total.offset + (total.drift or 0.0) * middle) * 1e3, **_LINE)
-    _tolerance(axes, found)
-    axes.set_xlabel("cut")
-    axes.set_ylabel("sync error (mm)")
-    axes.set_title("mean over the shear zone, cut by cut")
-    axes.locator_params(axis="x", integer=True)
+    line = (total.offset + (total.drift or 0.0) * middle) * factor
+    tolerance = found.job.cut.sync_tolerance * factor
+    size = 1.2 * max(tolerance, float(np.abs(errors).max()), float(np.abs(line).max()))
+    ends = float(numbers.min()) - 0.5, float(numbers.max()) + 0.5
+    return Frame(
+        LEFT,
+        top,
+        WIDTH - LEFT - RIGHT,
+        _PANEL,
+        np.array([ends[0], -size]),
+        np.array([ends[1], size]),
+        [
+            *_tolerance(found, *ends),
+            stroked(_LINE, np.stack([numbers, line], axis=1)),
+            Marks(np.stack([numbers, errors], axis=1), _AXIS.colour, 4.0, "disc"),
+        ],
+        "cut",
+        f"sync error ({unit_shown('m', units)})",
+        "mean over the shear zone, cut by cut",
+        grid=True,
+        apart=24.0,
+    )
 
 
-def _tolerance(axes: Axes, found: RecordedRun) -> None:
-    for sign in (-1.0, 1.0):
-        axes.axhline(sign * found.job.cut.sync_tolerance * 1e3, **LIMIT)
+def _tolerance(found: RecordedRun, start: float, end: float) -> list[Line]:
+    tolerance = converted(found.job.cut.sync_tolerance, "m", found.job.units)
+    return [across(sign * tolerance, start, end) for sign in (-1.0, 1.0)]
 
 
-def _slave(found: RecordedRun) -> tuple[float, str]:
-    """Factor and unit of the slave as it is drawn."""
-    return (1e3, "mm") if found.job.machine.slave_unit == "m" else (180.0 / np.pi, "°")
+def _slave(found: RecordedRun) -> str:
+    """Name the unit of the slave as it is drawn."""
+    return unit_shown(found.job.machine.slave_unit, found.job.units)
 
 
 def _thin(values: FloatArray) -> FloatArray:

@@ -1,12 +1,12 @@
-"""The fonts that sheets are set in, which other packages carry."""
+"""The fonts that sheets and figures are set in: DejaVu Sans, which camwright carries, and Noto Sans SC, which a package does."""
 
 from __future__ import annotations
 
 from importlib.util import find_spec
 from pathlib import Path
 
-_LATIN = ("matplotlib", "mpl-data/fonts/ttf", "DejaVuSans.ttf")
-_HAN = ("pylopdf_fonts_zh_cn", "", "NotoSansSC-Regular.otf")
+_LATIN = Path(__file__).with_name("typefaces") / "DejaVuSans.ttf"
+_HAN = ("pylopdf_fonts_zh_cn", "NotoSansSC-Regular.otf")
 
 
 def font_files() -> tuple[Path, Path]:
@@ -15,19 +15,15 @@ def font_files() -> tuple[Path, Path]:
     Raises
     ------
     ModuleNotFoundError
-        The package that carries one is not installed.
+        The package that carries the latter is not installed.
     """
-    latin, han = (_file(*place) for place in (_LATIN, _HAN))
-    return latin, han
+    package, name = _HAN
+    spec = find_spec(package)
+    if spec is None or spec.origin is None:
+        raise ModuleNotFoundError(f"the package {package}, which carries the font {name}, is not installed")
+    return _LATIN, Path(spec.origin).parent / name
 
 
 def font_folders() -> list[str]:
     """Name the folders of the fonts, as typst takes them."""
     return [str(font.parent) for font in font_files()]
-
-
-def _file(package: str, folder: str, name: str) -> Path:
-    spec = find_spec(package)  # without importing it: matplotlib is large
-    if spec is None or spec.origin is None:
-        raise ModuleNotFoundError(f"the package {package}, which carries the font {name}, is not installed")
-    return Path(spec.origin).parent / folder / name

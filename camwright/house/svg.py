@@ -42,6 +42,9 @@ _BLACK, _GRID, _ZERO = "#000", "#ccc", "#999"
 _SAMPLE, _GAP, _BETWEEN, _BELOW, _ROW = 24.0, 7.0, 22.0, 12.0, 15.0
 """Length of a sample in the legend, from it to its text, from entry to entry, from its last row to the lower edge, from row to row (pt)."""
 
+_BESIDE = 46.0
+"""From a frame to the middle of its y label (pt), where its numbers are not long."""
+
 _HEAD = 8.0
 """Length of an arrow's head (pt)."""
 
@@ -178,9 +181,10 @@ def _axes(frame: Frame, xticks: list[_Tick], yticks: list[_Tick]) -> Iterator[st
         yield from (_text(text, at, height + 10.5, "middle") for at, text, _ in xticks)
     for number, text in enumerate(frame.xlabel.split("\n") if frame.xlabel else []):
         yield _text(text, 0.5 * width, height + 23.0 + 14.0 * number, "middle")
+    beside = max([_BESIDE, *(16.5 + 0.93 * text_width(text) for _, text, _ in yticks)])  # clear of the longest number
     for number, text in enumerate(reversed(frame.ylabel.split("\n") if frame.ylabel else [])):
         turned = _text(text, 0.0, 0.0, "middle")
-        yield f'<g transform="translate({-46.0 - 14.0 * number:g} {0.5 * height:g}) rotate(-90)">{turned}</g>'
+        yield f'<g transform="translate({-beside - 14.0 * number:g} {0.5 * height:g}) rotate(-90)">{turned}</g>'
 
 
 def _on_page(frame: Frame, points: FloatArray) -> FloatArray:
