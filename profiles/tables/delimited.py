@@ -13,7 +13,7 @@ import numpy as np
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.profiles.tables.column_words import bare_unit, split_unit
-from camwright.profiles.tables.text import refuse
+from camwright.profiles.tables.text import refuse, shown
 
 SEPARATORS = ("\t", ";", "|", ",", " ")
 """Signs that may separate cells; of equals the first."""
@@ -23,6 +23,8 @@ LONGEST_LINE = 20_000
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,4})?")
 _COMMA = re.compile(r"[+-]?(?:[0-9]+,[0-9]*|,[0-9]+)(?:[eE][+-]?[0-9]{1,4})?")
 _STAMP = re.compile(r"[0-9]{1,4}[-./:][0-9]{1,2}[-./:][0-9]{1,4}(?:[ T][0-9:.,]{1,20})?(?: ?[AP]M)?")
+_FAULT_CELL = re.compile(r"#(?:[A-Z/0]{3,12}[!?]|N/A|NV)[\s,;|]")
+"""What a spreadsheet writes for a cell that it cannot compute: the row that begins with one is no comment."""
 _SAID = re.compile(r"sep=(.)", re.IGNORECASE)
 _REMARK = re.compile(r"\s+//.*")
 _MISFIT = (
@@ -179,6 +181,8 @@ def read_sheet(
     else:
         first = layout.above([cells for _, cells in split])
     headings, rows = split[:first], split[first:]
+    if layout is None:
+        _require_no_spoilt_row(headings, comma, names, place)
     width = _width(headings, rows)
     if layout is not None:  # rows may end early, so their usual width says little
         width = max((len(_trimmed(cells)) for _, cells in headings or rows), default=0)
@@ -208,7 +212,7 @@ def _lines(text: str, place: str) -> tuple[list[tuple[int, str]], list[tuple[int
         line = raw.strip(" \r")
         if not line.strip("\t;,| "):
             continue
-        if line.lstrip().startswith(("#", "//")):
+        if line.lstrip().startswith(("#", "//")) and not _FAULT_CELL.match(line.lstrip()):
             if not kept:
                 remarks.append((number, line.lstrip().lstrip("#/").strip()))
             continue
@@ -264,6 +268,21 @@ def _is_row(cells: Sequence[str], comma: bool) -> bool:
     filled = [cell.strip() for cell in cells if cell.strip()]
     found = sum(number_in(cell, comma) is not None for cell in filled)
     return found >= 2 and (number_in(filled[0], comma) is not None or _STAMP.fullmatch(filled[0]) is not None)
+
+
+def _require_no_spoilt_row(
+    headings: Sequence[tuple[int, list[str]]], comma: bool, names: Callable[[str], str | None], place: str
+) -> None:
+    """Refuse a row below the names of which one cell is no number: passed over as a heading it would be another table."""
+    below = False
+    for number, cells in headings:
+        filled = [cell.strip() for cell in cells]
+        wrong = [cell for cell in filled if number_in(cell, comma) is None]
+        if below and len(wrong) == 1 and len(filled) > 1:
+            raise refuse(
+                place, number, f"{shown(wrong[0])} is no number, and the row stands below the names of the columns"
+            )
+        below = below or sum(names(split_unit(cell)[0]) is not None for cell in cells) >= 2
 
 
 def _width(headings: Sequence[tuple[int, list[str]]], rows: Sequence[tuple[int, list[str]]]) -> int:

@@ -68,11 +68,12 @@ class Assignment:
 
 @dataclass(frozen=True)
 class Program:
-    """What was found in a text."""
+    """What was found in a text; of assignments under an index that nobody knows, what is assigned to, and the line."""
 
     declarations: tuple[Declaration, ...]
     assignments: tuple[Assignment, ...]
     calls: tuple[Call, ...]
+    unplaced: tuple[tuple[str, int], ...] = ()
 
     def arrays_of(self, type_name: str) -> list[Declaration]:
         """List the arrays of a type that have an initial value."""

@@ -30,6 +30,8 @@ class Reader:
         self.declarations: list[Declaration] = []
         self.assignments: list[Assignment] = []
         self.calls: list[Call] = []
+        self.unplaced: list[tuple[str, int]] = []
+        self._last = ""
 
     # -- statements -------------------------------------------------------------------------------------------------
 
@@ -40,7 +42,7 @@ class Reader:
                 self.statement()
             else:
                 self.words.step()
-        return Program(tuple(self.declarations), tuple(self.assignments), tuple(self.calls))
+        return Program(tuple(self.declarations), tuple(self.assignments), tuple(self.calls), tuple(self.unplaced))
 
     def statement(self) -> None:
         """Read a declaration, an assignment or a call; of anything else one word is passed over."""
@@ -60,6 +62,8 @@ class Reader:
                 value = self.sum_of(value)
             elif isinstance(value, Word) and (number := self.known(value)) is not None:
                 value = number
+            if path is None:
+                self.unplaced.append((self._last, line))
             self.assign(path, value, line)
         elif self.words.now.text == "(":
             self.calls.append(self.call(str(path[-1]) if path else "", 0))
@@ -76,9 +80,9 @@ class Reader:
         self.assignments.append(Assignment(path, value, line))
 
     def sum_of(self, value: Value) -> Value:
-        """``value + 1`` and ``value - 1`` of whole numbers; any other expression is no number, which table readers refuse."""
+        """Add a number to a variable, ``point + 1``; any other expression is no number, which table readers refuse."""
         sign = {"+": 1.0, "-": -1.0}.get(self.words.now.text)
-        first = self.known(value)
+        first = self.known(value) if isinstance(value, Word) else None
         if sign is not None and first is not None and self.words.after.kind == "number":
             self.words.step()
             second = self.value(0)
@@ -128,11 +132,13 @@ class Reader:
     def path(self, depth: int) -> tuple[str | int, ...] | None:
         """``a.b[1].c`` as names and indices; ``None`` if an index is not known."""
         parts: list[str | int] = [self.words.step().text.lower()]
+        self._last = str(parts[0])
         known = True
         while True:
             if self.words.now.text == "." and self.words.after.kind == "name":
                 self.words.step()
                 parts.append(self.words.step().text.lower())
+                self._last = str(parts[-1])
             elif self.words.now.text == "[":
                 self.words.step()
                 while True:
@@ -161,7 +167,14 @@ class Reader:
         text = self.words.now.text
         if text in ("-", "+"):
             self.words.step()
+            again = self.words.now.text in (
+                "-",
+                "+",
+                "(",
+            )  # a sign of a sign, or of what stands in brackets, is an expression
             inner = self.value(depth + 1)
+            if again:
+                return Other(self.words.line)
             return (-inner if text == "-" else inner) if isinstance(inner, float) else Other(self.words.line)
         if text == "(":
             return self.structure(depth)

@@ -45,6 +45,7 @@ _MEMBERS = frozenset(
         "slavejerk",
     )
 )
+_MOTION_MEMBERS = ("masterpos", "slavepos", "slavevelo", "slaveacc")
 _LINE, _REST, _MOTION = 1, 5, 15
 _IGNORE = 0
 
@@ -147,13 +148,25 @@ def _gather(program: Program, place: str) -> dict[int, tuple[dict[str, Value], i
             if not isinstance(item, Struct):
                 raise refuse(place, array.line, "a point must be a list of ( member := value )")
             points[array.bounds[0][0] + offset] = (dict(item.members), item.line)
-    for entry in program.assignments:
-        if len(entry.path) < 3 or not isinstance(entry.path[-2], int) or entry.path[-1] not in _MEMBERS:
+    loose = [(str(entry.path[0]), entry.line) for entry in program.assignments if len(entry.path) == 1]
+    for name, line in (*program.unplaced, *loose):
+        if name in _MOTION_MEMBERS:
+            raise refuse(
+                place,
+                line,
+                f"{shown(name)} is given a value, but of which point is not known: write its index as a number",
+            )
+    filled = [entry for entry in program.assignments if len(entry.path) > 2 and isinstance(entry.path[-2], int)]
+    known = arrays | {entry.path[:-2] for entry in filled if entry.path[-1] in _MEMBERS}
+    for entry in filled:
+        if entry.path[-1] not in _MEMBERS:
+            if entry.path[:-2] in known:
+                raise refuse(place, entry.line, f"a point has no member {shown(str(entry.path[-1]))}")
             continue
         arrays.add(entry.path[:-2])
         if len(arrays) > 1:
             raise refuse(place, entry.line, "the text fills more than one array of points; leave one in the file")
-        member, index = str(entry.path[-1]), entry.path[-2]
+        member, index = str(entry.path[-1]), int(entry.path[-2])
         members, line = points.setdefault(index, ({}, entry.line))
         if member in members and members[member] != entry.value:
             raise refuse(place, entry.line, f"{shown(member)} of point {index} is given twice, with different values")
