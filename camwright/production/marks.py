@@ -5,18 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from camwright.design.feasible.feasibility import is_feasible
-from camwright.design.optimise import solve
-from camwright.design.production.marks import redesigned
+from camwright.design.production.marks import designed_ends, designs, redesigned
 from camwright.house.progress import Step, ignore
 from camwright.jobs.job import Job
 from camwright.profiles.closed_forms.mark_loop import gain_without_overshoot, greatest_gain, noise_share
-from camwright.profiles.errors import InfeasibleError
 from camwright.profiles.mark_range import MarkRange
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.servo import spectral_radius
 from camwright.profiles.task import Task
 from camwright.studies.remedies import solve_or_advise
-from camwright.validation.motion import greatest_magnitude
 from camwright.validation.production.mark_shift import arc_range, held, offset_range, phase_range
 from camwright.validation.servo.response import servo_response
 
@@ -141,7 +138,11 @@ def marks(job: Job, delay: int = 0, step: Step = ignore) -> Marks:
     phase, offset = (find(solution.profile, placed.task, alone) for find in (phase_range, offset_range))
     assert phase is not None  # noqa: S101 - a phase of the master is in sync on every machine
     step("proving both ends")
-    proved = proven(placed.task, by_speed[-1].redesign)
+    here = by_speed[-1]
+    if placed.task.line.ramps and not job.cut.shaped:
+        here = replace(here, redesign=designed_ends(placed.task))
+        by_speed = (*by_speed[:-1], here)
+    proved = proven(placed.task, here.redesign)
     return Marks(placed, solution.profile, by_speed, phase, offset, proved, delay)
 
 
@@ -186,22 +187,7 @@ def _arc(cam: CamProfile, job: Job, task: Task) -> MarkRange:
 def proven(task: Task, found: MarkRange) -> bool:
     """Whether cams with the corrections at both ends are designed within the limits, and none a hundredth beyond."""
     return all(
-        _designed(task, (1 - _INSIDE) * end) and not _designed(task, (1 + BEYOND) * end)
+        designs(task, (1 - _INSIDE) * end) and not designs(task, (1 + BEYOND) * end)
         for end in (found.earliest, found.latest)
         if end
     )
-
-
-def _designed(task: Task, shift: float) -> bool:
-    """Whether a cam of least peak acceleration is designed for a length that is so much off, and keeps the limits."""
-    length = task.cut.length + shift
-    if length <= task.cut.sync_zone:
-        return False
-    other, v, limits = task.with_length(length), task.cut.line_speed, task.limits
-    try:
-        cam = solve(other, "peak_acceleration", suggest=False).profile
-    except InfeasibleError:
-        return False
-    peaks = (greatest_magnitude(cam, order).value * v**order for order in (1, 2, 3))
-    kept = (limits.speed, limits.acceleration, limits.jerk)
-    return all(found <= limit * (1 + 1e-9) for found, limit in zip(peaks, kept, strict=True))

@@ -6,11 +6,13 @@ from dataclasses import replace
 import pytest
 
 from camwright.design.optimise import solve
-from camwright.design.production.marks import redesigned
+from camwright.design.production.marks import designed_ends, designs, redesigned
 from camwright.jobs.examples import example
 from camwright.jobs.job import load_job
 from camwright.profiles.errors import InfeasibleError
 from camwright.profiles.limits import Limits
+from camwright.profiles.line import Line
+from camwright.profiles.mark_range import MarkRange
 from camwright.profiles.task import Task
 
 PAPER = load_job().task
@@ -81,3 +83,22 @@ def test_slower_lines_bear_more() -> None:
         for v in (0.4, 0.8, 1.2)
     ]
     assert ends == sorted(ends)
+
+
+def test_on_a_line_that_ramps_the_ends_are_sure_and_found_by_designs() -> None:
+    """Sure ends design; the designed end lies between them and those of a steady line, and a hundredth more does not design."""
+    task = PAPER.with_line(Line(1.0, 2.0, 10.0))
+    sure, found, steady = redesigned(task).earliest, designed_ends(task).earliest, redesigned(PAPER).earliest
+    assert steady < found < sure < 0.9 * steady
+    assert designs(task, sure)
+    assert designs(task, found)
+    assert not designs(task, 1.01 * found)
+    assert designed_ends(PAPER) == redesigned(PAPER)
+
+
+def test_a_line_that_the_zone_does_not_bear_leaves_no_correction() -> None:
+    assert redesigned(PAPER.with_line(Line(50.0))) == MarkRange(0.0, 0.0)
+
+
+def test_no_length_below_the_sync_zone_is_tried() -> None:
+    assert not designs(PAPER, -0.5)
