@@ -4,11 +4,13 @@
 - ``list``: 1000 pieces of 50 lengths planned, designed, written and run through their seams (processor time);
 - ``shift``: 10 000 pieces run by the servo, with optimised cams and linear returns (processor time);
 - ``seams``: random pairs of cams: cranks at places of their own and cams in sync. What steps by design must be told, what meets must meet
-  in the tables, of a target in float64 and of one in float32.
+  in the tables, of a target in float64 and of one in float32;
+- ``meetings``: every ordered pair of shaped cams, of cranks at places of their own, and of knives in sync: whether they are said to meet,
+  against differences of their positions about the seam.
 
 Prints one CSV row for each below a heading, and ends with 1 if a promise is missed:
 
-    python benchmarks/cutlist.py [--pairs 40]
+    python benchmarks/cutlist.py [--pairs 12] [--cams 11]
 """
 
 from __future__ import annotations
@@ -25,17 +27,23 @@ import numpy as np
 
 from camwright.design.production.line_plan import fastest_line
 from camwright.jobs.job import Job, load_job
+from camwright.production.cams import highest_speed, list_cam
+from camwright.production.changes import find_changes
 from camwright.production.cut_list import line_of, study_list
 from camwright.production.simulation import Disturbances, simulate_shift
 from camwright.profiles.cut_list import CutList, ListRow
 from camwright.profiles.errors import InfeasibleError
+from camwright.profiles.line import STEADY
 from camwright.profiles.polynomial.profile import FloatArray
+from camwright.studies.reach import stand_in
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 SECONDS = 10.0
 SLOWER = 1e-3
 STEP = 1e-6
 """Steps of a velocity (m/s) from which two cams do not meet."""
+LEAST_RATIO = 1e-4
+"""Step of the ratio from which differences of positions tell that two cams do not meet."""
 EXACT, ROUNDED = 1e-9, 1e-4
 """Steps of a velocity (m/s) that tables of cams which meet may have in float64 and in float32."""
 
@@ -114,11 +122,36 @@ def seams(draw: np.random.Generator, pairs: int) -> tuple[int, bool]:
     return wrong, wrong == 0
 
 
+def meetings(draw: np.random.Generator, count: int) -> tuple[int, bool]:
+    """Ordered pairs that are said to meet, and do not."""
+    shaped = load_job(EXAMPLES / "short-cut.toml")
+    shaped = replace(shaped, servo_tolerance=None)  # the nominal servo is enough, and ten times as quick
+    crank = replace(load_job(EXAMPLES / "chasing-shear.toml"), objective="peak_acceleration")
+    missed = 0
+    for job, least, most in ((shaped, 0.28, 0.39), (crank, 0.4, 1.6), (load_job(), 0.3, 1.2)):
+        lengths = np.unique(np.round(draw.uniform(least, most, count), 4)).tolist()
+        cams = [
+            list_cam(number, job, length, top, min(top, job.cut.line_speed), STEADY)
+            for number, (length, top) in enumerate(((each, highest_speed(job, each)) for each in lengths), start=1)
+        ]
+        for (one, other), change in find_changes(cams, {}, stand_in(job)).items():
+            before, after = cams[one - 1].running, cams[other - 1].running
+            end = before.profile.end - 1e-6 * np.arange(3)  # m of material
+            left, right = before.profile(end), after.profile(1e-6 * np.arange(3))
+            place = before.zero + left[0] - job.machine.pitch - after.zero - right[0]
+            ratio = (np.array([3.0, -4.0, 1.0]) @ left + np.array([3.0, -4.0, 1.0]) @ right) / 2e-6
+            steps = abs(place) > STEP or abs(ratio) > LEAST_RATIO
+            missed += steps and change.how in ("direct", "slow_down")
+    return missed, missed == 0
+
+
 def main() -> int:
     """Run all and print what was found."""
     parser = argparse.ArgumentParser(description="Cut lists and shifts.")
-    parser.add_argument("--pairs", type=int, default=40, help="random pairs of cams")
-    pairs = parser.parse_args().pairs
+    parser.add_argument("--pairs", type=int, default=12, help="random machines of two cams")
+    parser.add_argument("--cams", type=int, default=11, help="cams of each kind, all pairs of which are looked at")
+    asked = parser.parse_args()
+    pairs, cams = asked.pairs, asked.cams
     draw = np.random.default_rng(18)
     print("what,value,unit,kept", flush=True)
     kept = True
@@ -126,7 +159,12 @@ def main() -> int:
         ("plan slower than a dynamic programme", "share", plans(draw)),
         ("list of 1000 pieces of 50 lengths", "s", lists(draw)),
         ("shift of 10000 pieces", "s", shifts()),
-        (f"wrong among {pairs} random pairs", "seams", seams(draw, pairs)),
+        (f"wrong among {pairs} random lists", "seams", seams(draw, pairs)),
+        (
+            f"missed among {3 * cams * (cams - 1)} pairs of shaped cams, cranks and knives",
+            "pairs",
+            meetings(draw, cams),
+        ),
     ):
         print(f"{what},{value:.4g},{unit},{'yes' if good else 'NO'}", flush=True)
         kept = kept and good

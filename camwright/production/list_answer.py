@@ -11,6 +11,7 @@ from camwright.house.provenance import camwright_version
 from camwright.production.changes import Change
 from camwright.production.cut_list import ListPlan, ListStudy
 from camwright.production.list_file import line_run_text
+from camwright.production.tables import transition_name
 from camwright.validation.production.seams import NO_JUMP
 
 PLC_HEADER = "piece,length [mm],kind,cam,run first,highest line speed [m/min]"
@@ -115,7 +116,7 @@ def _speed(value: float) -> str:
 
 def _pieces(planned: ListPlan) -> list[str]:
     """Rows of the table of pieces."""
-    first = {(change.before, change.after): f"T{change.before}-{change.after}" for change in planned.transitions}
+    first = {(change.before, change.after): transition_name(change) for change in planned.transitions}
     rows, before = [], 0
     crops = planned.asked.crops.tolist()
     numbers = zip((planned.of + 1).tolist(), planned.asked.gaps.tolist(), planned.highest.tolist(), strict=True)

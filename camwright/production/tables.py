@@ -17,6 +17,8 @@ from camwright.profiles.tables.knots import Accuracy, choose, table_units
 from camwright.profiles.tables.target import Header
 from camwright.profiles.tables.targets import target_of
 from camwright.validation.production.seams import NO_JUMP, SeamJump, seam_jump
+from camwright.validation.production.transition import judge_transition
+from camwright.validation.rebuilt import ALLOWANCE
 
 _TWICE = 2.0
 """Two tables meet at a seam, and each may be off by what is asked of one."""
@@ -102,6 +104,7 @@ def _target_seams(cams: Sequence[ListCam], changes: Mapping[tuple[int, int], Cha
             except InputError as error:
                 refused += [f"{transition_name(change)}: {fault}" for fault in error.faults]
                 continue
+            refused += _beyond(between, change, change.transition, other)
             files |= text
         worst = _through(one, other, rebuilt, between, change.line_speed)
         within = within and _allowed(worst, other, change.line_speed)
@@ -110,6 +113,16 @@ def _target_seams(cams: Sequence[ListCam], changes: Mapping[tuple[int, int], Cha
         if cam.number in rebuilt:
             jump = jump.worst(_through(cam, cam, rebuilt, None, cam.line_speed))
     return TargetSeams(name, target.number_format, files, jump, withheld, tuple(refused), within)
+
+
+def _beyond(rebuilt: CamProfile, change: Change, transition: Transition, after: ListCam) -> list[str]:
+    """Say where the motion that a drive makes of a transition's table exceeds speed or acceleration, beyond what any table may."""
+    checks = judge_transition(rebuilt, after.running.zero, after.job.task.at_speed(transition.line_speed))
+    return [
+        f"{transition_name(change)}: {check.name} {check.value:.6g} {check.unit}, the limit is {check.limit:.6g}"
+        for check in checks
+        if check.name in ("speed", "acceleration") and (check.value or 0.0) > (check.limit or 0.0) * (1.0 + ALLOWANCE)
+    ]
 
 
 def _through(

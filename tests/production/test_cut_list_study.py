@@ -153,6 +153,19 @@ def test_cranks_that_lie_elsewhere_go_through_transitions_or_share_a_place() -> 
     assert place.found.cost == pytest.approx(worst, abs=1e-3)
 
 
+def test_targets_that_close_a_cycle_by_themselves_do_not_take_a_transition() -> None:
+    found = study(crank(), CutList((ListRow(0.9, 1), ListRow(0.5, 1))), ("twincat", "twincat-table", "kollmorgen-kas"))
+    exact, closing, scaled = found.tables
+    assert exact.passed
+    assert {"T001 to 002"} <= {name.partition("_K")[0].replace("_", " ") for name in exact.files}
+    assert not closing.passed
+    assert closing.jump.velocity > 1e-3
+    assert [fault.partition(":")[0] for fault in scaled.refused] == ["T001 to 002"]
+    assert not found.passed
+    rows = [line.split(",") for line in list_files(found)["cut-list.csv"].splitlines() if line[:1].isdigit()]
+    assert [row[4] for row in rows] == ["", "T001 to 002"]
+
+
 def test_nothing_is_placed_where_nothing_is_free() -> None:
     place = placed_alike(line_of(load_job(), 1.0), THE_LIST)
     assert place.found is None
