@@ -13,7 +13,7 @@ from camwright.book.display import progress
 from camwright.book.plan import plan_book
 from camwright.book.run import BookAnswer, make_book
 from camwright.book.workers import default_jobs, local_crew
-from camwright.cli.options import GivenJob, Json, Quiet
+from camwright.cli.options import CommonPlace, GivenJob, Json, Quiet, TableTargets
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.house.output import Voice, complain
@@ -44,17 +44,8 @@ def run(
         list[str] | None,
         typer.Option("--objective", metavar="NAME", help="Objective; may be repeated; the job's if left out."),
     ] = None,
-    targets: Annotated[
-        str | None,
-        typer.Option(
-            "--targets",
-            metavar="NAMES",
-            help="Targets of the tables, separated by commas, or all; else the job's, else csv.",
-        ),
-    ] = None,
-    common_place: Annotated[
-        bool, typer.Option("--common-place", help="Place the sync zone of a crank at one place for all designs.")
-    ] = False,
+    targets: TableTargets = None,
+    common_place: CommonPlace = False,
     resume: Annotated[bool, typer.Option("--resume", help="Go on with the book in the output directory.")] = False,
     jobs: Annotated[
         int | None, typer.Option("--jobs", metavar="N", min=1, max=512, help="Processes; one a processor if left out.")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, final_paths, job_work
+from camwright.cli.options import CommonPlace, GivenJob, Json, NoFigures, Quiet, TableTargets, final_paths, job_work
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.drives.options import chosen_targets
@@ -40,14 +40,7 @@ _HOW = {
 def run(
     job: GivenJob,
     cut_list: Annotated[Path, typer.Argument(metavar="LIST", help="Cut list (CSV): length, quantity and kind.")],
-    targets: Annotated[
-        str | None,
-        typer.Option(
-            "--targets",
-            metavar="NAMES",
-            help="Targets of the tables, separated by commas, or all; else the job's, else csv.",
-        ),
-    ] = None,
+    targets: TableTargets = None,
     line_acceleration: Annotated[
         str | None,
         typer.Option(
@@ -56,9 +49,7 @@ def run(
             help='Ramp of the line, e.g. "0.5 m/s^2"; else [line] acceleration of the job.',
         ),
     ] = None,
-    common_place: Annotated[
-        bool, typer.Option("--common-place", help="Place the sync zone of a crank at one place for all lengths.")
-    ] = False,
+    common_place: CommonPlace = False,
     out: Annotated[
         Path | None, typer.Option("--out", metavar="DIR", help="Output directory; out/<name>-cutlist if left out.")
     ] = None,

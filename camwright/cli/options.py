@@ -15,6 +15,17 @@ JobOrPaper = Annotated[
 ]
 GivenJob = Annotated[Path, typer.Argument(metavar="JOB", help="Job file (TOML).")]
 JudgedBy = Annotated[Path, typer.Option("--job", metavar="JOB", help="Job file (TOML) to judge it by.")]
+TableTargets = Annotated[
+    str | None,
+    typer.Option(
+        "--targets",
+        metavar="NAMES",
+        help="Targets of the tables, separated by commas, or all; else the job's, else csv.",
+    ),
+]
+CommonPlace = Annotated[
+    bool, typer.Option("--common-place", help="Place the sync zone of a crank at one place for all designs.")
+]
 Out = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Output directory; out/<name> if left out.")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of tables.")]
 NoFigures = Annotated[bool, typer.Option("--no-figures", help="Write no figures.")]

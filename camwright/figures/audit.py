@@ -9,7 +9,18 @@ from pathlib import Path
 import numpy as np
 
 from camwright.drives.audit import MEASURES, Audit
-from camwright.figures.panel import LEFT, NOTHING, RIGHT, WIDTH, across, first_frame, head, page, stroked, zone_bands
+from camwright.figures.panel import (
+    NOTHING,
+    RIGHT,
+    WIDTH,
+    across,
+    first_frame,
+    head,
+    page,
+    stroked,
+    wide_frame,
+    zone_bands,
+)
 from camwright.figures.strokes import BLACK, LINES, Stroke
 from camwright.house.numbers import converted, number, unit_shown
 from camwright.house.picture_files import write_pictures
@@ -124,10 +135,7 @@ def _frame(audit: Audit, lines: Sequence[Line], limit: float, label: str, top: f
     items: list[Item] = [*zone_bands(audit.job.cut, audit.job.units), *(across(b, 0.0, end) for b in drawn), *lines]
     if not drawn:
         items.append(Note((end, middle + half), f"limit {number(limit, 4)}: off scale", "end", (0.0, -6.0)))
-    return Frame(
-        LEFT, top, WIDTH - LEFT - RIGHT, height, np.array([0.0, middle - half]), np.array([end, middle + half]), items,
-        "", label, grid=True, apart=24.0,
-    )  # fmt: skip
+    return wide_frame(top, height, np.array([0.0, middle - half]), np.array([end, middle + half]), items, "", label)
 
 
 def _savings(audit: Audit, top: float) -> Frame:
@@ -153,8 +161,15 @@ def _savings(audit: Audit, top: float) -> Frame:
     items.append(Line(np.array([[0.0, bottom], [0.0, 0.6]]), BLACK, 0.8))
     chosen = [Tick(*each) for each in zip(*ticks(start, end, 10), strict=True)]
     return Frame(
-        _NAMES, top, WIDTH - _NAMES - RIGHT, _ROW * (len(savings) + 0.2), np.array([start, bottom]), np.array([end, 0.6]),
-        items, "saved by the optimum (% of the running cam)", edges=False,
+        _NAMES,
+        top,
+        WIDTH - _NAMES - RIGHT,
+        _ROW * (len(savings) + 0.2),
+        np.array([start, bottom]),
+        np.array([end, 0.6]),
+        items,
+        "saved by the optimum (% of the running cam)",
+        edges=False,
         xticks=[tick for tick in chosen if low - 1e-9 <= tick.value <= high + 0.1 * room],
         yticks=[Tick(float(-i), words) for i, words in enumerate(MEASURES.values())],
-    )  # fmt: skip
+    )

@@ -8,10 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from camwright.figures.panel import (
-    LEFT,
     NOTHING,
-    RIGHT,
-    WIDTH,
     across,
     band,
     first_frame,
@@ -20,6 +17,7 @@ from camwright.figures.panel import (
     phase_lines,
     profile_line,
     stroked,
+    wide_frame,
 )
 from camwright.figures.strokes import COMMAND
 from camwright.figures.style import title
@@ -89,15 +87,21 @@ def _panel(
     """Draw a panel about the material; the tolerance in the units of the panel, half its height too."""
     job, cut = design.job, design.job.cut
     first, last = (converted(end, "m", job.units) for end in part)
-    return Frame(
-        LEFT, top, WIDTH - LEFT - RIGHT, _PANEL, np.array([first, -half]), np.array([last, half]),
+    return wide_frame(
+        top,
+        _PANEL,
+        np.array([first, -half]),
+        np.array([last, half]),
         [
             band(cut.shear_zone_at, cut.shear_zone_at + cut.shear_zone, "shear zone", job.units),
             *(across(sign * tolerance, first, last) for sign in (-1.0, 1.0)),
             *items,
         ],
-        "", f"off the material ({unit_shown('m', job.units)})", words, grid=True, apart=24.0, yticks=yticks,
-    )  # fmt: skip
+        "",
+        f"off the material ({unit_shown('m', job.units)})",
+        words,
+        yticks=yticks,
+    )
 
 
 def _curves(design: Design, name: str, run: ServoRun, part: tuple[float, float]) -> list[FloatArray]:

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 
-from camwright.figures.panel import LEFT, RIGHT, WIDTH, across, first_frame, head, page, stroked
+from camwright.figures.panel import across, first_frame, head, page, stroked, wide_frame
 from camwright.figures.strokes import LIMIT, LINES
 from camwright.house.numbers import unit_shown
 from camwright.house.picture_files import write_pictures
-from camwright.house.pictures import Frame, Marks, Picture
+from camwright.house.pictures import APART, Marks, Picture
 from camwright.production.cut_list import ListStudy
 
 _ABOVE, _BELOW, _GAP = 180.0, 120.0, 18.0
@@ -43,33 +43,29 @@ def draw_line_plan(study: ListStudy) -> Picture:
         job.name,
         f"{planned.asked.pieces} pieces in {plan.time:.4g} s, at the slowest piece's speed {planned.time_at_slowest:.4g} s",
     )
-    top, width = first_frame(heading), WIDTH - LEFT - RIGHT
+    top = first_frame(heading)
     fastest = 1.08 * float(planned.highest.max()) * speed
     worst = 1.08 * float(max(run.sync_errors.max(), job.cut.sync_tolerance)) * length
     frames = [
-        Frame(
-            LEFT,
+        wide_frame(
             top,
-            width,
             _ABOVE,
             np.zeros(2),
             np.array([last, fastest]),
             [highest, drawn],
             "",
             f"line speed ({unit_shown('m/s', units)})",
-            grid=True,
+            apart=APART,
         ),
-        Frame(
-            LEFT,
+        wide_frame(
             top + _ABOVE + _GAP,
-            width,
             _BELOW,
             np.zeros(2),
             np.array([last, worst]),
             [tolerance, marks],
             "time (s)",
             f"sync error ({unit_shown('m', units)})",
-            grid=True,
+            apart=APART,
         ),
     ]
     return page(heading, frames, [highest, drawn, marks, tolerance])

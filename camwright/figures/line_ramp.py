@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from camwright.figures.panel import LEFT, RIGHT, WIDTH, across, first_frame, head, page
+from camwright.figures.panel import across, first_frame, head, page, wide_frame
 from camwright.house.numbers import converted, unit_shown
-from camwright.house.pictures import Frame, Item, Line, Marks, Picture
+from camwright.house.pictures import APART, Frame, Item, Line, Marks, Picture
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.studies.line_ramps import LineRamps
 
@@ -79,15 +79,6 @@ def line_ramp_figure(ramps: LineRamps) -> Picture:
 
 def _frame(above: float, right: float, highest: float, items: list[Item], xlabel: str, ylabel: str) -> Frame:
     """Make a panel over the line speed, from zero."""
-    return Frame(
-        LEFT,
-        above,
-        WIDTH - LEFT - RIGHT,
-        _PANEL,
-        np.array([0.0, 0.0]),
-        np.array([right, highest]),
-        items,
-        xlabel,
-        ylabel,
-        grid=True,
+    return wide_frame(
+        above, _PANEL, np.array([0.0, 0.0]), np.array([right, highest]), items, xlabel, ylabel, apart=APART
     )

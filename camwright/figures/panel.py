@@ -10,7 +10,7 @@ import numpy as np
 from camwright.figures.strokes import LIMIT, LINES, Stroke
 from camwright.figures.style import zone_parts
 from camwright.house.numbers import Units, converted
-from camwright.house.pictures import Band, Frame, Item, Line, Look, Picture
+from camwright.house.pictures import Band, Frame, Item, Line, Look, Picture, Tick
 from camwright.house.svg import legend_rows
 from camwright.profiles.cut import Cut
 from camwright.profiles.polynomial.profile import FloatArray
@@ -96,6 +96,40 @@ def page(title: str, frames: Sequence[Frame], legend: Sequence[Item]) -> Picture
     )
     height = lowest + _LEGEND_ROW * len(legend_rows(told, WIDTH)) + _LEGEND_MARGIN
     return Picture(WIDTH, 12.0 * math.ceil(height / 12.0), title, LEFT, frames, told)
+
+
+def wide_frame(
+    top: float,
+    height: float,
+    low: FloatArray,
+    high: FloatArray,
+    items: Sequence[Item],
+    xlabel: str = "",
+    ylabel: str = "",
+    title: str = "",
+    *,
+    apart: float = 24.0,
+    xticks: Sequence[Tick] | None = None,
+    yticks: Sequence[Tick] | None = None,
+) -> Frame:
+    """Make a panel over the whole width of the page, with lines at its ticks; arguments as of a `Frame`."""
+    width = WIDTH - LEFT - RIGHT
+    return Frame(
+        LEFT,
+        top,
+        width,
+        height,
+        low,
+        high,
+        items,
+        xlabel,
+        ylabel,
+        title,
+        grid=True,
+        apart=apart,
+        xticks=xticks,
+        yticks=yticks,
+    )
 
 
 def first_frame(title: str) -> float:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from camwright.figures.panel import LEFT, RIGHT, WIDTH, first_frame, head, page, stroked
+from camwright.figures.panel import first_frame, head, page, stroked, wide_frame
 from camwright.figures.strokes import BLACK, LINES, Stroke
 from camwright.house.numbers import unit_shown
-from camwright.house.pictures import Area, Frame, Item, Line, Picture
+from camwright.house.pictures import APART, Area, Item, Line, Picture
 from camwright.house.pictures import Marks as Dots
 from camwright.production.marks import ByMethod, Marks
 from camwright.profiles.mark_range import MarkRange
@@ -53,17 +53,15 @@ def print_marks_figure(found: Marks) -> Picture:
     heights = np.array([1.1 * max(lowest, -edge), 0.6 * job.cut.length]) * length
     zero = Line(np.array([[0.0, 0.0], [top, 0.0]]), BLACK, 1.0)
     heading = head(job.name, "how far a print mark may move the cut")
-    frame = Frame(
-        LEFT,
+    frame = wide_frame(
         first_frame(heading),
-        WIDTH - LEFT - RIGHT,
         _PANEL,
         np.array([0.0, heights[0]]),
         np.array([top, heights[1]]),
         [*areas, zero, *lines, *dots],
         f"line speed ({unit_shown('m/s', units)})",
         f"mark early (−)\nor late (+) ({unit_shown('m', units)})",
-        grid=True,
+        apart=APART,
     )
     return page(heading, [frame], [line for line in lines if line.label])
 

@@ -7,15 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from camwright.figures.panel import (
-    LEFT,
     NOTHING,
-    RIGHT,
-    WIDTH,
     across,
     first_frame,
     head,
     page,
     profile_line,
+    wide_frame,
     zone_bands,
 )
 from camwright.figures.strokes import LINES
@@ -87,10 +85,9 @@ def _frame(job: Job, shown: dict[str, CamProfile], order: int, top: float) -> Fr
         for name, profile in shown.items():
             items += _arrows(name, profile, order, units, (low, high))
     label = "master position x (" + unit_shown("m", units) + ")" if order == 3 else ""
-    return Frame(
-        LEFT, top, WIDTH - LEFT - RIGHT, _PANEL, np.array([0.0, low]), np.array([end, high]), items,
-        label, _label(task, order, units), grid=True, apart=24.0,
-    )  # fmt: skip
+    return wide_frame(
+        top, _PANEL, np.array([0.0, low]), np.array([end, high]), items, label, _label(task, order, units)
+    )
 
 
 def _points(profile: CamProfile, order: int, job: Job) -> FloatArray:

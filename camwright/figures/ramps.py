@@ -5,10 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from camwright.figures.panel import (
-    LEFT,
     NOTHING,
-    RIGHT,
-    WIDTH,
     across,
     band,
     first_frame,
@@ -16,6 +13,7 @@ from camwright.figures.panel import (
     page,
     profile_line,
     thin_line,
+    wide_frame,
 )
 from camwright.house.numbers import converted, unit_shown, with_unit
 from camwright.house.pictures import Frame, Item, Line, Note, Picture
@@ -99,18 +97,14 @@ def _motion(found: Ramps, order: int, top: float, height: float) -> Frame:
         met = at.zone(np.linspace(at.zone.start, at.zone.end, 50)) * shown.factor
         items.append(Line(np.stack([np.linspace(*zone, 50) * length, met], axis=1), "#c0c0c0", _IN_SYNC))
     items.append(profile_line("optimised", curve))
-    return Frame(
-        LEFT,
+    return wide_frame(
         top,
-        WIDTH - LEFT - RIGHT,
         height,
         np.array([0.0, low - room]),
         np.array([cam.end * length, high + room]),
         items,
         f"master from where the slave leaves its park ({unit_shown('m', units)})" if order == 2 else "",
         f"{('place', 'velocity', 'acceleration')[order]} ({shown.printed})",
-        grid=True,
-        apart=24.0,
     )
 
 
@@ -144,10 +138,8 @@ def _error(found: Ramps, top: float) -> Frame:
     else:
         items.append(Note((0.5 * end, 0.5 * tolerance), "the servo is unstable", "middle"))
     items += [across(sign * tolerance, 0.0, end) for sign in (-1.0, 1.0)]
-    return Frame(
-        LEFT,
+    return wide_frame(
         top,
-        WIDTH - LEFT - RIGHT,
         _ERROR,
         np.array([0.0, -half]),
         np.array([end, half]),
@@ -155,6 +147,4 @@ def _error(found: Ramps, top: float) -> Frame:
         f"master from the start of the sync zone ({unit_shown('m', units)})",
         f"sync error\nof the axis ({unit_shown('m', units)})",
         words,
-        grid=True,
-        apart=24.0,
     )

@@ -20,6 +20,7 @@ from camwright.figures.panel import (
     phase_lines,
     profile_line,
     stroked,
+    wide_frame,
 )
 from camwright.figures.strokes import BLACK, COMMAND, LINES
 from camwright.figures.style import title
@@ -103,12 +104,21 @@ def _meetings(comparison: Comparison, runs: Mapping[str, ServoRun], top: float) 
     beginning = Line(np.array([[0.0, low[1]], [0.0, high[1]]]), "#8c8c8c", 1.0)
     return [
         Frame(
-            LEFT + number * (width + _BETWEEN), top, width, _MEETING, low, high, [beginning, *items], f"{_PLACE} ({length})",
-            f"{'slave' if job.task.straight else 'tool'} from there ({length})" if number == 0 else "", title(name),
-            grid=True, apart=24.0,
+            LEFT + number * (width + _BETWEEN),
+            top,
+            width,
+            _MEETING,
+            low,
+            high,
+            [beginning, *items],
+            f"{_PLACE} ({length})",
+            f"{'slave' if job.task.straight else 'tool'} from there ({length})" if number == 0 else "",
+            title(name),
+            grid=True,
+            apart=24.0,
         )
         for number, (name, items) in enumerate(zip(AXES, both, strict=True))
-    ]  # fmt: skip
+    ]
 
 
 def _meeting(row: Measured, comparison: Comparison, run: ServoRun) -> list[Item]:
@@ -162,15 +172,21 @@ def _errors(comparison: Comparison, runs: Mapping[str, ServoRun], top: float) ->
     low[0], high[0] = 0.0, end
     close = _CLOSE * tolerance
     findings = "\n".join(["axis minus ideal sync line", *(_finding(comparison[name], comparison) for name in AXES)])
-    label, width = f"sync error ({length})", WIDTH - LEFT - RIGHT
+    label = f"sync error ({length})"
     second = top + _ERROR + 12.0 + _HEADING
     return [
-        Frame(LEFT, top, width, _ERROR, low, high, items, "", label, findings, grid=True, apart=24.0),
-        Frame(
-            LEFT, second, width, _ERROR, np.array([0.0, -close]), np.array([end, close]), items, f"{_PLACE} ({length})",
-            label, "the same, close to the tolerance", grid=True, apart=24.0,
+        wide_frame(top, _ERROR, low, high, items, "", label, findings),
+        wide_frame(
+            second,
+            _ERROR,
+            np.array([0.0, -close]),
+            np.array([end, close]),
+            items,
+            f"{_PLACE} ({length})",
+            label,
+            "the same, close to the tolerance",
         ),
-    ]  # fmt: skip
+    ]
 
 
 def _error(row: Measured, comparison: Comparison, run: ServoRun) -> list[Item]:

@@ -8,12 +8,12 @@ from pathlib import Path
 
 import numpy as np
 
-from camwright.figures.panel import LEFT, RIGHT, WIDTH, across, first_frame, head, page, profile_line
+from camwright.figures.panel import across, first_frame, head, page, profile_line, wide_frame
 from camwright.figures.strokes import BLACK, LINES
 from camwright.figures.style import title
 from camwright.house.numbers import unit_shown
 from camwright.house.picture_files import write_pictures
-from camwright.house.pictures import Frame, Line, Marks, Picture, Shape, Tick
+from camwright.house.pictures import APART, Frame, Line, Marks, Picture, Shape, Tick
 from camwright.production.simulation import MOTIONS, ShiftStudy
 from camwright.profiles.polynomial.profile import FloatArray
 
@@ -53,18 +53,14 @@ def _speed(study: ShiftStudy, last: float, top: float) -> Frame:
     time = time[time <= last]
     speeds = line.speed(time) * units.shown["m/s"].factor
     high = 1.08 * float(speeds.max()) or 1.0
-    return Frame(
-        LEFT,
+    return wide_frame(
         top,
-        WIDTH - LEFT - RIGHT,
         _SPEED,
         np.zeros(2),
         np.array([last, high]),
         [Line(np.stack([time, speeds], axis=1), BLACK, 1.5)],
         "",
         f"line speed\n({unit_shown('m/s', units)})",
-        grid=True,
-        apart=24.0,
     )
 
 
@@ -79,18 +75,14 @@ def _errors(study: ShiftStudy, last: float, top: float) -> tuple[Frame, list[Mar
         marks.append(Marks(points, LINES[motion].colour, 4.0, _MARKS[motion], title(motion)))
     tolerance = job.cut.sync_tolerance * length
     high = 1.08 * max(tolerance, *(float(each.points[:, 1].max()) for each in marks))
-    frame = Frame(
-        LEFT,
+    frame = wide_frame(
         top,
-        WIDTH - LEFT - RIGHT,
         _ERRORS,
         np.zeros(2),
         np.array([last, high]),
         [across(tolerance, 0.0, last), *marks],
         "time (s)",
         f"sync error of\neach piece ({unit_shown('m', job.units)})",
-        grid=True,
-        apart=24.0,
     )
     return frame, marks
 
@@ -106,18 +98,16 @@ def _spread(study: ShiftStudy, top: float) -> Frame:
         lines.append(replace(profile_line(motion, outline), width=1.5))
     low = math.log10(_FEW)
     high = max(float(line.points[:, 1].max()) for line in lines) + 0.15
-    return Frame(
-        LEFT,
+    return wide_frame(
         top,
-        WIDTH - LEFT - RIGHT,
         _SPREAD,
         np.array([float(edges[0]), low]),
         np.array([float(edges[-1]), high]),
         lines,
         f"length less what was asked ({unit_shown('m', units)})",
         "pieces",
-        grid=True,
         yticks=[Tick(float(power), f"{10**power}") for power in range(math.floor(high) + 1)],
+        apart=APART,
     )
 
 

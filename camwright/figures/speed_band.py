@@ -6,11 +6,19 @@ import math
 
 import numpy as np
 
-from camwright.figures.panel import LEFT, RIGHT, WIDTH, across, first_frame, head, page, profile_line, thin_line
+from camwright.figures.panel import (
+    across,
+    first_frame,
+    head,
+    page,
+    profile_line,
+    thin_line,
+    wide_frame,
+)
 from camwright.figures.strokes import GREY, Stroke
 from camwright.figures.style import title
 from camwright.house.numbers import unit_shown, with_unit
-from camwright.house.pictures import Band, Frame, Item, Line, Picture, Tick
+from camwright.house.pictures import APART, Band, Item, Line, Picture, Tick
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.studies.axis_study import cam_for_one_speed, servos_of
 from camwright.studies.design import Design
@@ -77,9 +85,15 @@ def speed_band_figure(design: Design) -> Picture:
     ]
     items: list[Item] = [*bands, *marks, *reversed(curves)]
     heading = head(job.name, "one cam at every line speed")
-    frame = Frame(
-        LEFT, first_frame(heading), WIDTH - LEFT - RIGHT, _PANEL, np.array([0.0, low]), np.array([top * speed, high]), items,
-        f"line speed ({unit_shown('m/s', units)})", f"sync error in the\nshear zone ({unit_shown('m', units)})", grid=True,
+    frame = wide_frame(
+        first_frame(heading),
+        _PANEL,
+        np.array([0.0, low]),
+        np.array([top * speed, high]),
+        items,
+        f"line speed ({unit_shown('m/s', units)})",
+        f"sync error in the\nshear zone ({unit_shown('m', units)})",
         yticks=[Tick(float(power), f"{10.0**power:g}") for power in range(math.ceil(low), math.floor(high) + 1)],
-    )  # fmt: skip
+        apart=APART,
+    )
     return page(heading, [frame], [*curves, *marks, *bands])

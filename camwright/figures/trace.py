@@ -8,16 +8,14 @@ from dataclasses import replace
 import numpy as np
 
 from camwright.figures.panel import (
-    LEFT,
     NOTHING,
-    RIGHT,
-    WIDTH,
     across,
     band,
     first_frame,
     head,
     page,
     stroked,
+    wide_frame,
     zone_bands,
 )
 from camwright.figures.strokes import BLACK, Stroke
@@ -84,17 +82,13 @@ def _panel(found: RecordedRun, top: float, items: Sequence[Item], words: tuple[s
     low, high = float(np.nanmin(points[:, 1])), float(np.nanmax(points[:, 1]))
     room = 0.05 * (high - low) or 1.0
     end = converted(job.cut.length, "m", job.units)
-    return Frame(
-        LEFT,
+    return wide_frame(
         top,
-        WIDTH - LEFT - RIGHT,
         _PANEL,
         np.array([0.0, low - room]),
         np.array([end, high + room]),
         [*zone_bands(job.cut, job.units), *items],
         *words,
-        grid=True,
-        apart=24.0,
     )
 
 
@@ -134,10 +128,8 @@ def _zones(found: RecordedRun, top: float) -> Frame:
     size = 1.4 * factor * max([abs(each.greatest) for each in found.cuts] + [cut.sync_tolerance])
     end = cut.sync_zone * factor
     shear = band(cut.shear_zone_at, min(cut.shear_zone_at + cut.shear_zone, cut.sync_zone), "shear zone", job.units)
-    return Frame(
-        LEFT,
+    return wide_frame(
         top,
-        WIDTH - LEFT - RIGHT,
         _PANEL,
         np.array([0.0, -size]),
         np.array([end, size]),
@@ -145,8 +137,6 @@ def _zones(found: RecordedRun, top: float) -> Frame:
         f"master from the start of the sync zone ({length})",
         f"sync error ({length})",
         "tool less material in the sync zone, every cut",
-        grid=True,
-        apart=24.0,
     )
 
 
@@ -161,10 +151,8 @@ def _cuts(found: RecordedRun, top: float) -> Frame:
     tolerance = found.job.cut.sync_tolerance * factor
     size = 1.2 * max(tolerance, float(np.abs(errors).max()), float(np.abs(line).max()))
     ends = float(numbers.min()) - 0.5, float(numbers.max()) + 0.5
-    return Frame(
-        LEFT,
+    return wide_frame(
         top,
-        WIDTH - LEFT - RIGHT,
         _PANEL,
         np.array([ends[0], -size]),
         np.array([ends[1], size]),
@@ -176,8 +164,6 @@ def _cuts(found: RecordedRun, top: float) -> Frame:
         "cut",
         f"sync error ({unit_shown('m', units)})",
         "mean over the shear zone, cut by cut",
-        grid=True,
-        apart=24.0,
     )
 
 

@@ -120,21 +120,7 @@ class Result(designing.Design):
 
 
 def optimise(job: Job, step: Step = ignore) -> Result:
-    """Find the optimal cam of a job, prove it, and compare it with the baselines.
-
-    Parameters
-    ----------
-    job
-        The job.
-    step
-        Told what begins now, for a display of progress.
-
-    Raises
-    ------
-    InfeasibleError
-        No motion keeps the limits of the job.
-    SolverError
-        The solver failed.
+    """Find the optimal cam of a job, prove it, and compare it with the baselines: arguments and errors as of the command's design.
 
     Examples
     --------

@@ -96,17 +96,6 @@ class SpeedBand:
         """Whether the cam may run from standstill on."""
         return bool(self.parts) and self.parts[0][0] == 0.0
 
-    def part_of(self, line_speed: float) -> tuple[float, float] | None:
-        """Give the part in which a line speed lies."""
-        return next(((low, high) for low, high in self.parts if low <= line_speed <= high), None)
-
-    def gaps_below(self, line_speed: float) -> tuple[tuple[float, float], ...]:
-        """Give what a line passes on its way up to a line speed in which the cam is not released (m/s)."""
-        lower = [part for part in self.parts if part[0] < line_speed]
-        ends = [0.0, *(high for _, high in lower)]
-        starts = [*(low for low, _ in lower), line_speed]
-        return tuple((end, min(start, line_speed)) for end, start in zip(ends, starts, strict=True) if end < start)
-
 
 def job_band(profile: CamProfile, job: Job, report: ValidationReport) -> SpeedBand:
     """Find the line speeds at which a job's cam passes every check; the arguments as in `speed_band`, the sync zone placed."""

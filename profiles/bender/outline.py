@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import FloatArray
@@ -55,13 +55,6 @@ class Outline:
             )
         self.points.setflags(write=False)
         self.bulges.setflags(write=False)
-
-    @classmethod
-    def from_lists(cls, points: ArrayLike, bulges: ArrayLike | None = None, name: str = "outline") -> Outline:
-        """Make an outline from anything array-like; without bulges all segments are straight."""
-        p = np.array(points, dtype=np.float64)
-        b = np.zeros(max(0, len(p) - 1)) if bulges is None else np.array(bulges, dtype=np.float64)
-        return cls(p, b, name)
 
     @property
     def closed(self) -> bool:

@@ -115,9 +115,7 @@ def test_a_shaped_cam_is_released_about_its_own_line_speed_only() -> None:
     assert low == pytest.approx(edge(profile, job, 0.9 * own, own), rel=2 * ACCURACY)
     assert high == pytest.approx(edge(profile, job, own, 1.1 * own), rel=2 * ACCURACY)
     assert not band.creeps
-    assert band.gaps_below(own) == ((0.0, low),)
-    assert band.part_of(own) == (low, high)
-    assert band.part_of(0.5 * own) is None
+    assert not band.holds(0.5 * own)
 
 
 def test_the_corners_of_the_servo_narrow_the_band_and_are_named() -> None:
@@ -162,11 +160,8 @@ def test_a_cam_that_fails_at_every_speed_has_no_band_and_says_why() -> None:
     assert band_of(baseline("cycloid", PAPER.task), tight).forbids == ("shear_zone_error",)
 
 
-def test_gaps_on_the_way_up_are_told() -> None:
+def test_a_band_has_what_lies_in_its_parts() -> None:
     band = SpeedBand(((0.0, 1.0), (1.5, 2.0), (3.0, 4.0)), (("none", "a"), ("b", "c"), ("d", "e")))
-    assert band.gaps_below(3.5) == ((1.0, 1.5), (2.0, 3.0))
-    assert band.gaps_below(1.2) == ((1.0, 1.2),)
-    assert band.gaps_below(0.5) == ()
     assert band.holds(1.7)
     assert not band.holds(2.5)
     assert band.creeps

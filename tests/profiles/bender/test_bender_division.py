@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from outlines import outline_of
 
 from camwright.profiles.bender.division import (
     DivisionRule,
@@ -13,11 +14,10 @@ from camwright.profiles.bender.division import (
     EqualSteps,
     FewestBends,
 )
-from camwright.profiles.bender.outline import Outline
 from camwright.profiles.bender.plan import plan_bends
 from camwright.profiles.errors import InputError
 
-CIRCLE = Outline.from_lists([[5e-3, 0], [-5e-3, 0], [5e-3, 0]], [1, 1])
+CIRCLE = outline_of([[5e-3, 0], [-5e-3, 0], [5e-3, 0]], [1, 1])
 RULES: list[DivisionRule] = [EqualSides(25), EqualSteps(2e-3), FewestBends(5e-5)]
 
 
@@ -86,7 +86,7 @@ def test_refused(make: object):
 def test_plan_of_corner_and_tangent_arc():
     # 20 mm, tangent quarter of 10 mm radius, 20 mm, corner of 90° to the right, 10 mm
     points = np.array([[0, 0], [20, 0], [30, 10], [30, 30], [40, 30]]) * 1e-3
-    plan = plan_bends(Outline.from_lists(points, [0, math.tan(math.pi / 8), 0, 0]), EqualSides(), math.radians(0.01))
+    plan = plan_bends(outline_of(points, [0, math.tan(math.pi / 8), 0, 0]), EqualSides(), math.radians(0.01))
     assert plan.bends == 6 + 1  # round(25 / 4) and the corner
     assert np.degrees(plan.turns) == pytest.approx([15.0] * 6 + [-90.0])
     assert plan.segments.tolist() == [1] * 6 + [3]

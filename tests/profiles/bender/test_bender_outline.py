@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from outlines import outline_of
 
-from camwright.profiles.bender.outline import Outline, wrapped
+from camwright.profiles.bender.outline import wrapped
 from camwright.profiles.errors import InputError
 
 QUARTER = 0.414214
@@ -15,7 +16,7 @@ QUARTER = 0.414214
 
 def test_bulge_of_a_quarter_circle():
     # from (0, 0) to (10, 10) to the left: centre (0, 10), radius 10
-    outline = Outline.from_lists([[0, 0], [10, 10]], [QUARTER])
+    outline = outline_of([[0, 0], [10, 10]], [QUARTER])
     assert outline.included[0] == pytest.approx(math.pi / 2, abs=1e-5)
     assert outline.radii[0] == pytest.approx(10, rel=1e-5)
     assert outline.centres[0] == pytest.approx([0, 10], abs=1e-4)
@@ -27,7 +28,7 @@ def test_arc_against_the_printed_formulas(mu: float, direction: float, left: boo
     bulge = mu if left else -mu
     chord = 0.03
     end = chord * np.array([math.cos(direction), math.sin(direction)])
-    outline = Outline.from_lists([[0, 0], end], [bulge])
+    outline = outline_of([[0, 0], end], [bulge])
     alpha = 4 * math.atan(mu)
     assert abs(outline.included[0]) == pytest.approx(alpha, rel=1e-12)
     assert outline.radii[0] == pytest.approx(chord / (2 * math.sin(alpha / 2)), rel=1e-8)
@@ -54,22 +55,20 @@ def test_arc_against_the_printed_formulas(mu: float, direction: float, left: boo
     ],
 )
 def test_workpiece_angle_at_joints(points: list[list[float]], bulges: list[float], turn: float):
-    found = math.degrees(Outline.from_lists(points, bulges).turns[0])
+    found = math.degrees(outline_of(points, bulges).turns[0])
     assert (
         abs(found) == pytest.approx(abs(turn), abs=1e-9) if abs(turn) == 180 else found == pytest.approx(turn, abs=1e-9)
     )
 
 
 def test_turning_of_a_closed_outline_is_one_turn():
-    outline = Outline.from_lists(
-        [[0, 0], [4, 0], [5, 1], [5, 3], [0, 3], [0, 0]], [0, math.tan(math.pi / 8), 0, 0.2, 0]
-    )
+    outline = outline_of([[0, 0], [4, 0], [5, 1], [5, 3], [0, 3], [0, 0]], [0, math.tan(math.pi / 8), 0, 0.2, 0])
     seam = float(wrapped(outline.headings[0][:1] - outline.headings[1][-1:])[0])
     assert float(outline.turns.sum() + outline.included.sum()) + seam == pytest.approx(2 * math.pi)
 
 
 def test_reverse_and_begin_at():
-    outline = Outline.from_lists([[0, 0], [4, 0], [4, 3], [0, 0]], [0, 0.5, 0])
+    outline = outline_of([[0, 0], [4, 0], [4, 3], [0, 0]], [0, 0.5, 0])
     back = outline.reverse()
     assert back.points[1].tolist() == [4, 3]
     assert back.bulges.tolist() == [0, -0.5, 0]
@@ -77,7 +76,7 @@ def test_reverse_and_begin_at():
     moved = outline.begin_at(3.9, 0.1)
     assert moved.points.tolist() == [[4, 0], [4, 3], [0, 0], [4, 0]]
     assert moved.bulges.tolist() == [0.5, 0, 0]
-    line = Outline.from_lists([[0, 0], [1, 0], [2, 2]])
+    line = outline_of([[0, 0], [1, 0], [2, 2]])
     assert line.begin_at(2, 2).points[0].tolist() == [2, 2]
     assert line.begin_at(0, 1) is line
 
@@ -94,4 +93,4 @@ def test_reverse_and_begin_at():
 )
 def test_refused(points: list[list[float]], bulges: list[float], message: str):
     with pytest.raises(InputError, match=message):
-        Outline.from_lists(points, bulges, "LINE #2F")
+        outline_of(points, bulges, "LINE #2F")

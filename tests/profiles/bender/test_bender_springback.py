@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from outlines import outline_of
 
 from camwright.profiles.bender.curve import Curve
 from camwright.profiles.bender.division import EqualSides
-from camwright.profiles.bender.outline import Outline
 from camwright.profiles.bender.plan import plan_bends
 from camwright.profiles.bender.springback import Interpolation, Springback
 from camwright.profiles.errors import InputError
@@ -97,7 +97,7 @@ def test_radius_rows_that_cannot_be_true():
 
 def test_what_the_table_does_not_cover():
     points = np.array([[0, 0], [20, 0], [20, 20], [22, 20], [24, 22]]) * 1e-3
-    plan = plan_bends(Outline.from_lists(points, [0, 0, 0, 0.41]), EqualSides(), math.radians(0.01))
+    plan = plan_bends(outline_of(points, [0, 0, 0, 0.41]), EqualSides(), math.radians(0.01))
     faults = PRINTED.faults(plan)
     assert any("bend 1 at (20.000, 0.000) mm: workpiece angle 90.000° lies outside" in text for text in faults)
     assert any("segment 4: radius" in text and "begins at 5.500 mm" in text for text in faults)

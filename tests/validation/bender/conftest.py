@@ -5,6 +5,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from outlines import outline_of
 
 from camwright.profiles.bender.outline import Outline
 from camwright.profiles.bender.springback import Springback
@@ -34,6 +35,6 @@ def random_outline() -> Callable[[int], Outline]:
             points[-1] = points[0]
         bulges = np.where(random.random(count) < 0.5, random.uniform(-1.0, 1.0, count), 0.0)
         bulges[random.random(count) < 0.1] = math.tan(math.pi / 8)
-        return Outline.from_lists(points, bulges)
+        return outline_of(points, bulges)
 
     return make

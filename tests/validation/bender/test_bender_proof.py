@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from outlines import outline_of
 
 from camwright.profiles.bender.compensation import compensate
 from camwright.profiles.bender.division import (
@@ -90,7 +91,7 @@ def test_deviation_against_nearest_points(random_outline: Callable[[int], Outlin
         if (np.abs(plan.turns) > RANGE).any() or not outline.arcs.any() or len(outline.bulges) > 8:
             continue
         _, proof = written_and_proved(plan, table)
-        a, b = drawn(outline, spacing), drawn(Outline.from_lists(proof.points), spacing)
+        a, b = drawn(outline, spacing), drawn(outline_of(proof.points), spacing)
         # the nearest point may belong to another part of the outline, so brute force finds the same or less; its grid
         # of points adds at most a half of its spacing, square to the distance
         away = max(cKDTree(a).query(b)[0].max(), cKDTree(b).query(a)[0].max())
@@ -101,7 +102,7 @@ def test_deviation_against_nearest_points(random_outline: Callable[[int], Outlin
 
 
 def test_a_wrong_angle_is_seen(table: Springback):
-    outline = Outline.from_lists(np.array([[0, 0], [50, 0], [50, 40], [0, 40], [0, 0]]) * 1e-3)
+    outline = outline_of(np.array([[0, 0], [50, 0], [50, 40], [0, 40], [0, 0]]) * 1e-3)
     plan = plan_bends(outline, FewestBends(5e-5), LEAST)
     program = compensate(plan, table, "TEST")
     wrong = NcProgram("TEST", program.feeds, program.bends + np.array([0, 100, 0]))
@@ -114,19 +115,19 @@ def test_a_wrong_angle_is_seen(table: Springback):
 
 def test_rounding_is_shared_by_both_ends_of_a_long_side(table: Springback):
     # one side of 1 m: half a thousandth of a degree is 8.7 µm at its end, 4.4 µm when shared
-    outline = Outline.from_lists(np.array([[0, 0], [0, 100], [1000, 137], [1010, 260]]) * 1e-3)
+    outline = outline_of(np.array([[0, 0], [0, 100], [1000, 137], [1010, 260]]) * 1e-3)
     worst = 0.0
     for angle in np.linspace(0, 0.001, 23):
         turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
         points = outline.points.copy()
         points[2:] = (points[2:] - points[1]) @ turn.T + points[1]
-        plan = plan_bends(Outline.from_lists(points), FewestBends(5e-5), LEAST)
+        plan = plan_bends(outline_of(points), FewestBends(5e-5), LEAST)
         worst = max(worst, written_and_proved(plan, table)[1].deviation)
     assert worst <= 5e-6
 
 
 def test_place_of_the_worst_deviation():
-    outline = Outline.from_lists([[0, 0], [1, 0], [1, 1]])
+    outline = outline_of([[0, 0], [1, 0], [1, 1]])
     plan = plan_bends(outline, FewestBends(1e-3), LEAST)
     away, place = compare(np.array([[0, 0], [1.0, 0.25], [1, 1.0]]), plan)
     assert away == 0.25
@@ -135,7 +136,7 @@ def test_place_of_the_worst_deviation():
 
 def test_joints_that_are_not_bent_are_compared():
     # three points nearly in line: no bend, and the rule passes 1 mm below the middle one
-    outline = Outline.from_lists([[0, 0], [1, 0.001], [2, 0]])
+    outline = outline_of([[0, 0], [1, 0.001], [2, 0]])
     plan = plan_bends(outline, FewestBends(1e-3), math.radians(1.0))
     assert plan.bends == 0
     away, place = compare(np.array([[0, 0], [2.0, 0]]), plan)
@@ -144,7 +145,7 @@ def test_joints_that_are_not_bent_are_compared():
 
 
 def test_program_of_another_outline(table: Springback):
-    plan = plan_bends(Outline.from_lists([[0, 0], [1, 0], [1, 1]]), FewestBends(1e-3), LEAST)
+    plan = plan_bends(outline_of([[0, 0], [1, 0], [1, 1]]), FewestBends(1e-3), LEAST)
     other = NcProgram("OTHER", np.array([1, 1, 1]), np.array([1000, 1000]))
     with pytest.raises(InputError, match="OTHER has 2 bends, its outline needs 1"):
         bend(other, plan, table)
