@@ -8,6 +8,7 @@ from camwright.jobs.job import Job
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.validation.motion import MotionMeasures
 from camwright.validation.motor import motor_torque
+from camwright.validation.production.line_ramp import line_ramp
 
 _BEYOND = 1e-8
 """Part of a limit by which the solver's accuracy may exceed it."""
@@ -17,7 +18,7 @@ _POINTS = 20_001
 
 
 def keeps_limits(profile: CamProfile, motion: MotionMeasures, job: Job) -> bool:
-    """Whether a profile keeps speed, acceleration, jerk, reversal, the stroke and the motor's curve.
+    """Whether a profile keeps speed, acceleration, jerk, reversal, the stroke and the motor's curve, and bears the ramps of the line.
 
     Parameters
     ----------
@@ -28,7 +29,22 @@ def keeps_limits(profile: CamProfile, motion: MotionMeasures, job: Job) -> bool:
     job
         The job, the place of the sync zone chosen.
     """
-    return _keeps_motion(motion, job) and _keeps_stroke(profile, job) and _keeps_curve(profile, job)
+    return (
+        _keeps_motion(motion, job)
+        and _keeps_stroke(profile, job)
+        and _keeps_curve(profile, job)
+        and _bears_ramps(profile, job)
+    )
+
+
+def _bears_ramps(profile: CamProfile, job: Job) -> bool:
+    """Whether the line may ramp as the job says."""
+    if not job.line.ramps:
+        return True
+    allowed = line_ramp(profile, job.task)
+    return job.line.speeding <= allowed.speeding.value * (1 + _BEYOND) and job.line.braking <= allowed.braking.value * (
+        1 + _BEYOND
+    )
 
 
 def _keeps_motion(motion: MotionMeasures, job: Job) -> bool:
