@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,8 @@ import pytest
 from camwright.cli.main import main
 from camwright.jobs.job import load_job
 from camwright.profiles.returns import baseline
+from camwright.studies.design import optimise
+from camwright.validation.servo.simulation import simulate
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -29,6 +32,29 @@ def table() -> bytes:
     x = np.linspace(0.0, job.cut.length, 361)
     rows = zip(x, baseline("poly_3_4_5", job.task)(x), strict=True)
     return "\n".join(["x [mm],y [mm]", *(f"{1e3 * a:.6f},{1e3 * b:.9f}" for a, b in rows)]).encode()
+
+
+@pytest.fixture
+def recording() -> bytes:
+    """Record the bundled job's own cam as its servo runs it, to a tenth of a micrometre."""
+    result = optimise(load_job())
+    job, profile = result.job, result.profile
+    servo = replace(job.servo, position_gain=30.0)
+    times = np.arange(0.0, 4 * job.cut.period, 2e-3)
+    x = times * job.cut.line_speed
+    run = simulate(profile, job.cut, servo)
+    order = np.argsort(run.master[0] % job.cut.length)
+    lag = np.interp(
+        x % job.cut.length,
+        (run.master[0] % job.cut.length)[order],
+        (run.command[0] - run.axis[0])[order],
+        period=job.cut.length,
+    )
+    command = profile(x, outside="repeat")
+    rows = zip(times, command, command - lag, strict=True)
+    return "\n".join(
+        ["time [ms],command [mm],actual [mm]", *(f"{1e3 * t:.1f},{1e3 * a:.4f},{1e3 * b:.4f}" for t, a, b in rows)]
+    ).encode()
 
 
 def test_checks_are_named_in_words(page: Any) -> None:
@@ -108,6 +134,17 @@ def test_a_dropped_table_is_judged_and_lies_over_the_plots(page: Any, table: byt
     assert page.locator("path.curve.overlay").count() == 5
     page.locator("#legend button").click()
     assert page.locator("path.curve.overlay").count() == 0
+
+
+def test_a_recording_is_laid_over_the_design_and_its_servo_taken(page: Any, recording: bytes) -> None:
+    page.click("[data-view=audit]")
+    page.set_input_files("#panel input[type=file]", {"name": "scope.csv", "mimeType": "text/csv", "buffer": recording})
+    page.locator("#panel th", has_text="95 %").wait_for()
+    page.locator("#panel td", has_text="drift per cut").wait_for()
+    assert page.locator("path.curve.overlay.actual").count() == 3  # nobody differentiates a recording twice
+    page.locator("#panel button", has_text="Use this servo").click()
+    page.locator("#badge.proved, #badge.failed").first.wait_for()
+    assert page.input_value('[id="field-servo.position_gain"]') != "35 1/s"
 
 
 def test_what_is_no_table_is_refused_in_words(page: Any) -> None:
