@@ -16,7 +16,7 @@ from camwright.house.numbers import number, unit_shown
 from camwright.house.output import Voice, complain
 from camwright.house.owned import owned
 from camwright.house.units import quantity
-from camwright.jobs.job import load_job
+from camwright.jobs.job import Job, load_job
 from camwright.production.cut_list import line_of
 from camwright.production.list_file import read_cut_list, read_line_run
 from camwright.production.shift_answer import pieces_text, shift_answer
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 _STEPS = 6
 _MOST_SLIP = 0.1
-_MOST_SERVOS = 200
+_MOST_SERVOS, _USUAL_SERVOS = 200, 8
 
 
 def run(
@@ -65,15 +65,15 @@ def run(
         typer.Option("--marks", metavar="LENGTH", help='By how much print marks are off (RMS), e.g. "0.5 mm".'),
     ] = None,
     servos: Annotated[
-        int,
+        int | None,
         typer.Option(
             "--servos",
             metavar="N",
             min=0,
             max=_MOST_SERVOS,
-            help="Servos drawn from [servo.tolerance], beside the job's own.",
+            help="Servos drawn from [servo.tolerance], beside the job's own; 8 if left out and the job gives ranges.",
         ),
-    ] = 0,
+    ] = None,
     seed: Annotated[
         int, typer.Option("--seed", metavar="N", min=0, max=2**32 - 1, help="Seed of all that is drawn.")
     ] = 1,
@@ -90,7 +90,7 @@ def run(
     ramp = None if line_acceleration is None else quantity(line_acceleration, "acceleration")
     if line is not None and ramp is not None:
         raise InputError("--line-acceleration: the line's speed is given by --line; leave one of them out")
-    wrong = Disturbances(_length(noise), slip, _length(marks), servos, seed)
+    wrong = Disturbances(_length(noise), slip, _length(marks), _servos(given, servos), seed)
     voice = Voice(as_json, quiet)
     with voice.progress(_STEPS) as step:
         if line is None:
@@ -109,6 +109,13 @@ def run(
 
     voice.answer(data, lambda: stacked(*_views(study), files_view(files)))
     return 0
+
+
+def _servos(job: Job, asked: int | None) -> int:
+    """Give the number of servos to draw."""
+    if asked is not None:
+        return asked
+    return _USUAL_SERVOS if job.servo_tolerance is not None and job.servo_tolerance.varying else 0
 
 
 def _length(text: str | None) -> float:

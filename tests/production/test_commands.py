@@ -73,6 +73,22 @@ def test_the_plan_runs_in_the_simulation(order: str, capsys: pytest.CaptureFixtu
     assert again["time_s"] == pytest.approx(answer["time_s"], rel=1e-9)
 
 
+def test_servos_are_drawn_where_the_job_gives_ranges(
+    order: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = (
+        Path(JOB)
+        .read_text(encoding="utf-8")
+        .replace("[objective]", '[servo.tolerance]\nbandwidth = "10 %"\n\n[objective]')
+    )
+    (tmp_path / "ranged.toml").write_text(text)
+    assert main(["simulate", "ranged.toml", "--list", order, *RAMP, "--no-figures", "--json"]) == 0
+    answer = said(capsys)
+    assert answer["servos"] == 9
+    assert main(["simulate", JOB, "--list", order, *RAMP, "--no-figures", "--json", "--out", "plain"]) == 0
+    assert said(capsys)["servos"] == 1
+
+
 def test_tables_fit_a_narrow_terminal(order: str, capsys: pytest.CaptureFixture[str]) -> None:
     for call in (["cutlist", JOB, order], ["simulate", JOB, "--list", order]):
         assert main([*call, *RAMP, "--no-figures"]) == 0

@@ -129,7 +129,7 @@ def by_acceleration_alone(profile: CamProfile, task: Task) -> Allowed:
     >>> from camwright import load_job, optimise
     >>> job = load_job()
     >>> round(by_acceleration_alone(optimise(job).profile, job.task).value, 1)
-    20.9
+    21.1
     """
     if not is_steady(profile, task.machine):
         return Allowed(0.0, "acceleration", _worst_jump(profile, 1))
