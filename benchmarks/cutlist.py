@@ -10,7 +10,7 @@
 
 Prints one CSV row for each below a heading, and ends with 1 if a promise is missed:
 
-    python benchmarks/cutlist.py [--pairs 12] [--cams 11]
+    python benchmarks/cutlist.py [--pairs 12] [--cams 9]
 """
 
 from __future__ import annotations
@@ -149,7 +149,7 @@ def main() -> int:
     """Run all and print what was found."""
     parser = argparse.ArgumentParser(description="Cut lists and shifts.")
     parser.add_argument("--pairs", type=int, default=12, help="random machines of two cams")
-    parser.add_argument("--cams", type=int, default=11, help="cams of each kind, all pairs of which are looked at")
+    parser.add_argument("--cams", type=int, default=9, help="cams of each kind, all pairs of which are looked at")
     asked = parser.parse_args()
     pairs, cams = asked.pairs, asked.cams
     draw = np.random.default_rng(18)
