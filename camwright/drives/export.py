@@ -11,7 +11,7 @@ import numpy as np
 from camwright.house.progress import Step, ignore
 from camwright.house.provenance import camwright_version, provenance
 from camwright.jobs.job import Job
-from camwright.jobs.table_units import default_units
+from camwright.jobs.table_units import default_units, parse_units
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.tables.cam_table import CamTable, Units
@@ -176,10 +176,25 @@ def export_possible(
     for target in targets:
         step(f"writing for {target.name}")
         try:
-            results.append(_export(profile, judge, target, wanted, asked, points, force))
+            in_counts = units is None and target.counts and job.output.counts
+            own = _Wanted(_counts_of(job), asked=True) if in_counts else wanted
+            results.append(_export(profile, judge, target, own, asked, points, force))
         except InputError as error:
             refused[target.name] = tuple(error.faults)
     return results, refused
+
+
+def _counts_of(job: Job) -> Units:
+    """Read the counts that a job names for its encoders."""
+    try:
+        return parse_units(job.output.counts, job.task)
+    except InputError as error:
+        raise InputError(*(fault.replace("--units", "[output] counts") for fault in error.faults)) from error
+
+
+def stored_count(target: Target, job: Job, size: float) -> float:
+    """Size of the count of a table in the counts that its job names (slave unit), as ``stored`` of `judge_table`; 0 for others."""
+    return size if target.counts and job.output.counts else 0.0
 
 
 def _running(job: Job) -> Stretch:

@@ -51,10 +51,13 @@ class Output:
         Rows of cam.csv.
     targets
         Targets of the tables where none are named otherwise; none stands for CSV alone.
+    counts
+        Units of master and slave for targets that store whole counts, as ``--units`` takes them; empty where nothing is said.
     """
 
     points: int
     targets: tuple[str, ...] = ()
+    counts: str = ""
 
 
 @dataclass(frozen=True)
@@ -234,6 +237,7 @@ class Job:
                 "origin": self.cut.origin,
                 "points": self.output.points,
                 **({"targets": list(self.output.targets)} if self.output.targets else {}),
+                **({"counts": self.output.counts} if self.output.counts else {}),
             },
         }
 
@@ -374,7 +378,7 @@ def _job(file: JobFile, known: Known, machine: Machine) -> Job:
         servo_aware=objective.servo_aware,
         slowest=slowest_share(known, cut.line_speed),
         servo_tolerance=None if file.servo.tolerance is None else tolerance_of(known, servo),
-        output=Output(file.output.points, file.output.targets),
+        output=Output(file.output.points, file.output.targets, file.output.counts),
         line=Line(**file.line.model_dump()),
         units=known.units,
     )

@@ -61,6 +61,10 @@ MEANINGS: dict[str, tuple[str, str]] = {
     ),
     "output.origin": ("master zero: start of the return zone, or mid sync zone", "cam tables, master positions"),
     "output.points": ("rows of cam.csv", "cam.csv"),
+    "output.counts": (
+        "counts of the encoders of master and slave, for targets that store counts",
+        "export, recipe, book",
+    ),
     "output.targets": ("drives that tables are written for where no option names them", "export, recipe, book"),
 }
 """Meaning and use of each key by its place."""

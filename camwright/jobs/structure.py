@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from functools import cache
 from typing import Annotated, Any, Literal
 
@@ -27,6 +28,7 @@ Command = Literal["in_sync", "shaped"]
 """What a servo-aware design may do in the sync zone: the command in sync all over it, or shaped so that the axis is in the shear zone."""
 
 _LONGEST_NAME = 60
+_COUNTS = re.compile(r" *[0-9a-z. /-]+, *([0-9]+(\.[0-9]+)? ?[a-z]+|[0-9]+( counts?)? ?/ ?rev) *")
 _REFUSED_IN_NAMES = '/\\<>:"|?*'
 
 
@@ -44,6 +46,13 @@ def _name(value: object) -> str | None:
         return f"{shown(value)}: a name neither begins nor ends with a dot or a space; it names the output directory"
     if is_device_name(value):
         return f"{shown(value)}: Windows takes this name for a device; it names the output directory, so choose another"
+    return None
+
+
+def _counts(value: object) -> str | None:
+    """Say what is wrong with the counts of encoders as they are written; what they are is read when a table is made."""
+    if not isinstance(value, str) or len(value) > _LONGEST_NAME or not _COUNTS.fullmatch(value):
+        return f'{shown(value)}: not two units; write the master\'s and the slave\'s, e.g. counts = "mm,36000/rev" or "mm,9.25 um"'
     return None
 
 
@@ -150,6 +159,15 @@ class OutputTable(Table):
         Field(description="rows of cam.csv", json_schema_extra={"minimum": 2, "maximum": 100_000}),
     ] = 361
     targets: Annotated[tuple[str, ...], *targets_field()] = ()
+    counts: Annotated[
+        str,
+        checked(_counts),
+        Field(
+            description="units of master and slave for targets that store whole counts: the size of a count, or counts a turn",
+            examples=["mm,36000/rev", "mm,9.25 um"],
+            json_schema_extra={"maxLength": _LONGEST_NAME},
+        ),
+    ] = ""
 
 
 class JobFile(Table):

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from camwright.drives.export import covering, position_error
+from camwright.drives.export import covering, position_error, stored_count
 from camwright.house.provenance import camwright_version
 from camwright.jobs.numbers import job_numbers
 from camwright.profiles.errors import InputError
@@ -320,7 +320,8 @@ def _number_faults(table: RecipeTable, read: CamTable, units: Units, design: Sto
     yield from differs("position error (m)", error, table.position_error, scale)
     yield from differs("ratio error", off.ratio, table.ratio_error, float(np.abs(profile(profile.breaks, 1)).max()))
     yield from differs("acceleration error", off.acceleration, table.acceleration_error, 1.0)
-    judgement = judge_table(rebuilt, job.task, job.servo, table.wraps, RUN)
+    stored = stored_count(TARGETS[table.target], job, units.slave.size)
+    judgement = judge_table(rebuilt, job.task, job.servo, table.wraps, RUN, stored)
     again = {check.name: check for check in judgement.checks}
     recorded = {check.name: check for check in table.checks}
     if again.keys() != recorded.keys():

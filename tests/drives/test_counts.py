@@ -185,3 +185,36 @@ def test_the_command_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str])
     names = {path.name for path in (tmp_path / "tables").iterdir()}
     assert names == {LIST, "report.json", "paper_600_trio.bas.withheld-old", "paper_600_trio.txt.withheld-old"}
     assert json.loads((tmp_path / "tables" / "report.json").read_text())["targets"]["trio"]["cuts"] == 1
+
+
+COUNTED = '[output]\ncounts = "mm,131072/rev"'
+
+
+def test_counts_of_the_job_are_those_of_its_tables(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = knife("1200 mm", 3).text.replace("[output]", COUNTED)
+    job = parse_job(text, "job.toml")
+    assert parse_job(job.text, "again") == job
+    results = export(profile_of(job), job, ["trio", "csv", "technosoft"])
+    assert [(result.cuts, result.passed) for result in results] == [(3, True), (1, True), (3, True)]
+    assert last_value(results[0]) == 131_072
+    (asked,) = export(profile_of(job), job, ["trio"], units=parse_units("mm,36000/rev", job.task))
+    assert last_value(asked) == 12_000  # an option outdoes the job
+    (tmp_path / "job.toml").write_text(text, encoding="utf-8")
+    folder = tmp_path / "recipe"
+    assert main(["recipe", str(tmp_path / "job.toml"), "--targets", "trio,csv", "--out", str(folder), "--quiet"]) == 0
+    assert main(["verify", str(folder), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["faults"] == []
+
+
+@pytest.mark.parametrize(
+    "counts", ['"36000"', '"mm"', '"mm,mm"', "36000", '"mm,36000/rev,mm"', '"mm,-5 um"', '"mm,1/rev/rev"']
+)
+def test_counts_of_a_job_that_are_none_are_refused(counts: str) -> None:
+    with pytest.raises(InputError, match=r"\[output\] counts"):
+        parse_job(TEXT.replace("[output]", f"[output]\ncounts = {counts}"), "job.toml")
+
+
+def test_counts_that_the_machine_does_not_have_are_refused_where_the_table_is_made() -> None:
+    job = parse_job(TEXT.replace("[output]", '[output]\ncounts = "furlong,36000/rev"'), "job.toml")
+    with pytest.raises(InputError, match=r"trio: \[output\] counts: there is no unit 'furlong'"):
+        written(job, "trio")

@@ -47,7 +47,8 @@ turn, the table holds several cuts (up to 24), after which it closes exactly. Wh
 stands in the report (`drift_per_cut`, `cuts`); added up over a run of 10 000 cuts it must stay within the sync tolerance, or
 `closure` fails. Limits of acceleration and jerk may be exceeded by what rounding to counts makes of their differences (two
 counts over the sample time squared, four over its cube); the check says how much. Without `--units` a count is 0.1 um, or so
-near to it that the cycle closes, and the axis must be scaled so.
+near to it that the cycle closes, and the axis must be scaled so. `[output] counts` in the job says the same as `--units` for
+these targets alone, for `export`, `recipe` and `book`.
 
 ## Auditing a cam
 
