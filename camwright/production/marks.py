@@ -139,7 +139,7 @@ def marks(job: Job, delay: int = 0, step: Step = ignore) -> Marks:
     assert phase is not None  # noqa: S101 - a phase of the master is in sync on every machine
     step("proving both ends")
     here = by_speed[-1]
-    if placed.task.line.ramps and not job.cut.shaped:
+    if not job.cut.shaped:
         here = replace(here, redesign=designed_ends(placed.task))
         by_speed = (*by_speed[:-1], here)
     proved = proven(placed.task, here.redesign)

@@ -2,7 +2,7 @@
 
 Whether a return is possible is a closed form for every machine, so both ends are found to rounding. On a line that ramps it is not: there
 a length is sure that is possible within limits from which the most is taken that the line's ramps can add, and the end itself is found by
-designs.
+designs; so it is with a motor's torque-speed curve.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from camwright.design.feasible.refusal import require_feasible
 from camwright.design.line.forms import keeps_ramp
 from camwright.design.optimise import solve
 from camwright.design.production.ramps import can_stand
+from camwright.design.returns.curve_limits import motor_speed_limits
 from camwright.profiles.errors import InfeasibleError, SolverError
 from camwright.profiles.limits import Limits
 from camwright.profiles.line import STEADY
@@ -37,7 +38,8 @@ _PEAKS = (1.0, 0.95, 0.9, 0.8, 0.65, 0.5, 0.3, 0.15)
 def redesigned(task: Task) -> MarkRange:
     """Find the shortest and the longest next length, less the one that is expected: whatever lies between can be designed.
 
-    On a line that ramps the ends are sure, and may lie inside: `designed_ends` finds them by designs.
+    On a line that ramps, and with a motor's curve, of which rectangles are kept, the ends are sure and may lie inside: `designed_ends`
+    finds them by designs.
 
     Raises
     ------
@@ -54,7 +56,9 @@ def redesigned(task: Task) -> MarkRange:
 
 
 def designed_ends(task: Task) -> MarkRange:
-    """Find the same ends on a line that ramps, by designs: to `DESIGNED`.
+    """Find the same ends on a line that ramps, or of a motor with a curve, by designs: to `DESIGNED`.
+
+    They lie between those that are sure and those of a steady line and a motor of any torque.
 
     Raises
     ------
@@ -62,9 +66,9 @@ def designed_ends(task: Task) -> MarkRange:
         The cut itself cannot be done.
     """
     sure = redesigned(task)
-    if not task.line.ramps:
+    if not task.line.ramps and task.limits.motor is None:
         return sure
-    steady = redesigned(task.with_line(STEADY))
+    free = redesigned(task.with_line(STEADY).with_limits(motor_speed_limits(task.machine, task.limits)))
 
     def between(good: float | None, bad: float | None) -> float | None:
         if good is None or bad is None or good == bad:
@@ -72,7 +76,7 @@ def designed_ends(task: Task) -> MarkRange:
         found = edge(lambda shift: shift == good or designs(task, shift), good, bad, DESIGNED)
         return good if found is None else found
 
-    return MarkRange(between(sure.earliest, steady.earliest), between(sure.latest, steady.latest))
+    return MarkRange(between(sure.earliest, free.earliest), between(sure.latest, free.latest))
 
 
 def designs(task: Task, shift: float) -> bool:

@@ -12,7 +12,9 @@ from camwright.jobs.job import load_job
 from camwright.profiles.errors import InfeasibleError
 from camwright.profiles.limits import Limits
 from camwright.profiles.line import Line
+from camwright.profiles.machines import RotaryKnife
 from camwright.profiles.mark_range import MarkRange
+from camwright.profiles.motor import MotorCurve
 from camwright.profiles.task import Task
 
 PAPER = load_job().task
@@ -102,3 +104,13 @@ def test_a_line_that_the_zone_does_not_bear_leaves_no_correction() -> None:
 
 def test_no_length_below_the_sync_zone_is_tried() -> None:
     assert not designs(PAPER, -0.5)
+
+
+def test_with_a_motors_curve_the_end_is_found_by_designs() -> None:
+    knife = RotaryKnife(0.4, drum_inertia=0.05)
+    curve = MotorCurve(((0.0, 60.0), (20 * math.pi, 20.0)))
+    task = Task(knife, PAPER.cut, replace(PAPER.limits, motor=curve))
+    sure, found = redesigned(task).earliest, designed_ends(task).earliest
+    assert redesigned(PAPER).earliest <= found <= sure
+    assert designs(task, found)
+    assert not designs(task, 1.01 * found)
