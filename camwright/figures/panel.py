@@ -15,7 +15,7 @@ from camwright.house.svg import legend_rows
 from camwright.profiles.cut import Cut
 from camwright.profiles.polynomial.profile import FloatArray
 
-WIDTH, LEFT, RIGHT = 624.0, 72.0, 24.0
+WIDTH, LEFT, RIGHT = 648.0, 72.0, 24.0
 """The page, and what is free beside its frames (pt)."""
 
 TITLE = 15.0

@@ -21,7 +21,8 @@ from camwright.design.returns import transcription
 from camwright.design.servo_aware import axis_response
 from camwright.design.torque import placing
 from camwright.design.torque import search as torque_search
-from camwright.figures import style
+from camwright.figures import panel
+from camwright.house import picture_files
 from camwright.house.output import BROKEN_PIPE
 from camwright.jobs import job as job_file
 from camwright.jobs.table_units import parse_units
@@ -90,8 +91,8 @@ NUMBERS: dict[str, tuple[object, object, str, str]] = {
     "sample time": (fit.RANGES["sample_time"], (1e-4, 2e-2), "contract", "ΔT 0.1 to 20 ms"),
     "dead time": (fit.RANGES["dead_time"][1], 0.05, "contract", "dead time up to 50 ms"),
     "shares of the line speed": (lead.SHARES, (0.1, 0.25, 0.5, 1.0), "contract", "(`10`, `25`, `50`, `100`)"),
-    "resolution of a figure": (style.RC["figure.dpi"], 200, "contract", "PNG (200 dpi, 170 mm wide)"),
-    "width of a figure": (round(25.4 * style.WIDTH), 170, "contract", "PNG (200 dpi, 170 mm wide)"),
+    "resolution of a figure": (picture_files.PIXELS_PER_INCH, 150, "contract", "PNG (648 pt at 150 pixels an inch,"),
+    "width of a figure": (panel.WIDTH, 648, "contract", "PNG (648 pt at 150 pixels an inch,"),
     "interrupted": (INTERRUPTED, 130, "contract", "| 130, 141 | interrupted; the reader of standard output is gone |"),
     "reader gone": (BROKEN_PIPE, 141, "contract", "| 130, 141 | interrupted; the reader of standard output is gone |"),
     "check failed": (CamwrightError.exit_code, 1, "contract", "| 1 | done, but a check failed |"),
