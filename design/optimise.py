@@ -151,7 +151,8 @@ def _solve_steady(task: Task, objective: CommandObjective) -> Solution:
     if decisive is None:
         return _solve_torque(task, objective)
     back, status, value, iterations = _solve_motion(task, decisive)
-    return Solution(task.machine, assemble(back, task), back, status, objective, value, iterations)
+    # of a slave that never leaves the line's speed it is 0, not −0
+    return Solution(task.machine, assemble(back, task), back, status, objective, value + 0.0, iterations)
 
 
 def _solve_ramped(task: Task, objective: CommandObjective, steady: Solution, suggest: bool) -> Solution:

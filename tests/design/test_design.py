@@ -519,3 +519,11 @@ def test_least_jerk_is_the_closed_form() -> None:
 @pytest.mark.parametrize("status", SolveStatus)
 def test_every_status_has_advice(status: SolveStatus) -> None:
     assert status.advice
+
+
+@pytest.mark.parametrize("objective", get_args(MotionObjective))
+def test_a_knife_that_turns_at_the_line_speed_costs_nothing_not_even_a_sign(objective: MotionObjective) -> None:
+    even = Task(RotaryKnife(0.4), Cut(0.4, 1.0, 0.1, 0.04, 0.06, 1e-4), Limits(2.0, 30.0, 3000.0))
+    cost = solve(even, objective).minimised
+    assert cost == pytest.approx(0.0, abs=1e-9)
+    assert math.copysign(1.0, cost) == 1.0
