@@ -22,6 +22,8 @@ _EDGE = 1e-6
 """Part of the cut length beside the ends of the zone where the ratio may be the return's."""
 _EXACT = 1e-8
 """Misfit, as a part of what is allowed, that is rounding: beginnings below it are as good as each other."""
+_SAME = 1e-12
+"""Part of the cut length within which two places are one."""
 _TOLD = 0.1
 """Misfit at the file's own zero, as a part of what is allowed, from which on another zero is told."""
 _ROUNDS = 60
@@ -74,17 +76,18 @@ def aligned(rebuilt: CamProfile, job: Job, *, count: float = 0.0) -> tuple[CamPr
 
     slack = count * lever / cut.sync_tolerance * (_IN_ZONE - 1)  # a chord that is off by one count
     begins = _beginnings(rebuilt, stretch, zone, cut.sync_zone, cut.length)
-    begin = _best(begins, misfit, cut.length, max(_EXACT, slack))
+    anchored = _anchored(begins, rebuilt.breaks / stretch, (zone, zone + cut.sync_zone), cut.length)
+    begin = _best(begins, misfit, cut.length, max(_EXACT, slack), anchored)
     notes: tuple[str, ...] = ()
     here, there = misfit(np.array([0.0, begin])).tolist()
-    if there + slack < here and here > _EXACT:
+    if begin:  # even where the file's own zero is as good: figures must not depend on where a file begins
         rebuilt = rebuilt.roll(begin * stretch)
-        if here > _TOLD:
-            note = (
-                f"the file's master zero is not the job's: the job's cycle begins {begin * 1e3:.6g} mm into the file's, "
-                "where the cam fits the sync zone best ([output] origin says which zero is meant)"
-            )
-            notes = (note,)
+    if there + slack < here and here > _TOLD:
+        note = (
+            f"the file's master zero is not the job's: the job's cycle begins {begin * 1e3:.6g} mm into the file's, "
+            "where the cam fits the sync zone best ([output] origin says which zero is meant)"
+        )
+        notes = (note,)
     off = rebuilt((zone + in_zone) * stretch, outside="repeat") - meant
     wanted = task.height if cut.origin == "return" else machine.pitch - float(sync(0.5 * cut.sync_zone))
     return rebuilt.shift(0.0, wanted - 0.5 * float(off.max() + off.min())), notes
@@ -102,12 +105,31 @@ def _beginnings(rebuilt: CamProfile, stretch: float, zone: float, width: float, 
     return np.unique(np.mod(tried, length))
 
 
-def _best(begins: FloatArray, misfit: Misfit, length: float, slack: float) -> float:
-    """Find the best beginning: the middle of those that fit exactly, or the best between neighbours."""
+def _anchored(begins: FloatArray, points: FloatArray, ends: tuple[float, float], length: float) -> NDArray[np.bool_]:
+    """Whether both ends of the zone fall on points of the cam."""
+    ring = np.sort(np.mod(points, length))
+    ring = np.concatenate([ring - length, ring, ring + length])
+    both = np.ones(len(begins), dtype=bool)
+    for end in ends:
+        at = np.mod(begins + end, length)
+        after = np.searchsorted(ring, at)
+        both &= np.minimum(ring[after] - at, at - ring[after - 1]) <= _SAME * length
+    return both
+
+
+def _best(begins: FloatArray, misfit: Misfit, length: float, slack: float, anchored: NDArray[np.bool_]) -> float:
+    """Find the best beginning: the middle of those that fit exactly, or the best between neighbours.
+
+    Where one fits exactly whose zone begins and ends on points of the cam, it is that: a beginning a micrometre beside it fits as well,
+    for what the ratio can tell.
+    """
     found = misfit(begins)
     least = int(found.argmin())
     bound = slack if slack <= _EXACT else float(found[least]) + slack
     good = found <= bound
+    sure = begins[good & anchored]
+    if len(sure) and slack <= _EXACT and float(np.ptp(sure)) <= 2.0 * _SAME * length:
+        return float(sure[0])
     if int(good.sum()) > 1:
         first, last = _run(good, least)
         width = (begins[last] - begins[first]) % length

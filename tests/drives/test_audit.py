@@ -314,6 +314,19 @@ def test_the_zero_of_a_file_does_not_matter() -> None:
         assert [check.value for check in found.checks[3:]] == pytest.approx(wanted, rel=1e-6, abs=1e-12)
 
 
+@pytest.mark.parametrize("law", ["double_s", "cycloid"])
+def test_the_zero_of_a_carriage_does_not_matter_either(law: str) -> None:
+    """Its zone is so long that a micrometre beside its beginning fits as well, by what the ratio tells; the points tell it."""
+    job = load_job(Path(__file__).parents[2] / "examples" / "flying-saw.toml")
+    best = baseline(law, job.task)
+    for shift in [*np.random.default_rng(8).uniform(0.0, job.cut.length, 12), 1e-6, 2e-5, job.cut.length - 1e-6]:
+        moved = aligned(best.roll(float(shift)), job)[0]
+        for found, wanted in zip(moved.extrema(), best.extrema(), strict=True):
+            assert found.value == pytest.approx(wanted.value, rel=1e-9, abs=1e-11)
+        grid = np.linspace(0.0, 0.999 * job.cut.length, 99)
+        assert moved(grid) == pytest.approx(best(grid), abs=1e-9)
+
+
 @pytest.mark.parametrize("shift", [0.0, 0.0004, 0.13733, 0.4441])
 def test_the_verdict_of_sampled_rows_does_not_depend_on_the_zero(shift: float, tmp_path: Path) -> None:
     profile = baseline("cycloid", JOB.task)
