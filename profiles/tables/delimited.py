@@ -25,6 +25,7 @@ _COMMA = re.compile(r"[+-]?(?:[0-9]+,[0-9]*|,[0-9]+)(?:[eE][+-]?[0-9]{1,4})?")
 _STAMP = re.compile(r"[0-9]{1,4}[-./:][0-9]{1,2}[-./:][0-9]{1,4}(?:[ T][0-9:.,]{1,20})?(?: ?[AP]M)?")
 _FAULT_CELL = re.compile(r"#(?:[A-Z/0]{3,12}[!?]|N/A|NV)[\s,;|]")
 """What a spreadsheet writes for a cell that it cannot compute: the row that begins with one is no comment."""
+_GROUPED = re.compile(r"[+-]?[0-9]{1,3}(?:([.,' \u00a0\u2009\u202f])[0-9]{3})(?:\1[0-9]{3})*(?:[.,][0-9]*)?")
 _SAID = re.compile(r"sep=(.)", re.IGNORECASE)
 _REMARK = re.compile(r"\s+//.*")
 _MISFIT = (
@@ -112,6 +113,8 @@ class Sheet:
         values = np.empty(len(self.rows))
         for row, cells in enumerate(self.rows):
             value = number_in(cells[at], self.comma)
+            if value is None:
+                _require_no_groups(self.place, self.lines[row], [cells[at]])
             if value is None or abs(value) > GREATEST:
                 raise refuse(
                     self.place,
@@ -181,6 +184,10 @@ def read_sheet(
     else:
         first = layout.above([cells for _, cells in split])
     headings, rows = split[:first], split[first:]
+    if not rows:
+        for number, line in lines:
+            for sign in SEPARATORS:
+                _require_no_groups(place, number, _cells(line, sign))
     if layout is None:
         _require_no_spoilt_row(headings, comma, names, place)
     width = _width(headings, rows)
@@ -199,6 +206,18 @@ def read_sheet(
         rows = [(number, _padded(cells, width) if len(cells) < width else cells) for number, cells in rows]
     kept = tuple(_row(cells, width, number, place, bool(headings)) for number, cells in rows)
     return Sheet(place, columns, kept, tuple(number for number, _ in rows), heading, comma)
+
+
+def _require_no_groups(place: str, number: int, cells: Sequence[str]) -> None:
+    """Refuse cells whose thousands are set apart, by line: which sign is the decimal one would be a guess."""
+    for cell in cells:
+        plain = cell.strip().strip('"').strip()
+        if _GROUPED.fullmatch(plain) and number_in(plain, True) is None:
+            raise refuse(
+                place,
+                number,
+                f"{plain[:50]!r} has its thousands set apart; export the numbers without such signs, like 1234.5",
+            )
 
 
 def _lines(text: str, place: str) -> tuple[list[tuple[int, str]], list[tuple[int, str]], str | None]:

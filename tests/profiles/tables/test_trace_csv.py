@@ -82,3 +82,34 @@ def test_a_fault_is_told_with_its_place(written: str, message: str) -> None:
     with pytest.raises(InputError) as caught:
         read_trace_csv(written, "t.csv")
     assert message in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("header", "row", "cell"),
+    [
+        ("time [ms];command [mm];actual [mm]", "{k};1.234.{k:03d},5;1.234.{k:03d},5", "'1.234.000,5'"),
+        ("time [ms]\tcommand [mm]\tactual [mm]", "{k}\t1,234.{k:03d}\t1,234.{k:03d}", "'1,234.000'"),
+        ("time [ms],command [mm],actual [mm]", '{k},"1,234.{k:03d}","1,234.{k:03d}"', "'1,234.000'"),
+        ("time [ms];command [mm];actual [mm]", "{k};1 234,{k:03d};1 234,{k:03d}", "'1 234,000'"),
+        ("time [ms];command [mm];actual [mm]", "{k};1'234.{k:03d};1'234.{k:03d}", '"1\'234.000"'),
+    ],
+)
+def test_thousands_set_apart_are_refused_by_line(header: str, row: str, cell: str) -> None:
+    lines = [row.format(k=k) for k in range(300)]
+    with pytest.raises(InputError) as caught:
+        read_trace_csv("\n".join([header, *lines]), "t")
+    assert (
+        str(caught.value)
+        == f"t, line 2: {cell} has its thousands set apart; export the numbers without such signs, like 1234.5"
+    )
+
+
+def test_the_master_is_read_where_it_is_asked_for() -> None:
+    text = "t [ms];Master set [mm];Master act [mm];Slave set [mm];Slave act [mm]\n0;1;2;3;4\n1;5;6;7;8"
+    found = read_trace_csv(text, "t", master=True)
+    assert found.master is not None
+    assert found.master.tolist() == [0.002, 0.006]
+    assert found.command.tolist() == [0.003, 0.007]
+    plain = read_trace_csv(text, "t")
+    assert plain.master is None
+    assert plain.actual.tolist() == [0.004, 0.008]
