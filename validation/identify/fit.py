@@ -38,6 +38,9 @@ ROUNDS = 40
 
 _LOGARITHMIC = frozenset({"bandwidth", "damping", "position_gain", "sample_time"})
 
+_FARTHEST = 300.0
+"""Greatest logarithm of a value: a bound that nothing is known of is no overflow."""
+
 _RUN_IN = 0.06
 """Beginning of the trace that is not judged (s): the greatest dead time and some samples, whose commands must be known."""
 
@@ -46,6 +49,10 @@ _START_GAINS = (12.0, 35.0)
 """Sample times (s) and position gains (1/s) from which the search starts, each with each."""
 
 _COARSE_ROUNDS = 10
+_BINS = 15
+"""Bins of a spectrum over which its size is looked at."""
+_SUNK = 3.0
+"""How many times the power of rounding a command has that is still seen."""
 _SEARCH_ROWS = 600
 _UNSTABLE = 1e3
 
@@ -64,15 +71,27 @@ class Minimum:
         Sampling phase as a part of the sample time, nothing where it is not fitted.
     cost
         Squared residual.
-    spreads
-        Half the widths of the 95 % confidence, by name.
+    errors
+        Standard errors of the coordinates (`moved`), by name.
+    bounds
+        95 % confidence, by name.
     """
 
     values: dict[str, float]
     names: tuple[str, ...]
     clock: float | None
     cost: float
-    spreads: dict[str, float]
+    errors: dict[str, float]
+    bounds: dict[str, tuple[float, float]]
+
+    def widened(self, factors: dict[str, float]) -> Minimum:
+        """Make the confidence of each parameter wider on both sides."""
+        bounds = {}
+        for name, (low, high) in self.bounds.items():
+            factor = factors[name]
+            at, below, above = (coordinate(name, value) for value in (self.values[name], low, high))
+            bounds[name] = (value_at(name, at + factor * (below - at)), value_at(name, at + factor * (above - at)))
+        return replace(self, errors={name: factors[name] * each for name, each in self.errors.items()}, bounds=bounds)
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,9 +132,9 @@ class TraceFit:
     level: bool = False
 
     @classmethod
-    def of(cls, trace: Trace) -> TraceFit:
-        """Prepare a trace."""
-        from scipy.fft import next_fast_len, rfft
+    def of(cls, trace: Trace, count: float = 0.0) -> TraceFit:
+        """Prepare a trace, whose command was rounded to a count; what rounding made of it was not asked of the axis, and is taken off."""
+        from scipy.fft import irfft, next_fast_len, rfft
         from scipy.interpolate import CubicSpline
 
         times, rows = trace.times, len(trace.command)
@@ -129,11 +148,15 @@ class TraceFit:
         leaving, coming = (float(curve(times[row], 1)) - velocity for row in (-1, 0))
         back = width * part * (1.0 - part) * (leaving * (1.0 - part) - coming * part)
         rates = 2.0 * math.pi * np.arange(whole // 2 + 1) / (whole * trace.step)
+        spectrum = np.asarray(rfft(np.concatenate([beyond, back])))
+        if count:
+            spectrum = _above_rounding(spectrum, rows * count**2 / 12.0)
+            smooth = np.asarray(irfft(spectrum, whole))[:rows]
+            curve = CubicSpline(times, smooth + begin + velocity * (times - times[0]))
 
         def command(at: FloatArray) -> FloatArray:
             return np.asarray(curve(np.clip(at, times[0], times[-1])))
 
-        spectrum = np.asarray(rfft(np.concatenate([beyond, back])))
         judged = np.arange(first, rows)
         return cls(
             times[judged],
@@ -167,14 +190,16 @@ class TraceFit:
         if not spectral_radius(servo) < 1.0:
             return np.full(len(self.times), _UNSTABLE * float(np.ptp(self.actual)))
         if clock is None:
-            position, free = self.mean(servo), decays(servo, self.times)
-        else:
-            position, free = axis_response(
-                servo, float(self.times[0]) + clock * servo.sample_time, self.command, self.times
-            )
-        if self.level:
-            free = np.vstack([free, np.ones(len(self.times))])
-        return without(self.actual - position, free)
+            return without(self.actual - self.mean(servo), self.free(servo))
+        position, free = axis_response(
+            servo, float(self.times[0]) + clock * servo.sample_time, self.command, self.times
+        )
+        return without(self.actual - position, np.vstack([free, np.ones(len(self.times))]) if self.level else free)
+
+    def free(self, servo: Servo) -> FloatArray:
+        """Give what the beginning, and the level where there is one, can add to the mean position: a row each."""
+        rows = decays(servo, self.times)
+        return np.vstack([rows, np.ones(len(self.times))]) if self.level else rows
 
     def mean(self, servo: Servo) -> FloatArray:
         """Position at the rows, mean over all phases of the sampling clock."""
@@ -185,20 +210,24 @@ class TraceFit:
         late = servo.delay + (1.0 - servo.velocity_feedforward) / servo.position_gain
         return np.asarray(found[self.rows] + begin + velocity * (self.step * self.rows - late))
 
+    def filtered(self, servo: Servo, command: FloatArray) -> FloatArray:
+        """Say what the axis makes of a command at the judged rows that is nothing before and after them (mean over all phases)."""
+        from scipy.fft import irfft, rfft
+
+        rows = len(command)
+        rates = 2.0 * math.pi / (rows * self.step) * np.arange(rows // 2 + 1, dtype=np.float64)
+        return np.asarray(irfft(rfft(command) * mean_response(servo, rates), rows))
+
     def doubt(self, found: Minimum) -> float:
         """Squared residual that the command between the rows may account for, which nobody knows: large where it has corners.
 
         A spline through every second row misses the others; one through all rows misses a fourth of that, at a corner.
         """
-        from scipy.fft import irfft, rfft
         from scipy.interpolate import CubicSpline
 
-        rows = len(self.times)
         every = self.command(self.times)
         missed = every - CubicSpline(self.times[::2], every[::2])(self.times)
-        rates = 2.0 * math.pi / (rows * self.step) * np.arange(rows // 2 + 1, dtype=np.float64)
-        effect = np.asarray(irfft(rfft(missed) * mean_response(Servo(**found.values), rates), rows))
-        return float(np.sum((effect / 4.0) ** 2))
+        return float(np.sum((self.filtered(Servo(**found.values), missed) / 4.0) ** 2))
 
     def solve(self, alpha: float) -> Minimum:
         """Fit all parameters but the velocity feed-forward and the clock, from many starts."""
@@ -241,13 +270,13 @@ class TraceFit:
         """Least squares over some parameters, and the clock if one is given, from a start; ranges are kept."""
         from scipy.optimize import least_squares
 
-        low, high = (np.array([_coordinate(name, RANGES[name][end]) for name in names]) for end in (0, 1))
-        begin = np.array([_coordinate(name, start[name]) for name in names])
+        low, high = (np.array([coordinate(name, RANGES[name][end]) for name in names]) for end in (0, 1))
+        begin = np.array([coordinate(name, start[name]) for name in names])
         if clock is not None:
             low, high, begin = np.append(low, clock - 2.0), np.append(high, clock + 2.0), np.append(begin, clock)
 
         def read(point: FloatArray) -> tuple[dict[str, float], float | None]:
-            values = {name: _value(name, float(x)) for name, x in zip(names, point, strict=False)}
+            values = {name: value_at(name, float(x)) for name, x in zip(names, point, strict=False)}
             return {**start, **values}, None if clock is None else float(point[-1])
 
         def left(point: FloatArray) -> FloatArray:
@@ -278,12 +307,24 @@ class TraceFit:
         scale = np.sqrt((jacobian**2).sum(axis=0))
         cost = 2.0 * found.cost * size * size
         inverse = np.linalg.pinv((jacobian / scale).T @ (jacobian / scale))
-        spread = CONFIDENCE * np.sqrt(np.diag(inverse) * cost / (rows - width - 3)) / scale
-        spreads = {
-            name: float(each) * (values[name] if name in _LOGARITHMIC else 1.0)
-            for name, each in zip(names, spread, strict=False)
+        deviations = np.sqrt(np.diag(inverse) * cost / (rows - width - 3)) / scale
+        errors = {name: float(each) for name, each in zip(names, deviations, strict=False)}
+        bounds = {
+            name: (moved(name, values[name], -CONFIDENCE * each), moved(name, values[name], CONFIDENCE * each))
+            for name, each in errors.items()
         }
-        return Minimum(values, names, phase, cost, spreads)
+        return Minimum(values, names, phase, cost, errors, bounds)
+
+
+def _above_rounding(spectrum: ComplexArray, power: float) -> ComplexArray:
+    """Cut a spectrum off where it sinks into rounding, of so much power a bin."""
+    size = np.abs(spectrum) ** 2
+    around = np.lib.stride_tricks.sliding_window_view(size, min(_BINS, len(size)))
+    sunk = np.flatnonzero(np.median(around, axis=1) < _SUNK * power)
+    if not len(sunk):
+        return spectrum
+    end = int(sunk[0]) + _BINS // 2
+    return np.where(np.arange(len(spectrum)) < end, spectrum, 0.0)
 
 
 def without(signal: FloatArray, rows: FloatArray) -> FloatArray:
@@ -301,18 +342,19 @@ def without(signal: FloatArray, rows: FloatArray) -> FloatArray:
     return signal
 
 
-def _coordinate(name: str, value: float) -> float:
-    """Where the search puts a value: the logarithm of what is above zero."""
+def coordinate(name: str, value: float) -> float:
+    """Say where the search puts a value: the logarithm of what is above zero."""
     return math.log(value) if name in _LOGARITHMIC else value
 
 
-def _value(name: str, coordinate: float) -> float:
-    return math.exp(coordinate) if name in _LOGARITHMIC else coordinate
+def value_at(name: str, at: float) -> float:
+    """Give the value at a place of the search."""
+    return math.exp(min(max(at, -_FARTHEST), _FARTHEST)) if name in _LOGARITHMIC else at
 
 
 def moved(name: str, value: float, by: float) -> float:
     """Move a parameter by a part of itself, or by a number if it may be zero."""
-    return _value(name, _coordinate(name, value) + by)
+    return value_at(name, coordinate(name, value) + by)
 
 
 def _difference(name: str) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -13,6 +13,7 @@ from camwright.profiles.errors import InputError
 from camwright.profiles.servo import Servo
 from camwright.profiles.trace import Trace
 from camwright.validation.identify.clock import with_clock
+from camwright.validation.identify.colour import with_colour
 from camwright.validation.identify.fit import (
     CONFIDENCE,
     RANGES,
@@ -23,6 +24,7 @@ from camwright.validation.identify.fit import (
 from camwright.validation.identify.level import with_level
 from camwright.validation.identify.preparation import unwrapped
 from camwright.validation.identify.quality import require_usable
+from camwright.validation.identify.rounding import count_of, with_rounding
 
 Origin = Literal["trace", "assumed", "given"]
 """Where the velocity feed-forward comes from."""
@@ -101,19 +103,19 @@ def identify(trace: Trace, place: str, velocity_feedforward: float | None = None
     """
     trace = unwrapped(trace, place)
     require_usable(trace, place)
-    fit = with_level(TraceFit.of(trace), velocity_feedforward)
+    counts = count_of(trace.command), count_of(trace.actual)
+    fit = with_level(TraceFit.of(trace, counts[0]), velocity_feedforward)
     origin: Origin = "given"
     if velocity_feedforward is None:
-        solution, origin = _choose(fit)
+        solution, origin = _choose(fit, counts)
     else:
         solution = with_clock(fit, fit.solve(velocity_feedforward))
-    solution = _with_doubt(fit, solution)
+    solution = _widened(fit, solution, counts)
     share = 1.0 - math.sqrt(solution.cost / float(np.sum((fit.actual - fit.actual.mean()) ** 2)))
     faults = list(_faults(solution, share, fit.lag))
     if faults:
         raise InputError(*(f"{place}: {fault}" for fault in faults))
-    values, spread = solution.values, solution.spreads
-    confidence = {name: (values[name] - spread[name], values[name] + spread[name]) for name in solution.names}
+    values = solution.values
     return Identified(
         servo=Servo(
             **{
@@ -122,7 +124,7 @@ def identify(trace: Trace, place: str, velocity_feedforward: float | None = None
                 "velocity_feedforward": min(max(0.0, values["velocity_feedforward"]), 1.0),
             }
         ),
-        confidence=confidence,
+        confidence={name: solution.bounds[name] for name in solution.names},
         feedforward_from=origin,
         fit=share,
         residual=math.sqrt(solution.cost / len(fit.times)),
@@ -141,8 +143,8 @@ def _level_note(fit: TraceFit, solution: Minimum, trace: Trace) -> tuple[str, ..
     return (f"the actual position has another zero than the command: {shown:.6g} {unit} were taken off",)
 
 
-def _choose(fit: TraceFit) -> tuple[Minimum, Origin]:
-    """Fit the velocity feed-forward too, or take it as 0 or 1 where this is about as good."""
+def _choose(fit: TraceFit, counts: tuple[float, float]) -> tuple[Minimum, Origin]:
+    """Fit the velocity feed-forward too, or take it as 0 or 1 where this is about as good, or within its confidence."""
     from scipy.optimize import minimize_scalar
 
     whole = min((fit.solve(alpha) for alpha in (0.0, 1.0)), key=lambda each: each.cost)
@@ -163,20 +165,25 @@ def _choose(fit: TraceFit) -> tuple[Minimum, Origin]:
     minimize_scalar(cost, bracket=(alpha, alpha + (0.02 if alpha == 0.0 else -0.02)), options={"xtol": 1e-4})
     best = min(tried, key=lambda each: each.cost)
     if assumed.clock is None and _about_as_good(fit, whole, best):
-        return whole, "assumed"
-    return with_clock(fit, fit.minimum(best.values, free, None, ROUNDS)), "trace"
+        return assumed, "assumed"
+    freed = with_clock(fit, fit.minimum(best.values, free, None, ROUNDS))
+    low, high = _widened(fit, freed, counts).bounds["velocity_feedforward"]
+    return (assumed, "assumed") if low <= alpha <= high else (freed, "trace")
+
+
+def _widened(fit: TraceFit, found: Minimum, counts: tuple[float, float]) -> Minimum:
+    """Widen the confidence by what is not white noise: rounding as it may have been, or the noise as it is seen, the greater."""
+    rounded, coloured = with_rounding(fit, found, *counts), with_colour(fit, found)
+    factors = {
+        name: max(each.errors[name] for each in (rounded, coloured)) / found.errors[name] for name in found.names
+    }
+    return found.widened(factors)
 
 
 def _about_as_good(fit: TraceFit, simple: Minimum, free: Minimum) -> bool:
     """Whether a fit of one parameter less is not significantly worse."""
     noise = free.cost / len(fit.times)
     return simple.cost - free.cost <= CONFIDENCE**2 * (noise + fit.doubt(free))
-
-
-def _with_doubt(fit: TraceFit, found: Minimum) -> Minimum:
-    """Widen the confidence by what the command between the rows may do."""
-    wider = math.sqrt(1.0 + fit.doubt(found) * len(fit.times) / found.cost)
-    return replace(found, spreads={name: wider * spread for name, spread in found.spreads.items()})
 
 
 def _faults(solution: Minimum, fit: float, lag: float) -> Iterator[str]:
@@ -196,16 +203,17 @@ def _faults(solution: Minimum, fit: float, lag: float) -> Iterator[str]:
     values = solution.values
     for name in solution.names:
         factor, unit = _UNITS[name]
-        words, value, spread = name.replace("_", " "), values[name], solution.spreads[name]
+        words, value, (least, most) = name.replace("_", " "), values[name], solution.bounds[name]
+        spread = 0.5 * (most - least)
         low, high = RANGES[name]
         about = f"{value * factor:.4g}{unit}, give or take {spread * factor:.2g}{unit} (95 %)"
         known = max(value, values["sample_time"]) if name == "dead_time" else abs(value)
-        if name == "dead_time" and value + spread < -_ROUNDED:
+        if name == "dead_time" and most < -_ROUNDED:
             yield (
                 f"the actual position runs ahead of the command: {words} {about}; switch the controller's lead off for the recording, and "
                 "give command and actual in their own columns"
             )
-        elif name == "velocity_feedforward" and value - spread > 1.0:
+        elif name == "velocity_feedforward" and least > 1.0:
             yield f"{words} {about}: above 1, the axis would run ahead; give the share that is set in the drive, --velocity-feedforward"
         elif not low + 1e-6 * abs(low) < value < high - 1e-6 * abs(high):
             yield f"{words} {value * factor:.4g}{unit}: the end of the range that is searched; {_LIVELIER}"

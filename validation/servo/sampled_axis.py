@@ -99,6 +99,22 @@ def mean_response(servo: Servo, rates: FloatArray) -> ComplexArray:
     rates
         Angular frequencies (rad/s), the first of them 0.
     """
+    return ripple_response(servo, rates, 0)
+
+
+def ripple_response(servo: Servo, rates: FloatArray, harmonic: int) -> ComplexArray:
+    """Frequency response of the axis about a harmonic of the sampling rate.
+
+    The hold makes of ``exp(s t)`` parts at ``s_h = s + j h 2 pi / dT``, all integers ``h``: the axis is the sum of
+    ``response * exp(s t) * exp(j h 2 pi (t - clock) / dT)`` over these.
+
+    Parameters
+    ----------
+    rates
+        Angular frequencies (rad/s), of either sign, the first of them 0.
+    harmonic
+        The harmonic ``h``; 0 for the part that does not depend on the clock.
+    """
     step, gain, w = servo.sample_time, servo.position_gain, servo.bandwidth
     plant = sample_plant(servo, step)
     (a, b, _), (c, d, _), (e, f, _) = plant.transition.tolist()
@@ -109,10 +125,16 @@ def mean_response(servo: Servo, rates: FloatArray) -> ComplexArray:
     loop = (z - a) * (z - d) - b * c
     sampled = (e * ((z - d) * p + b * q) + f * ((z - a) * q + c * p)) / loop + r
     reference = (gain + servo.velocity_feedforward / step * (1.0 - 1.0 / z)) * (z - 1.0) / (z - 1.0 + gain * sampled)
-    hold = (1.0 - 1.0 / z) / (s * step)
-    found = np.ones(len(rates), dtype=np.complex128)
+    beside = s + 2j * np.pi * harmonic / step
+    hold = (1.0 - 1.0 / z) / (beside * step)
+    found = np.full(
+        len(rates), 1.0 if harmonic == 0 else 0.0, dtype=np.complex128
+    )  # at rest the axis stands on its command
     found[1:] = (
-        np.exp(-s * servo.delay) * reference * hold * (w * w / (s * (s * s + 2 * servo.damping * w * s + w * w)))
+        np.exp(-s * servo.delay)
+        * reference
+        * hold
+        * (w * w / (beside * (beside * beside + 2 * servo.damping * w * beside + w * w)))
     )
     return found
 
