@@ -114,7 +114,7 @@ class Sheet:
         for row, cells in enumerate(self.rows):
             value = number_in(cells[at], self.comma)
             if value is None:
-                _require_no_groups(self.place, self.lines[row], [cells[at]])
+                _require_no_groups(self.place, [(self.lines[row], [cells[at]])])
             if value is None or abs(value) > GREATEST:
                 raise refuse(
                     self.place,
@@ -184,10 +184,9 @@ def read_sheet(
     else:
         first = layout.above([cells for _, cells in split])
     headings, rows = split[:first], split[first:]
-    if not rows:
-        for number, line in lines:
-            for sign in SEPARATORS:
-                _require_no_groups(place, number, _cells(line, sign))
+    _require_no_groups(
+        place, [] if rows else [(number, _cells(line, sign)) for number, line in lines for sign in SEPARATORS]
+    )
     if layout is None:
         _require_no_spoilt_row(headings, comma, names, place)
     width = _width(headings, rows)
@@ -208,16 +207,17 @@ def read_sheet(
     return Sheet(place, columns, kept, tuple(number for number, _ in rows), heading, comma)
 
 
-def _require_no_groups(place: str, number: int, cells: Sequence[str]) -> None:
+def _require_no_groups(place: str, lines: Sequence[tuple[int, Sequence[str]]]) -> None:
     """Refuse cells whose thousands are set apart, by line: which sign is the decimal one would be a guess."""
-    for cell in cells:
-        plain = cell.strip().strip('"').strip()
-        if _GROUPED.fullmatch(plain) and number_in(plain, True) is None:
-            raise refuse(
-                place,
-                number,
-                f"{plain[:50]!r} has its thousands set apart; export the numbers without such signs, like 1234.5",
-            )
+    for number, cells in lines:
+        for cell in cells:
+            plain = cell.strip().strip('"').strip()
+            if _GROUPED.fullmatch(plain) and number_in(plain, True) is None:
+                raise refuse(
+                    place,
+                    number,
+                    f"{plain[:50]!r} has its thousands set apart; export the numbers without such signs, like 1234.5",
+                )
 
 
 def _lines(text: str, place: str) -> tuple[list[tuple[int, str]], list[tuple[int, str]], str | None]:
