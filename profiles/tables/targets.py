@@ -103,6 +103,14 @@ def read_table(target: Target, text: str, place: str) -> CamTable:
     return table
 
 
+_OTHERS = (
+    (r"<TcSmItem\b", "an item of a TwinCAT project (.xti)"),
+    (r"\b(?:MOVELINK|FLEXLINK)\s*\(", "a Trio program that moves by MOVELINK or FLEXLINK calls, not by a table"),
+    (r"^\s*E[MP]\s*\d+\s*,\s*\d+[\s\S]*\bET\s*\[", "a Galil program with an ECAM table (EM, EP, ET)"),
+)
+"""What other files are, by words that they have: named, so that nobody looks for the option that reads them."""
+
+
 def detect(text: str, place: str) -> Target:
     """Find the target whose layout a text has, judged by words that only this layout has.
 
@@ -124,6 +132,12 @@ def detect(text: str, place: str) -> Target:
         return technosoft.TARGET
     if _has_columns(text, place):
         return csv_target.TARGET
+    for sign, what in _OTHERS:
+        if re.search(sign, text, re.IGNORECASE | re.MULTILINE):
+            raise InputError(
+                f"{place}: {what}, which is not read; write the cam's points as two columns, master and slave with their units, "
+                "and audit that"
+            )
     raise InputError(f"{place}: the layout is not recognised; name it with --target, one of {', '.join(TARGETS)}")
 
 

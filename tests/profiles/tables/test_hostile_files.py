@@ -406,3 +406,23 @@ def test_any_bytes_are_read_or_refused(data: bytes) -> None:
         else:
             message = f"cam.file with {table.points} points"
         assert message.startswith("cam.file")
+
+
+@pytest.mark.parametrize(
+    ("text", "what"),
+    [
+        (
+            '<?xml version="1.0"?>\n<TcSmItem xmlns:xsi="x"><Camming/></TcSmItem>\n',
+            "an item of a TwinCAT project (.xti)",
+        ),
+        ("BASE(1)\nMOVELINK(100, 200, 10, 10, 0)\n", "a Trio program that moves by MOVELINK or FLEXLINK calls"),
+        ("EAA\nEM 2000,1000\nEP 20,0\nET[0]=0\nET[1]=3\n", "a Galil program with an ECAM table"),
+    ],
+)
+def test_files_that_are_not_read_are_named_with_a_way_out(text: str, what: str) -> None:
+    with pytest.raises(InputError) as caught:
+        detect(text, "f")
+    assert str(caught.value).startswith(f"f: {what}")
+    assert "write the cam's points as two columns, master and slave with their units, and audit that" in str(
+        caught.value
+    )
