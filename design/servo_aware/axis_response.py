@@ -181,7 +181,11 @@ class Axis:
         edge_times += np.tile(np.arange(PHASES), len(edges) // PHASES) * (self.servo.sample_time / PHASES)
         places = np.concatenate([np.tile(steps, SUBSTEPS), edges])
         times = np.concatenate([np.repeat(after, len(steps)), edge_times])
-        return _Zone(first, len(steps), edges, edge_times, places, times, *self.ideal(places))
+        ideal = [
+            np.concatenate([np.tile(on_steps, SUBSTEPS), at_edges])
+            for on_steps, at_edges in zip(self.ideal(steps), self.ideal(edges), strict=True)
+        ]
+        return _Zone(first, len(steps), edges, edge_times, places, times, *ideal)
 
     def _in_zone(self, profile: CamProfile, order: int) -> FloatArray:
         """Axis, or a derivative of it over the master, where the shear zone is looked at."""

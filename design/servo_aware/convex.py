@@ -43,7 +43,7 @@ _QPOASES: dict[str, Any] = {
 }
 # More rows than these are asked of our own methods first: linear programmes of the simplex method, quadratic ones of the
 # interior-point one.
-MANY = 500
+MANY, MANY_SQUARE = 500, 800
 # HiGHS' words for a programme without an answer.
 _INFEASIBLE, _UNBOUNDED = "Infeasible", "Unbounded"
 # Added to the diagonal of a quadratic cost, relative to its mean: directions that cost nothing are left where they are.
@@ -127,7 +127,7 @@ class ConvexProgramme:
             Every solver ended without an answer.
         """
         rows = self.rows()
-        few = len(rows.matrix) <= MANY
+        few = len(rows.matrix) <= (MANY if square is None else MANY_SQUARE)
         if square is not None:
             return _quadratic(rows, cost, square) if few else _many(rows, cost, square)
         return _linear(rows, cost) if few else self._many_linear(rows, cost)

@@ -1,0 +1,191 @@
+"""Whether designs for a band of line speeds hold what they state: random jobs of all machines, each simulated anew at many line speeds.
+
+Machines, cuts, limits and servos are those of ``random_servo_aware.py``; each job has a band from 10 to 60 % up to its line speed, a third
+of the commands are in sync, two thirds shaped, a third make the sync error least. What a design predicts of its nominal servo is compared
+with the validation's simulation at 40 of the line speeds that it looked at, and at 40 others drawn from the band the error must keep what
+is stated: the tolerance, or the least error found, to 1 %. Writes the counts of each machine to ``results/speed_band_designs.csv``; the
+exit code is 0 if every prediction holds to 1e-8 m and nothing is outside:
+
+    python benchmarks/speed_band_designs.py [--jobs 200] [--seed 1]
+
+With ``--issue`` it prints instead what the published knife and servo reach: the table of cut lengths, the cost beside designs for one line
+speed, and ranges of the servo with the corner that binds. The independent linear programme is in
+``tests/design/servo_aware/test_line_speeds_referee.py``.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import sys
+from collections import Counter
+from dataclasses import dataclass, replace
+from pathlib import Path
+from time import process_time
+
+import numpy as np
+from random_machines import MACHINES, random_job
+from random_servo_aware import draw_servo
+
+from camwright.design.optimise import Solution
+from camwright.design.optimise_axis import solve_axis
+from camwright.profiles.cut import Cut
+from camwright.profiles.errors import CamwrightError
+from camwright.profiles.limits import Limits
+from camwright.profiles.machines import RotaryKnife
+from camwright.profiles.objective import ObjectiveName, of_motion
+from camwright.profiles.servo import Servo
+from camwright.profiles.servo_tolerance import ServoTolerance
+from camwright.profiles.task import Task
+from camwright.studies.axis_study import shares_of
+from camwright.validation.servo.line_speeds import line_speed_errors
+
+RESULTS = Path(__file__).parent / "results"
+SPEEDS, ATTEMPTS = 40, 12
+EXACT, STATED = 1e-8, 1.01
+"""What a prediction may be wrong by (m), and the factor on what is stated that a line speed between may reach."""
+
+PAPER = Servo(120.0, 0.7, 35.0, 0.004, 1.0)
+RANGES = ServoTolerance((108.0, 132.0), (0.63, 0.77), (33.25, 36.75), (0.004, 0.004), (0.0, 0.0))
+CUT = Cut(0.3, 80 / 60, 0.12, 0.04, 0.08, 1e-4, shaped=True)
+LIMITS = Limits(200 / 60, 100.0, 20_000.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Designed:
+    """A cam for a band, its task, servo and objective, and the processor time that it took (s)."""
+
+    solution: Solution
+    task: Task
+    servo: Servo
+    objective: ObjectiveName
+    slowest: float
+    seconds: float
+
+
+def designed(rng: np.random.Generator, kind: str, number: int) -> Designed | None:
+    """Draw a job with a band and design it; None if that cannot be."""
+    job = random_job(rng, kind)
+    servo, slowest = draw_servo(rng, job), float(rng.uniform(0.1, 0.6))
+    objective: ObjectiveName = "sync_error" if number % 3 == 0 else of_motion(job.objective)
+    shaped = number % 3 != 1
+    task = job.task.with_cut(replace(job.cut, shaped=shaped))
+    begun = process_time()
+    try:
+        command = "shaped" if shaped else "in_sync"
+        solution = solve_axis(task, objective, command, (servo,), shares=shares_of(slowest), suggest=False)
+    except CamwrightError:
+        return None
+    spent = process_time() - begun
+    return Designed(solution, task.with_machine(solution.machine), servo, objective, slowest, spent)
+
+
+def judged(rng: np.random.Generator, found: Designed) -> tuple[float, float]:
+    """By how much predictions are wrong at most (m), and the worst error in the band over what is stated."""
+    axis, v = found.solution.axis, found.task.cut.line_speed
+    if axis is None:
+        raise TypeError("a servo-aware design has an axis")
+    shares = list(axis.by_speed)
+    chosen = [shares[i] for i in np.unique(np.linspace(0, len(shares) - 1, SPEEDS).round().astype(int))]
+
+    def simulated(at: list[float]) -> np.ndarray:
+        return line_speed_errors(found.solution.profile, found.task, [found.servo], np.array(at) * v, axis.phases)[0]
+
+    wrong = float(np.abs(simulated(chosen) - [axis.by_speed[share] for share in chosen]).max())
+    stated = axis.errors[0] if found.objective == "sync_error" else found.task.cut.sync_tolerance
+    drawn = rng.uniform(found.slowest, 1.0, SPEEDS).tolist()
+    return wrong, float(simulated(drawn).max()) / max(stated, 1e-9)
+
+
+def random_jobs(jobs: int, seed: int, out: Path) -> int:
+    """Draw, design, simulate, write."""
+    rows, bad = [], 0
+    for index, kind in enumerate(MACHINES):
+        rng = np.random.default_rng([seed, index, 15])
+        counts: Counter[str] = Counter()
+        wrongs, stated, seconds = [0.0], [0.0], [0.0]
+        for number in range(jobs // len(MACHINES) + (index < jobs % len(MACHINES))):
+            found = None
+            for _ in range(ATTEMPTS):
+                found = found or designed(rng, kind, number)
+            if found is None:
+                counts["none"] += 1
+                continue
+            wrong, share = judged(rng, found)
+            counts.update(jobs=1, wrong=wrong > EXACT, outside=share > STATED)
+            if wrong > EXACT or share > STATED:
+                bad += 1
+                print(
+                    f"{kind} {number}: wrong by {wrong:.2e} m, {share:.4f} of what is stated",
+                    file=sys.stderr,
+                    flush=True,
+                )
+            wrongs.append(wrong)
+            stated.append(share)
+            seconds.append(found.seconds)
+        row = {"machine": kind, "seed": seed, **{name: counts[name] for name in ("jobs", "none", "wrong", "outside")}}
+        row |= {"wrong_by_m": f"{max(wrongs):.1e}", "of_stated": f"{max(stated):.4f}"}
+        row |= {"median_s": f"{np.median(seconds):.2f}", "longest_s": f"{max(seconds):.2f}"}
+        rows.append(row)
+        print(", ".join(f"{name} {value}" for name, value in row.items()), flush=True)
+    with out.open("w", newline="", encoding="utf-8") as file:
+        table = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
+        table.writeheader()
+        table.writerows(rows)
+    return 1 if bad else 0
+
+
+def issue() -> int:
+    """Print what the published knife and servo reach over 8 to 80 m/min."""
+    band, many = shares_of(0.1), np.linspace(8.0, 80.0, 200) / 60
+
+    def of(length: float, objective: ObjectiveName, shares: tuple[float, ...]) -> tuple[Task, Solution, float]:
+        task = Task(RotaryKnife(0.4), replace(CUT, length=length), LIMITS)
+        begun = process_time()
+        found = solve_axis(task, objective, "shaped", (PAPER,), shares=shares, suggest=False)
+        return task, found, process_time() - begun
+
+    of(0.5, "rms_jerk", (1.0,))  # libraries are loaded
+    for length in (0.3, 0.29, 0.28, 0.272, 0.266):
+        task, found, seconds = of(length, "sync_error", band)
+        worst = line_speed_errors(found.profile, task, [PAPER], many, 64).max()
+        within = found.axis is not None and found.axis.axis_limits
+        print(
+            f"{length * 1e3:.0f} mm: {worst * 1e3:.4f} mm, axis within its limits: {within}, {seconds:.2f} s",
+            flush=True,
+        )
+    for objective in ("sync_error", "peak_acceleration", "rms_acceleration", "peak_jerk", "rms_jerk"):
+        one, many_speeds = of(0.3, objective, (1.0,))[2], of(0.3, objective, band)[2]
+        print(
+            f"least {objective} at 300 mm: {many_speeds:.2f} s over the band, {one:.3f} s at one line speed, {many_speeds / one:.1f} times"
+        )
+    servos, between = (PAPER, *RANGES.vertices(PAPER)), RANGES.between(PAPER)
+    for length in (0.3, 0.29):
+        task = Task(RotaryKnife(0.4), replace(CUT, length=length), LIMITS)
+        begun = process_time()
+        found = solve_axis(task, "sync_error", "shaped", servos, between, band, suggest=False)
+        seconds = process_time() - begun
+        errors = line_speed_errors(found.profile, task, servos, many)
+        servo, column = np.unravel_index(int(errors.argmax()), errors.shape)
+        bound = servos[int(servo)]
+        print(
+            f"{length * 1e3:.0f} mm with ranges: {errors.max() * 1e3:.4f} mm at omega {bound.bandwidth:g} rad/s, zeta {bound.damping:g}, "
+            f"K {bound.position_gain:g} 1/s and {many[int(column)] * 60:.1f} m/min, {seconds:.2f} s",
+            flush=True,
+        )
+    return 0
+
+
+def main() -> int:
+    """Do what is asked."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--jobs", type=int, default=200)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--issue", action="store_true")
+    parser.add_argument("--out", type=Path, default=RESULTS / "speed_band_designs.csv")
+    options = parser.parse_args()
+    return issue() if options.issue else random_jobs(options.jobs, options.seed, options.out)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
