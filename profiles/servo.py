@@ -32,6 +32,10 @@ class Servo:
         bus (s).
     lead_time
         Time by which the controller predicts the master ahead (s).
+    acceleration_feedforward, jerk_feedforward
+        Factors ``beta`` (s²) and ``gamma`` (s³) on the command's acceleration ``a`` and jerk ``j``, which are added to the position that
+        the loop regulates to: it asks for ``K (c + beta a + gamma j - p) + alpha v``. With ``beta = 2 zeta / (omega K)`` and
+        ``gamma = 1 / (omega² K)`` the velocity loop is made up for, but for sampling. With 0 they are the equations 1 and 2 of S1.
 
     Examples
     --------
@@ -47,6 +51,21 @@ class Servo:
     velocity_feedforward: float
     dead_time: float = 0.0
     lead_time: float = 0.0
+    acceleration_feedforward: float = 0.0
+    jerk_feedforward: float = 0.0
+
+    @property
+    def drive(self) -> tuple[float, ...]:
+        """Weights of the command's samples, newest first, in the velocity reference (1/s): two, or four with feed-forward beyond velocity.
+
+        Derivatives of the command are backward differences.
+        """
+        step, gain = self.sample_time, self.position_gain
+        lead = self.velocity_feedforward / step
+        if not self.acceleration_feedforward and not self.jerk_feedforward:
+            return gain + lead, -lead
+        second, third = gain * self.acceleration_feedforward / step**2, gain * self.jerk_feedforward / step**3
+        return gain + lead + second + third, -lead - 2 * second - 3 * third, second + 3 * third, -third
 
     @property
     def delay(self) -> float:
@@ -72,8 +91,9 @@ class Servo:
 
         Examples
         --------
-        >>> Servo(120.0, 0.7, 35.0, 0.004, 1.0, dead_time=0.002).at_speed(0.5)
-        Servo(bandwidth=240.0, damping=0.7, position_gain=70.0, sample_time=0.002, velocity_feedforward=1.0, dead_time=0.001, lead_time=0.0)
+        >>> slower = Servo(120.0, 0.7, 35.0, 0.004, 1.0, dead_time=0.002, acceleration_feedforward=2e-4).at_speed(0.5)
+        >>> slower.bandwidth, slower.position_gain, slower.sample_time, slower.dead_time, slower.acceleration_feedforward
+        (240.0, 70.0, 0.002, 0.001, 5e-05)
         """
         return replace(
             self,
@@ -82,6 +102,8 @@ class Servo:
             sample_time=self.sample_time * share,
             dead_time=self.dead_time * share,
             lead_time=self.lead_time * share,
+            acceleration_feedforward=self.acceleration_feedforward * share**2,
+            jerk_feedforward=self.jerk_feedforward * share**3,
         )
 
 
@@ -141,21 +163,20 @@ def sample_plant(servo: Servo, time: float) -> SampledPlant:
 
 
 def closed_loop(servo: Servo) -> tuple[FloatArray, FloatArray]:
-    """Close the loop at the samples: ``z[k+1] = A z[k] + B (c[k], c[k-1])`` with the command's samples ``c`` (m).
+    """Close the loop at the samples: ``z[k+1] = A z[k] + B (c[k], c[k-1], …)`` with the command's samples ``c`` (m).
 
     The controller of S1 holds ``u[k] = K (c[k] - p[k]) + alpha (c[k] - c[k-1]) / dT`` over each sampling period; its input
-    is the position ``p`` at the sampling instant, its feed-forward the backward difference of the command.
+    is the position ``p`` at the sampling instant, its feed-forward the backward difference of the command; `Servo.drive` has the weights.
 
     Returns
     -------
     (A, B)
-        Shapes ``(3, 3)`` and ``(3, 2)``.
+        Shapes ``(3, 3)`` and ``(3, 2)``, or ``(3, 4)`` with feed-forward beyond that of the velocity.
     """
     plant = sample_plant(servo, servo.sample_time)
-    gain, lead = servo.position_gain, servo.velocity_feedforward / servo.sample_time
     a = plant.transition.copy()
-    a[:, 2] -= plant.input * gain
-    return a, np.outer(plant.input, [gain + lead, -lead])
+    a[:, 2] -= plant.input * servo.position_gain
+    return a, np.outer(plant.input, servo.drive)
 
 
 def spectral_radius(servo: Servo) -> float:

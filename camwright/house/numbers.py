@@ -46,6 +46,8 @@ SHOWN: dict[str, Shown] = {
     "bandwidth": Shown("rad/s"),
     "1/s": Shown("1/s"),
     "s": Shown("ms", 1e3),
+    "s^2": Shown("ms²", 1e6, "ms^2"),
+    "s^3": Shown("ms³", 1e9, "ms^3"),
     "N m": Shown("N⋅m", typed="N m"),
     "J": Shown("J"),
     "kg": Shown("kg"),

@@ -44,6 +44,8 @@ KINDS: dict[str, Kind] = {
     "acceleration": Kind("an acceleration", {"[length]": 1, "[time]": -2}, "30 m/s^2", "m/s^2", 1e-9, 1e9),
     "jerk": Kind("a jerk", {"[length]": 1, "[time]": -3}, "3000 m/s^3", "m/s^3", 1e-9, 1e15),
     "time": Kind("a time", {"[time]": 1}, "4 ms", "s", 1e-9, 1e6),
+    "time squared": Kind("a squared time", {"[time]": 2}, "300 ms^2", "s^2", 1e-18, 1e6),
+    "time cubed": Kind("a cubed time", {"[time]": 3}, "2000 ms^3", "s^3", 1e-27, 1e6),
     "angular rate": Kind("an angular rate", {"[angle]": 1, "[time]": -1}, "120 rad/s", "rad/s", 1e-6, 1e9),
     "gain": Kind("a gain", {"[time]": -1}, "35 1/s", "1/s", 1e-6, 1e9),
     "angle": Kind("an angle", {"[angle]": 1}, "90 deg", "rad", 1e-9, 1e6),

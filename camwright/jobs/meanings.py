@@ -44,6 +44,14 @@ MEANINGS: dict[str, tuple[str, str]] = {
         "time by which the controller leads the command to make up for delay",
         "servo simulation, length errors",
     ),
+    "servo.acceleration_feedforward": (
+        "factor on the command's acceleration in the position regulated to; 2 damping / (bandwidth position_gain) undoes the velocity loop",
+        "servo simulation",
+    ),
+    "servo.jerk_feedforward": (
+        "factor on the command's jerk there; 1 / (bandwidth^2 position_gain) undoes the velocity loop",
+        "servo simulation",
+    ),
     "servo.tolerance.bandwidth": ("range of the bandwidth", "robust design, random servos"),
     "servo.tolerance.damping": ("range of the damping ratio", "robust design, random servos"),
     "servo.tolerance.position_gain": ("range of the position gain", "robust design, random servos"),

@@ -7,6 +7,7 @@ from dataclasses import asdict
 from typing import Any
 
 from camwright.jobs.job import Job
+from camwright.jobs.tables import servo_numbers
 from camwright.profiles.line import STEADY
 from camwright.profiles.machines import MACHINES, Machine
 from camwright.profiles.machines.fields import fields_of
@@ -40,7 +41,7 @@ def job_numbers(job: Job) -> dict[str, Any]:
         "machine": machine_numbers(job.machine),
         "cut": {key: value for key, value in asdict(job.cut).items() if value is not None},
         "limits": asdict(job.limits),
-        "servo": asdict(job.servo),
+        "servo": servo_numbers(job.servo),
         "objective": job.objective,
         "servo_aware": job.servo_aware,
         "command": job.command,

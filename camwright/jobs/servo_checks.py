@@ -11,7 +11,17 @@ from camwright.profiles.servo import Servo, gain_margin, spectral_radius
 from camwright.profiles.servo_tolerance import ServoTolerance
 
 _UNITS = {"bandwidth": "bandwidth", "damping": "1", "position_gain": "1/s"}
-_NEEDED = ("bandwidth", "damping", "position_gain", "sample_time", "velocity_feedforward", "dead_time", "lead_time")
+_NEEDED = (
+    "bandwidth",
+    "damping",
+    "position_gain",
+    "sample_time",
+    "velocity_feedforward",
+    "dead_time",
+    "lead_time",
+    "acceleration_feedforward",
+    "jerk_feedforward",
+)
 
 
 def servo_conflicts(known: Known) -> Iterator[str]:

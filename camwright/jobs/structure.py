@@ -108,6 +108,12 @@ class ServoTable(ServoNumbers):
 
     dead_time: Annotated[float, *quantity_field("time", zero=True), Field(json_schema_extra={"default": "0 ms"})] = 0.0
     lead_time: Annotated[float, *quantity_field("time", zero=True), Field(json_schema_extra={"default": "0 ms"})] = 0.0
+    acceleration_feedforward: Annotated[
+        float, *quantity_field("time squared", zero=True), Field(json_schema_extra={"default": "0 s^2"})
+    ] = 0.0
+    jerk_feedforward: Annotated[
+        float, *quantity_field("time cubed", zero=True), Field(json_schema_extra={"default": "0 s^3"})
+    ] = 0.0
     tolerance: ServoToleranceTable | None = None
 
 

@@ -20,8 +20,13 @@ _SERVO = {
     "sample_time": "time",
     "dead_time": "time",
     "lead_time": "time",
+    "acceleration_feedforward": "time squared",
+    "jerk_feedforward": "time cubed",
 }
 """Keys of a servo that have units, and their kinds; the others are bare numbers."""
+
+_FURTHER = ("acceleration_feedforward", "jerk_feedforward")
+"""Keys of a servo that are left out where they are 0."""
 
 
 def machine_table(machine: Machine) -> dict[str, Any]:
@@ -78,7 +83,7 @@ def line_table(line: Line) -> dict[str, Any]:
 
 def servo_table(servo: Servo, tolerance: ServoTolerance | None) -> dict[str, Any]:
     """Write a servo and the ranges of its parameters as the table of a job file."""
-    table: dict[str, Any] = {key: _servo_number(key, getattr(servo, key)) for key in servo.__dataclass_fields__}
+    table: dict[str, Any] = {key: _servo_number(key, value) for key, value in servo_numbers(servo).items()}
     if tolerance is not None:
         table["tolerance"] = {
             key: [_servo_number(key, end) for end in ends]
@@ -86,6 +91,11 @@ def servo_table(servo: Servo, tolerance: ServoTolerance | None) -> dict[str, Any
             if ends != (getattr(servo, key),) * 2
         }
     return table
+
+
+def servo_numbers(servo: Servo) -> dict[str, float]:
+    """Give the parameters of a servo by name (SI); feed-forward beyond that of the velocity only where there is some."""
+    return {key: value for key, value in asdict(servo).items() if value or not key.startswith(_FURTHER)}
 
 
 def _servo_number(key: str, value: float) -> str | float:

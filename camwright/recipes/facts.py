@@ -63,6 +63,8 @@ SERVO = {
     "position_gain": "1/s",
     "sample_time": "s",
     "velocity_feedforward": "1",
+    "acceleration_feedforward": "s^2",
+    "jerk_feedforward": "s^3",
     "dead_time": "s",
     "lead_time": "s",
 }

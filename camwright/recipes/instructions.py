@@ -113,6 +113,11 @@ def record(recipe: Recipe, words: Catalogue) -> list[Block]:
     designed = {
         "position_gain": number(servo["position_gain"]),
         "velocity_feedforward": number(servo["velocity_feedforward"]),
+        **{
+            f"{kind}_feedforward": f"{shown(servo[f'{kind}_feedforward'], power, 4, words.units)} {unit_shown(power, words.units)}"
+            for kind, power in (("acceleration", "s^2"), ("jerk", "s^3"))
+            if f"{kind}_feedforward" in servo
+        },
         "lead_time": shown(recipe.lead_time, "s", 4, words.units),
         "slave_zero": f"{shown(recipe.slave_start, unit, units=words.units)} {unit_shown(unit, words.units)}",
         "following_error": fixed_text(_at_full_speed(recipe).following_error, words),

@@ -236,7 +236,8 @@ def design_schema() -> dict[str, Any]:
                     shear_time=number,
                 ),
                 limits=table(speed=number, acceleration=number, jerk=number, reversal={"type": "boolean"}, motor=curve),
-                servo=table(
+                servo=lax(
+                    ("acceleration_feedforward", "jerk_feedforward"),
                     bandwidth=number,
                     damping=number,
                     position_gain=number,
@@ -244,6 +245,8 @@ def design_schema() -> dict[str, Any]:
                     velocity_feedforward=number,
                     dead_time=number,
                     lead_time=number,
+                    acceleration_feedforward=number,
+                    jerk_feedforward=number,
                 ),
                 objective={"enum": objectives},
                 servo_aware={"type": "boolean"},

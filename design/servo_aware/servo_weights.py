@@ -81,12 +81,11 @@ def servo_weights(servo: Servo, time: float) -> ServoWeights:
     """Weights at a time ``0 <= time <= dT`` (s) after a sampling instant; dead time and lead are the caller's."""
     past = _past_states(servo.loop, memory(servo.loop))
     part = sample_plant(servo.loop, time)
-    gain, lead = servo.position_gain, servo.velocity_feedforward / servo.sample_time
     after = part.transition.copy()
-    after[:, 2] -= gain * part.input
+    after[:, 2] -= servo.position_gain * part.input
     rows = past @ after.T
-    rows[0] += (gain + lead) * part.input
-    rows[1] -= lead * part.input
+    for number, weight in enumerate(servo.drive):
+        rows[number] += weight * part.input
     return ServoWeights(rows[:, 2].copy(), rows[:, 1].copy(), rows[:, 0].copy())
 
 
@@ -106,8 +105,8 @@ def sampled_states(servo: Servo, samples: FloatArray) -> tuple[FloatArray, Float
         Shapes ``(n, 3)`` and ``(n,)``, as in `camwright.profiles.servo.SampledPlant`.
     """
     states = samples @ _past_states(servo.loop, samples.shape[1] - 1)
-    gain, lead = servo.position_gain, servo.velocity_feedforward / servo.sample_time
-    return states, (gain + lead) * samples[:, 0] - lead * samples[:, 1] - gain * states[:, 2]
+    drive = np.array(servo.drive)
+    return states, samples[:, : len(drive)] @ drive - servo.position_gain * states[:, 2]
 
 
 @lru_cache(maxsize=512)
@@ -126,11 +125,9 @@ def state_weights(servo: Servo, count: int) -> FloatArray:
     ndarray
         Shape ``(count + 1, 4)``: the state as in `camwright.profiles.servo.SampledPlant`, and the velocity reference.
     """
-    gain, lead = servo.position_gain, servo.velocity_feedforward / servo.sample_time
-    states = _past_states(servo, count)
-    reference = -gain * states[:, 2]
-    reference[0] += gain + lead
-    reference[1] -= lead
+    states, drive = _past_states(servo, count), servo.drive
+    reference = -servo.position_gain * states[:, 2]
+    reference[: len(drive)] += drive
     found: FloatArray = np.column_stack([states, reference])
     found.setflags(write=False)
     return found
@@ -177,8 +174,8 @@ def _past_states(servo: Servo, count: int) -> FloatArray:
         powers = np.concatenate([powers, power @ powers], axis=1)
         power = power @ power
         done *= 2
-    each = powers.reshape(3, -1, 2)[:, :count]
+    each = powers.reshape(3, -1, inputs.shape[1])[:, :count]
     past = np.zeros((count + 1, 3))
-    past[1:] += each[:, :, 0].T
-    past[2:] += each[:, :-1, 1].T
+    for number in range(inputs.shape[1]):
+        past[1 + number :] += each[:, : count - number, number].T
     return past

@@ -28,15 +28,17 @@ class Loops:
     held
         Plants on ``(z, u)`` over no time to a whole sample, in equal parts: shape ``(servos, parts + 1, 4, 4)``, with the state ``z`` of
         `camwright.profiles.servo.SampledPlant` and the velocity reference ``u`` that is held.
-    gain, lead
-        Position gain, and velocity feed-forward over sample time (1/s), shape ``(servos,)``.
+    gain
+        Position gain (1/s), shape ``(servos,)``.
+    drive
+        Weights of the command's samples, newest first, in the velocity reference (1/s), shape ``(servos, 2)`` or ``(servos, 4)``.
     sample_time
         Shape ``(servos,)`` (s).
     """
 
     held: FloatArray
     gain: FloatArray
-    lead: FloatArray
+    drive: FloatArray
     sample_time: FloatArray
 
     def closed(self) -> FloatArray:
@@ -47,7 +49,7 @@ class Loops:
 
     def take(self, rows: NDArray[np.intp]) -> Loops:
         """Pick servos by their number."""
-        return Loops(self.held[rows], self.gain[rows], self.lead[rows], self.sample_time[rows])
+        return Loops(self.held[rows], self.gain[rows], self.drive[rows], self.sample_time[rows])
 
 
 def loops_of(servos: Sequence[Servo], parts: int = SUBSTEPS) -> Loops:
@@ -63,10 +65,11 @@ def loops_of(servos: Sequence[Servo], parts: int = SUBSTEPS) -> Loops:
         more = min(known, parts - known)
         held[:, known + 1 : known + more + 1] = held[:, known, None] @ held[:, 1 : more + 1]
         known += more
-    gain, lead, sample_time = np.array(
-        [(servo.position_gain, servo.velocity_feedforward / servo.sample_time, servo.sample_time) for servo in servos]
-    ).T
-    return Loops(held, gain, lead, sample_time)
+    gain, sample_time = np.array([(servo.position_gain, servo.sample_time) for servo in servos]).T
+    drive = np.zeros((len(servos), max(len(servo.drive) for servo in servos)))
+    for servo, weights in zip(servos, drive, strict=True):
+        weights[: len(servo.drive)] = servo.drive
+    return Loops(held, gain, drive, sample_time)
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,15 +134,17 @@ def lift_side_by_side(loops: Loops, past: int, orders: tuple[int, ...], size: in
         Samples that one step advances: many where the matrices serve for many runs, one where they serve once.
     """
     many = len(loops.gain)
-    gain, lead = loops.gain[:, None, None], loops.lead[:, None, None]
+    gain = loops.gain[:, None, None]
     start = np.empty((many, 3, 4))
     start[:, :, :3], start[:, :, 3] = np.eye(3), loops.held[:, -1, :3, 3]
     powers, ahead = _doubled(start, loops.closed(), 4 * (size + 1))  # of (I, b)
     response = _doubled(powers[:, :, 3::4], ahead, max(past, size))[0]
     powers = powers.reshape(many, 3, -1, 4)
     earliest_first = response[:, :, past - 1 :: -1]
-    history = (gain + lead) * earliest_first
-    history[:, :, :-1] -= lead * earliest_first[:, :, 1:]
+    weights = loops.drive[:, :, None, None]
+    history = weights[:, 0] * earliest_first
+    for number in range(1, min(weights.shape[1], past)):
+        history[:, :, :-number] += weights[:, number] * earliest_first[:, :, number:]
 
     # between the samples the reference u = f - K p is held: rows that make the quantities of (z, f)
     rows = loops.held[:, :-1, [2 - order for order in orders]].transpose(2, 0, 1, 3)
@@ -240,10 +245,13 @@ def follow(lifted: Lifted, command: FloatArray, line: FloatArray, slope: float, 
     many, past, phases = len(loops.gain), lifted.history.shape[2], command.shape[2]
     wanted = command.shape[1] - past
     blocks = -(-wanted // size)
-    gain, lead = loops.gain[:, None, None], loops.lead[:, None, None]
-    drive = np.zeros((many, blocks * size, phases))  # f[k] = K c[k] + alpha (c[k] - c[k-1]) / dT
-    np.multiply(command[:, past:], gain + lead, out=drive[:, :wanted])
-    drive[:, :wanted] -= lead * command[:, past - 1 : -1]
+    weights = loops.drive[:, :, None, None]
+    drive = np.zeros(
+        (many, blocks * size, phases)
+    )  # f[k] = K c[k] + alpha (c[k] - c[k-1]) / dT, and more with more feed-forward
+    np.multiply(command[:, past:], weights[:, 0], out=drive[:, :wanted])
+    for number in range(1, weights.shape[1]):
+        drive[:, :wanted] += weights[:, number] * command[:, past - number : -number]
     # inputs, first state, the line there, one: in memory as they are multiplied, servo by servo or block by block
     known = np.empty((blocks, many, phases, size + 5) if size > 1 else (many, phases, blocks, size + 5))
     if size == 1:

@@ -42,9 +42,10 @@ def axis_response(
 
     step, gain = servo.sample_time, servo.position_gain
     first, last = (math.floor((float(time) - clock) / step) for time in (times[0], times[-1]))
-    seen = command(clock - servo.delay + step * np.arange(first - 1, last + 1, dtype=np.float64))
-    base = float(seen[1])
-    drive = gain * (seen[1:] - base) + servo.velocity_feedforward / step * (seen[1:] - seen[:-1])
+    before = len(servo.drive) - 1
+    seen = command(clock - servo.delay + step * np.arange(first - before, last + 1, dtype=np.float64))
+    base = float(seen[before])
+    drive = np.convolve(seen - base, servo.drive, "valid")
 
     # states from rest: (adj(q - A) b) / det(q - A), q the shift by a sample, by Faddeev and LeVerrier
     loop, held = closed_loop(servo)[0], sample_plant(servo, step).input
@@ -124,7 +125,8 @@ def ripple_response(servo: Servo, rates: FloatArray, harmonic: int) -> ComplexAr
     # position of the sampled plant: (z - 1) x3 = e x1 + f x2 + r u with the velocity loop's (z - M) (x1, x2) = (p, q) u
     loop = (z - a) * (z - d) - b * c
     sampled = (e * ((z - d) * p + b * q) + f * ((z - a) * q + c * p)) / loop + r
-    reference = (gain + servo.velocity_feedforward / step * (1.0 - 1.0 / z)) * (z - 1.0) / (z - 1.0 + gain * sampled)
+    drive = sum(weight * z**-number for number, weight in enumerate(servo.drive))
+    reference = drive * (z - 1.0) / (z - 1.0 + gain * sampled)
     beside = s + 2j * np.pi * harmonic / step
     hold = (1.0 - 1.0 / z) / (beside * step)
     found = np.full(

@@ -73,7 +73,7 @@ def memory(servo: Servo) -> int:
 
 def memory_at(radius: float) -> int:
     """Count the samples after which a servo whose largest pole has this magnitude, below 1, has forgotten its past."""
-    return max(2, math.ceil(math.log(_FORGOTTEN / _TRANSIENT_GROWTH) / math.log(max(radius, 1e-3))))
+    return max(4, math.ceil(math.log(_FORGOTTEN / _TRANSIENT_GROWTH) / math.log(max(radius, 1e-3))))
 
 
 def slow_axis(
@@ -119,8 +119,14 @@ def slow_axis(
         orders=orders,
         places=(*part, *places),
     )
-    if slow.tells:
+    more = len(servo.drive) > 2  # than the velocity is fed forward: the closed form does not know it
+    if slow.tells and not more:
         return slow
+    if more and past + last - first > _MOST_SAMPLES:
+        raise InputError(
+            f"a servo with feed-forward of acceleration or jerk is simulated sample by sample, and a cycle of {cut.period:.6g} s has "
+            f"{past + last - first:.0f} of them here, the limit is {_MOST_SAMPLES}; raise the line speed"
+        )
     if past + last - first > _MOST_SAMPLES:
         raise InputError(
             f"the servo remembers {past} samples of {servo.sample_time:g} s and is far slower than the motion, whose "
