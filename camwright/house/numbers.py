@@ -70,12 +70,15 @@ class Units:
         Whether measures of motion are shown in SI units on the screen.
     fine
         Decimals of a length where servo errors are told.
+    decimal
+        What stands before decimals in print: a point, as controllers take it, or what a reader's language has.
     """
 
     name: str
     shown: Mapping[str, Shown] = field(hash=False, compare=False, repr=False)
     si_measures: bool
     fine: int
+    decimal: str = "."
 
     def measure(self, unit: str) -> Shown:
         """Give the unit in which a measure of motion is shown on the screen."""
@@ -160,7 +163,19 @@ def _trimmed(text: str) -> str:
 
 def shown(value: float | None, unit: str, digits: int = 5, units: Units = METRIC) -> str:
     """Write an SI value in the unit in which it is read, without the unit."""
-    return number(None if value is None else converted(value, unit, units), digits)
+    return in_print(number(None if value is None else converted(value, unit, units), digits), units)
+
+
+def in_print(text: str, units: Units) -> str:
+    """Write a number that has a decimal point with the decimal sign of its reader.
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> in_print("13.333", replace(METRIC, decimal=","))
+    '13,333'
+    """
+    return text.replace(".", units.decimal)
 
 
 def fine_length(value: float, units: Units = METRIC) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from camwright.house.numbers import Units, fine_length, shown
+from camwright.house.numbers import Units, fine_length, in_print, shown
 from camwright.recipes.catalogue import Catalogue
 
 Block = dict[str, Any]
@@ -25,7 +25,7 @@ def length_text(value: float, unit: str, units: Units) -> str:
     """Write a value; a length to a tenth of a micrometre, the same number of digits at every speed."""
     if unit != "m":
         return shown(value, unit, 4, units)
-    return f"{fine_length(value, units):z.{units.fine}f}".replace("-", "−")
+    return in_print(f"{fine_length(value, units):z.{units.fine}f}", units).replace("-", "−")
 
 
 def fixed_text(value: float | None, words: Catalogue) -> str:

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import json
 import tomllib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import get_args
 
-from camwright.house.numbers import METRIC, Units, unit_shown, units_of
+from camwright.house.numbers import METRIC, Units, in_print, number, unit_shown, units_of
 from camwright.recipes.model import Language, Recipe
 
 LANGUAGES: tuple[Language, ...] = get_args(Language)
+
+DECIMAL: dict[Language, str] = {"en": ".", "de": ",", "zh": "."}
+"""What stands before decimals."""
 
 _FEED = {"metric": "1000 mm", "inch": "40 in"}
 """How much material is fed to see which way the master counts, by units."""
@@ -48,6 +51,10 @@ class Catalogue:
             text = text.replace(f"{{{name}}}", value)
         return text
 
+    def number(self, value: float | None, digits: int = 5) -> str:
+        """Write a number in the unit that it is in, with so many significant digits."""
+        return self("nothing") if value is None else in_print(number(value, digits), self.units)
+
     def named(self, group: str, name: str) -> str:
         """Name something that the rest of the program knows by a word, such as a check; the word itself if it has no name here."""
         return self.messages.get(f"{group}.{name}", name.replace("_", " "))
@@ -59,7 +66,7 @@ class Catalogue:
 
 def catalogue(language: Language, units: Units = METRIC) -> Catalogue:
     """Give the messages of a language, for a reader of these units."""
-    return _kept(language, units)
+    return _kept(language, replace(units, decimal=DECIMAL[language]))
 
 
 @lru_cache(maxsize=2 * len(LANGUAGES))

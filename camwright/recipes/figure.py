@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 import numpy as np
@@ -29,6 +30,9 @@ _ROOM = 0.06
 
 _INK = "#000"
 
+_DECIMALS = re.compile(r">(−?\d+)\.(\d+)<")
+"""A number with decimals that is all of a text, as at a tick."""
+
 
 def figure_svg(recipe: Recipe, words: Catalogue) -> str:
     """Draw the cam of a recipe.
@@ -49,7 +53,8 @@ def figure_svg(recipe: Recipe, words: Catalogue) -> str:
         _limit(0.0, 1.0, words("figure.limit")),
     )
     height = _TOP + len(frames) * (_PANEL + _GAP) - _GAP + _BELOW
-    return picture_svg(Picture(_WIDTH, height, "", _LEFT, frames, legend))
+    svg = picture_svg(Picture(_WIDTH, height, "", _LEFT, frames, legend))
+    return _DECIMALS.sub(rf">\g<1>{units.decimal}\g<2><", svg)
 
 
 def _bands(zones: tuple[tuple[float, float], ...], look: Look, units: Units) -> list[Band]:

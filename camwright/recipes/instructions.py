@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from camwright.house.numbers import (
-    number,
     shown,
     unit_shown,
     with_unit,
@@ -85,12 +84,14 @@ def _table_words(table: RecipeTable, words: Catalogue) -> str:
         "points": str(len(table.points.master)),
         "master": master,
         "slave": slave,
-        "position": number(max(table.position_error * 1e6, _FINEST), 2),
+        "position": words.number(max(table.position_error * 1e6, _FINEST), 2),
     }
     if table.acceleration_error is None:
         text = words("import.facts_unbounded", **values)
     else:
-        text = words("import.facts", **values, acceleration=number(max(100.0 * table.acceleration_error, _FINEST), 2))
+        text = words(
+            "import.facts", **values, acceleration=words.number(max(100.0 * table.acceleration_error, _FINEST), 2)
+        )
     gap = "" if words.language == "zh" else " "
     if not table.within_asked_error:
         text += gap + words("import.inaccurate")
@@ -111,8 +112,8 @@ def record(recipe: Recipe, words: Catalogue) -> list[Block]:
     servo = recipe.job.si["servo"]
     unit = recipe.slave_unit
     designed = {
-        "position_gain": number(servo["position_gain"]),
-        "velocity_feedforward": number(servo["velocity_feedforward"]),
+        "position_gain": words.number(servo["position_gain"]),
+        "velocity_feedforward": words.number(servo["velocity_feedforward"]),
         **{
             f"{kind}_feedforward": f"{shown(servo[f'{kind}_feedforward'], power, 4, words.units)} {unit_shown(power, words.units)}"
             for kind, power in (("acceleration", "s^2"), ("jerk", "s^3"))

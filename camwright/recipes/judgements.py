@@ -5,6 +5,7 @@ from __future__ import annotations
 from camwright.house.numbers import (
     Units,
     fine_length,
+    in_print,
     number,
     shown,
     si_unit,
@@ -49,7 +50,7 @@ def reached(recipe: Recipe, words: Catalogue) -> list[Block]:
                     words("unbounded") if check.value is None else _rounded(check.value, check.unit, words.units), check
                 ),
                 words("nothing") if check.limit is None else shown(check.limit, check.unit, units=words.units),
-                words("nothing") if share is None else number(round(100.0 * share, 2)),
+                words.number(None if share is None else round(100.0 * share, 2)),
                 words("nothing") if check.at is None else shown(check.at, "m", units=words.units),
             ]
         )
@@ -58,7 +59,7 @@ def reached(recipe: Recipe, words: Catalogue) -> list[Block]:
 
 def _rounded(value: float, unit: str, units: Units) -> str:
     """Write a value; a length to a tenth of a micrometre."""
-    return number(fine_length(value, units)) if unit == "m" else shown(value, unit, units=units)
+    return in_print(number(fine_length(value, units)), units) if unit == "m" else shown(value, unit, units=units)
 
 
 def checks(recipe: Recipe, words: Catalogue) -> list[Block]:
@@ -67,18 +68,14 @@ def checks(recipe: Recipe, words: Catalogue) -> list[Block]:
     rows = [
         [
             words.named("check", check.name),
-            _si(check.value, words),
-            _si(check.limit, words),
+            words.number(check.value, 4),
+            words.number(check.limit, 4),
             si_unit(check.unit),
             _marked(words("yes" if check.passed else "no"), check),
         ]
         for check in recipe.checks
     ]
     return [table_block(head, rows), text_block(words("checks.note"))]
-
-
-def _si(value: float | None, words: Catalogue) -> str:
-    return words("nothing") if value is None else number(value, 4)
 
 
 def table_checks(recipe: Recipe, words: Catalogue) -> list[Block]:
@@ -95,9 +92,10 @@ def _checks_beside(tables: tuple[RecipeTable, ...], words: Catalogue) -> Block:
     for name in names:
         checks = [each.get(name) for each in found]
         first = next(check for check in checks if check is not None)
-        label = words.named("check", name) + ("" if first.unit == "1" else f" ({si_unit(first.unit)})")
+        named = words.messages.get(f"table_check.{name}", words.named("check", name))
+        label = named + ("" if first.unit == "1" else f" ({si_unit(first.unit)})")
         limit = next((check.limit for check in checks if check is not None and check.limit is not None), None)
-        rows.append([label, _si(limit, words), *(_judged(check, words) for check in checks)])
+        rows.append([label, words.number(limit, 4), *(_judged(check, words) for check in checks)])
     head = [words("column.check"), words("column.limit"), *(table.target for table in tables)]
     return table_block(head, rows)
 
@@ -105,7 +103,7 @@ def _checks_beside(tables: tuple[RecipeTable, ...], words: Catalogue) -> Block:
 def _judged(check: RecipeCheck | None, words: Catalogue) -> str:
     if check is None:
         return words("nothing")
-    return _marked(words("unbounded") if check.value is None else number(check.value, 4), check)
+    return _marked(words("unbounded") if check.value is None else words.number(check.value, 4), check)
 
 
 def _marked(text: str, check: RecipeCheck) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from camwright.house.numbers import shown, unit_shown, with_unit
+from camwright.house.numbers import in_print, shown, unit_shown, with_unit
 from camwright.production.marks import at_speeds
 from camwright.production.ramps import fastest_standing, ramps
 from camwright.profiles.errors import InfeasibleError
@@ -129,4 +129,6 @@ def _mark_text(cell: float | str | None, words: Catalogue) -> str:
         return words("marks.no_limit")
     factor = words.units.shown["m"].factor
     tenths = 10.0 ** (1 if words.units.name == "metric" else 3)
-    return f"{int(cell * factor * tenths) / tenths:.{1 if tenths == 10.0 else 3}f}".replace("-", "−")
+    return in_print(f"{int(cell * factor * tenths) / tenths:.{1 if tenths == 10.0 else 3}f}", words.units).replace(
+        "-", "−"
+    )

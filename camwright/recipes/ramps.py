@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from camwright.house.numbers import converted, inside, number, shown, unit_shown
+from camwright.house.numbers import converted, inside, shown, unit_shown
 from camwright.recipes.blocks import Block, table_block, text_block
 from camwright.recipes.catalogue import Catalogue
 from camwright.recipes.model import LineRampRecord, RampAt, Recipe
@@ -75,4 +75,4 @@ def ramp_text(value: float | None, words: Catalogue) -> str:
     """Write a ramp that is allowed, rounded to the safe side; nothing binds where there is none."""
     if value is None:
         return words("ramp.any")
-    return number(inside(converted(value, "m/s^2", words.units), 4, up=False), 4) if value > 0.0 else "0"
+    return words.number(inside(converted(value, "m/s^2", words.units), 4, up=False), 4) if value > 0.0 else "0"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import reduce
 
-from camwright.house.numbers import converted, inside, number, shown, with_unit
+from camwright.house.numbers import converted, inside, shown, with_unit
 from camwright.recipes.catalogue import Catalogue
 from camwright.recipes.model import Recipe
 
@@ -71,7 +71,7 @@ def warnings(recipe: Recipe, words: Catalogue) -> list[str]:
             "release.scrap",
             low=_rounded(low, words, up=False),
             high=_rounded(high, words, up=True),
-            length=number(converted((high**2 - low**2) / (2.0 * _RAMP), "m", words.units), 4),
+            length=words.number(converted((high**2 - low**2) / (2.0 * _RAMP), "m", words.units), 4),
             ramp=with_unit(_RAMP, "m/s^2", 4, words.units),
         )
         for low, high in _gaps(recipe)
@@ -106,4 +106,4 @@ def marked(text: str, recipe: Recipe, line_speed: float) -> str:
 
 def _rounded(speed: float, words: Catalogue, *, up: bool) -> str:
     """Write a line speed with five digits, up or down."""
-    return number(inside(converted(speed, "m/s", words.units), up=up))
+    return words.number(inside(converted(speed, "m/s", words.units), up=up))

@@ -7,7 +7,6 @@ from dataclasses import asdict
 from typing import Any
 
 from camwright.house.numbers import (
-    number,
     shown,
     unit_shown,
     with_unit,
@@ -154,7 +153,7 @@ def _speeds(recipe: Recipe, words: Catalogue) -> list[Block]:
     """Set what to expect with one column a speed: four of them fit the page, twelve quantities do not."""
     head = [
         words("column.share_of_speed"),
-        *(marked(number(100.0 * row.share), recipe, row.line_speed) for row in recipe.speeds),
+        *(marked(words.number(100.0 * row.share), recipe, row.line_speed) for row in recipe.speeds),
     ]
     rows = []
     for key, field, unit in speed_columns(recipe):
@@ -178,7 +177,7 @@ def _range(recipe: Recipe, words: Catalogue) -> list[Block]:
     speed, length = shown(cut["line_speed"], "m/s", units=words.units), shown(cut["length"], "m", units=words.units)
     far = recipe.working_range
     looked = far.max_length.binding == NOT_FOUND
-    longest = words("range.not_looked", factor=number(LONGEST)) if looked else words("range.no_longest")
+    longest = words("range.not_looked", factor=words.number(LONGEST)) if looked else words("range.no_longest")
     ends: tuple[tuple[str, Edge, str, str], ...] = (
         ("range.min_length", far.min_length, "m", words("range.not_found")),
         ("range.max_length", far.max_length, "m", longest),

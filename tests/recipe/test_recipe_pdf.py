@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import unicodedata
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -108,8 +109,9 @@ def test_what_a_fitter_needs_can_be_read(made: MadeRecipe, language: Language) -
         for file in table.files:
             assert file.sha256[:16] in squeezed
     assert recipe.provenance.job_sha256 in squeezed
-    assert "116.7" in squeezed  # the highest line speed
-    assert "336.62" in squeezed  # the shortest cut
+    assert f"116{words.units.decimal}7" in squeezed  # the highest line speed
+    assert not {letter for letter in text if unicodedata.category(letter) == "Cf"}  # copies without what nobody sees
+    assert "336.62".replace(".", words.units.decimal) in squeezed  # the shortest cut
 
 
 def test_the_figure_is_drawn_as_lines(made: MadeRecipe) -> None:

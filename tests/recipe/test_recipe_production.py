@@ -40,11 +40,11 @@ def test_the_sheet_has_both_sections(language: str, made: MadeRecipe) -> None:
         section["key"]: section for section in sheet(replace(made.recipe, language=language), words)["sections"]
     }
     start, table = sections["section.start_stop"]["blocks"], sections["section.marks"]["blocks"][0]
-    assert start[0]["rows"][0][1:] == ["100", "200", "150", "9.0718"]
-    assert "138.24" in start[1]["text"]
+    assert start[0]["rows"][0][1:] == ["100", "200", "150", f"9{words.units.decimal}0718"]
+    assert "138.24".replace(".", words.units.decimal) in start[1]["text"]
     assert "{" not in start[1]["text"]
     assert len(table["rows"]) == 10
-    assert table["rows"][-1][:3] == ["80", "−263.3", words("marks.no_limit")]
+    assert table["rows"][-1][:3] == ["80", f"−263{words.units.decimal}3", words("marks.no_limit")]
 
 
 def test_a_machine_that_cannot_stop_between_cuts_says_up_to_which_speed(made: MadeRecipe) -> None:

@@ -14,7 +14,7 @@ from inch_job import JOB
 from camwright.house.numbers import INCH, METRIC
 from camwright.jobs.job import parse_job
 from camwright.recipes.build import MadeRecipe, designed, make_recipe
-from camwright.recipes.catalogue import LANGUAGES, catalogue
+from camwright.recipes.catalogue import DECIMAL, LANGUAGES, catalogue
 from camwright.recipes.compare import compare_recipes
 from camwright.recipes.html import recipe_html
 from camwright.recipes.pdf import recipe_pdf
@@ -32,7 +32,15 @@ def test_pdf_and_page_speak_of_inches(made: MadeRecipe, language: str) -> None:
     text = "".join(page.extract_text() for page in pypdf.PdfReader(io.BytesIO(recipe_pdf(recipe))).pages)
     page = re.sub(r"<style.*?</style>|<svg.*?</svg>", "", recipe_html(recipe), flags=re.DOTALL)
     for said in (text, page):
-        for part in ("24 in", "260 ft/min", "650 ft/min", "100 ft/s²", "10000 ft/s³", "1.5 in", "40 in"):
+        for part in (
+            "24 in",
+            "260 ft/min",
+            "650 ft/min",
+            "100 ft/s²",
+            "10000 ft/s³",
+            f"1{DECIMAL[recipe.language]}5 in",
+            "40 in",
+        ):
             assert re.sub(r"\s", "", part) in re.sub(r"\s", "", said), part
         assert not re.search(r"(?<![\w.])[0-9.]+\s?(mm|m/min)(?![a-z])", said)
 
