@@ -91,6 +91,7 @@ CHANGES = (
     Change("settled torque", "search.py", "\nSETTLED = 1e-4\n", "\nSETTLED = 1e-2\n"),
     Change("places of a torque", "placing.py", "\nPLACES = 24\n", "\nPLACES = 12\n"),
     Change("accuracy of the place", "place.py", "\nRESOLUTION = 2e-3\n", "\nRESOLUTION = 2e-2\n"),
+    Change("accuracy of the place for a peak", "place.py", "RESOLUTION = 41, 1e-5\n", "RESOLUTION = 41, 1e-3\n"),
     Change("standing carriage", "screw.py", "\n_STANDING = 1e-9\n", "\n_STANDING = 0.1\n"),
     Change("size of a job file", "toml_file.py", "\nMOST_BYTES = 1 << 20\n", "\nMOST_BYTES = 1 << 21\n"),
     Change("size of a design", "design_file.py", "\nMOST_BYTES = 1 << 26\n", "\nMOST_BYTES = 1 << 25\n"),

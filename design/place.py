@@ -15,7 +15,11 @@ PLACES = 9
 MARGIN = 0.02
 """Share of that range kept free at both ends: at a dead centre the crank would need infinite speed."""
 RESOLUTION = 2e-3
-"""Accuracy of the place (rad), 0.1°; about a valley the objective changes with its square."""
+"""Accuracy of the place (rad), 0.1°; about a round valley the objective changes with its square."""
+PEAK_PLACES, PEAK_RESOLUTION = 41, 1e-5
+"""The same for a peak: where that of the sync zone meets that of the return it has a corner, not a round valley."""
+MOST_DEEP = 3
+"""Valleys that are gone down, the deepest first."""
 _GOLDEN = (math.sqrt(5) - 1) / 2
 
 
@@ -30,7 +34,7 @@ class Placement:
     cost
         Objective there.
     valleys
-        Local minima seen among the places looked at first; 1 means that all of them led to the same place.
+        Local minima found among the places looked at first.
     """
 
     task: Task
@@ -38,10 +42,23 @@ class Placement:
     valleys: int
 
 
-def place_sync(task: Task, cost: Callable[[Task], float]) -> Placement | None:
+def place_sync(
+    task: Task, cost: Callable[[Task], float], places: int = PLACES, resolution: float = RESOLUTION
+) -> Placement | None:
     """Choose the slave coordinate at mid sync zone that makes a cost least, by a scan and golden sections around its best places.
 
     Returns None if no place has a finite cost.
+
+    Parameters
+    ----------
+    task
+        The task, its place free.
+    cost
+        What is made least.
+    places
+        Places looked at first.
+    resolution
+        Accuracy of the place (rad).
 
     Raises
     ------
@@ -50,7 +67,7 @@ def place_sync(task: Task, cost: Callable[[Task], float]) -> Placement | None:
     """
     least, greatest = task.machine.place_range(task.cut)
     margin = MARGIN * (greatest - least)
-    angles = np.linspace(least + margin, greatest - margin, PLACES)
+    angles = np.linspace(least + margin, greatest - margin, places)
 
     def at(angle: float) -> float:
         return cost(task.placed_at(angle))
@@ -58,26 +75,22 @@ def place_sync(task: Task, cost: Callable[[Task], float]) -> Placement | None:
     costs = [at(float(angle)) for angle in angles]
     if not any(math.isfinite(value) for value in costs):
         return None
-    valleys = [
-        i
-        for i, value in enumerate(costs)
-        if math.isfinite(value) and value <= min(costs[max(0, i - 1)], costs[min(PLACES - 1, i + 1)])
-    ]
+    around = [math.inf, *costs, math.inf]
+    # of places side by side that cost the same the first counts
+    valleys = [i for i, value in enumerate(costs) if value < around[i] and value <= around[i + 2]]
     best = (math.inf, 0.0)
-    for i in valleys:
-        best = min(
-            best,
-            _golden(
-                at, float(angles[max(0, i - 1)]), float(angles[min(PLACES - 1, i + 1)]), (costs[i], float(angles[i]))
-            ),
-        )
+    for i in sorted(valleys, key=lambda i: costs[i])[:MOST_DEEP]:
+        low, high = float(angles[max(0, i - 1)]), float(angles[min(places - 1, i + 1)])
+        best = min(best, _golden(at, low, high, (costs[i], float(angles[i])), resolution))
     return Placement(task.placed_at(best[1]), best[0], len(valleys))
 
 
-def _golden(at: Callable[[float], float], low: float, high: float, best: tuple[float, float]) -> tuple[float, float]:
+def _golden(
+    at: Callable[[float], float], low: float, high: float, best: tuple[float, float], resolution: float
+) -> tuple[float, float]:
     left, right = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
     cost_left, cost_right = at(left), at(right)
-    while high - low > RESOLUTION:
+    while high - low > resolution:
         best = min(best, (cost_left, left), (cost_right, right))
         if cost_left <= cost_right:
             high, right, cost_right = right, left, cost_left

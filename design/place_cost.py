@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from camwright.design.feasible.feasibility import is_feasible, least_limit, margin
-from camwright.design.place import Placement, place_sync
+from camwright.design.place import PEAK_PLACES, PEAK_RESOLUTION, PLACES, RESOLUTION, Placement, place_sync
 from camwright.design.returns.curve_limits import motor_limits, motor_speed_limits
 from camwright.design.returns.possible import possible_rms
 from camwright.design.returns.problem import return_problem
@@ -36,8 +36,14 @@ def place_for(task: Task, objective: CommandObjective) -> Placement:
     InputError
         The sync zone fits nowhere.
     """
-    found = place_sync(task, lambda placed: cost_at(placed, objective))
+    found = place_sync(task, lambda placed: cost_at(placed, objective), *look(objective))
     return Placement(task.placed_midway(), math.inf, 1) if found is None else found
+
+
+def look(objective: CommandObjective) -> tuple[int, float]:
+    """How many places are looked at first for an objective, and how accurate the place is (rad)."""
+    peak = objective == "peak_acceleration" or objective == "peak_jerk"
+    return (PEAK_PLACES, PEAK_RESOLUTION) if peak else (PLACES, RESOLUTION)
 
 
 def cost_at(placed: Task, objective: CommandObjective) -> float:

@@ -106,11 +106,11 @@ def solve_torque(
     SolverError
         No start converged to a motion that keeps the limits.
     """
-    first: list[tuple[TorqueAnswer, Pattern]] = []
-    for pattern, guess in _guesses(task, starts):
-        first.append((_programme(task, pattern, guess).solve(guess, rough=True, floor=floor), pattern))
-    iterations = sum(answer.iterations for answer, _ in first)
-    first = sorted((entry for entry in first if entry[0].success), key=lambda entry: entry[0].value)
+    profiles = list(starts) or [solve_return(replace(task.problem, objective="rms_acceleration"))[0]]
+    first, iterations = _first_look(task, profiles, FIRST, floor)
+    if not first and task.curve is None:  # the limits can be kept, but on so coarse a mesh they could not
+        first, more = _first_look(task, profiles, SECOND, floor)
+        iterations += more
     accepted = keeps or (lambda _: True)
     found: list[tuple[float, CamProfile, float]] = []
 
@@ -137,7 +137,7 @@ def solve_torque(
             answer = finer
             if settled:
                 break
-    found += [entry for entry in _given(task, starts) if accepted(entry[1])]
+    found += [entry for entry in _given(task, starts if found else profiles) if accepted(entry[1])]
     if not found:
         raise SolverError(
             f"IPOPT found no return of least {task.aim} from any start, although the limits can be kept; minimise peak_acceleration or "
@@ -149,6 +149,18 @@ def solve_torque(
     agreeing = sum(each <= values[0] * (1 + AGREEMENT) for each in values)
     spread = values[-1] / values[0] - 1.0 if values[0] > 0 else 0.0
     return TorqueSolution(back, value, spread, len(first), agreeing, residual, iterations)
+
+
+def _first_look(
+    task: TorqueTask, profiles: Sequence[CamProfile], count: int, floor: float
+) -> tuple[list[tuple[TorqueAnswer, Pattern]], int]:
+    """Answers of the guesses of every kind on a mesh of a number of intervals, the best first, and the iterations of all."""
+    answers = [
+        (_programme(task, pattern, guess).solve(guess, rough=True, floor=floor), pattern)
+        for pattern, guess in _guesses(task, profiles, count)
+    ]
+    good = sorted((entry for entry in answers if entry[0].success), key=lambda entry: entry[0].value)
+    return good, sum(answer.iterations for answer, _ in answers)
 
 
 def zone_peak(task: Task) -> float:
@@ -205,27 +217,25 @@ def _keeps_limits(back: CamProfile, task: TorqueTask) -> bool:
     return excess(unit, scale_problem(problem, scale)) <= ALLOWED_EXCESS
 
 
-def _guesses(task: TorqueTask, starts: Sequence[CamProfile]) -> Iterator[tuple[Pattern, Guess]]:
-    """Guesses of every kind that the task has."""
+def _guesses(task: TorqueTask, given: Sequence[CamProfile], count: int) -> Iterator[tuple[Pattern, Guess]]:
+    """Guesses of every kind that the task has, and from the returns given, on a mesh of a number of intervals."""
     problem = task.problem
-    profiles = [quintic_between(task.task.sync, problem.length, problem.height), *starts]
-    if not starts:
-        profiles.append(solve_return(replace(problem, objective="rms_acceleration"))[0])
+    profiles = [quintic_between(task.task.sync, problem.length, problem.height), *given]
     rubs = task.machine.friction > 0
     one_way = FORWARDS if rubs and task.may_turn else ANYHOW  # where friction counts its sign must be known
     for profile in profiles:
-        yield one_way, from_profile(profile, task, FIRST)
+        yield one_way, from_profile(profile, task, count)
     family = family_of(task)
     if family is not None:
         for k in family.valleys()[:MOST_PATHS]:
-            yield one_way, from_path(family, k, task, FIRST)
+            yield one_way, from_path(family, k, task, count)
     if rubs:
-        yield from resting(task, FIRST // 2)
+        yield from resting(task, count // 2)
     if task.may_turn and rubs:
-        yield from turning(task, FIRST // 3)
+        yield from turning(task, count // 3)
     elif task.problem.height < 0:
         # where it turns a slave is at rest, so a stroke that it may not leave is kept there exactly
         for profile in profiles:
-            turned = turning_from(profile, task, FIRST // 3)
+            turned = turning_from(profile, task, count // 3)
             if turned is not None:
                 yield TURNING[0], turned
