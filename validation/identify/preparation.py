@@ -53,7 +53,8 @@ def unwrapped(trace: Trace, place: str, known: Sequence[float] = (), known_maste
     """
     step = trace.step, trace.start
     command, first = without_jumps(trace.command, trace.unit, step, f"{place}: the command", known)
-    actual, second = without_jumps(trace.actual, trace.unit, step, f"{place}: the actual position", known)
+    both = known if first is None else (*known, first)  # the command has the less noise
+    actual, second = without_jumps(trace.actual, trace.unit, step, f"{place}: the actual position", both)
     told = [("command", first, trace.unit), ("actual position", second, trace.unit)]
     if first is not None and first == second:  # both turn over by themselves, so whole turns between them mean nothing
         actual = actual - first * round(float(np.mean(actual - command)) / first)
@@ -132,7 +133,7 @@ def _expected(steps: FloatArray, smooth: NDArray[np.bool_], jumps: NDArray[np.in
     weights = np.linalg.pinv(np.stack([np.ones_like(beside), beside, beside**2], axis=1))[0]
     taps = np.concatenate([weights[:_AROUND], [0.0], weights[_AROUND:]])  # symmetric: a convolution reads it either way
     by_parabola = np.convolve(steps, taps, mode="same")
-    whole = np.convolve(smooth, np.abs(taps) > 0.0, mode="same") == 2 * _AROUND
+    whole = np.convolve(smooth.astype(float), (np.abs(taps) > 0.0).astype(float), mode="same") > 2 * _AROUND - 0.5
     sure = whole & smooth
     # without rows beside it all there is are the nearest steps
     doubt = float(np.sqrt(np.mean((by_parabola - steps)[sure] ** 2))) if sure.any() else float(np.std(steps[smooth]))
