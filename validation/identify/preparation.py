@@ -19,10 +19,14 @@ _USUAL = 8.0
 """By how many times a jump exceeds the usual step."""
 _AROUND = 4
 """Rows on either side by which the step at a jump is estimated."""
-_SURE = 4.0
-"""Standard deviations of the jumps' mean within which a plain number is the modulus."""
+_NEARBY = 20
+"""Rows on either side of a jump from which it is told how well the step there is estimated."""
+_SURE = 6.0
+"""Standard deviations of an estimate within which a plain number is the modulus; many jumps at one place are off by the same."""
 _ODD = 12.0
 """Standard deviations of one jump beyond which it is none of the modulus."""
+_FEW, _PLAIN = 4, 2e-6
+"""A modulus so near to a number of so few digits is that number: a drum or a feed that people have ordered."""
 _ROUNDING = 1e-9
 """What rounding in the file may do to a modulus, as a part of it."""
 _SHOWN = {"m": (1e3, "mm"), "rad": (180.0 / math.pi, "deg")}
@@ -121,7 +125,7 @@ def without_jumps(
             f"modulus of an axis (others jump by {middle * factor:.6g} {shown}); record without a reset of the position"
         )
     mean = float(found.mean())
-    modulus = _plainest(mean, _SURE * doubt / math.sqrt(len(jumps)) + _ROUNDING * mean, unit, known)
+    modulus = _plainest(mean, _SURE * doubt + _ROUNDING * mean, unit, known)
     turns = np.zeros(len(signal))
     turns[jumps + 1] = np.sign(sizes)
     return signal + modulus * np.cumsum(turns), modulus
@@ -136,7 +140,12 @@ def _expected(steps: FloatArray, smooth: NDArray[np.bool_], jumps: NDArray[np.in
     whole = np.convolve(smooth.astype(float), (np.abs(taps) > 0.0).astype(float), mode="same") > 2 * _AROUND - 0.5
     sure = whole & smooth
     # without rows beside it all there is are the nearest steps
-    doubt = float(np.sqrt(np.mean((by_parabola - steps)[sure] ** 2))) if sure.any() else float(np.std(steps[smooth]))
+    # an axis turns over at the same places again and again, so what counts is how well the parabola does beside the jumps
+    beside_jumps = sure & (np.convolve(~smooth, np.ones(2 * _NEARBY + 1), mode="same") > 0.5)
+    judged = beside_jumps if beside_jumps.any() else sure
+    doubt = (
+        float(np.sqrt(np.mean((by_parabola - steps)[judged] ** 2))) if judged.any() else float(np.std(steps[smooth]))
+    )
     expected = np.empty(len(jumps))
     for number, jump in enumerate(jumps.tolist()):
         near = [k for k in range(max(jump - _AROUND, 0), min(jump + _AROUND + 1, len(steps))) if smooth[k]]
@@ -157,6 +166,6 @@ def _plainest(value: float, slack: float, unit: str, known: Sequence[float]) -> 
             return 2.0 * math.pi / parts
     for digits in range(1, 15):
         plain = float(f"{value * factor:.{digits}g}") / factor
-        if abs(plain - value) <= slack:
+        if abs(plain - value) <= max(slack, _PLAIN * value if digits <= _FEW else 0.0):
             return plain
     return value

@@ -341,3 +341,10 @@ def test_out_replaces_what_identify_wrote_and_nothing_else(tmp_path: Path, capsy
     assert main([*asked[:3], "/dev/null", *asked[4:]]) == 2
     assert "a device is in the way of the file null" in capsys.readouterr().err
     assert Path("/dev/null").is_char_device()
+
+
+def test_a_modulus_that_is_no_plain_number_is_measured() -> None:
+    modulus = 0.4173519
+    jumping = replace(CUT_TRACE, command=CUT_TRACE.command % modulus, actual=CUT_TRACE.actual % modulus)
+    found = unwrapped(jumping, "t")
+    assert float(np.abs(found.command - CUT_TRACE.command).max()) < 2e-6
