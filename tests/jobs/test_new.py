@@ -59,12 +59,9 @@ def test_a_new_job_asks_for_what_its_example_asks(name: str) -> None:
     one = examples()[name]
     text = job_template(values_of(one.text), "A job.")
     again, before = parse_job(text, "new"), parse_job(one.text, "example")
-    assert (again.machine, again.cut, again.limits, again.servo) == (
-        before.machine,
-        before.cut,
-        before.limits,
-        before.servo,
-    )
+    # as they are written: of a free crank the place of the sync zone is not a number, which from Python 3.13 on equals nothing
+    told = [repr((job.machine, job.cut, job.limits, job.servo)) for job in (again, before)]
+    assert told[0] == told[1]
     assert again.objective == before.objective
     for key in job_keys():
         if key.machine in ("", one.machine):
