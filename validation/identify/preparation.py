@@ -26,7 +26,7 @@ _SURE = 6.0
 _ODD = 12.0
 """Standard deviations of one jump beyond which it is none of the modulus."""
 _FEW, _PLAIN = 4, 2e-6
-"""A modulus so near to a number of so few digits is that number: a drum or a feed that people have ordered."""
+"""A modulus so near to one that the machine has, or to a number of so few digits, is that one: a drum that people have ordered."""
 _ROUNDING = 1e-9
 """What rounding in the file may do to a modulus, as a part of it."""
 _SHOWN = {"m": (1e3, "mm"), "rad": (180.0 / math.pi, "deg")}
@@ -156,7 +156,7 @@ def _expected(steps: FloatArray, smooth: NDArray[np.bool_], jumps: NDArray[np.in
 
 def _plainest(value: float, slack: float, unit: str, known: Sequence[float]) -> float:
     """Give what is known, else the part of a turn in rad or the number of fewest digits in mm or deg, within the slack."""
-    near = [each for each in known if abs(each - value) <= slack]
+    near = [each for each in known if abs(each - value) <= max(slack, _PLAIN * value)]
     if near:
         return min(near, key=lambda each: abs(each - value))
     factor = _SHOWN[unit][0]
