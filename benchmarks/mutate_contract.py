@@ -66,7 +66,9 @@ CHANGES = (
     Change("no allowance in a report", "report.py", "value <= limit + allowed", "value <= limit"),
     Change("twice the tolerance of verify", "sheet_faults.py", "<= share * abs(recorded)", "<= 2 * share * abs(recorded)"),
     Change("twice the threshold of standing", "motor.py", "<= _STANDING * ", "<= 2 * _STANDING * "),
-    Change("one place less", "place.py", "greatest - margin, PLACES)", "greatest - margin, PLACES - 1)"),
+    Change("one place less", "place.py", "greatest - margin, places)", "greatest - margin, places - 1)"),
+    Change("places for a peak", "place.py", "\nPEAK_PLACES, PEAK_RESOLUTION = 41,", "\nPEAK_PLACES, PEAK_RESOLUTION = 21,"),
+    Change("valleys gone down", "place.py", "\nMOST_DEEP = 3\n", "\nMOST_DEEP = 2\n"),
     Change("one wrap", "rebuilt.py", "wraps: int = LEAST_WRAPS", "wraps: int = 1"),
     # the numbers of the contract
     Change("limit", "report.py", "\nALLOWANCE = 1e-9\n", "\nALLOWANCE = 2e-9\n"),
