@@ -12,8 +12,9 @@ from typing import Any
 from camwright.bender.calibration import Calibration
 from camwright.bender.drawing import Drawing
 from camwright.bender.job import BenderJob
-from camwright.bender.program_file import BentOutline
+from camwright.bender.program_file import COLLISIONS, BentOutline
 from camwright.validation.bender.collision import MOST_REPORTED
+from camwright.validation.check import Check
 
 _SHOWN = 10
 
@@ -36,6 +37,8 @@ class BentDrawing:
         One result an outline.
     notes
         What was doubtful about the run.
+    collisions_accepted
+        Whether the user takes it on himself that the part meets the mould or the rule.
     """
 
     drawing: Path
@@ -44,11 +47,20 @@ class BentDrawing:
     found: Drawing
     outlines: tuple[BentOutline, ...]
     notes: tuple[str, ...] = ()
+    collisions_accepted: bool = False
 
     @property
     def passed(self) -> bool:
-        """Whether every check of every program passed."""
-        return all(check.passed for outline in self.outlines for check in outline.checks)
+        """Whether every check of every program passed, or fails only in what the user accepts."""
+        return not any(self.failed(outline) for outline in self.outlines)
+
+    def accepted(self, check: Check) -> bool:
+        """Tell whether a check failed and the user accepts that."""
+        return not check.passed and check.name == COLLISIONS and self.collisions_accepted
+
+    def failed(self, outline: BentOutline) -> list[Check]:
+        """List the checks of a program that failed and are not accepted."""
+        return [check for check in outline.checks if not check.passed and not self.accepted(check)]
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -56,6 +68,12 @@ class BentDrawing:
         found = [*self.job.warnings, *self.found.warnings, *size_warnings(self.found, self.job), *self.notes]
         for outline in self.outlines:
             found += collision_lines(outline, self.job)
+        count = sum(bool(outline.collisions) for outline in self.outlines)
+        if count and not self.collisions_accepted:
+            found.append(
+                f"the check {COLLISIONS} failed in {count} {'program' if count == 1 else 'programs'}; if the rule is guided by "
+                "hand or lifted over the mould at these bends, accept it with --accept-collisions"
+            )
         return tuple(found)
 
 
@@ -71,6 +89,12 @@ def size_words(found: Drawing) -> str:
     """Width and height of a drawing in words."""
     width, height = found.size
     return f"{1e3 * width:.3f} mm × {1e3 * height:.3f} mm"
+
+
+def check_words(check: Check) -> str:
+    """Value and limit of a check in words."""
+    unit = "" if check.unit == "1" else f" {check.unit}"
+    return f"{check.value:.3g}{unit}, allowed {check.limit:.3g}"
 
 
 def collision_lines(outline: BentOutline, job: BenderJob) -> list[str]:
@@ -140,6 +164,20 @@ def answer(result: BentDrawing, programs: Sequence[Path], files: Sequence[Path])
         "feed_overshoot_mm": max(1e3 * outline.feed_overshoot[0] for outline in result.outlines),
         "mould_overshoot_deg": max(math.degrees(outline.mould_overshoot[0]) for outline in result.outlines),
         "collisions": sum(len(outline.collisions) for outline in result.outlines),
+        "checks": [
+            {
+                "program": outline.program.name,
+                "name": check.name,
+                "passed": check.passed,
+                "accepted": result.accepted(check),
+                "value": check.value,
+                "limit": check.limit,
+                "unit": check.unit,
+                "source": check.source,
+            }
+            for outline in result.outlines
+            for check in outline.checks
+        ],
         "passed": result.passed,
         "warnings": list(result.warnings),
         "files": [str(path) for path in files],

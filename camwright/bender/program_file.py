@@ -38,6 +38,9 @@ ROUNDING = 5e-6
 CLOSING = 10e-6
 """Greatest distance between the ends of a closed outline's rule (m)."""
 
+COLLISIONS = "collisions"
+"""Name of the check that the user may accept to fail."""
+
 _LONGEST_NAME = 20
 """Characters of a program's name: Fagor's header takes no more."""
 
@@ -123,6 +126,18 @@ class BentOutline:
                     "virtual bending: the rule's ends meet",
                 )
             )
+        hits = float(len(self.collisions))
+        found.append(
+            Check(
+                COLLISIONS,
+                not hits,
+                hits,
+                0.0,
+                "1",
+                None,
+                "plane envelope of the mould: bends at which the part is hit",
+            )
+        )
         return tuple(found)
 
 

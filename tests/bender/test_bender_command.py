@@ -71,7 +71,7 @@ def test_the_paper_s_arc_rule_by_job(drawing: Make, tmp_path: Path, capsys: pyte
 
 
 def test_example_drawing_with_everything(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    code, answer, _ = run(capsys, EXAMPLE, "--out", tmp_path)
+    code, answer, _ = run(capsys, EXAMPLE, "--out", tmp_path, "--accept-collisions")
     assert code == 0
     assert answer["outlines"] == 3
     assert answer["passed"]
@@ -93,7 +93,7 @@ def test_example_drawing_with_everything(tmp_path: Path, capsys: pytest.CaptureF
 def test_examples_of_job_and_measurements(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     folder = EXAMPLE.parent
     code, answer, _ = run(capsys, EXAMPLE, "--job", folder / "paper-arcs.toml", "--out", tmp_path / "a", "--no-figures")
-    assert code == 0
+    assert code == 1  # the part meets the mould
     assert Path(answer["program"]).read_text().startswith("%\n(CARTON-1)\nN001 G21\n")
     code, answer, _ = run(capsys, "--calibrate", folder / "measurements.csv", "--out", tmp_path / "b")
     assert code == 0
@@ -140,10 +140,50 @@ def test_start_and_reverse(drawing: Make, tmp_path: Path, capsys: pytest.Capture
 def test_collisions_are_reported_by_line(drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     path = drawing(lambda m, _: m.add_lwpolyline([(0, 0), (100, 0), (100, 4), (-100, 4)]))
     code, answer, _ = run(capsys, path, "--out", tmp_path / "out", "--no-figures")
-    assert code == 0
+    assert code == 1
     assert answer["collisions"] == 1
     assert any("line N014 (bend 2): the part bent so far, side 1 from (0.000, 0.000) mm, meets the mould" in w
                for w in answer["warnings"])  # fmt: skip
+
+
+def test_a_collision_fails_a_check_unless_it_is_accepted(
+    drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+):
+    path = drawing(lambda m, _: m.add_lwpolyline([(0, 0), (100, 0), (100, 4), (-100, 4)]))
+    more = ("--out", tmp_path / "out", "--no-figures")
+    code, answer, _ = run(capsys, path, *more)
+    assert code == 1
+    assert answer["passed"] is False
+    (failed,) = (check for check in answer["checks"] if not check["passed"])
+    assert (failed["program"], failed["name"], failed["value"], failed["limit"]) == ("DRAWING", "collisions", 1, 0)
+    assert failed["accepted"] is False
+    assert any(
+        text.startswith("the check collisions failed in 1 program; ") and text.endswith("with --accept-collisions")
+        for text in answer["warnings"]
+    )
+    code, answer, _ = run(capsys, path, *more, "--accept-collisions")
+    assert code == 0
+    assert answer["passed"] is True
+    (failed,) = (check for check in answer["checks"] if not check["passed"])
+    assert failed["accepted"] is True
+    assert not any("--accept-collisions" in text for text in answer["warnings"])
+    assert any("meets the mould" in text for text in answer["warnings"])
+    assert main(["bend", str(path), *map(str, more)]) == 1
+    shown = capsys.readouterr().out
+    assert "DRAWING: collisions 1, allowed 0" in shown
+    assert main(["bend", str(path), *map(str, more), "--accept-collisions"]) == 0
+    shown = capsys.readouterr().out
+    assert "accepted" in shown
+    assert "FAILED" not in shown
+
+
+def test_accepting_collisions_accepts_nothing_else(drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    path = drawing(lambda m, _: m.add_lwpolyline(STEP))
+    job = changed(tmp_path, ("velocity_feedforward = 0.0", "velocity_feedforward = 1.0"))
+    code, answer, _ = run(capsys, path, "--job", job, "--out", tmp_path / "out", "--no-figures", "--accept-collisions")
+    assert code == 1
+    assert {check["name"] for check in answer["checks"] if not check["passed"]} == {"feed_overshoot", "mould_overshoot"}
+    assert not any(check["accepted"] for check in answer["checks"])
 
 
 def test_overshoot_fails_a_check(drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
