@@ -9,10 +9,11 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
+from camwright.bender.bend_list import bridge_rows
 from camwright.bender.calibration import Calibration
 from camwright.bender.drawing import Drawing
 from camwright.bender.job import BenderJob
-from camwright.bender.program_file import COLLISIONS, BentOutline
+from camwright.bender.program_file import COLLISIONS, ROUNDING, BentOutline
 from camwright.validation.bender.collision import MOST_REPORTED
 from camwright.validation.check import Check
 
@@ -67,7 +68,7 @@ class BentDrawing:
         """What the operator should know: the table's doubtful rows, what was left out, collisions by line."""
         found = [*self.job.warnings, *self.found.warnings, *size_warnings(self.found, self.job), *self.notes]
         for outline in self.outlines:
-            found += collision_lines(outline, self.job)
+            found += [*_bridge_lines(outline), *collision_lines(outline, self.job)]
         count = sum(bool(outline.collisions) for outline in self.outlines)
         if count and not self.collisions_accepted:
             found.append(
@@ -123,6 +124,19 @@ def collision_lines(outline: BentOutline, job: BenderJob) -> list[str]:
     return texts
 
 
+def _bridge_lines(outline: BentOutline) -> list[str]:
+    """Bridges that do not lie where their spacing would have them, in words."""
+    moved = [bridge for bridge in outline.bridges if abs(bridge.moved) > ROUNDING]
+    if not moved:
+        return []
+    furthest = max(moved, key=lambda bridge: abs(bridge.moved))
+    text = (
+        f"{outline.program.name}: {len(moved)} of {len(outline.bridges)} bridges are moved along the rule to stay clear of bends and "
+        f"ends, the one at {1e3 * furthest.middle:.3f} mm by {1e3 * abs(furthest.moved):.3f} mm"
+    )
+    return [text]
+
+
 def _listed(noun: str, values: list[str]) -> str:
     return f"{noun} {values[0]}" if len(values) == 1 else f"{noun}s {', '.join(values)}"
 
@@ -159,6 +173,20 @@ def answer(result: BentDrawing, programs: Sequence[Path], files: Sequence[Path])
             {"file": str(path), "sha256": outline.sha256, "bends": outline.plan.bends, "style": str(style)}
             for path, outline, style in zip(programs, result.outlines, result.found.styles, strict=True)
         ],
+        "bridges": [
+            {
+                "program": outline.program.name,
+                "number": row.number,
+                "after_bend": row.after,
+                "from_mm": row.begin,
+                "to_mm": row.end,
+                "middle_mm": row.middle,
+                "line": None if row.line is None else f"N{row.line:03d}",
+            }
+            for outline in result.outlines
+            for row in bridge_rows(outline, result.job)
+        ],
+        "bridge_command": result.job.bridges.command,
         "cycle_time_s": sum(outline.times.total for outline in result.outlines),
         "baseline_cycle_time_s": sum(outline.paper_times.total for outline in result.outlines),
         "feed_overshoot_mm": max(1e3 * outline.feed_overshoot[0] for outline in result.outlines),

@@ -5,18 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import groupby
 from typing import Any
 
 import numpy as np
 
 from camwright.bender.job import BenderJob
 from camwright.bender.program_file import BentOutline
+from camwright.profiles.bender.bridges import bridge_places
 
 _HEADER = (
     "bend,line,feed_mm,workpiece_angle_deg,radius_mm,mould_angle_deg,springback_deg,"
-    "feed_start_s,bend_start_s,return_start_s"
+    "feed_start_s,bend_start_s,return_start_s,bridges_mm,cut_lines"
 )
-_ROW = "%d,N%03d,%.3f,%.4f,%s,%.3f,%.4f,%.4f,%.4f,%.4f"
+_ROW = "%d,N%03d,%.3f,%.4f,%s,%.3f,%.4f,%.4f,%.4f,%.4f,%s,%s"
 
 
 @dataclass(frozen=True)
@@ -82,15 +84,70 @@ def _columns(outline: BentOutline, job: BenderJob, count: int) -> Iterator[tuple
     )
 
 
+@dataclass(frozen=True)
+class BridgeRow:
+    """One bridge.
+
+    Parameters
+    ----------
+    number
+        Its number, from 1.
+    after
+        Number of the bend before it, 0 for the start of the rule.
+    begin, end
+        Where it begins and ends, from the bend before it (mm).
+    middle
+        Its middle along the rule (mm).
+    line
+        Line number of the machine's cut, ``None`` where it is cut by hand.
+    """
+
+    number: int
+    after: int
+    begin: float
+    end: float
+    middle: float
+    line: int | None
+
+
+def bridge_rows(outline: BentOutline, job: BenderJob) -> list[BridgeRow]:
+    """List the bridges of an outline."""
+    if not outline.bridges:
+        return []
+    lines: list[int | None] = [None] * len(outline.bridges)
+    if job.bridges.command is not None:
+        lines = job.numbering.numbers(outline.program.blocks)[outline.program.cut_blocks()].tolist()
+    middles = bridge_places(outline.program, outline.bridges).tolist()
+    return [
+        BridgeRow(i + 1, bridge.side, 1e3 * (bridge.from_bend - bridge.width / 2),
+                  1e3 * (bridge.from_bend + bridge.width / 2), middle / 1e3, line)
+        for i, (bridge, middle, line) in enumerate(zip(outline.bridges, middles, lines, strict=True))
+    ]  # fmt: skip
+
+
 def csv_text(outline: BentOutline, job: BenderJob) -> str:
     """Write the bend list as CSV, units in the header; the last row is the feed after the last bend.
+
+    Bridges stand in the row of the feed that they are a part of, from the bend before them.
 
     Rows go from the columns straight to text: as `BendRow` they would take twice the time.
     """
     lines = [_HEADER]
+    bridges = {
+        side: (
+            ";".join(f"{row.begin:.3f}-{row.end:.3f}" for row in rows),
+            ";".join(f"N{row.line:03d}" for row in rows if row.line is not None),
+        )
+        for side, rows in _by_side(bridge_rows(outline, job)).items()
+    }
     for i, line, feed, turn, radius, mould, *times in _columns(outline, job, outline.plan.bends):
         size = "" if math.isinf(radius) else f"{radius:.4f}"
         added = abs(mould) - abs(turn)
-        lines.append(_ROW % (i, line, feed, turn, size, mould, added, *times))
-    lines.append(f"end,,{outline.program.feeds[-1] / 1e3:.3f},,,,,{outline.times.feed_start[-1]:.4f},,")
+        lines.append(_ROW % (i, line, feed, turn, size, mould, added, *times, *bridges.get(i - 1, ("", ""))))
+    end = ",".join(bridges.get(outline.plan.bends, ("", "")))
+    lines.append(f"end,,{outline.program.feeds[-1] / 1e3:.3f},,,,,{outline.times.feed_start[-1]:.4f},,,{end}")
     return "\n".join(lines) + "\n"
+
+
+def _by_side(rows: list[BridgeRow]) -> dict[int, list[BridgeRow]]:
+    return {side: list(group) for side, group in groupby(rows, key=lambda row: row.after)}

@@ -17,6 +17,7 @@ from camwright.house.files import read_text
 from camwright.house.setting_fields import Settings
 from camwright.house.settings import read_settings
 from camwright.house.toml_file import MOST_BYTES, toml_data
+from camwright.profiles.bender.bridges import BridgeRule
 from camwright.profiles.bender.division import DivisionRule
 from camwright.profiles.bender.nc_code import Flavour, Numbering
 from camwright.profiles.bender.springback import Springback
@@ -73,6 +74,8 @@ class BenderJob:
         Greatest width or height of a drawing that the machine is made for (m); infinite if it is not stated.
     flavour, numbering
         How programs are written.
+    bridges
+        Which bridges the rule gets.
     warnings
         What is doubtful about the job, row by row.
     sha256
@@ -100,6 +103,7 @@ class BenderJob:
     greatest_size: float
     flavour: Flavour
     numbering: Numbering
+    bridges: BridgeRule
     warnings: tuple[str, ...]
     sha256: str
 
@@ -163,6 +167,7 @@ def load_bender(path: Path | None = None) -> BenderJob:
         greatest_size=np.inf if drawing.greatest_size is None else drawing.greatest_size,
         flavour=program.flavour,
         numbering=numbering,
+        bridges=file.bridges.rule,
         warnings=warnings,
         sha256=hashlib.sha256(text.encode()).hexdigest(),
     )

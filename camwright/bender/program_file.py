@@ -17,6 +17,7 @@ from camwright.design.bender.moves import (
     overlapped_table,
     sequential_table,
 )
+from camwright.profiles.bender.bridges import Bridge, place_bridges, with_cuts
 from camwright.profiles.bender.compensation import compensate
 from camwright.profiles.bender.division import EqualSides
 from camwright.profiles.bender.motion import Moves, double_s_moves, trapezoid_moves
@@ -28,6 +29,7 @@ from camwright.profiles.bender.program import NcProgram
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.validation.bender.arrival import arrivals
+from camwright.validation.bender.bridges import BridgeProof, prove_bridges
 from camwright.validation.bender.collision import Collision, collisions
 from camwright.validation.bender.virtual_bender import BendingProof, prove
 from camwright.validation.check import Check
@@ -72,6 +74,10 @@ class BentOutline:
         What the axes wait for their servos in these.
     feed_overshoot, mould_overshoot
         Greatest overshoot of either axis in the discrete servo, and what is allowed (m, rad).
+    bridges, bridge_proof
+        Breaks of the rule, and what the program makes of them; ``None`` if there are none.
+    bridge_gap
+        Least distance of a bridge's edge from bends, ends and other bridges (m).
     paper_bends, paper_error
         Number of bends and chord error (m) by the paper's rule, 25 sides to a circle.
     """
@@ -87,6 +93,9 @@ class BentOutline:
     paper_dwell: Dwell
     feed_overshoot: tuple[float, float]
     mould_overshoot: tuple[float, float]
+    bridges: tuple[Bridge, ...]
+    bridge_proof: BridgeProof | None
+    bridge_gap: float
     paper_bends: int
     paper_error: float
 
@@ -126,6 +135,14 @@ class BentOutline:
                     "virtual bending: the rule's ends meet",
                 )
             )
+        if self.bridge_proof is not None:
+            missing = max(0.0, self.bridge_gap - self.bridge_proof.gap)
+            found += [
+                Check("bridge_clearance", missing <= ROUNDING, missing, ROUNDING, "m", None,
+                      "program: what bridges lack in distance from bends, ends and each other"),
+                Check("bridge_place", self.bridge_proof.shift <= ROUNDING, self.bridge_proof.shift, ROUNDING, "m", None,
+                      "program: bridges where they are asked for"),
+            ]  # fmt: skip
         hits = float(len(self.collisions))
         found.append(
             Check(
@@ -154,16 +171,27 @@ def bend_outlines(outlines: Sequence[Outline], job: BenderJob, stem: str) -> tup
         plan, found = _planned(outline, job)
         faults += found
         plans.append(plan)
+    if job.bridges.at and len(plans) > 1:
+        faults.append(
+            f"[bridges] at names places along one rule, and the drawing has {len(plans)}; write spacing instead, or choose one "
+            "with --style"
+        )
     if faults:
         raise InputError(*faults[:_MOST_FAULTS])
     programs = []
     for i, plan in enumerate(plans):
         program = compensate(plan, job.springback, program_name(stem, i, len(plans)))
+        try:
+            bridges = place_bridges(plan, job.bridges)
+            program = with_cuts(program, bridges, job.bridges)
+        except InputError as error:
+            faults += error.faults
+            continue
         faults += _range_faults(program, plan, job)
-        programs.append(program)
+        programs.append((plan, program, bridges))
     if faults:
         raise InputError(*faults[:_MOST_FAULTS])
-    return tuple(_finished(plan, program, job) for plan, program in zip(plans, programs, strict=True))
+    return tuple(_finished(plan, program, bridges, job) for plan, program, bridges in programs)
 
 
 def program_name(stem: str, index: int, count: int) -> str:
@@ -227,11 +255,12 @@ def _range_faults(program: NcProgram, plan: BendPlan, job: BenderJob) -> list[st
     return faults
 
 
-def _finished(plan: BendPlan, program: NcProgram, job: BenderJob) -> BentOutline:
+def _finished(plan: BendPlan, program: NcProgram, bridges: tuple[Bridge, ...], job: BenderJob) -> BentOutline:
     drive = job.drive
     speed = min(drive.feed.speed * 6e4, math.degrees(drive.mould.speed) * 60)
-    text = write_program(program, job.flavour, job.numbering, speed)
-    read = read_program(text, program.name)
+    command = job.bridges.command
+    text = write_program(program, job.flavour, job.numbering, speed, command or "")
+    read = read_program(text, program.name, command)
     proof = prove(read, plan, job.springback)
     feeds = np.asarray(read.feeds * 1e-6, dtype=np.float64)
     moulds = np.asarray(np.radians(read.bends / 1e3), dtype=np.float64)
@@ -253,6 +282,9 @@ def _finished(plan: BendPlan, program: NcProgram, job: BenderJob) -> BentOutline
         paper_dwell,
         (feed[1], job.feed_window),
         (mould[1], job.mould_window),
+        bridges,
+        prove_bridges(read, bridges, job.bridges),
+        job.bridges.clearance,
         paper.bends,
         paper.chord_error,
     )

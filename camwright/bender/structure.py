@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+import re
+from typing import Annotated, Literal, Self
 
-from pydantic import Field
+from pydantic import AfterValidator, Field, model_validator
 
 from camwright.house.servo_table import ServoNumbers
-from camwright.house.setting_fields import Table, line_field, quantity_field, row_field, whole_field
+from camwright.house.setting_fields import Table, line_field, quantity_field, refusal, row_field, whole_field
+from camwright.profiles.bender.bridges import BridgeRule
 from camwright.profiles.bender.division import DivisionRule, EqualSides, EqualSteps, FewestBends
 from camwright.profiles.bender.nc_code import Flavour
 from camwright.profiles.bender.springback import PAPER_STEP, Interpolation
@@ -121,6 +123,54 @@ class DrawingTable(Table):
     greatest_size: Annotated[float | None, *quantity_field("length", example="2 m")] = None
 
 
+_COMMAND = re.compile(r"M\d{1,4}")
+_PROGRAM_STOPS = {0, 1, 2, 30}
+"""M functions that stop or end a program in every control."""
+
+
+def _cut_command(text: str) -> str:
+    if not _COMMAND.fullmatch(text) or int(text[1:]) in _PROGRAM_STOPS:
+        raise refusal(
+            f'"{text}": not a cut command; write the M function that the builder of the machine gave to its cutting tool, e.g. '
+            'command = "M20" (M0, M1, M2 and M30 stop the program), or leave it out: bridges are then cut by hand'
+        )
+    return text
+
+
+class BridgesTable(Table):
+    """Bridges: breaks of the rule, and their tool."""
+
+    _place = "bridges"
+
+    width: Annotated[float | None, *quantity_field("length", example="6 mm")] = None
+    spacing: Annotated[float | None, *quantity_field("length", example="100 mm")] = None
+    at: Annotated[
+        list[Annotated[float, *quantity_field("length", example="50 mm")]], Field(examples=[["50 mm", "150 mm"]])
+    ] = Field(default_factory=list)
+    clearance: Annotated[float, *quantity_field("length", zero=True, example="2 mm")] = BridgeRule.clearance
+    command: Annotated[str | None, *line_field("M20"), AfterValidator(_cut_command)] = None
+    tool_distance: Annotated[float, *quantity_field("length", zero=True, example="40 mm")] = 0.0
+
+    @model_validator(mode="after")
+    def _whole(self) -> Self:
+        if self.spacing is not None and self.at:
+            raise refusal("spacing and at exclude each other: remove one of them")
+        if (self.spacing is not None or self.at) and self.width is None:
+            raise refusal('width is missing: write how much of the rule is cut out, e.g. width = "6 mm"')
+        if self.width is not None and self.spacing is None and not self.at:
+            raise refusal(
+                'spacing is missing: write how far apart bridges are, e.g. spacing = "100 mm", or their places, at = ["50 mm"]'
+            )
+        return self
+
+    @property
+    def rule(self) -> BridgeRule:
+        """Which bridges a rule gets."""
+        return BridgeRule(
+            self.width or 0.0, self.spacing, tuple(self.at), self.clearance, self.command, self.tool_distance
+        )
+
+
 class ProgramTable(Table):
     """How programs are written."""
 
@@ -143,6 +193,7 @@ class BenderFile(Table):
     servo: ServoNumbers
     drawing: DrawingTable
     program: ProgramTable
+    bridges: BridgesTable = BridgesTable()
 
 
 class SpringbackRule(Table):

@@ -16,6 +16,7 @@ import typer
 from camwright.bender.answer import BentDrawing, answer, calibration_answer, check_words, size_words
 from camwright.bender.bend_list import csv_text
 from camwright.bender.calibration import Calibration, calibrate, residuals_text
+from camwright.bender.catalogue import SheetLanguage, sheet_words
 from camwright.bender.drawing import Reading, read_drawing
 from camwright.bender.dxf_styles import style_choice
 from camwright.bender.figures import draw
@@ -29,6 +30,7 @@ from camwright.house.files import is_device_name
 from camwright.house.output import Voice, complain
 from camwright.house.owned import Work, owned
 from camwright.house.progress import Step
+from camwright.profiles.bender.bridges import BridgeRule
 from camwright.profiles.errors import InputError
 
 if TYPE_CHECKING:
@@ -68,6 +70,13 @@ def run(
         str | None, typer.Option("--start", metavar="X,Y", help="Begin at the vertex nearest to this place (mm).")
     ] = None,
     reverse: Annotated[bool, typer.Option("--reverse", help="Bend each outline from its other end.")] = False,
+    language: Annotated[SheetLanguage, typer.Option("--language", help="Language of the bending sheet.")] = "en",
+    bridges: Annotated[
+        str | None,
+        typer.Option(
+            "--bridges", metavar="WIDTH@SPACING", help="Bridges of this width, this far apart (mm), e.g. 6@100."
+        ),
+    ] = None,
     accept_collisions: Annotated[
         bool,
         typer.Option("--accept-collisions", help="Pass although the bent part meets the mould or the rule to come."),
@@ -113,6 +122,8 @@ def run(
     if drawing is None:
         raise InputError("no drawing is named; give a DXF file, or test bends with --calibrate")
     _require_name(drawing)
+    if bridges is not None:
+        bender = replace(bender, bridges=_bridges(bridges, bender.bridges))
     place = None if start is None else _place(start)
     choice = style_choice(style, layer, each=styles == "all")
     arc_error = bender.divide.allowed if arcs == "find" else None
@@ -123,7 +134,7 @@ def run(
         names = _names(drawing.stem, len(result.outlines))
         programs = [directory / f"{name}.nc" for name in names]
         work = Work("bend", drawing.stem, result.sha256)
-        files = _write(result, names, directory, work, figures=not no_figures, step=step)
+        files = _write(result, names, directory, work, language=None if no_figures else language, step=step)
     if port is not None and not result.passed:
         result = replace(result, notes=(*result.notes, f"nothing is sent to {port}: a check failed"))
     elif port is not None:
@@ -185,6 +196,19 @@ def _place(text: str) -> tuple[float, float]:
     return x, y
 
 
+def _bridges(text: str, rule: BridgeRule) -> BridgeRule:
+    """Read ``--bridges``, in mm; the tool is that of the job."""
+    try:
+        width, spacing = (1e-3 * float(part) for part in text.split("@"))
+    except ValueError:
+        width = spacing = math.nan
+    if not (0 < width < spacing < math.inf):
+        raise InputError(
+            f"--bridges {text!r}: not a width and a greater spacing; write two numbers in mm, e.g. --bridges 6@100"
+        )
+    return replace(rule, width=width, spacing=spacing, at=())
+
+
 def _names(stem: str, count: int) -> list[str]:
     return [stem] if count == 1 else [f"{stem}-{i + 1}" for i in range(count)]
 
@@ -204,21 +228,21 @@ def _bent(
 
 
 def _write(
-    result: BentDrawing, names: list[str], directory: Path, work: Work, *, figures: bool, step: Step
+    result: BentDrawing, names: list[str], directory: Path, work: Work, *, language: SheetLanguage | None, step: Step
 ) -> list[Path]:
-    """Write programs, bend lists, figures and sheets, all or none."""
+    """Write programs and bend lists, and in a language figures and sheets: all or none."""
     step("writing files")
     with owned(directory, work, complain) as aside:
         for name, outline in zip(names, result.outlines, strict=True):
             (aside / f"{name}.nc").write_bytes(outline.text.encode("ascii"))
             (aside / f"{name}-bends.csv").write_bytes(csv_text(outline, result.job).encode("ascii"))
-        if figures:
+        if language is not None:
             step("drawing figures")
             shown = names[:_MOST_FIGURES]
             for name, outline in zip(shown, result.outlines, strict=False):
-                draw(outline, aside, name)
+                draw(outline, aside, name, sheet_words(language))
             step("typesetting the sheet")
-            write_sheet(result, aside, [aside / f"{name}-proof.svg" for name in shown])
+            write_sheet(result, aside, [aside / f"{name}-proof.svg" for name in shown], language)
         return [directory / name for name in sorted(file.name for file in aside.iterdir())]
 
 

@@ -48,7 +48,7 @@ class Numbering:
 _HEADER: dict[Flavour, tuple[str, ...]] = {"fagor": ("G71", "G07", "G94"), "iso": ("G21", "G61", "G94")}
 
 
-def write_program(program: NcProgram, flavour: Flavour, numbering: Numbering, speed: float) -> str:
+def write_program(program: NcProgram, flavour: Flavour, numbering: Numbering, speed: float, command: str = "") -> str:
     """Write a program as text.
 
     Parameters
@@ -61,6 +61,8 @@ def write_program(program: NcProgram, flavour: Flavour, numbering: Numbering, sp
         Numbers of the motion lines.
     speed
         The F word: feed in mm/min, and in degrees per minute for the mould.
+    command
+        The machine's command that cuts a bridge, such as ``"M20"``.
     """
     lines = [f"%{program.name}"] if flavour == "fagor" else ["%", f"({program.name})"]
     head = [*_HEADER[flavour][:-1], f"{_HEADER[flavour][-1]} F{speed:.3f}"]
@@ -71,9 +73,16 @@ def write_program(program: NcProgram, flavour: Flavour, numbering: Numbering, sp
     columns = (numbers[at - 1], feeds[0][:-1], feeds[1][:-1], numbers[at], *bends, numbers[at + 1])
     bent = "N%03d G01 G90 Y%d.%03d\nN%03d G01 G90 " + ("Y0.0" if flavour == "fagor" else "Y0.000")
     fed_and_bent = f"{_FED}\n{bent}"
-    for row in zip(*(column.tolist() for column in columns), strict=True):
-        lines.append(fed_and_bent % row if row[1] or row[2] else bent % row[3:])
-    if program.feeds[-1]:
+    split = program.split_feeds()
+    begins = np.concatenate([[0], at + 2])
+    for k, row in enumerate(zip(*(column.tolist() for column in columns), strict=True)):
+        if k in split:
+            lines += [*_fed_and_cut(split[k], numbers[begins[k] :][: 2 * len(split[k])], command), bent % row[3:]]
+        else:
+            lines.append(fed_and_bent % row if row[1] or row[2] else bent % row[3:])
+    if len(at) in split:
+        lines += _fed_and_cut(split[len(at)], numbers[begins[-1] :][: 2 * len(split[len(at)])], command)
+    elif program.feeds[-1]:
         lines.append(_FED % (numbers[-2], feeds[0][-1], feeds[1][-1]))
     lines.append(f"N{numbers[-1]:03d} M30")
     if flavour == "iso":
@@ -81,15 +90,25 @@ def write_program(program: NcProgram, flavour: Flavour, numbering: Numbering, sp
     return "\n".join(lines) + "\n"
 
 
+def _fed_and_cut(parts: list[int], numbers: IntArray, command: str) -> list[str]:
+    """Write a feed that is stopped for cuts."""
+    texts = []
+    for i, part in enumerate(parts):
+        texts += [command] if i else []
+        texts += [f"G01 G91 X{part // 1000}.{part % 1000:03d}"] if part else []
+    return [f"N{number:03d} {text}" for number, text in zip(numbers.tolist(), texts, strict=False)]
+
+
 _FED = "N%03d G01 G91 X%d.%03d"
 _ANGLE = "G90 Y"
 _MOTION = re.compile(r"N\d{3,8} G01 (G91 X|G90 Y)(-?)(\d{1,9})\.(\d{1,3})")
 _END = re.compile(r"N\d{3,8} M30")
+_CUT = re.compile(r"^N\d{3,8} ")
 _HEAD = re.compile(r"N\d{3,8}(?: (?:G71|G21|G07|G61|G94|F\d+\.\d{3}))+")
 
 
-def read_program(text: str, place: str = "program") -> NcProgram:
-    """Read a program of either flavour back.
+def read_program(text: str, place: str = "program", command: str | None = None) -> NcProgram:
+    """Read a program of either flavour back; lines of the machine's cut command are its cuts.
 
     Raises
     ------
@@ -97,7 +116,7 @@ def read_program(text: str, place: str = "program") -> NcProgram:
         A line that is none of: header, feed, bend, return, end; or a bend without a return. Each is named with its
         line.
     """
-    read = _Read()
+    read = _Read(command=command)
     faults: list[str] = []
     for row, line in enumerate(text.splitlines(), start=1):
         found = None if read.ended else _MOTION.fullmatch(line)
@@ -111,7 +130,7 @@ def read_program(text: str, place: str = "program") -> NcProgram:
     if faults:
         raise InputError(*faults)
     feeds = np.array([*read.feeds, read.fed], dtype=np.int64)
-    return NcProgram(read.name, feeds, np.array(read.bends, dtype=np.int64))
+    return NcProgram(read.name, feeds, np.array(read.bends, dtype=np.int64), np.array(read.cuts, dtype=np.int64))
 
 
 @dataclass
@@ -126,6 +145,11 @@ class _Read:
     bent: bool = False
     """Whether the mould has not returned yet."""
     ended: bool = False
+    command: str | None = None
+    total: int = 0
+    """Fed from the start (µm)."""
+    cuts: list[int] = field(default_factory=list)
+    """Fed from the start at each cut (µm)."""
 
     def words(self, line: str) -> str | None:
         """Read a line without motion: a name, words of the head, the end."""
@@ -133,6 +157,8 @@ class _Read:
             self.name = self.name or line.strip("%()")
         elif self.ended:
             return f"{line[:60]!r} stands after the end of the program"
+        elif self.command is not None and not self.bent and _CUT.sub("", line) == self.command:
+            self.cuts.append(self.total)
         elif not (_END.fullmatch(line) or _HEAD.fullmatch(line)):
             return f"{line[:60]!r} is not a header, feed, bend, return or end line"
         elif self.bent:
@@ -156,6 +182,7 @@ class _Read:
             self.fed, self.bent = 0, True
             return None
         self.fed += value
+        self.total += value
         return f"feed {value / 1e3:.3f} mm; the rule is fed forwards only" if value <= 0 else None
 
 
