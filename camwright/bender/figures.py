@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from camwright.bender.catalogue import SheetWords
 from camwright.bender.program_file import BentOutline
 from camwright.design.bender.moves import TimeTable
 from camwright.house.picture_files import write_pictures
@@ -28,12 +29,12 @@ _LEFT, _BETWEEN, _RIGHT, _BOTTOM, _TOP = (n * _GRID for n in (5, 5, 1, 5, 4))
 _WIDEST, _TALLEST = 30 * _GRID, 34 * _GRID
 """Width of the figures, margins, and the greatest width and height of the view of the whole (pt)."""
 
-_DRAWN, _BENT, _WORST, _START, _PAPER = "#b9c4d0", "#11304f", "#c1121f", "#2a9d3a", "#8d99a6"
+_DRAWN, _BENT, _WORST, _START, _PAPER, _BRIDGE = "#b9c4d0", "#11304f", "#c1121f", "#2a9d3a", "#8d99a6", "#e08e0b"
 
 
-def draw(outline: BentOutline, directory: Path, name: str) -> None:
+def draw(outline: BentOutline, directory: Path, name: str, words: SheetWords) -> None:
     """Write both figures of an outline as SVG and PNG: ``<name>-proof`` and ``<name>-times``."""
-    write_pictures({f"{name}-proof": _proof(outline), f"{name}-times": _times(outline)}, directory)
+    write_pictures({f"{name}-proof": _proof(outline, words), f"{name}-times": _times(outline, words)}, directory)
 
 
 def outline_path(outline: Outline, coarseness: float | FloatArray) -> FloatArray:
@@ -51,7 +52,7 @@ def outline_path(outline: Outline, coarseness: float | FloatArray) -> FloatArray
     return np.vstack([turned, outline.points[-1:]])
 
 
-def _proof(outline: BentOutline) -> Picture:
+def _proof(outline: BentOutline, words: SheetWords) -> Picture:
     """Lay the bent rule over the drawing: the whole of it, and a close view of the largest deviation."""
     bent, worst, deviation = 1e3 * outline.proof.points, 1e3 * outline.proof.worst, 1e3 * outline.proof.deviation
     drawn = 1e3 * outline_path(outline.plan.outline, 1e-3 * float(np.ptp(bent, axis=0).max()) / _FINENESS)
@@ -59,10 +60,13 @@ def _proof(outline: BentOutline) -> Picture:
     seen = _seen(outline.plan.outline, worst, reach)
     fine = 1e3 * outline_path(outline.plan.outline, 1e-3 * np.where(seen, reach, np.inf) / _FINENESS)
     bends = bent[1:-1][(np.abs(bent[1:-1] - worst) <= reach).all(axis=1)]
-    under, over = Line(drawn, _DRAWN, 3.5, "drawing"), Line(bent, _BENT, 0.9, "bent rule")
-    marks = Marks(bends, _BENT, 4.0, "disc", "bends")
-    place = Marks(worst[None, :], _WORST, 13.0, "ring", f"largest deviation {deviation:.4f} mm")
-    start = Marks(bent[:1], _START, 6.0, "square", "start")
+    under, over = Line(drawn, _DRAWN, 3.5, words("figure.drawing")), Line(bent, _BENT, 0.9, words("figure.bent"))
+    marks = Marks(bends, _BENT, 4.0, "disc", words("figure.bends"))
+    place = Marks(worst[None, :], _WORST, 13.0, "ring", words("figure.worst", value=words.number(deviation, ".4f")))
+    start = Marks(bent[:1], _START, 6.0, "square", words("figure.start"))
+    bridges = [
+        Line(path, _BRIDGE, 3.0, "" if i else words("figure.bridge")) for i, path in enumerate(_bridge_paths(outline))
+    ]
     close = Line(_inside(fine, worst, reach), _DRAWN, 6.0), Line(_inside(bent, worst, reach), _BENT, 0.9)
 
     size = np.ptp(drawn, axis=0)
@@ -75,15 +79,32 @@ def _proof(outline: BentOutline) -> Picture:
     content = max(height, square)
     above = [_TOP + _GRID * math.floor(0.5 * (content - up) / _GRID) for up in (height, square)]
     panels = (
-        Frame(_LEFT, above[0], width, height, middle - half, middle + half, (under, over, start, place), "x (mm)", "y (mm)"),
-        Frame(_LEFT + width + _BETWEEN, above[1], square, square, worst - reach, worst + reach, (*close, marks, place),
-              "x (mm)", title="at the largest deviation"),
+        Frame(_LEFT, above[0], width, height, middle - half, middle + half, (under, over, *bridges, start, place), "x (mm)", "y (mm)"),
+        Frame(_LEFT + width + _BETWEEN, above[1], square, square, worst - reach, worst + reach, (*close, *bridges, marks, place),
+              "x (mm)", title=words("figure.close")),
     )  # fmt: skip
     closing = outline.proof.closing_error
-    ends = "open" if closing is None else f"closing error {1e3 * closing:.4f} mm"
-    length = f"{1e3 * outline.proof.rule_length:.1f} mm of rule"
-    title = f"{outline.program.name}: {outline.plan.bends} bends, {length}, {ends}"
-    return Picture(_WIDTH, _TOP + content + _BOTTOM, title, _LEFT, panels, (under, over, marks, place, start))
+    ends = (
+        words("figure.open")
+        if closing is None
+        else words("figure.closing", value=words.number(1000.0 * closing, ".4f"))
+    )
+    length = words.number(1e3 * outline.proof.rule_length, ".1f")
+    title = words("figure.title", name=outline.program.name, bends=str(outline.plan.bends), length=length, ends=ends)
+    return Picture(
+        _WIDTH, _TOP + content + _BOTTOM, title, _LEFT, panels, (under, over, *bridges[:1], marks, place, start)
+    )
+
+
+def _bridge_paths(outline: BentOutline) -> list[FloatArray]:
+    """Stretches of the bent rule that are cut out (mm), each of shape ``(2, 2)``."""
+    points = 1e3 * outline.proof.points
+    found = []
+    for bridge in outline.bridges:
+        start, way = points[bridge.side], points[bridge.side + 1] - points[bridge.side]
+        reach = 1e3 * np.array([[bridge.from_bend - bridge.width / 2], [bridge.from_bend + bridge.width / 2]])
+        found.append(start + reach * way / np.hypot(*way))
+    return found
 
 
 def _seen(outline: Outline, centre: FloatArray, reach: float) -> NDArray[np.bool_]:
@@ -113,19 +134,19 @@ def _window(outline: BentOutline, worst: FloatArray) -> float:
     return float(np.clip(1.2 * near.min(initial=extent), 1.0, 0.3 * extent + 1.0))
 
 
-def _times(outline: BentOutline) -> Picture:
+def _times(outline: BentOutline, words: SheetWords) -> Picture:
     """Show feed and mould over time for the first bends, beside the paper's moves."""
     tables = (
-        ("paper, sequential trapezoids", outline.paper_times, _PAPER, DASHED),
-        ("jerk-limited, overlapped", outline.times, _BENT, ()),
+        ("figure.paper", outline.paper_times, _PAPER, DASHED),
+        ("figure.optimised", outline.times, _BENT, ()),
     )
     signs = np.sign(outline.moulds)
     feeds = [
-        Line(_feed_track(table), colour, 1.4, f"{label}: {table.total:.2f} s in all", dash)
+        Line(_feed_track(table), colour, 1.4, words(label, time=words.number(table.total, ".2f")), dash)
         for label, table, colour, dash in tables
     ]
     moulds = [Line(_mould_track(table, signs), colour, 1.4, "", dash) for _, table, colour, dash in tables]
-    rows = [(feeds, "rule fed (mm)"), (moulds, "mould angle (°)")] if outline.plan.bends else [(feeds, "rule fed (mm)")]
+    rows = [(feeds, words("figure.fed")), (moulds, words("figure.mould"))][: 2 if outline.plan.bends else 1]
     last = max(float(line.points[:, 0].max()) for line in (*feeds, *moulds)) or 1.0
     top, height, width = 3 * _GRID, 14 * _GRID, _WIDTH - _LEFT - _RIGHT
     panels = []
@@ -135,12 +156,12 @@ def _times(outline: BentOutline) -> Picture:
         room = 0.05 * ((high - low) or 1.0)
         panels.append(
             Frame(_LEFT, top + i * (height + _GRID), width, height, np.array([-0.01 * last, low - room]),
-                  np.array([1.01 * last, high + room]), lines, "time (s)" if i == len(rows) - 1 else "", label,
+                  np.array([1.01 * last, high + room]), lines, words("figure.time") if i == len(rows) - 1 else "", label,
                   grid=True, apart=30.0)
         )  # fmt: skip
     shown = min(_BENDS_SHOWN, outline.plan.bends)
-    part = "" if shown == outline.plan.bends else f", first {shown} bends of {outline.plan.bends}"
-    title = f"{outline.program.name}: time table{part if outline.plan.bends else ', no bends'}"
+    key = "figure.times.none" if not shown else "figure.times" if shown == outline.plan.bends else "figure.times.part"
+    title = words(key, name=outline.program.name, shown=str(shown), count=str(outline.plan.bends))
     return Picture(
         _WIDTH, top + len(rows) * (height + _GRID) + 2 * _GRID, title, _LEFT, panels, feeds, legend_below=False
     )

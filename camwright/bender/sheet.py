@@ -1,4 +1,4 @@
-"""The recipe sheet of a bent drawing: PDF and HTML from the same data."""
+"""The bending sheet of a bent drawing: PDF and HTML from the same data, in the language that its reader reads."""
 
 from __future__ import annotations
 
@@ -10,99 +10,168 @@ from typing import Any
 
 import numpy as np
 
-from camwright.bender.answer import BentDrawing, size_words
-from camwright.bender.bend_list import BendRow, bend_rows
+from camwright.bender.answer import BentDrawing
+from camwright.bender.bend_list import BendRow, BridgeRow, bend_rows, bridge_rows
+from camwright.bender.catalogue import SheetLanguage, SheetWords, sheet_words
+from camwright.bender.job import BenderJob
 from camwright.bender.program_file import ROUNDING, BentOutline
 from camwright.house.fonts import font_folders
 from camwright.house.provenance import camwright_version
+from camwright.profiles.bender.division import EqualSides, EqualSteps
 
 _TEMPLATES = Path(__file__).parent / "templates"
 _MOST_ROWS = 150
 _MOST_OUTLINES = 20
+_MOST_LINES = 12
+"""Lines with a collision that a program's table names."""
 
 
-def sheet_data(result: BentDrawing) -> dict[str, Any]:
+def sheet_data(result: BentDrawing, language: SheetLanguage) -> dict[str, Any]:
     """Gather everything the sheet shows, as texts ready to print."""
-    job, table = result.job, result.job.springback
+    job, table, words = result.job, result.job.springback, sheet_words(language)
+    number = words.number
+    width, height = result.found.size
+    size = {"width": number(1e3 * width, ".3f"), "height": number(1e3 * height, ".3f"), "unit": result.found.unit}
+    rule = {"height": number(1e3 * job.height, "g"), "thickness": number(1e3 * job.thickness, "g")}
     return {
+        "language": language,
+        "words": words.messages,
         "drawing": result.drawing.name,
         "drawing_sha256": result.sha256,
         "job_sha256": job.sha256,
         "version": camwright_version(),
         "bender": job.name,
         "facts": [
-            ["Size", f"{size_words(result.found)}, the drawing's unit is {result.found.unit}"],
-            ["Rule", f"{1e3 * job.height:g} mm × {1e3 * job.thickness:g} mm"],
-            ["Arcs", _division_words(job)],
-            ["Ellipses and splines", f"lines within {1e3 * job.flattening:g} mm, counted in the deviation"],
-            ["Springback table", f"{table.name}, {table.interpolation}"],
-            ["Programs", f"{len(result.outlines)}, {job.flavour} style"],
+            [words("size"), words("size.value", **size)],
+            [words("rule"), words("rule.value", **rule)],
+            [words("arcs"), _division_words(job, words)],
+            [words("curves"), words("curves.value", value=number(1e3 * job.flattening, "g"))],
+            [words("table"), f"{table.name}, {words(f'interpolation.{table.interpolation}')}"],
+            [words("programs"), words("programs.value", count=str(len(result.outlines)), flavour=job.flavour)],
+            [words("bridges"), _bridge_words(sum(len(outline.bridges) for outline in result.outlines), job, words)],
         ],
-        "angles": [[f"{a:.3f}", f"{b:.3f}"] for a, b in np.degrees(np.stack([table.workpiece, table.mould], axis=1))],
+        "angles": [
+            [number(a, ".3f"), number(b, ".3f")]
+            for a, b in np.degrees(np.stack([table.workpiece, table.mould], axis=1)).tolist()
+        ],
         "radii": [
-            [f"{1e3 * r:g}", f"{np.degrees(b):.3f}"] for r, b in zip(table.radius, table.radius_mould, strict=True)
+            [number(1e3 * r, "g"), number(b, ".3f")]
+            for r, b in zip(table.radius.tolist(), np.degrees(table.radius_mould).tolist(), strict=True)
         ],
-        "step": f"{np.degrees(table.step):g}",
+        "step": number(float(np.degrees(table.step)), "g"),
         "warnings": list(result.warnings),
         "passed": result.passed,
+        "judgement": _judgement(result, words),
         "outlines": [
-            _outline_data(outline, str(style), result)
+            _outline_data(outline, str(style), result, words)
             for outline, style in zip(result.outlines[:_MOST_OUTLINES], result.found.styles, strict=False)
         ],
         "left_out": max(0, len(result.outlines) - _MOST_OUTLINES),
     }
 
 
-def _division_words(job: Any) -> str:
-    rule = type(job.divide).__name__
-    if rule == "EqualSides":
-        return f"a circle as {job.divide.sides} sides"
-    if rule == "EqualSteps":
-        return f"steps of {1e3 * job.divide.step:g} mm"
-    return f"fewest bends within {1e3 * job.divide.chord_error:g} mm"
+def _judgement(result: BentDrawing, words: SheetWords) -> str:
+    if not result.passed:
+        return words("checks.failed")
+    accepted = any(result.accepted(check) for outline in result.outlines for check in outline.checks)
+    return words("checks.accepted" if accepted else "checks.passed")
 
 
-def _outline_data(outline: BentOutline, style: str, result: BentDrawing) -> dict[str, Any]:
-    proof, gain = outline.proof, 1 - outline.times.total / outline.paper_times.total
-    closing = "open outline" if proof.closing_error is None else f"{1e3 * proof.closing_error:.4f} mm"
-    paper = f"paper's rule: {outline.paper_bends}, chord error {1e3 * outline.paper_error:.3f} mm"
-    sequential = f"sequential trapezoids {outline.paper_times.total:.2f} s"
-    allowed = 1e3 * (outline.plan.chord_error + ROUNDING)
-    over = np.degrees(outline.mould_overshoot[0])
-    rows = bend_rows(outline, result.job, _MOST_ROWS)
+def _division_words(job: BenderJob, words: SheetWords) -> str:
+    divide = job.divide
+    if isinstance(divide, EqualSides):
+        return words("arcs.EqualSides", value=str(divide.sides))
+    if isinstance(divide, EqualSteps):
+        return words("arcs.EqualSteps", value=words.number(1e3 * divide.step, "g"))
+    return words("arcs.FewestBends", value=words.number(1e3 * divide.chord_error, "g"))
+
+
+def _bridge_words(count: int, job: BenderJob, words: SheetWords) -> str:
+    """Say how many bridges there are and who cuts them."""
+    if not count:
+        return words("bridges.none")
+    values = {"count": str(count), "width": words.number(1e3 * job.bridges.width, "g")}
+    if job.bridges.command is None:
+        return words("bridges.hand", **values)
+    return f"{words('bridges.machine', command=job.bridges.command, **values)}. {words('bridges.time')}"
+
+
+def _collision_words(outline: BentOutline, job: BenderJob, words: SheetWords) -> str:
+    """Say how often the part meets something, and in which lines."""
+    hits = outline.collisions
+    if not hits:
+        return words("collisions.none")
+    numbers = job.numbering.numbers(outline.program.blocks)[outline.program.bend_blocks()]
+    lines = [f"N{numbers[hit.bend]:03d}" for hit in hits[:_MOST_LINES]] + ["…"] * (len(hits) > _MOST_LINES)
+    return words("collisions.value", count=str(len(hits)), lines=", ".join(lines))
+
+
+def _outline_data(outline: BentOutline, style: str, result: BentDrawing, words: SheetWords) -> dict[str, Any]:
+    proof, gain, number = outline.proof, 1 - outline.times.total / outline.paper_times.total, words.number
+    closing = proof.closing_error
+    paper = {"paper": str(outline.paper_bends), "error": number(1e3 * outline.paper_error, ".3f")}
+    deviation = {
+        "value": number(1e3 * proof.deviation, ".4f"),
+        "allowed": number(1e3 * (outline.plan.chord_error + ROUNDING), ".4f"),
+    }
+    cycle = {
+        "time": number(outline.times.total, ".2f"),
+        "paper": number(outline.paper_times.total, ".2f"),
+        "change": number(-100 * gain, "+.1f"),
+    }
+    over = {
+        "feed": number(1e3 * outline.feed_overshoot[0], ".4f"),
+        "mould": number(float(np.degrees(outline.mould_overshoot[0])), ".4f"),
+    }
+    rows, bridges = bend_rows(outline, result.job, _MOST_ROWS), bridge_rows(outline, result.job)
     return {
         "name": outline.program.name,
         "source": outline.plan.outline.name,
         "sha256": outline.sha256,
         "facts": [
-            ["Style", style],
-            ["Bends", f"{outline.plan.bends} ({paper})"],
-            ["Rule length", f"{1e3 * proof.rule_length:.3f} mm"],
-            ["Largest deviation", f"{1e3 * proof.deviation:.4f} mm (allowed {allowed:.4f} mm)"],
-            ["Closing error", closing],
-            ["Cycle time", f"{outline.times.total:.2f} s; {sequential} ({-100 * gain:+.1f} %)"],
-            ["Overshoot", f"feed {1e3 * outline.feed_overshoot[0]:.4f} mm, mould {over:.4f}°"],
-            ["Collisions", str(len(outline.collisions)) if outline.collisions else "none"],
+            [words("style"), style],
+            [words("bends"), words("bends.value", count=str(outline.plan.bends), **paper)],
+            [words("length"), f"{number(1e3 * proof.rule_length, '.3f')} mm"],
+            [words("deviation"), words("deviation.value", **deviation)],
+            [words("closing"), words("closing.open") if closing is None else f"{number(1e3 * closing, '.4f')} mm"],
+            [words("cycle"), words("cycle.value", **cycle)],
+            [words("overshoot"), words("overshoot.value", **over)],
+            [words("collisions"), _collision_words(outline, result.job, words)],
+            [words("bridges"), _bridge_words(len(outline.bridges), result.job, words)],
         ],
-        "bends": [_row(row) for row in rows],
+        "bends": [_row(row, words) for row in rows],
         "left_out": outline.plan.bends - len(rows),
-        "last_feed": f"{outline.program.feeds[-1] / 1e3:.3f}",
+        "last_feed": number(outline.program.feeds[-1] / 1e3, ".3f"),
+        "bridges": [_bridge_row(row, words) for row in bridges[:_MOST_ROWS]],
+        "bridges_left_out": max(0, len(bridges) - _MOST_ROWS),
     }
 
 
-def _row(row: BendRow) -> list[str]:
+def _row(row: BendRow, words: SheetWords) -> list[str]:
+    number = words.number
     return [
         str(row.bend),
         f"N{row.line:03d}",
-        f"{row.feed:.3f}",
-        f"{abs(row.turn):.3f} {'left' if row.turn > 0 else 'right'}",
-        "corner" if row.radius is None else f"{row.radius:.3f}",
-        f"{abs(row.mould):.3f}",
-        f"{row.compensation:+.3f}",
+        number(row.feed, ".3f"),
+        f"{number(abs(row.turn), '.3f')} {words('left' if row.turn > 0 else 'right')}",
+        words("corner") if row.radius is None else number(row.radius, ".3f"),
+        number(abs(row.mould), ".3f"),
+        number(row.compensation, "+.3f"),
     ]
 
 
-def write_sheet(result: BentDrawing, directory: Path, figures: list[Path]) -> None:
+def _bridge_row(row: BridgeRow, words: SheetWords) -> list[str]:
+    return [
+        str(row.number),
+        str(row.after) if row.after else words("start"),
+        words.number(row.begin, ".3f"),
+        words.number(row.end, ".3f"),
+        words.number(row.middle, ".3f"),
+        words("by_hand") if row.line is None else f"N{row.line:03d}",
+    ]
+
+
+def write_sheet(result: BentDrawing, directory: Path, figures: list[Path], language: SheetLanguage) -> None:
     """Write ``sheet.pdf`` and ``sheet.html``.
 
     Parameters
@@ -113,8 +182,10 @@ def write_sheet(result: BentDrawing, directory: Path, figures: list[Path]) -> No
         Where the sheets go.
     figures
         Proof figures as SVG, one an outline; none leaves the figures out.
+    language
+        Language of the sheets.
     """
-    data = sheet_data(result)
+    data = sheet_data(result, language)
     _write_pdf(data, directory / "sheet.pdf", figures)
     _write_html(data, directory / "sheet.html", figures)
 
