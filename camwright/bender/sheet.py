@@ -83,7 +83,7 @@ def _division_words(job: BenderJob, words: SheetWords) -> str:
         return words("arcs.EqualSides", value=str(divide.sides))
     if isinstance(divide, EqualSteps):
         return words("arcs.EqualSteps", value=words.number(1e3 * divide.step, "g"))
-    return words("arcs.FewestBends", value=words.number(1e3 * divide.chord_error, "g"))
+    return words("arcs.FewestBends", value=words.number(1e3 * divide.allowed(1.0), "g"))
 
 
 def _bridge_words(count: int, job: BenderJob, words: SheetWords) -> str:
