@@ -12,7 +12,7 @@ from typing import Any, Literal
 import numpy as np
 
 from camwright.bender.chords import FoundArc, with_arcs
-from camwright.bender.dxf_blocks import require_bounded, walk
+from camwright.bender.dxf_blocks import Seen, require_bounded, walk
 from camwright.bender.dxf_curves import MOST_SEGMENTS
 from camwright.bender.dxf_entities import Resolution, is_line_work, piece_of
 from camwright.bender.dxf_opening import open_dxf, readable
@@ -20,7 +20,7 @@ from camwright.bender.dxf_styles import Layers, Style, StyleChoice
 from camwright.bender.job import UNITS
 from camwright.bender.joining import join
 from camwright.bender.near_ends import NearEnds, near_ends
-from camwright.bender.overlaps import Overlap, without_overlaps
+from camwright.bender.overlaps import Overlap, between_styles, without_overlaps
 from camwright.bender.piece import Piece
 from camwright.profiles.bender.outline import Outline
 from camwright.profiles.errors import InputError
@@ -134,7 +134,7 @@ def read_drawing(path: Path, reading: Reading) -> Drawing:
     with readable(path):
         unit, doubts = _unit(path, document, reading.units)
         left_out: Counter[str] = Counter()
-        layers, everything = _gathered(path, document, reading, UNITS[unit], left_out)
+        layers, everything, others = _gathered(path, document, reading, UNITS[unit], left_out)
     chosen = _chosen(path, everything, layers, reading.style, left_out)
     lines = [_lines(path, found, reading, left_out) for found in chosen]
     outlines = [Outline(p.points, p.bulges, f"{path.name}: {p.name}", p.flattening) for one in lines for p in one.paths]
@@ -144,6 +144,7 @@ def read_drawing(path: Path, reading: Reading) -> Drawing:
     told = [
         *(f"left out {count} × {what}" for what, count in sorted((+left_out).items())),
         *_few([f"{overlap}; it is bent once" for overlap in overlaps], "entities lie on others"),
+        *_few(_mixed(chosen, [*everything, *others], reading.gap), "entities lie on others of another style"),
         *_few([str(ends) for ends in near], "pairs of ends nearly meet"),
         *_few([str(arc) for one in lines for arc in one.arcs], "runs of chords lie on arcs"),
     ]
@@ -177,20 +178,23 @@ def _unit(path: Path, document: Any, units: str | None) -> tuple[str, tuple[str,
 
 def _gathered(
     path: Path, document: Any, reading: Reading, unit: float, left_out: Counter[str]
-) -> tuple[set[str], list[_Found]]:
-    """Read what is shown of the layer that is asked for, style by style; the names of all layers."""
+) -> tuple[set[str], list[_Found], list[_Found]]:
+    """Read what is shown of the layer that is asked for, style by style; the names of all layers; and what the other layers hold."""
     resolution = Resolution(reading.flattening / unit, _LEAST / unit, _GREATEST / unit)
     layers = Layers(document.layers)
     names = {name.casefold(): name for name in sorted(layers.names)}
     found: dict[tuple[str, str, str], _Found] = {}
+    others: dict[tuple[str, str, str], _Found] = {}
     wanted = None if reading.style.layer is None else reading.style.layer.casefold()
     hidden: Counter[str] = Counter()
-    segments = 0
+    segments = aside = 0
     try:
         require_bounded(document)
         for seen in walk(document, layers, hidden):
             names.setdefault(seen.style.layer.casefold(), seen.style.layer)
             if wanted is not None and seen.style.layer.casefold() != wanted:
+                if aside < MOST_SEGMENTS:
+                    aside += _aside(seen, others, resolution, unit)
                 continue
             if not is_line_work(seen.entity):
                 left_out[f"{seen.entity.dxftype()} (no line work)"] += 1
@@ -210,7 +214,35 @@ def _gathered(
     except InputError as error:
         raise InputError(*(f"{path}: {fault}" for fault in error.faults)) from error
     left_out.update(hidden)
-    return set(names.values()), [own for own in found.values() if own.pieces or own.faults]
+    return set(names.values()), [own for own in found.values() if own.pieces or own.faults], list(others.values())
+
+
+def _aside(seen: Seen, others: dict[tuple[str, str, str], _Found], resolution: Resolution, unit: float) -> int:
+    """Read an entity of a layer that is not bent, to tell what lies on it; what cannot be read does no harm there."""
+    if not is_line_work(seen.entity):
+        return 0
+    try:
+        piece = piece_of(seen.entity, seen.name, resolution).piece
+    except InputError:
+        return 0
+    if piece is None:
+        return 0
+    others.setdefault(seen.style.key, _Found(seen.style)).pieces.append(piece.scaled(unit))
+    return len(piece.bulges)
+
+
+def _mixed(chosen: Sequence[_Found], everything: Sequence[_Found], tolerance: float) -> list[str]:
+    """Name what is bent and lies on something of another style, bent or not."""
+    try:
+        overlaps = between_styles([found.pieces for found in everything], tolerance)
+    except InputError as error:
+        return [f"lines of different styles that lie on each other are not looked for: {error}"]
+    bent = {piece.name for found in chosen for piece in found.pieces}
+    return [
+        f"{overlap}; their styles differ, so each stays as it is: remove one of them if it is drawn by mistake"
+        for overlap in overlaps
+        if overlap.first in bent or overlap.second in bent
+    ]
 
 
 def _chosen(

@@ -103,12 +103,8 @@ def without_overlaps(pieces: Sequence[Piece], tolerance: float) -> tuple[list[Pi
         Too many lines lie beside each other.
     """
     segments = _segments(pieces)
-    flat = np.abs(segments.bulge) * segments.chord <= 2 * FLAT
     cuts: dict[int, list[_Cut]] = {}
-    for j, cut in (
-        *_line_cuts(segments, np.flatnonzero(flat), tolerance),
-        *_arc_cuts(segments, np.flatnonzero(~flat), tolerance),
-    ):
+    for j, cut in _cuts(segments, tolerance):
         cuts.setdefault(j, []).append(cut)
     if not cuts:
         return list(pieces), ()
@@ -124,6 +120,40 @@ def without_overlaps(pieces: Sequence[Piece], tolerance: float) -> tuple[list[Pi
         else:
             found.append(piece)
     return found, _named(cuts, segments, pieces)
+
+
+def between_styles(styles: Sequence[Sequence[Piece]], tolerance: float) -> tuple[Overlap, ...]:
+    """Find what lies on something of another style: it is named, and never merged.
+
+    Parameters
+    ----------
+    styles
+        The pieces of each style (m).
+    tolerance
+        How near to each other lines that are the same lie (m).
+
+    Raises
+    ------
+    InputError
+        Too many lines lie beside each other.
+    """
+    pieces = [piece for own in styles for piece in own]
+    style = np.repeat(np.arange(len(styles)), [len(own) for own in styles])
+    if len(np.unique(style)) < 2:
+        return ()
+    segments = _segments(pieces)
+    cuts: dict[int, list[_Cut]] = {}
+    for j, cut in _cuts(segments, tolerance):
+        if style[segments.piece[j]] != style[segments.piece[cut.owner]]:
+            cuts.setdefault(j, []).append(cut)
+    return _named(cuts, segments, pieces)
+
+
+def _cuts(segments: _Segments, tolerance: float) -> Iterator[tuple[int, _Cut]]:
+    """Stretches that lie on earlier segments, with the number of the segment that loses them."""
+    flat = np.abs(segments.bulge) * segments.chord <= 2 * FLAT
+    yield from _line_cuts(segments, np.flatnonzero(flat), tolerance)
+    yield from _arc_cuts(segments, np.flatnonzero(~flat), tolerance)
 
 
 def _segments(pieces: Sequence[Piece]) -> _Segments:

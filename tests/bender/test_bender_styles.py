@@ -166,3 +166,43 @@ def test_what_is_no_style(text: str):
 def test_two_layers_are_no_choice():
     with pytest.raises(InputError, match="name two layers"):
         style_choice("layer=A", "B", each=False)
+
+
+@pytest.mark.parametrize("choice", [StyleChoice(layer="CUT"), StyleChoice(colour="1"), StyleChoice(each=True)])
+def test_lines_of_different_styles_that_lie_on_each_other_are_named(drawing: Make, choice: StyleChoice):
+    handles = []
+
+    def draw(m, d):
+        d.layers.add("CUT", color=1)
+        d.layers.add("CREASE", color=3)
+        handles.append(m.add_line((0, 0), (100, 0), dxfattribs={"layer": "CUT"}).dxf.handle)
+        handles.append(m.add_line((90, 0), (30, 0), dxfattribs={"layer": "CREASE"}).dxf.handle)
+        m.add_line((0, 20), (100, 20), dxfattribs={"layer": "CREASE"})
+
+    found = read(drawing(draw), choice)
+    (told,) = (text for text in found.warnings if "their styles differ" in text)
+    assert f"LINE #{handles[1]} on layer CREASE lies on LINE #{handles[0]} on layer CUT over 60.000 mm" in told
+    assert sum(outline.lengths.sum() for outline in found.outlines) == pytest.approx(0.26 if choice.each else 0.1)
+    assert found.overlaps == ()
+
+
+def test_lines_of_styles_that_are_not_bent_are_not_compared(drawing: Make):
+    def draw(m, d):
+        m.add_line((0, 50), (100, 50), dxfattribs={"layer": "CUT"})
+        for layer in ("CREASE", "HALF"):
+            m.add_line((0, 0), (100, 0), dxfattribs={"layer": layer})
+
+    assert not any("styles differ" in text for text in read(drawing(draw), StyleChoice(layer="CUT")).warnings)
+
+
+def test_arcs_of_different_styles_and_what_cannot_be_bent_elsewhere(drawing: Make):
+    def draw(m, d):
+        m.add_arc((0, 0), 20, 0, 90, dxfattribs={"layer": "CUT"})
+        m.add_arc((0, 0), 20, 45, 135, dxfattribs={"layer": "CREASE"})
+        m.add_line((0, 0, 0), (10, 0, 5), dxfattribs={"layer": "CREASE"})  # not plane: of no interest to the cut
+        m.add_text("note", dxfattribs={"layer": "CREASE"})
+
+    found = read(drawing(draw), StyleChoice(layer="CUT"))
+    (told,) = (text for text in found.warnings if "their styles differ" in text)
+    assert "over 15.708 mm" in told  # an eighth of the circle
+    assert not any("left out" in text for text in found.warnings)
