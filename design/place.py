@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from camwright.profiles.errors import InputError
 from camwright.profiles.task import Task
 
 PLACES = 9
@@ -70,7 +71,8 @@ def place_sync(
     angles = np.linspace(least + margin, greatest - margin, places)
 
     def at(angle: float) -> float:
-        return cost(task.placed_at(angle))
+        placed = task.placed_at(angle)
+        return cost(placed) if is_smooth(placed) else math.inf
 
     costs = [at(float(angle)) for angle in angles]
     if not any(math.isfinite(value) for value in costs):
@@ -83,6 +85,14 @@ def place_sync(
         low, high = float(angles[max(0, i - 1)]), float(angles[min(places - 1, i + 1)])
         best = min(best, _golden(at, low, high, (costs[i], float(angles[i])), resolution))
     return Placement(task.placed_at(best[1]), best[0], len(valleys))
+
+
+def is_smooth(placed: Task) -> bool:
+    """Tell whether the sync zone of a place can be carried as polynomials: beside a dead centre a crank's is too abrupt."""
+    try:
+        return math.isfinite(placed.slave_at_sync_end)
+    except InputError:
+        return False
 
 
 def _golden(

@@ -35,6 +35,8 @@ from camwright.validation.bounds.bound import Bound
 from camwright.validation.production.line_ramp import line_ramp
 from camwright.validation.report import judge
 
+NOT_COMPUTED = "not computed"
+"""How a book's designs found their lower bound; finding it takes longer than the design."""
 _ONE_AT_A_TIME = threading.Lock()
 # the solver is not made for several threads of one process, and workers of a cluster may have them
 
@@ -158,7 +160,7 @@ def _designed(job: Job) -> Design:
     return Design(
         job=placed,
         solution=solution,
-        bound=Bound(math.nan, "none"),
+        bound=Bound(math.nan, NOT_COMPUTED),
         report=report,
         comparison=Comparison(placed, (row,)),
         lengths=None,

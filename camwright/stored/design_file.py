@@ -177,7 +177,10 @@ def design_schema() -> dict[str, Any]:
             lower_bound=maybe,
             gap={**maybe, "description": "(value - lower_bound) / value; null without a bound"},
         ),
-        lower_bound_method={"type": "string", "description": "how the lower bound was found; none where there is none"},
+        lower_bound_method={
+            "type": "string",
+            "description": "how the lower bound was found; none where there is none, not computed in a book",
+        },
         starts={
             "oneOf": [
                 {"type": "null"},

@@ -8,7 +8,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from camwright.design.place import Placement
+from camwright.design.place import Placement, is_smooth
 from camwright.design.returns.problem import return_problem
 from camwright.design.torque.guesses import ANYHOW, from_path
 from camwright.design.torque.mesh import remesh
@@ -23,6 +23,8 @@ from camwright.profiles.task import Task
 
 PLACES = 24
 """Places looked at first, evenly over the range that leaves room for the sync zone."""
+LEAST_PLACES = 3
+"""Places with a smooth sync zone that a scan needs."""
 MARGIN = 0.01
 """Share of that range kept free at both ends: at a dead centre the crank would need infinite speed."""
 COARSE, FINE = 40, 120
@@ -55,11 +57,14 @@ def place_by_objective(task: Task, aim: Aim, curve: MotorCurve | None = None) ->
     """
     least, greatest = task.machine.place_range(task.cut)
     room = MARGIN * (greatest - least)
-    places = np.linspace(least + room, greatest - room, PLACES)
-    tasks = [task.placed_at(float(place)) for place in places]
+    looked = np.linspace(least + room, greatest - room, PLACES)
+    tasks = [placed for placed in (task.placed_at(float(place)) for place in looked) if is_smooth(placed)]
+    if len(tasks) < LEAST_PLACES:
+        return None
+    places = np.array([placed.machine.place for placed in tasks])
     starts = np.array([each.slave_at_sync_start for each in tasks])
     ends = np.array([each.slave_at_sync_end for each in tasks])
-    middle = TorqueTask(tasks[PLACES // 2], return_problem(tasks[PLACES // 2], "peak_acceleration"), aim, curve)
+    middle = TorqueTask(tasks[len(tasks) // 2], return_problem(tasks[len(tasks) // 2], "peak_acceleration"), aim, curve)
     zone = Zone((np.array([starts[0], ends[0]]), np.array([starts[-1], ends[-1]])))
     able = _able(zone, middle, starts, ends)
     programme = TorqueProgramme(middle, ANYHOW, (COARSE,), zone)

@@ -16,10 +16,11 @@ import openpyxl
 import pytest
 from books import JOB, contents, inline_crew, small_book
 
+from camwright.book import making
 from camwright.book.entry import Entry
 from camwright.book.folder import BookFolder
 from camwright.book.making import Made, make_chunk
-from camwright.book.plan import Book, plan_book
+from camwright.book.plan import Book, Combination, plan_book
 from camwright.book.run import make_book
 from camwright.design.feasible.extremes import extremes
 from camwright.design.optimise import Solution, solve
@@ -369,3 +370,33 @@ def test_what_nobody_foresaw_is_a_row_and_the_book_goes_on(tmp_path: Path, monke
     assert (answer.counts.failed, answer.counts.passed + answer.counts.check_failed) == (2, 2)
     reasons = [row["reason"] for row in rows(tmp_path / "book") if row["status"] == "failed"]
     assert all("a fault of camwright, not of the job: ZeroDivisionError: by nothing" in reason for reason in reasons)
+
+
+def test_an_error_that_nobody_foresaw_is_the_row_of_its_job(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The book goes on, ends with what was found, and going on with it changes nothing."""
+    own = making.make
+
+    def make(book: Book, combination: Combination) -> tuple[Entry, dict[str, str]]:
+        if combination.number == 3:
+            raise ZeroDivisionError("float division by zero")
+        return own(book, combination)
+
+    monkeypatch.setattr(making, "make", make)
+    root = tmp_path / "book"
+    answer = make_book(small_book(), root, inline_crew())
+    assert (answer.counts.designs, answer.counts.failed, answer.exit_code) == (12, 1, 4)
+    found = rows(root)
+    assert found[2]["status"] == "failed"
+    assert "float division by zero" in found[2]["reason"]
+    assert [row["status"] for row in found].count("failed") == 1
+    before = contents(root)
+    again = make_book(small_book(), root, inline_crew(), resume=True)
+    assert (again.counts.failed, again.resumed) == (1, 12)
+    assert contents(root) == before
+
+
+def test_a_design_of_a_book_says_that_its_bound_was_not_computed(done: Path) -> None:
+    for file in done.rglob("design.json"):
+        answer = json.loads(file.read_text(encoding="utf-8"))
+        assert answer["lower_bound_method"] == "not computed"
+        assert (answer["objective"]["lower_bound"], answer["objective"]["gap"]) == (None, None)

@@ -10,7 +10,7 @@ import pytest
 
 from camwright.design.feasible.feasibility import is_feasible, least_limit
 from camwright.design.optimise import solve
-from camwright.design.place import place_sync
+from camwright.design.place import is_smooth, place_sync
 from camwright.design.place_cost import cost_at, place_for
 from camwright.profiles.cut import Cut
 from camwright.profiles.limits import Limits
@@ -100,3 +100,14 @@ def test_a_motor_too_weak_for_its_rectangles_is_placed_by_torque() -> None:
     weaker = replace(LIMITS, motor=MotorCurve(((0.0, 0.5), (400.0, 0.5))))
     places = [place_for(Task(CRANK, LONG, limits), "rms_torque").task.machine.sync_at for limits in (weak, weaker)]
     assert places[0] == pytest.approx(places[1], abs=1e-12)
+
+
+def test_places_whose_sync_zone_is_too_abrupt_are_passed_over() -> None:
+    """A zone over much of the stroke begins beside a dead centre at the ends of its range: no reason to refuse the job."""
+    crank = CrankSlider(crank=0.29256403348543125, rod=0.6160338419486354)
+    cut = Cut(2.62, 0.4, 0.38817596318564507, 0.07, 0.3, 7e-3)
+    least, greatest = crank.place_range(cut)
+    beside = Task(crank, cut, LIMITS).placed_at(least + 0.01 * (greatest - least))
+    assert not is_smooth(beside)
+    for objective in ("rms_jerk", "peak_jerk"):
+        assert solve(Task(crank, cut, LIMITS), objective).machine.placed

@@ -19,6 +19,7 @@ from camwright.validation.bounds.path_dual import (
     least_square,
     no_motion_below,
     standing_square,
+    turning_peak,
     turning_square,
 )
 from camwright.validation.bounds.path_task import PathTask
@@ -156,10 +157,14 @@ def _along_path(profile: CamProfile, task: Task, objective: MotorObjective) -> B
     greatest = greatest_magnitude(torque, 0).value
     if greatest <= zone * (1 + EDGE):
         return Bound(zone, ZONE)
-    room = path.greatest * path.time
-    turning = max(path.energies) / room / ratio if task.reverses else math.inf
+    turning = turning_peak(path, _around(task)) / ratio if task.reverses else math.inf
     back = min(_least_peak(path, zone * ratio, greatest * ratio) / ratio, turning)
     return Bound(zone, ZONE) if zone >= back else Bound(back, PATH)
+
+
+def _around(task: Task) -> FloatArray:
+    """Inertia at all places of the machine, where a slave that turns may come."""
+    return np.asarray(task.machine.inertia(np.linspace(0.0, task.machine.pitch, PLACES)))
 
 
 def _square(path: PathTask, torque: CamProfile, task: Task) -> Bound:
@@ -169,8 +174,7 @@ def _square(path: PathTask, torque: CamProfile, task: Task) -> Bound:
     zone = _zone_square(torque, task)
     level = max(whole - zone, 1e-300) * ratio**2
     if task.reverses:
-        around = task.machine.inertia(np.linspace(0.0, task.machine.pitch, PLACES))
-        level = min(level, turning_square(path, np.asarray(around)))
+        level = min(level, turning_square(path, _around(task)))
     found, method = _least_square(path, level)
     return Bound(math.sqrt((max(found, 0.0) / ratio**2 + zone) / cut.period), method)
 

@@ -32,6 +32,11 @@ SMALL = 1e-3
 REGULAR = 1e-9
 """Weight that keeps what no place asks for from running away."""
 
+RESTS, RESTS_OUT = 4001, 12.0
+"""Times of a rest that are looked at, and how far the logarithm of the ratio of its two parts goes on either side."""
+BETWEEN_RESTS = 1e-3
+"""Share by which a bound is lowered for rests between these times, each 0.6 % later than the one before."""
+
 
 @dataclass(frozen=True, eq=False)
 class Tube:
@@ -70,9 +75,41 @@ def turning_square(task: PathTask, inertia: FloatArray) -> float:
         Least inertia of all places: where a motion may go beyond its path it may have this.
     """
     # it comes to rest from the first speed and sets out to the last, in no more room than its greatest speed covers
-    room = task.greatest * task.time * math.sqrt(2.0 / float(np.min(inertia)))
+    least = float(np.min(inertia))
+    room = task.greatest * task.time * math.sqrt(2.0 / least)
     first, last = (energy**1.5 for energy in task.energies)
-    return float(16.0 / 9.0 * (first + last) / room)
+    return max(float(16.0 / 9.0 * (first + last) / room), 2.0 * least * _softest_turn(task))
+
+
+def turning_peak(task: PathTask, inertia: FloatArray) -> float:
+    """Least peak of the torque of a motion that turns, or stands beyond the ends of its path; the inertia as in `turning_square`.
+
+    The root of the kinetic energy changes by no more than the peak over ``√(2 I)`` a second, and the energy by no more than the peak
+    over the way.
+    """
+    one, other = (math.sqrt(energy) for energy in task.energies)
+    in_time = math.sqrt(2.0 * float(np.min(inertia))) * (one + other) / task.time
+    return max(max(task.energies) / (task.greatest * task.time), in_time)
+
+
+def _softest_turn(task: PathTask) -> float:
+    """Least integral of the squared second derivative of ``σ = ∫ √(I/2) dq`` of a motion that comes to rest on its way (J/s).
+
+    ``dσ/dt`` is the root of the kinetic energy and the torque is ``√(2 I) d²σ/dt²``, so the least inertia makes this a bound of the
+    integral of the squared torque. From a speed ``v`` to rest over a way ``d`` in a time ``t`` it is at least
+    ``4 v² / t - 12 v d / t² + 12 d² / t³``; before and after the rest together, the least is taken over the way before it, a
+    quadratic, and over the time of the rest, on a grid that is even in the shares of both parts.
+    """
+    one, other = (math.sqrt(energy) for energy in task.energies)
+    root = np.sqrt(task.inertia / 2.0)
+    whole = float(np.trapezoid(root, dx=task.way / (len(root) - 1)))
+    share = 1.0 / (1.0 + np.exp(-np.linspace(-RESTS_OUT, RESTS_OUT, RESTS)))
+    t, left = share * task.time, (1.0 - share) * task.time
+    d = (one / (2 * t**2) - other / (2 * left**2) + whole / left**3) / (1 / t**3 + 1 / left**3)
+    before = 4 * one**2 / t - 12 * one * d / t**2 + 12 * d**2 / t**3
+    rest = whole - d
+    after = 4 * other**2 / left - 12 * other * rest / left**2 + 12 * rest**2 / left**3
+    return float((before + after).min()) * (1.0 - BETWEEN_RESTS)
 
 
 def drawn_tube(task: PathTask, level: float) -> Tube:

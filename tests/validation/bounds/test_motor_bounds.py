@@ -26,6 +26,8 @@ from camwright.validation.bounds.path_dual import (
     no_motion_below,
     square_tube,
     standing_square,
+    turning_peak,
+    turning_square,
 )
 from camwright.validation.bounds.path_task import PathTask
 from camwright.validation.motor import measure_motor
@@ -154,3 +156,59 @@ def test_a_force_with_friction_is_that_of_uneven_accelerations() -> None:
     time, height = 0.77 / 1.1, 0.77 - 0.39
     slow, fast = (force - friction) / inertia, (force + friction) / inertia
     assert 1 / slow + 1 / fast == pytest.approx(time**2 / (2 * height), rel=1e-6)
+
+
+def _inertia(q: np.ndarray) -> np.ndarray:
+    return np.asarray(0.8 + 0.5 * np.sin(3.0 * q))
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_no_motion_that_turns_goes_below_its_bounds(seed: int) -> None:
+    """Random motions in time, their torque by differences; those that turn must lie above both bounds."""
+    rng = np.random.default_rng(seed)
+    time = float(rng.uniform(0.5, 3.0))
+    t = np.linspace(0.0, time, 20_001)
+    turned = 0
+    for _ in range(40):
+        first, last = rng.uniform(0.1, 3.0, 2)
+        u = first + (last - first) * t / time
+        for k in range(1, 4):
+            u = u + rng.normal() * 2.0 * np.sin(k * np.pi * t / time)
+        q = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(t) * (u[1:] + u[:-1]))])
+        if u.min() >= 0.0 or q[-1] <= 0.0:
+            continue
+        turned += 1
+        path = PathTask(_inertia(np.linspace(0.0, q[-1], 4001)), float(q[-1]), (first, last), time, float(u.max()))
+        torque = _inertia(q) * np.gradient(u, t) + 1.5 * np.cos(3.0 * q) * u**2 / 2
+        around = np.array([0.3, 1.3])
+        assert np.trapezoid(torque**2, t) >= turning_square(path, around)
+        assert np.abs(torque).max() >= turning_peak(path, around) * (1 - 1e-6)
+    assert turned > 0
+
+
+def test_the_softest_turn_of_a_constant_inertia() -> None:
+    """A cubic where that turns by itself, ``4 (v² + v w + w²) / T - 12 (v + w) D / T² + 12 D² / T³``; else a plain scan's best rest."""
+    inertia, v, w, time = 0.7, 2.0, 1.5, 0.4
+    for way in (0.1, 0.5):
+        path = PathTask(np.full(101, inertia), way, (v, w), time, 50.0)
+        t, d = np.meshgrid(np.linspace(0.0, time, 802)[1:-1], np.linspace(-way, 2 * way, 1501))
+        left, rest = time - t, way - d
+        both = 4 * v**2 / t - 12 * v * d / t**2 + 12 * d**2 / t**3
+        both += 4 * w**2 / left - 12 * w * rest / left**2 + 12 * rest**2 / left**3
+        least = inertia**2 * both.min()
+        assert turning_square(path, path.inertia) == pytest.approx(least, rel=2e-3)
+        assert turning_square(path, path.inertia) <= least
+        cubic = 4 * (v**2 + v * w + w**2) / time - 12 * (v + w) * way / time**2 + 12 * way**2 / time**3
+        assert (abs(least / (inertia**2 * cubic) - 1.0) < 1e-3) == (way == 0.1)
+
+
+def test_a_crank_that_may_turn_has_as_sharp_a_bound_as_one_that_may_not() -> None:
+    """On a short cut turning would cost far more: the leave to turn must not blunt the bound."""
+    cut = replace(SHEAR, length=0.8)
+    found = {}
+    for reversal in (False, True):
+        task = Task(CRANK, cut, replace(TURNS, reversal=reversal))
+        profile = solve(task, "rms_torque").profile
+        found[reversal] = lower_bound(profile, task, "rms_torque").value / measure_motor(profile, task).rms_torque
+    assert found[True] >= found[False] - 1e-3
+    assert found[True] > 0.97
