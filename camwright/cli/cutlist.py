@@ -7,7 +7,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from camwright.cli.options import CommonPlace, GivenJob, Json, NoFigures, Quiet, TableTargets, final_paths, job_work
+from camwright.cli.options import (
+    CommonPlace,
+    GivenJob,
+    Json,
+    NoFigures,
+    Quiet,
+    TableTargets,
+    final_paths,
+    job_work,
+    option_quantity,
+)
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.drives.options import chosen_targets
@@ -15,7 +25,6 @@ from camwright.figures.line_plan import line_plan_figure
 from camwright.house.numbers import converted, number, unit_shown, with_unit
 from camwright.house.output import Voice, complain
 from camwright.house.owned import Work, owned
-from camwright.house.units import quantity
 from camwright.jobs.job import load_job
 from camwright.production.common_place import placed_alike
 from camwright.production.cut_list import ListStudy, line_of, study_list
@@ -59,7 +68,11 @@ def run(
 ) -> int:
     """Work a cut list out: cams, changes, the fastest line speed, tables whose seams are run, and a table for the PLC."""
     given = load_job(job)
-    ramp = None if line_acceleration is None else quantity(line_acceleration, "acceleration")
+    ramp = (
+        None
+        if line_acceleration is None
+        else option_quantity("--line-acceleration", line_acceleration, "acceleration", example="0.5 m/s^2")
+    )
     asked, rows = line_of(given, ramp), read_cut_list(cut_list)
     place = placed_alike(asked, rows) if common_place else None
     voice = Voice(as_json, quiet)

@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from camwright.cli.options import Json, Quiet
+from camwright.cli.options import Json, Quiet, option_quantity
 from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.drives.export import export_answer
 from camwright.drives.options import chosen_targets, parse_targets
 from camwright.drives.table_files import TableFiles, export
 from camwright.house.files import read_text
 from camwright.house.output import Voice, complain
-from camwright.house.units import quantity
 from camwright.jobs.table_units import parse_units
 from camwright.profiles.errors import InputError
 from camwright.profiles.tables.knots import Accuracy
@@ -56,7 +55,7 @@ def run(
     """Write a design for drives; every file is read back and judged as the drive will run it."""
     if to is not None:
         parse_targets(to)  # a wrong name is told before the file is read
-    accuracy = Accuracy(position=quantity(max_error, "length"))
+    accuracy = Accuracy(position=option_quantity("--max-error", max_error, "length", example="1 um"))
     stored = _design(design)
     names = chosen_targets(to, stored.job)
     wanted = None if units is None else parse_units(units, stored.job.task)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, final_paths, job_work
+from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, final_paths, job_work, option_quantity
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.figures.print_marks import print_marks_figure
@@ -16,7 +16,6 @@ from camwright.house.numbers import Units, number, unit_shown, with_unit
 from camwright.house.output import Voice, complain
 from camwright.house.owned import owned
 from camwright.house.picture_files import write_pictures
-from camwright.house.units import quantity
 from camwright.jobs.job import load_job
 from camwright.jobs.wording import in_job_words
 from camwright.production.mark_answer import clamp_table, marks_answer
@@ -91,7 +90,10 @@ def _wander(noise: str | None, stretch: str | None) -> tuple[float, float] | Non
         return None
     if noise is None or stretch is None:
         raise InputError("--noise and --stretch go together: the best gain weighs one against the other")
-    found = quantity(stretch, "length", zero=True), quantity(noise, "length", zero=True)
+    found = (
+        option_quantity("--stretch", stretch, "length", zero=True, example="0.5 mm"),
+        option_quantity("--noise", noise, "length", zero=True, example="0.5 mm"),
+    )
     if found == (0.0, 0.0):
         raise InputError("--noise and --stretch are both zero: there is nothing to weigh")
     return found

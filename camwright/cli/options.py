@@ -8,7 +8,9 @@ from typing import Annotated
 import typer
 
 from camwright.house.owned import Work
+from camwright.house.units import quantity
 from camwright.jobs.job import Job
+from camwright.profiles.errors import InputError
 
 JobOrPaper = Annotated[
     Path | None, typer.Argument(metavar="[JOB]", help="Job file (TOML); the paper's job if left out.")
@@ -30,6 +32,14 @@ Out = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Output d
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of tables.")]
 NoFigures = Annotated[bool, typer.Option("--no-figures", help="Write no figures.")]
 Quiet = Annotated[bool, typer.Option("--quiet", help="Print neither tables nor progress.")]
+
+
+def option_quantity(option: str, text: str, kind: str, *, zero: bool = False, example: str | None = None) -> float:
+    """Read the quantity of an option as `quantity` does; what is wrong with it is told with the option's name."""
+    try:
+        return quantity(text, kind, zero=zero, example=example)
+    except InputError as error:
+        raise InputError(*(f"{option}: {fault}" for fault in error.faults)) from error
 
 
 def output_directory(out: Path | None, job: Job) -> Path:

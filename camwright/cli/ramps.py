@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, cast, get_args
 
 import typer
 
-from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, final_paths, job_work
+from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, final_paths, job_work, option_quantity
 from camwright.cli.views.checks import checks_view
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import new_table, new_text, stacked
@@ -19,7 +19,6 @@ from camwright.house.numbers import number, with_unit
 from camwright.house.output import Voice, complain
 from camwright.house.owned import Work, owned
 from camwright.house.picture_files import write_pictures
-from camwright.house.units import quantity
 from camwright.jobs.job import Job, load_job
 from camwright.jobs.table_units import slave_length
 from camwright.jobs.wording import in_job_words
@@ -65,7 +64,7 @@ def run(
     quiet: Quiet = False,
 ) -> int:
     """Design how the machine starts into the running line, stops out of it, and makes one piece on demand."""
-    aim, delay = _aim(minimise), quantity(latency, "time", zero=True)
+    aim, delay = _aim(minimise), option_quantity("--latency", latency, "time", zero=True, example="10 ms")
     if to is not None:
         parse_targets(to)  # a wrong name is told before anything is designed
     asked = load_job(job)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, final_paths, job_work
+from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, final_paths, job_work, option_quantity
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.figures.shift import shift_figure
@@ -15,7 +15,6 @@ from camwright.figures.style import title
 from camwright.house.numbers import number, unit_shown
 from camwright.house.output import Voice, complain
 from camwright.house.owned import owned
-from camwright.house.units import quantity
 from camwright.jobs.job import Job, load_job
 from camwright.production.cut_list import line_of
 from camwright.production.list_file import read_cut_list, read_line_run
@@ -87,10 +86,14 @@ def run(
     """Simulate a shift: each piece's length and sync error, with the optimised cams and with linear returns."""
     given = load_job(job)
     rows = read_cut_list(cut_list)
-    ramp = None if line_acceleration is None else quantity(line_acceleration, "acceleration")
+    ramp = (
+        None
+        if line_acceleration is None
+        else option_quantity("--line-acceleration", line_acceleration, "acceleration", example="0.5 m/s^2")
+    )
     if line is not None and ramp is not None:
         raise InputError("--line-acceleration: the line's speed is given by --line; leave one of them out")
-    wrong = Disturbances(_length(noise), slip, _length(marks), _servos(given, servos), seed)
+    wrong = Disturbances(_length("--noise", noise), slip, _length("--marks", marks), _servos(given, servos), seed)
     voice = Voice(as_json, quiet)
     with voice.progress(_STEPS) as step:
         if line is None:
@@ -118,9 +121,9 @@ def _servos(job: Job, asked: int | None) -> int:
     return _USUAL_SERVOS if job.servo_tolerance is not None and job.servo_tolerance.varying else 0
 
 
-def _length(text: str | None) -> float:
+def _length(option: str, text: str | None) -> float:
     """Read a length that may be left out."""
-    return 0.0 if text is None else quantity(text, "length", zero=True)
+    return 0.0 if text is None else option_quantity(option, text, "length", zero=True, example="0.5 mm")
 
 
 def _views(study: ShiftStudy) -> list[RenderableType]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from camwright.answers.trace import trace_answer
-from camwright.cli.options import Json, JudgedBy, NoFigures, Out, Quiet, job_work, output_directory
+from camwright.cli.options import Json, JudgedBy, NoFigures, Out, Quiet, job_work, option_quantity, output_directory
 from camwright.cli.views.checks import checks_view
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import new_table, new_text, stacked
@@ -18,7 +18,6 @@ from camwright.house.numbers import Units, number, unit_shown
 from camwright.house.output import Voice, complain
 from camwright.house.owned import owned
 from camwright.house.picture_files import write_pictures
-from camwright.house.units import quantity
 from camwright.jobs.job import Job, load_job
 from camwright.jobs.wording import in_job_words
 from camwright.profiles.errors import InputError
@@ -68,7 +67,7 @@ def run(
 ) -> int:
     """Lay a recorded run over its design: sync error of each cut, lengths, and whether it is offset, drift or scatter."""
     asked = load_job(job)
-    speed = None if line_speed is None else quantity(line_speed, "speed", example="40 m/min")
+    speed = None if line_speed is None else option_quantity("--line-speed", line_speed, "speed", example="40 m/min")
     if gear is not None and not (abs(gear) > 1e-6 and abs(gear) < 1e6):
         raise InputError(
             f"--gear {gear:g}: it is recorded travel over the slave's, from 0.000001 to 1000000; below 0 where it is reversed"

@@ -65,7 +65,7 @@ def remove(directory: Path, older: Mapping[str, Mapping[str, str]]) -> None:
     for names in older.values():
         for name, new in names.items():
             try:
-                (directory / name).unlink()
+                (directory / name).unlink(missing_ok=True)  # our own older table goes with the run that made it
             except OSError as error:
                 raise InputError(
                     f"{directory / name}: this older table cannot be removed: {error.strerror}; do not load it, its new "

@@ -121,7 +121,7 @@ def zone_field(kind: str, *, zero: bool = False, timed: bool = True) -> tuple[Be
     """
 
     def read(value: object, info: ValidationInfo) -> float | None:
-        if timed and _is(value, "time", zero=False):
+        if timed and _is(value, "time", signed=True):
             known = cast(Known, info.context)
             known.indirect.times[known.path(cast(str, info.field_name))] = read_quantity(value, "time")
             return None
@@ -205,16 +205,16 @@ def curve_field() -> tuple[BeforeValidator, WithJsonSchema]:
     return BeforeValidator(read), WithJsonSchema(schema)
 
 
-def _is(value: object, kind: str, *, zero: bool = False) -> bool:
+def _is(value: object, kind: str, *, zero: bool = False, signed: bool = False) -> bool:
     """Whether a value is a quantity of a kind, in range."""
-    return isinstance(value, str) and _text_is(value, kind, zero)
+    return isinstance(value, str) and _text_is(value, kind, zero, signed)
 
 
 @lru_cache(maxsize=256)
-def _text_is(text: str, kind: str, zero: bool) -> bool:
+def _text_is(text: str, kind: str, zero: bool, signed: bool) -> bool:
     """Whether a text is a quantity of a kind, in range; kept, like the quantities themselves."""
     try:
-        quantity(text, kind, zero=zero)
+        quantity(text, kind, zero=zero, signed=signed)
     except InputError:
         return False
     return True

@@ -211,7 +211,7 @@ def _quantity(cell: str, comma: bool) -> int:
     """Read how many: a whole number, one at least."""
     text = cell.strip()
     number = number_in(text, comma)
-    if number is None or number != round(number) or not 1 <= number <= MOST_PIECES:
+    if number is None or not 1 <= number <= MOST_PIECES or number != round(number):
         raise InputError(f"quantity {text[:50]!r} is no whole number from 1 to {MOST_PIECES}; write how many, e.g. 3")
     return int(number)
 

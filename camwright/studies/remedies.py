@@ -161,11 +161,13 @@ def solve_or_advise(job: Job) -> Solution:
     try:
         return solve_job(job, suggest=False)
     except InfeasibleError as error:
-        reason = error
+        reason, excess = error, error.excess
     try:
         return solve_job(job)
     except InfeasibleError as error:
         offered, line_speeds = error.suggestions, error.kept
+        if excess is None and error.binding == reason.binding:
+            excess = error.excess  # by how much is found with what would work
     trial = _Trial(job)
     found = [remedy for suggestion in offered for remedy in trial.first(_taken_further(suggestion, job.units))]
     if job.servo_aware and job.command != "shaped":
@@ -180,7 +182,7 @@ def solve_or_advise(job: Job) -> Solution:
         low, high = (with_unit(speed, "m/s", units=job.units) for speed in line_speeds)
         part = f". One is held to it from {low} to {high}"
     raise InfeasibleError(
-        f"{reason.message}{part}. {works}", reason.binding, reason.excess, reason.unit, kept, line_speeds
+        f"{reason.message}{part}. {works}", reason.binding, excess, reason.unit, kept, line_speeds
     ) from reason
 
 

@@ -47,23 +47,32 @@ def ramp_infeasible(task: Task, *, suggest: bool = True) -> InfeasibleError:
     suggest
         Whether to look for what would work.
     """
-    line, cut = task.line, task.cut
-    binding = max(("line.stop", line.stop or 0.0), ("line.acceleration", line.speeding), key=lambda each: each[1])[0]
+    cut = task.cut
+    binding, hardest, unit = _binding(task)
     text = (
         f"no motion keeps the limits while the line ramps: {{@{binding}}} = {{ramp}} binds ({{@length}} {{length}} at {{@line_speed}} "
         "{line_speed}; on a line that keeps its speed there is a motion)"
     )
     values = (
-        ("ramp", Value(line.hardest, "m/s^2", 6)),
+        ("ramp", Value(hardest, unit, 6)),
         ("length", Value(cut.length, "m", 6)),
         ("line_speed", Value(cut.line_speed, "m/s", 6)),
     )
     if not suggest:
-        return InfeasibleError(Message(text, values), binding, None, "m/s^2", ())
+        return InfeasibleError(Message(text, values), binding, None, unit, ())
     found = tuple(_suggestions(task))
     borne = next((each.value for each in found if each.change == binding), None)
-    excess = None if borne is None else line.hardest - borne
-    return refused(task, Message(text, values), binding, excess, "m/s^2", found)
+    excess = None if borne is None else hardest - borne
+    return refused(task, Message(text, values), binding, excess, unit, found)
+
+
+def _binding(task: Task) -> tuple[str, float, str]:
+    """Name the key of ``[line]`` that binds, its value and unit: the jerk where the ramps are borne without one, else the hardest."""
+    line = task.line
+    if line.jerk is not None and can_ramp(task.with_line(replace(line, jerk=None))):
+        return "line.jerk", line.jerk, LINE_UNITS["line.jerk"]
+    name, hardest = max(("line.stop", line.stop or 0.0), ("line.acceleration", line.speeding), key=lambda each: each[1])
+    return name, hardest, LINE_UNITS[name]
 
 
 def _suggestions(task: Task) -> Iterator[Suggestion]:
@@ -99,7 +108,7 @@ def _nearest(
     change: str, given: float, far: float, factor: float, unit: str, works: Callable[[float], bool]
 ) -> Iterator[Suggestion]:
     """Find the nearest value that works on the way from the given one to a far one, which may be zero; none where none was seen to."""
-    shares = (0.25, 0.5, 0.75, 0.9, 0.97) if far < given else (0.02, 0.07, 0.2, 0.45, 1.0)
+    shares = (0.25, 0.5, 0.75, 0.9, 0.97, 0.99, 0.999) if far < given else (0.02, 0.07, 0.2, 0.45, 1.0)
     steps = [given + (far - given) * share for share in shares]
     bad = given
     for good in steps:

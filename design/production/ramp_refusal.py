@@ -32,7 +32,7 @@ def refused(at: Stand, *, free: bool) -> InfeasibleError:
     free
         Whether the park was camwright's to choose, so that no other one works either.
     """
-    text, values, excess = _reason(at)
+    text, values, excess = _reason(at, free=free)
     offers: list[str] = []
     suggestions: list[Suggestion] = []
     for suggestion, value, words in _ways_out(at, free=free):
@@ -52,14 +52,14 @@ def refused(at: Stand, *, free: bool) -> InfeasibleError:
     )
 
 
-def _reason(at: Stand) -> tuple[str, dict[str, Value], float | None]:
+def _reason(at: Stand, *, free: bool) -> tuple[str, dict[str, Value], float | None]:
     """Say what is missing, with its values and by how much the way is too short (mm or deg)."""
     unit, noun = at.task.machine.slave_unit, at.task.machine.noun
     values = {"speed": Value(at.task.cut.line_speed, "m/s", 6)}
     if not zone_kept(at):
         return "{@line_speed} = {speed}: the sync zone itself breaks a limit", values, None
     if not (at.run_up > 0 and (at.run_out > 0 or at.task.machine.guide is not None)):
-        return "{@line_speed} = {speed}: the park lies in the sync zone", values, None
+        return *_within_zone(at, free=free), None
     arcs = least_arcs(at)
     up, out = (None if each is None else each.arc for each in (arcs.run_up, arcs.run_out))
     size = 1e3 if unit == "m" else math.degrees(1.0)
@@ -92,14 +92,27 @@ def _reason(at: Stand) -> tuple[str, dict[str, Value], float | None]:
     return f"the {noun} cannot start and stop at {{speed}} from this park", values, None
 
 
+def _within_zone(at: Stand, *, free: bool) -> tuple[str, dict[str, Value]]:
+    """Say that a park lies in the sync zone, or beyond its start where the slave comes back; as near to the zone as it is told."""
+    unit, noun, option = at.task.machine.slave_unit, at.task.machine.noun, "" if free else "--park: "
+    begins = Value(at.zone_start, unit, 6)
+    if at.task.machine.guide is not None:
+        text = f"{option}the {noun} stands at {{park}}, and must stand before the sync zone, which begins at {{begins}}"
+        return text, {"park": Value(at.park, unit, 6), "begins": begins}
+    park = at.park + at.task.machine.pitch if at.run_up > 0 else at.park
+    text = f"{option}the {noun} stands at {{park}}, in the sync zone from {{begins}} to {{ends}}"
+    return text, {"park": Value(park, unit, 6), "begins": begins, "ends": Value(at.zone_end, unit, 6)}
+
+
 def _ways_out(at: Stand, *, free: bool) -> list[tuple[Suggestion, Value, str]]:
     """List changes that were tried and work: the nearest park, and the highest line speed."""
     found: list[tuple[Suggestion, Value, str]] = []
     unit = at.task.machine.slave_unit
-    park = None if free else _nearest_park(at)
-    if park is not None:
+    nearest = None if free else _nearest_park(at)
+    if nearest is not None:
+        park, earlier = nearest
         size, name = (1e3, "mm") if unit == "m" else (math.degrees(1.0), "deg")
-        words = f"park {'earlier' if park < at.park else 'later'}, at {{offer}} (--park)"
+        words = f"park {'earlier' if earlier else 'later'}, at {{offer}} (--park)"
         found.append((Suggestion("park", park * size, name), Value(park, unit, 7), words))
     speed = fastest_line(at, can_stand if free else has_room)
     if speed is not None and speed < at.task.cut.line_speed:
@@ -111,8 +124,8 @@ def _ways_out(at: Stand, *, free: bool) -> list[tuple[Suggestion, Value, str]]:
     return found
 
 
-def _nearest_park(at: Stand) -> float | None:
-    """Find the park nearest to the given one from which the machine can start and stop; None if there is none."""
+def _nearest_park(at: Stand) -> tuple[float, bool] | None:
+    """Find the nearest park from which the machine can start and stop, and whether it is earlier; None if there is none."""
     arcs, machine = least_arcs(at), at.task.machine
     if arcs.run_up is None or arcs.run_out is None:
         return None
@@ -121,10 +134,13 @@ def _nearest_park(at: Stand) -> float | None:
     span = latest - earliest
     if span < 0:
         return None
-    inside = at.parked_at(min(max(at.park, earliest + _MARGIN * span), latest - _MARGIN * span))
+    given = at.park
+    if machine.guide is None and given + machine.pitch - latest < earliest - given:
+        given += machine.pitch  # the same place, nearer to the latest park
+    inside = at.parked_at(min(max(given, earliest + _MARGIN * span), latest - _MARGIN * span))
     for digits in (6, 9):
         size = 1e3 if machine.slave_unit == "m" else math.degrees(1.0)
-        told = rounded_to(inside.park * size, digits, up=inside.park > at.park) / size if inside.park else 0.0
+        told = rounded_to(inside.park * size, digits, up=inside.park > given) / size if inside.park else 0.0
         if can_start_and_stop(at.parked_at(told)):
-            return told
-    return inside.park if can_start_and_stop(inside) else None
+            return told, told < given
+    return (inside.park, inside.park < given) if can_start_and_stop(inside) else None

@@ -122,8 +122,8 @@ def test_a_job_in_inches_is_told_in_inches(capsys: pytest.CaptureFixture[str], t
         (("--park", "12"), 2, "--park: '12': a number without a unit"),
         (("--park", "home"), 2, "or write auto"),
         (("--minimise", "jerk"), 2, "--minimise takes one of peak_acceleration, rms_acceleration, shortest"),
-        (("--latency", "10"), 2, "a number without a unit"),
-        (("--latency", "-1 ms"), 2, "-1 ms"),
+        (("--latency", "10"), 2, "--latency: '10': a number without a unit"),
+        (("--latency", "-1 ms"), 2, "--latency: '-1 ms': negative"),
         (("--to", "nobody"), 2, "nobody"),
         (("--minimise", "shortest", "--to", "br"), 2, "br: "),
     ],
@@ -150,3 +150,15 @@ def test_an_older_table_of_what_is_withheld_is_set_aside(capsys: pytest.CaptureF
     called(capsys, PAPER, "--out", str(tmp_path), "--to", "kollmorgen-kas", "--no-figures", "--json")
     assert not old.exists()
     assert (tmp_path / "ramp_in_paper_600_kas.csv.withheld-old").read_text() == "old"
+
+
+def test_own_older_tables_are_set_aside_when_a_park_off_the_guide_withholds_the_new_ones(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    saw = str(Path(__file__).parents[2] / "examples/flying-saw.toml")
+    options = ("--out", str(tmp_path), "--no-figures", "--json")
+    assert called(capsys, saw, *options, "--park", "100 mm")[0] == 0
+    code, _, err = called(capsys, saw, *options, "--park", "-1 mm")
+    assert code == 1, err
+    tables = sorted(file.name for file in tmp_path.glob("*.csv*"))
+    assert tables == [f"{kind}_flying_saw_cam.csv.withheld-old" for kind in ("one_shot", "ramp_in", "ramp_out")]

@@ -158,7 +158,7 @@ def test_an_older_table_that_cannot_be_removed_is_named(tmp_path: Path, monkeypa
     copy_aside(tmp_path, tmp_path / "aside", older)
     assert (tmp_path / "aside" / f"p_cam.csv{ENDING}").read_text() == "old"
 
-    def fail(_: Path) -> None:
+    def fail(_: Path, *, missing_ok: bool = False) -> None:
         raise PermissionError(13, "Permission denied")
 
     with monkeypatch.context() as patch:

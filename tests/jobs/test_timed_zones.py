@@ -149,3 +149,10 @@ def test_the_jaws_are_faster_than_the_film_by_the_sync_ratio(factor: float) -> N
     task = job.task.with_cut(replace(job.cut, sync_ratio=factor))
     middle = 0.5 * task.cut.sync_zone
     assert float(task.sync(middle, 1)) == pytest.approx(factor, rel=1e-9)
+
+
+@pytest.mark.parametrize(("time", "what"), [("-40 ms", "negative"), ("0 ms", "zero")])
+@pytest.mark.parametrize("key", ["sync_zone", "shear_zone"])
+def test_a_time_that_no_zone_can_last_is_refused_as_a_time(key: str, time: str, what: str) -> None:
+    with pytest.raises(InputError, match=rf"{key} = '{time}': {what}; a time greater than zero is expected"):
+        punch(**{key: time})

@@ -139,3 +139,9 @@ def test_bad_line_speeds_are_refused(text: str, fault: str) -> None:
     with pytest.raises(InputError) as caught:
         parse_line_run(text, "P")
     assert caught.value.faults[0].startswith(fault)
+
+
+@pytest.mark.parametrize("quantity", ["9" * 400, "1e999"])
+def test_a_quantity_beyond_all_numbers_is_refused(quantity: str) -> None:
+    with pytest.raises(InputError, match=r"L, line 2: quantity '[9e1]+' is no whole number from 1 to 200000"):
+        parse_cut_list(f"length [mm],quantity\n600,{quantity}\n", "L")

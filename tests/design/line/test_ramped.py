@@ -169,6 +169,28 @@ def test_a_ramp_that_no_cam_bears_is_refused_with_what_works() -> None:
     solve(task.with_limits(higher), "peak_acceleration")
 
 
+def test_a_stop_far_beyond_the_limits_is_told_a_gentler_one() -> None:
+    task = load_job().task.with_line(Line(1.0, 1000.0))
+    with pytest.raises(InfeasibleError, match="while the line ramps") as caught:
+        solve(task, "peak_acceleration")
+    error = caught.value
+    gentler = next(each.value for each in error.suggestions if each.change == "line.stop")
+    assert (error.binding, error.excess) == ("line.stop", pytest.approx(1000.0 - gentler))
+    assert can_ramp(task.with_line(Line(1.0, gentler)))
+    assert not can_ramp(task.with_line(Line(1.0, 1.05 * gentler)))
+
+
+def test_a_ramp_that_comes_too_fast_is_refused_by_its_jerk() -> None:
+    job = load_job()
+    task = job.task.with_line(Line(5.0, None, 3000.0))
+    with pytest.raises(InfeasibleError, match="while the line ramps") as caught:
+        solve(task, "peak_acceleration")
+    error = caught.value
+    softer = next(each.value for each in error.suggestions if each.change == "line.jerk")
+    assert (error.binding, error.unit, error.excess) == ("line.jerk", "m/s^3", pytest.approx(3000.0 - softer))
+    assert can_ramp(task.with_line(Line(5.0, None, softer)))
+
+
 def test_the_bound_of_a_steady_line_is_not_above_the_closed_form() -> None:
     task = paper(0.6, STEADY)
     for objective in ("peak_acceleration", "rms_acceleration", "peak_jerk", "rms_jerk"):

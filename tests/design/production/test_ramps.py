@@ -162,9 +162,24 @@ def test_too_early_a_park_leaves_no_way_to_stop() -> None:
 
 
 def test_a_park_in_the_sync_zone_is_refused_as_one() -> None:
+    words, ways = reason(at(PAPER, -0.05))
+    assert "--park: the knife stands at -0.05 m, in the sync zone from -0.1 m to 0.1 m" in words
+    assert "park earlier" in words  # 86 mm back, not 186 mm on
+    assert ways["park"] == pytest.approx(-136.297, abs=1e-3)
     words, ways = reason(at(PAPER, 0.02))
-    assert "the park lies in the sync zone" in words
-    assert "park" in ways
+    assert "the knife stands at 0.02 m" in words
+    assert "park later" in words
+    assert ways["park"] == pytest.approx(-263.703, abs=1e-3)
+
+
+def test_a_carriage_stands_before_its_sync_zone() -> None:
+    there = at(SAW, 5.0)
+    words, ways = reason(there)
+    assert (
+        f"the carriage stands at 5 m, and must stand before the sync zone, which begins at {there.zone_start:.6g} m"
+        in words
+    )
+    assert can_start_and_stop(there.parked_at(ways["park"] / 1e3))
 
 
 def test_too_fast_a_line_leaves_no_park() -> None:
