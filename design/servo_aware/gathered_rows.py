@@ -36,7 +36,7 @@ ASIDE = 0.05
 MOST_SPEEDS = 16
 # Between line speeds where a servo comes so near to its limit (share of it) the one in the middle is looked at, down to this step (share of
 # the band of line speeds).
-NEAR, FINEST = 0.02, 1 / 60
+NEAR, FINEST = 0.05, 1 / 240
 # Most rows of the axis' own motion added in a round: it runs along its limits where the tool only touches its band.
 MOST_OWN = 24
 # Most servos between the corners that get rows in a round.
