@@ -48,6 +48,9 @@ _LONGEST_NAME = 20
 
 _MOST_FAULTS = 20
 _SETTLED = 200
+_ALIKE = 12
+"""Digits after the point (m, rad) to which the bends of outlines agree that are run alike."""
+
 _NEAR = 1e-6
 """Part of the mould's range within which a bend's mould angle is computed to tell whether it exceeds the range."""
 
@@ -191,7 +194,8 @@ def bend_outlines(outlines: Sequence[Outline], job: BenderJob, stem: str) -> tup
         programs.append((plan, program, bridges))
     if faults:
         raise InputError(*faults[:_MOST_FAULTS])
-    return tuple(_finished(plan, program, bridges, job) for plan, program, bridges in programs)
+    known: dict[tuple[bytes, ...], _Run] = {}
+    return tuple(_finished(plan, program, bridges, job, known) for plan, program, bridges in programs)
 
 
 def program_name(stem: str, index: int, count: int) -> str:
@@ -255,13 +259,65 @@ def _range_faults(program: NcProgram, plan: BendPlan, job: BenderJob) -> list[st
     return faults
 
 
-def _finished(plan: BendPlan, program: NcProgram, bridges: tuple[Bridge, ...], job: BenderJob) -> BentOutline:
+@dataclass(frozen=True, eq=False)
+class _Run:
+    """What the machine does in a program, wherever its outline lies: collisions, time tables, dwells, and how both axes arrive.
+
+    ``feed`` and ``mould`` are the greatest overshoots (m, rad).
+    """
+
+    collisions: tuple[Collision, ...]
+    times: TimeTable
+    paper_times: TimeTable
+    dwell: Dwell
+    paper_dwell: Dwell
+    feed: float
+    mould: float
+
+
+def _finished(
+    plan: BendPlan,
+    program: NcProgram,
+    bridges: tuple[Bridge, ...],
+    job: BenderJob,
+    known: dict[tuple[bytes, ...], _Run],
+) -> BentOutline:
+    """Write a program and prove it; ``known`` keeps what the machine does, as outlines are often repeated in a drawing."""
     drive = job.drive
     speed = min(drive.feed.speed * 6e4, math.degrees(drive.mould.speed) * 60)
     command = job.bridges.command
     text = write_program(program, job.flavour, job.numbering, speed, command or "")
     read = read_program(text, program.name, command)
     proof = prove(read, plan, job.springback)
+    alike = read.feeds, read.bends, np.round(plan.radii, _ALIKE), np.round(plan.turns, _ALIKE)
+    key = tuple(part.tobytes() for part in alike)
+    if key not in known:
+        known[key] = _run(read, plan, proof, job)
+    run = known[key]
+    paper = plan_bends(plan.outline, EqualSides(), job.least_turn) if plan.outline.arcs.any() else plan
+    return BentOutline(
+        plan,
+        read,
+        text,
+        proof,
+        run.collisions,
+        run.times,
+        run.paper_times,
+        run.dwell,
+        run.paper_dwell,
+        (run.feed, job.feed_window),
+        (run.mould, job.mould_window),
+        bridges,
+        prove_bridges(read, bridges, job.bridges),
+        job.bridges.clearance,
+        paper.bends,
+        paper.chord_error,
+    )
+
+
+def _run(read: NcProgram, plan: BendPlan, proof: BendingProof, job: BenderJob) -> _Run:
+    """Run a program in the machine."""
+    drive = job.drive
     feeds = np.asarray(read.feeds * 1e-6, dtype=np.float64)
     moulds = np.asarray(np.radians(read.bends / 1e3), dtype=np.float64)
     feed = _worst(double_s_moves(_spread(feeds), drive.feed), job, job.feed_window)
@@ -269,24 +325,14 @@ def _finished(plan: BendPlan, program: NcProgram, bridges: tuple[Bridge, ...], j
     paper_feed = _worst(trapezoid_moves(_spread(feeds), drive.feed), job, job.feed_window)
     paper_mould = _worst(trapezoid_moves(_spread(np.abs(moulds)), drive.mould), job, job.mould_window)
     dwell, paper_dwell = Dwell(feed[0], mould[0]), Dwell(paper_feed[0], paper_mould[0])
-    paper = plan_bends(plan.outline, EqualSides(), job.least_turn)
-    return BentOutline(
-        plan,
-        read,
-        text,
-        proof,
+    return _Run(
         collisions(proof.points, moulds, job.envelope),
         overlapped_table(feeds, moulds, plan.turns, drive, dwell),
         sequential_table(feeds, moulds, drive, paper_dwell),
         dwell,
         paper_dwell,
-        (feed[1], job.feed_window),
-        (mould[1], job.mould_window),
-        bridges,
-        prove_bridges(read, bridges, job.bridges),
-        job.bridges.clearance,
-        paper.bends,
-        paper.chord_error,
+        feed[1],
+        mould[1],
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,27 +57,27 @@ class Outline:
         self.points.setflags(write=False)
         self.bulges.setflags(write=False)
 
-    @property
+    @cached_property
     def closed(self) -> bool:
         """Whether the outline ends where it begins."""
         return bool((self.points[0] == self.points[-1]).all())
 
-    @property
+    @cached_property
     def chords(self) -> FloatArray:
         """Vectors from start to end of each segment (m), shape ``(n, 2)``."""
         return np.diff(self.points, axis=0)
 
-    @property
+    @cached_property
     def arcs(self) -> NDArray[np.bool_]:
         """Which segments are arcs, shape ``(n,)``."""
         return np.asarray(np.abs(self.bulges) * np.hypot(*self.chords.T) > 2 * FLAT)
 
-    @property
+    @cached_property
     def included(self) -> FloatArray:
         """Signed included angles ``alpha = 4 arctan mu`` (rad, S4); 0 for a line, positive to the left."""
         return np.where(self.arcs, 4 * np.arctan(self.bulges), 0.0)
 
-    @property
+    @cached_property
     def radii(self) -> FloatArray:
         """Radii ``R = chord / (2 sin(alpha / 2))`` (m, S4), positive; infinite for a line."""
         length = np.hypot(*self.chords.T)
@@ -92,7 +93,7 @@ class Outline:
         along = straight * (1 + size**2) / size * np.arctan(size)
         return np.asarray(np.where(self.arcs, along, straight), dtype=np.float64)
 
-    @property
+    @cached_property
     def centres(self) -> FloatArray:
         """Centres of the arcs (m), shape ``(n, 2)``; NaN for lines."""
         chord = self.chords
@@ -102,14 +103,14 @@ class Outline:
         away = (1 - bulge**2) / (4 * bulge)
         return np.asarray(self.points[:-1] + 0.5 * chord + left * away[:, None], dtype=np.float64)
 
-    @property
+    @cached_property
     def headings(self) -> tuple[FloatArray, FloatArray]:
         """Directions of the tangent at the start and at the end of each segment (rad)."""
         along = np.arctan2(self.chords[:, 1], self.chords[:, 0])
         half = 0.5 * self.included
         return along - half, along + half
 
-    @property
+    @cached_property
     def turns(self) -> FloatArray:
         """Workpiece angles at the ``n - 1`` inner joints, whatever they join: rad in (-pi, pi], left positive."""
         start, end = self.headings

@@ -107,10 +107,12 @@ def plan_bends(outline: Outline, divide: DivisionRule, least_turn: float) -> Ben
 def _runs(outline: Outline, corners: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """First and last segments of the arcs; neighbours on one circle, such as two halves of a full one, are one arc."""
     arcs = np.flatnonzero(outline.arcs)
+    if not len(arcs):
+        return arcs, arcs
     before, after = arcs[:-1], arcs[1:]
     alike = (after == before + 1) & ~np.isin(after, corners)
     alike &= np.sign(outline.bulges[after]) == np.sign(outline.bulges[before])
     alike &= np.abs(outline.radii[after] - outline.radii[before]) <= _ONE_CIRCLE
     alike &= np.hypot(*(outline.centres[after] - outline.centres[before]).T) <= _ONE_CIRCLE
-    begins = np.concatenate([[True], ~alike]) if len(arcs) else np.zeros(0, dtype=np.bool_)
-    return arcs[begins], arcs[np.roll(begins, -1)] if len(arcs) else arcs
+    begins = np.concatenate([[True], ~alike])
+    return arcs[begins], arcs[np.roll(begins, -1)]

@@ -87,6 +87,8 @@ class NcProgram:
 
     def split_feeds(self) -> dict[int, list[int]]:
         """Return the feeds that are stopped for cuts: their numbers, and the parts (µm) before, between and after the cuts."""
+        if not len(self.cuts):
+            return {}
         ends = np.cumsum(self.feeds)
         owner = np.searchsorted(ends, self.cuts, side="left")
         found: dict[int, list[int]] = {}

@@ -505,3 +505,25 @@ def test_time_does_not_grow_with_the_length_of_a_side(
     code, answer, _ = run(capsys, path, "--out", tmp_path / "out", "--no-figures")
     assert time.process_time() - begin < 2.0
     assert (code, answer["length_mm"]) == (0, 1_000_600.0)
+
+
+def test_outlines_alike_are_run_once_and_judged_each_for_itself(
+    drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+):
+    shape = [(0, 0), (100, 0), (100, 4), (-100, 4)]
+
+    def draw(m, _):
+        for i in range(3):
+            m.add_lwpolyline([(x + 300 * i, y + 0.1 * i) for x, y in shape])
+        m.add_lwpolyline([(x + 1000, y) for x, y in STEP])
+
+    code, answer, _ = run(capsys, drawing(draw), "--out", tmp_path / "out", "--no-figures")
+    alone, single, _ = run(
+        capsys, drawing(lambda m, _: m.add_lwpolyline(shape), name="one.dxf"), "--out", tmp_path / "one", "--no-figures"
+    )
+    assert code == alone == 1
+    assert answer["collisions"] == 3 * single["collisions"] == 3
+    told = [text for text in answer["warnings"] if "meets the mould" in text]
+    assert [f"side 1 from ({300 * i}.000, 0.{i}00) mm" in text for i, text in enumerate(told)] == [True] * 3
+    lists = [(tmp_path / "out" / f"drawing-{i}-bends.csv").read_text() for i in (1, 2, 3, 4)]
+    assert lists[0] == lists[1] == lists[2] == (tmp_path / "one" / "one-bends.csv").read_text() != lists[3]
