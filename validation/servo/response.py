@@ -96,39 +96,45 @@ def servo_response(profile: CamProfile, task: Task, servo: Servo, tolerance: flo
 
 def measure_response(run: ServoRun, profile: CamProfile, task: Task, tolerance: float | None = None) -> ServoResponse:
     """Measure a simulated response; arguments as in `servo_response`."""
-    cut = task.cut
-    start = cut.return_start + cut.return_zone  # counted on like AxisRun.master
-    part = _in_sync(run, profile, task, start, start + cut.sync_zone)
-    distance, error = part.master - start, part.error()
-    crossing, overshoot = _crossing(distance, error, part.slope, ON_THE_LINE * cut.length)
-    settling = _settling(distance, error, part.slope, cut.sync_tolerance if tolerance is None else tolerance)
-    return ServoResponse(
-        crossing=crossing,
-        settling=settling,
-        overshoot=overshoot,
-        peak_following_error=_peak_following_error(run, profile, task),
-        shear_zone_error=float(np.abs(_in_sync(run, profile, task, *shear_zone_of(cut)).error()).max()),
-        phases=run.phases,
-    )
+    return _measured(run, profile, task, tolerance)[0]
 
 
 def _with_places(
     run: ServoRun, profile: CamProfile, task: Task, tolerance: float | None
 ) -> tuple[ServoResponse, list[float]]:
     """Measure a response at some of its samples; gives the master positions (m), too, that decided it."""
-    response, cut = measure_response(run, profile, task, tolerance), task.cut
-    start = cut.return_start + cut.return_zone
-    part = _in_sync(run, profile, task, start, start + cut.sync_zone)
-    shear = _in_sync(run, profile, task, *shear_zone_of(cut))
-    error = part.error()
-    greatest = (
-        (part, error),
-        (part, -error),
-        (run, _following_error(run, profile, task)(...)),
-        (shear, np.abs(shear.error())),
-    )
+    response, zone, shear = _measured(run, profile, task, tolerance)
+    start = task.cut.return_start + task.cut.return_zone
+    greatest = (zone, (zone[0], -zone[1]), (run.master, _following_error(run, profile, task)(...)), shear)
     met = [start + place for place in (response.crossing, response.settling) if place is not None]
-    return response, [*met, *(place for where, size in greatest for place in humps(where.master, size))]
+    return response, [*met, *(place for master, size in greatest for place in humps(master, size))]
+
+
+_Curve = tuple[FloatArray, FloatArray]
+"""Master positions (m) and what is seen there, shapes ``(phases, n)``."""
+
+
+def _measured(
+    run: ServoRun, profile: CamProfile, task: Task, tolerance: float | None
+) -> tuple[ServoResponse, _Curve, _Curve]:
+    """Measure a response; gives the sync error in the sync zone and its magnitude in the shear zone, too."""
+    cut = task.cut
+    start = cut.return_start + cut.return_zone  # counted on like AxisRun.master
+    part = _in_sync(run, profile, task, start, start + cut.sync_zone)
+    distance, error = part.master - start, part.error()
+    crossing, overshoot = _crossing(distance, error, part.slope, ON_THE_LINE * cut.length)
+    settling = _settling(distance, error, part.slope, cut.sync_tolerance if tolerance is None else tolerance)
+    shear = _in_sync(run, profile, task, *shear_zone_of(cut))
+    off = np.abs(shear.error())
+    response = ServoResponse(
+        crossing=crossing,
+        settling=settling,
+        overshoot=overshoot,
+        peak_following_error=_peak_following_error(run, profile, task),
+        shear_zone_error=float(off.max()),
+        phases=run.phases,
+    )
+    return response, (part.master, error), (shear.master, off)
 
 
 def sync_error(
