@@ -61,7 +61,11 @@ def wrong(job: Job, edge: Edge, random: np.random.Generator, *, checked: bool) -
             failed = fails(job, task, stand_in(job))
             limit = failed in ("speed", "acceleration", "jerk", "reversal", "sync_zone", "design")
             tried += 1
-            found += (not failed if checked else not limit) != possible
+            if (not failed if checked else not limit) != possible:
+                found += 1
+                print(
+                    f"wrong: {length!r} m at {factor!r} of {speed!r} m/s: {failed or 'passes'}; {job}", file=sys.stderr
+                )
     return found, tried
 
 

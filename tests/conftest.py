@@ -13,6 +13,8 @@ ROOT = Path(__file__).resolve().parents[1]
 settings.register_profile("camwright", deadline=None, derandomize=True)
 settings.load_profile("camwright")
 
+os.environ.pop("COLUMNS", None)  # tables are as wide as they are told, not as the terminal of whoever runs the tests
+
 if (ROOT / "camwright" / "design").is_dir():
     # Processes that a test starts see this checkout first, as the tests themselves do (pythonpath of pytest), not a copy installed earlier.
     os.environ["PYTHONPATH"] = os.pathsep.join([str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])])

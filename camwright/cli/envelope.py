@@ -55,10 +55,10 @@ def _view(answer: EnvelopeAnswer) -> RenderableType:
     """Show the highest line speed at each cut length."""
     units = answer.job.units
     table = new_table(title=f"Highest line speed ({unit_shown('m/s', units)})", title_justify="left")
-    for name in (f"cut length\n{unit_shown('m', units)}", "optimised", "quintic", "linear", "binds"):
+    for name in (f"cut length\n{unit_shown('m', units)}", "optimised", "in tolerance", "quintic", "linear", "binds"):
         table.add_column(name, justify="left" if name == "binds" else "right")
     for row in answer.envelope.rows:
-        speeds = (row.optimised, row.quintic, row.linear)
+        speeds = (row.optimised, answer.in_tolerance(row.length), row.quintic, row.linear)
         table.add_row(
             f"{converted(row.length, 'm', units):.5g}",
             *("–" if speed is None else f"{converted(speed, 'm/s', units):.5g}" for speed in speeds),

@@ -37,8 +37,8 @@ def _view(found: MachineLimits) -> RenderableType:
     units = job.units
     zone = with_unit(job.cut.sync_zone, "m", 4, units)
     table = new_table(title="How fast, how short", title_justify="left")
-    for name in ("", "axis", "", "binds"):
-        table.add_column(name)
+    for name in ("", "axis", "speed, length", "binds"):
+        table.add_column(name, no_wrap=name == "speed, length")
     fast = f"highest line speed at a cut length of {with_unit(job.cut.length, 'm', 4, units)}"
     short = f"shortest cut at {with_unit(job.cut.line_speed, 'm/s', units=units)} with a sync zone of {zone}"
     for axis_name, reached in (("perfect", far), ("in tolerance", found.within)):

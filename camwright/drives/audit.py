@@ -25,8 +25,8 @@ from camwright.profiles.tables.count_grid import without_rounding
 from camwright.profiles.tables.target import Target
 from camwright.profiles.tables.targets import detect, read_table, target_of
 from camwright.profiles.tables.text import read_text
-from camwright.studies.axis_study import solve_job
 from camwright.studies.line_ramps import line_ramps
+from camwright.studies.remedies import solve_or_advise
 from camwright.validation.rebuilt import TableJudgement, differences, judge_table, one_cycle, sampled_peaks
 from camwright.validation.report import ValidationReport, judge
 
@@ -228,7 +228,7 @@ def audit(
     judgement = judge_table(found.rebuilt, placed.task, job.servo, count=found.count)
     report = judge(cycle, placed.task, job.servo)
     step("solving")
-    solution = solve_job(job)
+    solution = solve_or_advise(job)
     best = replace(job, machine=solution.machine)
     best_report = judge(solution.profile, best.task, job.servo)
     return Audit(

@@ -10,7 +10,7 @@ import numpy as np
 
 from camwright.figures.panel import RIGHT, WIDTH, first_frame, head, page, upright
 from camwright.figures.strokes import LINES
-from camwright.figures.style import title
+from camwright.figures.style import broken_note, title
 from camwright.house.numbers import converted, number, unit_shown
 from camwright.house.picture_files import write_pictures
 from camwright.house.pictures import Bar, Frame, Item, Note, Picture, Tick
@@ -63,8 +63,7 @@ def bars_figure(comparison: Comparison) -> Picture:
     """
     job, rows = comparison.job, comparison.rows
     columns = _columns(comparison)
-    note = "; † breaks a limit" if any(not row.within_limits for row in rows) else ""
-    heading = head(job.name, f"all profiles, by {OBJECTIVES[job.objective].words}{note}")
+    heading = head(job.name, f"all profiles, by {OBJECTIVES[job.objective].words}") + broken_note(rows)
     top = first_frame(heading) + _HEADING
     width = (WIDTH - _LEFT - RIGHT + _GAP) / len(columns) - _GAP
     ticks = [Tick(float(-i), _label(row), row.name == "optimised") for i, row in enumerate(rows)]

@@ -17,7 +17,7 @@ from camwright.figures.panel import (
     zone_bands,
 )
 from camwright.figures.strokes import LINES
-from camwright.figures.style import title
+from camwright.figures.style import broken_note, marked
 from camwright.house.numbers import Units, converted, number, unit_shown, with_unit
 from camwright.house.pictures import Arrow, Frame, Item, Line, Note, Picture
 from camwright.jobs.job import Job
@@ -54,15 +54,16 @@ def profile_figure(comparison: Comparison) -> Picture:
         Holds the job and the profiles; those of `camwright.figures.style.LINES` are drawn.
     """
     job = comparison.job
-    shown = {row.name: row.profile for row in comparison.rows if row.name in LINES}
+    rows = {row.name: row for row in comparison.rows if row.name in LINES}
+    shown = {name: row.profile for name, row in rows.items()}
     words = (
         f"{with_unit(job.cut.length, 'm', units=job.units)} at {with_unit(job.cut.line_speed, 'm/s', units=job.units)}, "
         f"minimised: {OBJECTIVES[job.objective].words}"
     )
-    heading = head(job.name, words)
+    heading = head(job.name, words) + broken_note(rows.values())
     top = first_frame(heading)
     frames = [_frame(job, shown, order, top + order * (_PANEL + _GAP)) for order in range(4)]
-    legend: list[Item] = [profile_line(name, NOTHING, title(name)) for name in LINES if name in shown]
+    legend: list[Item] = [profile_line(name, NOTHING, marked(rows[name])) for name in LINES if name in rows]
     legend += [across(0.0, 0.0, 1.0, "limit of the drive"), *zone_bands(job.cut, job.units)]
     if "linear_return" in shown:
         legend.append(_arrow("linear_return", 0.0, 1.0, "unbounded"))

@@ -23,7 +23,7 @@ from camwright.figures.panel import (
     wide_frame,
 )
 from camwright.figures.strokes import BLACK, COMMAND, LINES
-from camwright.figures.style import title
+from camwright.figures.style import broken_note, marked
 from camwright.house.numbers import Units, converted, unit_shown, with_unit
 from camwright.house.pictures import Frame, Item, Line, Marks, Note, Picture
 from camwright.profiles.polynomial.profile import FloatArray
@@ -76,12 +76,13 @@ def servo_figure(comparison: Comparison, runs: Mapping[str, ServoRun]) -> Pictur
         f"\nω = {servo.bandwidth:g} rad/s, ζ = {servo.damping:g}, K = {servo.position_gain:g} 1/s, "
         f"ΔT = {with_unit(servo.sample_time, 's')}, α = {servo.velocity_feedforward:g}"
     )
+    heading += broken_note(comparison[name] for name in AXES)
     top = first_frame(heading) + _HEADING
     upper = _meetings(comparison, runs, top)
     top += _MEETING + _BELOW + 2 * _HEADING
     lower = _errors(comparison, runs, top)
     tolerance = across(0.0, 0.0, 1.0, "sync tolerance")
-    legend: list[Item] = [profile_line(name, NOTHING, f"axis, {title(name)}") for name in AXES]
+    legend: list[Item] = [profile_line(name, NOTHING, f"axis, {marked(comparison[name])}") for name in AXES]
     legend += [
         Line(NOTHING, BLACK, 1.1, "ideal sync line"),
         stroked(COMMAND, NOTHING, "command"),
@@ -113,7 +114,7 @@ def _meetings(comparison: Comparison, runs: Mapping[str, ServoRun], top: float) 
             [beginning, *items],
             f"{_PLACE} ({length})",
             f"{'slave' if job.task.straight else 'tool'} from there ({length})" if number == 0 else "",
-            title(name),
+            marked(comparison[name]),
             grid=True,
             apart=24.0,
         )
@@ -228,7 +229,7 @@ def _finding(row: Measured, comparison: Comparison) -> str:
             (response.settling, "settled after", "not settled in the zone"),
         )
     )
-    return f"{title(row.name)}: {crossing}, overshoot {_length(response.overshoot, units, 1)}, {settling}"
+    return f"{marked(row)}: {crossing}, overshoot {_length(response.overshoot, units, 1)}, {settling}"
 
 
 def _length(length: float, units: Units, more: int = 0) -> str:

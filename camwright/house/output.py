@@ -102,10 +102,11 @@ def silence_stdout() -> None:
 
 
 def _rendered(view: RenderableType) -> str:
-    """Render for the terminal, or as plain text of a fixed width."""
+    """Render for the terminal, or as plain text of a fixed width unless ``COLUMNS`` says one."""
     from rich.console import Console
 
-    width = None if sys.stdout.isatty() else _PLAIN_WIDTH
+    told = os.environ.get("COLUMNS", "").isdecimal()
+    width = None if sys.stdout.isatty() or told else _PLAIN_WIDTH
     console = Console(
         file=sys.stdout, highlight=False, markup=False, emoji=False, width=width
     )  # brackets in names are text

@@ -18,8 +18,8 @@ from camwright.profiles.returns import (
     baseline_names,
 )
 from camwright.profiles.task import Task
-from camwright.studies.axis_study import solve_job
 from camwright.studies.measured import Measured, measured
+from camwright.studies.remedies import solve_or_advise
 from camwright.studies.screw import ScrewCarriage, screw_carriage
 
 QUINTIC = "quintic"
@@ -126,7 +126,7 @@ def compare(
     ['optimised', 'poly_3_4_5', 'linear_return']
     """
     if optimised is None:
-        solution = solve_job(job)
+        solution = solve_or_advise(job)
         job, optimised = replace(job, machine=solution.machine), solution.profile
     chosen = law_names(job.task) if names is None else names
     require_laws(chosen, job.task)

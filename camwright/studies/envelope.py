@@ -64,6 +64,11 @@ class EnvelopeAnswer:
         """Unit of the objective."""
         return OBJECTIVES[self.objective].unit(self.job.machine.slave_unit)
 
+    def in_tolerance(self, length: float) -> float | None:
+        """Highest line speed with the axis in tolerance at a cut length that is a node (m/s); ``None`` where none works."""
+        speed = dict(self.within)[length]
+        return None if math.isnan(speed) else speed
+
     def to_dict(self) -> dict[str, Any]:
         """Give the object that ``--json`` prints."""
         return {
@@ -87,6 +92,7 @@ class EnvelopeAnswer:
                     "optimised_m_per_min": per_minute(row.optimised),
                     "quintic_m_per_min": per_minute(row.quintic),
                     "linear_m_per_min": per_minute(row.linear),
+                    "axis_in_tolerance_m_per_min": per_minute(self.in_tolerance(row.length)),
                     "binding": row.binding,
                     **_place(row.machine),
                 }

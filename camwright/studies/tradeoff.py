@@ -11,10 +11,11 @@ from typing import Any, Literal
 from camwright.design.optimise import solve
 from camwright.house.progress import Step, ignore
 from camwright.jobs.job import Job
-from camwright.profiles.errors import SolverError
+from camwright.profiles.errors import InfeasibleError, SolverError
 from camwright.profiles.objective import COMMAND_OBJECTIVES, OBJECTIVES, CommandObjective, of_command
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.studies.comparison import law_names, law_profile
+from camwright.studies.remedies import solve_or_advise
 from camwright.studies.within_limits import keeps_limits
 from camwright.validation.motion import measure_motion
 from camwright.validation.motor import measure_motor
@@ -136,7 +137,10 @@ def trade_off(job: Job, step: Step = ignore) -> TradeOff:
     for objective in objectives:
         step(f"solving for the least {words(objective)}")
         try:
-            solution = solve(job.task, objective)
+            solution = solve(job.task, objective, suggest=False)
+        except InfeasibleError:
+            solve_or_advise(job)  # it refuses with changes that were tried
+            raise
         except SolverError as error:
             failures.append(Failure(objective, str(error)))
             continue

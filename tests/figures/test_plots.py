@@ -164,7 +164,7 @@ def test_servo_figure_draws_every_phase_and_marks_crossing_and_settling(paper: D
             drawn = max(np.nanmax(line.points[:, 1]) for line in (first, others))
             assert drawn == pytest.approx(response.overshoot * 1e3, rel=1e-9)
         assert heights(frame) == pytest.approx([-0.1, 0.1])
-    assert "linear return: crossing 81.5 mm, overshoot 0.76 mm, settled after 136.3 mm" in whole.title
+    assert "linear return †: crossing 81.5 mm, overshoot 0.76 mm, settled after 136.3 mm" in whole.title
 
 
 def test_servo_figure_says_what_does_not_happen_in_the_zone(paper: Design) -> None:

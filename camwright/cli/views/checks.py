@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from camwright.cli.views.parts import fitting, new_table, new_text
+from camwright.cli.views.whole_table import WholeTable
 from camwright.house.numbers import Units, number, with_unit
 from camwright.validation.check import Check
 
@@ -22,7 +23,7 @@ def checks_view(checks: Sequence[Check], units: Units) -> RenderableType:
     return fitting(_table(checks, units, sources=True), _table(checks, units, sources=False), _WIDE)
 
 
-def _table(checks: Sequence[Check], units: Units, *, sources: bool) -> RenderableType:
+def _table(checks: Sequence[Check], units: Units, *, sources: bool) -> WholeTable:
     """Lay out the checks."""
     table = new_table(title="Checks", title_justify="left")
     for name in ("check", "", "value", "limit", "unit", "at"):

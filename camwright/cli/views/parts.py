@@ -6,17 +6,16 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from camwright.cli.views.whole_table import WholeTable
+
 if TYPE_CHECKING:
     from rich.console import Console, ConsoleOptions, Group, RenderableType
-    from rich.table import Table
     from rich.text import Text
 
 
-def new_table(title: str | Text | None = None, **look: Any) -> Table:
-    """Make an empty table."""
-    from rich.table import Table
-
-    return Table(title=title, **look)
+def new_table(title: str | Text | None = None, **look: Any) -> WholeTable:
+    """Make an empty table, whose words are never cut."""
+    return WholeTable(title, look)
 
 
 def new_text(text: str = "", style: str = "") -> Text:
@@ -37,14 +36,14 @@ def stacked(*views: RenderableType) -> Group:
 class _Fitting:
     """A view that is chosen when it is known how wide the terminal is."""
 
-    wide: RenderableType
+    wide: WholeTable
     narrow: RenderableType
     least: int
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> Iterator[RenderableType]:
-        yield self.wide if options.max_width >= self.least else self.narrow
+        yield self.wide if options.max_width >= max(self.least, self.wide.least) else self.narrow
 
 
-def fitting(wide: RenderableType, narrow: RenderableType, least: int) -> RenderableType:
-    """Take the wide view on a terminal of so many columns at least, else the narrow one."""
+def fitting(wide: WholeTable, narrow: RenderableType, least: int) -> RenderableType:
+    """Take the wide table on a terminal of so many columns at least, if it stands there undivided; else the narrow view."""
     return _Fitting(wide, narrow, least)

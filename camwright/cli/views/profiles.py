@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from camwright.cli.views.parts import fitting, new_table, new_text, stacked
+from camwright.cli.views.whole_table import WholeTable
 from camwright.house.numbers import Shown, number, shown, unit_shown
 from camwright.profiles.objective import OBJECTIVES
 from camwright.studies.comparison import Comparison
@@ -48,7 +49,7 @@ def _parts(columns: list[Column]) -> list[list[Column]]:
     return [columns[:half], columns[half:]]
 
 
-def _table(comparison: Comparison, columns: Sequence[Column]) -> RenderableType:
+def _table(comparison: Comparison, columns: Sequence[Column]) -> WholeTable:
     """Lay out some columns."""
     what = OBJECTIVES[comparison.job.objective].words
     table = new_table(title=f"Profiles, by {what}", title_justify="left")
