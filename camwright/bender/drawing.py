@@ -22,6 +22,7 @@ from camwright.bender.joining import join
 from camwright.bender.near_ends import NearEnds, near_ends
 from camwright.bender.overlaps import Overlap, between_styles, without_overlaps
 from camwright.bender.piece import Piece
+from camwright.profiles.bender.bridges import BridgeMark
 from camwright.profiles.bender.outline import Outline
 from camwright.profiles.errors import InputError
 
@@ -54,6 +55,8 @@ class Reading:
     arc_error
         Largest distance (m) at a radius (m) between an arc and the chords that are bent as that arc; ``None`` bends
         chords as they are drawn.
+    bridge_layer
+        The layer whose points and lines mark bridges, and are not bent.
     """
 
     gap: float
@@ -62,6 +65,7 @@ class Reading:
     style: StyleChoice = field(default_factory=StyleChoice)
     overlaps: Literal["merge", "refuse"] = "merge"
     arc_error: Callable[[float], float] | None = None
+    bridge_layer: str | None = None
 
 
 @dataclass(frozen=True)
@@ -84,6 +88,8 @@ class Drawing:
         Free ends that nearly meet.
     warnings
         What was left out, repaired, merged or not joined.
+    marks
+        Marks of bridges.
     """
 
     outlines: tuple[Outline, ...]
@@ -93,6 +99,7 @@ class Drawing:
     overlaps: tuple[Overlap, ...]
     near_ends: tuple[NearEnds, ...]
     warnings: tuple[str, ...]
+    marks: tuple[BridgeMark, ...] = ()
 
 
 @dataclass(eq=False)
@@ -134,13 +141,15 @@ def read_drawing(path: Path, reading: Reading) -> Drawing:
     with readable(path):
         unit, doubts = _unit(path, document, reading.units)
         left_out: Counter[str] = Counter()
-        layers, everything, others = _gathered(path, document, reading, UNITS[unit], left_out)
+        marks: list[BridgeMark] = []
+        layers, everything, others = _gathered(path, document, reading, UNITS[unit], left_out, marks)
     chosen = _chosen(path, everything, layers, reading.style, left_out)
     lines = [_lines(path, found, reading, left_out) for found in chosen]
     outlines = [Outline(p.points, p.bulges, f"{path.name}: {p.name}", p.flattening) for one in lines for p in one.paths]
     styles = [found.style for found, one in zip(chosen, lines, strict=True) for _ in one.paths]
     overlaps = tuple(overlap for one in lines for overlap in one.overlaps)
     near = tuple(ends for one in lines for ends in one.near)
+    doubts += _unmarked(reading.bridge_layer, marks)
     told = [
         *(f"left out {count} × {what}" for what, count in sorted((+left_out).items())),
         *_few([f"{overlap}; it is bent once" for overlap in overlaps], "entities lie on others"),
@@ -149,7 +158,7 @@ def read_drawing(path: Path, reading: Reading) -> Drawing:
         *_few([str(arc) for one in lines for arc in one.arcs], "runs of chords lie on arcs"),
     ]
     warnings += (*doubts, *(f"{path.name}: {text}" for text in told))
-    return Drawing(tuple(outlines), tuple(styles), unit, _size(outlines), overlaps, near, warnings)
+    return Drawing(tuple(outlines), tuple(styles), unit, _size(outlines), overlaps, near, warnings, tuple(marks))
 
 
 def _unit(path: Path, document: Any, units: str | None) -> tuple[str, tuple[str, ...]]:
@@ -177,7 +186,7 @@ def _unit(path: Path, document: Any, units: str | None) -> tuple[str, tuple[str,
 
 
 def _gathered(
-    path: Path, document: Any, reading: Reading, unit: float, left_out: Counter[str]
+    path: Path, document: Any, reading: Reading, unit: float, left_out: Counter[str], marks: list[BridgeMark]
 ) -> tuple[set[str], list[_Found], list[_Found]]:
     """Read what is shown of the layer that is asked for, style by style; the names of all layers; and what the other layers hold."""
     resolution = Resolution(reading.flattening / unit, _LEAST / unit, _GREATEST / unit)
@@ -192,6 +201,9 @@ def _gathered(
         require_bounded(document)
         for seen in walk(document, layers, hidden):
             names.setdefault(seen.style.layer.casefold(), seen.style.layer)
+            if reading.bridge_layer is not None and seen.style.layer.casefold() == reading.bridge_layer.casefold():
+                _mark(seen, unit, marks, left_out)
+                continue
             if wanted is not None and seen.style.layer.casefold() != wanted:
                 if aside < MOST_SEGMENTS:
                     aside += _aside(seen, others, resolution, unit)
@@ -215,6 +227,24 @@ def _gathered(
         raise InputError(*(f"{path}: {fault}" for fault in error.faults)) from error
     left_out.update(hidden)
     return set(names.values()), [own for own in found.values() if own.pieces or own.faults], list(others.values())
+
+
+def _unmarked(layer: str | None, marks: Sequence[BridgeMark]) -> tuple[str, ...]:
+    """Say that the layer of the bridges marks none."""
+    return () if layer is None or marks else (f"no bridge is marked: layer {layer} holds no point and no line",)
+
+
+def _mark(seen: Seen, unit: float, marks: list[BridgeMark], left_out: Counter[str]) -> None:
+    """Take a point, or the middle of a line, as the mark of a bridge."""
+    kind, dxf = seen.entity.dxftype(), seen.entity.dxf
+    if kind not in ("POINT", "LINE"):
+        left_out[f"{kind} (no mark of a bridge: draw a point or a line)"] += 1
+        return
+    ends = (dxf.location,) if kind == "POINT" else (dxf.start, dxf.end)
+    x, y = (unit * sum(end[k] for end in ends) / len(ends) for k in (0, 1))
+    if not (abs(x) <= _GREATEST and abs(y) <= _GREATEST):
+        raise InputError(f"{seen.name}: its coordinates are not finite, or beyond {_GREATEST / 1e3:g} km")
+    marks.append(BridgeMark(seen.name, (x, y)))
 
 
 def _aside(seen: Seen, others: dict[tuple[str, str, str], _Found], resolution: Resolution, unit: float) -> int:

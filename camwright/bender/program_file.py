@@ -6,7 +6,7 @@ import hashlib
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from camwright.design.bender.moves import (
     overlapped_table,
     sequential_table,
 )
-from camwright.profiles.bender.bridges import Bridge, place_bridges, with_cuts
+from camwright.profiles.bender.bridges import Bridge, BridgeMark, marked_places, place_bridges, with_cuts
 from camwright.profiles.bender.compensation import compensate
 from camwright.profiles.bender.division import EqualSides
 from camwright.profiles.bender.motion import Moves, double_s_moves, trapezoid_moves
@@ -161,8 +161,10 @@ class BentOutline:
         return tuple(found)
 
 
-def bend_outlines(outlines: Sequence[Outline], job: BenderJob, stem: str) -> tuple[BentOutline, ...]:
-    """Write and prove the program of each outline.
+def bend_outlines(
+    outlines: Sequence[Outline], job: BenderJob, stem: str, marks: Sequence[BridgeMark] = ()
+) -> tuple[BentOutline, ...]:
+    """Write and prove the program of each outline; the drawing's marks say where bridges are.
 
     Raises
     ------
@@ -181,11 +183,12 @@ def bend_outlines(outlines: Sequence[Outline], job: BenderJob, stem: str) -> tup
         )
     if faults:
         raise InputError(*faults[:_MOST_FAULTS])
+    places = marked_places(plans, marks, job.bridges.width)
     programs = []
     for i, plan in enumerate(plans):
         program = compensate(plan, job.springback, program_name(stem, i, len(plans)))
         try:
-            bridges = place_bridges(plan, job.bridges)
+            bridges = place_bridges(plan, replace(job.bridges, at=places[i]) if marks else job.bridges)
             program = with_cuts(program, bridges, job.bridges)
         except InputError as error:
             faults += error.faults

@@ -144,6 +144,7 @@ class BridgesTable(Table):
 
     width: Annotated[float | None, *quantity_field("length", example="6 mm")] = None
     spacing: Annotated[float | None, *quantity_field("length", example="100 mm")] = None
+    layer: Annotated[str | None, *line_field("BRIDGES")] = None
     at: Annotated[
         list[Annotated[float, *quantity_field("length", example="50 mm")]], Field(examples=[["50 mm", "150 mm"]])
     ] = Field(default_factory=list)
@@ -153,13 +154,15 @@ class BridgesTable(Table):
 
     @model_validator(mode="after")
     def _whole(self) -> Self:
-        if self.spacing is not None and self.at:
-            raise refusal("spacing and at exclude each other: remove one of them")
-        if (self.spacing is not None or self.at) and self.width is None:
+        ways = (self.spacing is not None) + bool(self.at) + (self.layer is not None)
+        if ways > 1:
+            raise refusal("spacing, at and layer exclude each other: leave one of them")
+        if ways and self.width is None:
             raise refusal('width is missing: write how much of the rule is cut out, e.g. width = "6 mm"')
-        if self.width is not None and self.spacing is None and not self.at:
+        if self.width is not None and not ways:
             raise refusal(
-                'spacing is missing: write how far apart bridges are, e.g. spacing = "100 mm", or their places, at = ["50 mm"]'
+                'spacing is missing: write how far apart bridges are, e.g. spacing = "100 mm", or their places, at = ["50 mm"], '
+                'or the layer of their marks, layer = "BRIDGES"'
             )
         return self
 
@@ -167,7 +170,13 @@ class BridgesTable(Table):
     def rule(self) -> BridgeRule:
         """Which bridges a rule gets."""
         return BridgeRule(
-            self.width or 0.0, self.spacing, tuple(self.at), self.clearance, self.command, self.tool_distance
+            self.width or 0.0,
+            self.spacing,
+            tuple(self.at),
+            self.clearance,
+            self.command,
+            self.tool_distance,
+            self.layer,
         )
 
 

@@ -127,7 +127,7 @@ def run(
     place = None if start is None else _place(start)
     choice = style_choice(style, layer, each=styles == "all")
     arc_error = bender.divide.allowed if arcs == "find" else None
-    reading = Reading(bender.gap, bender.flattening, bender.units, choice, overlaps, arc_error)
+    reading = Reading(bender.gap, bender.flattening, bender.units, choice, overlaps, arc_error, bender.bridges.layer)
     directory = Path("out") / drawing.stem if out is None else out
     with voice.progress(5) as step:
         result = replace(_bent(drawing, bender, reading, place, reverse, step), collisions_accepted=accept_collisions)
@@ -206,7 +206,7 @@ def _bridges(text: str, rule: BridgeRule) -> BridgeRule:
         raise InputError(
             f"--bridges {text!r}: not a width and a greater spacing; write two numbers in mm, e.g. --bridges 6@100"
         )
-    return replace(rule, width=width, spacing=spacing, at=())
+    return replace(rule, width=width, spacing=spacing, at=(), layer=None)
 
 
 def _names(stem: str, count: int) -> list[str]:
@@ -223,7 +223,7 @@ def _bent(
     if place is not None:
         outlines = [outline.begin_at(*place) for outline in outlines]
     step("writing and proving programs")
-    bent = bend_outlines(outlines, bender, drawing.stem)
+    bent = bend_outlines(outlines, bender, drawing.stem, found.marks)
     return BentDrawing(drawing, hashlib.sha256(drawing.read_bytes()).hexdigest(), bender, found, bent)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -38,6 +39,8 @@ class BridgeRule:
         The machine's cut command; ``None`` cuts by hand.
     tool_distance
         How far before the bending place the machine's cutting tool stands (m).
+    layer
+        The drawing's layer whose marks say where bridges are; ``None`` for a spacing or places.
     """
 
     width: float = 0.0
@@ -46,6 +49,7 @@ class BridgeRule:
     clearance: float = 2e-3
     command: str | None = None
     tool_distance: float = 0.0
+    layer: str | None = None
 
     @property
     def asked(self) -> bool:
@@ -214,6 +218,56 @@ class _Room:
         if places:
             return f"it may go to {' or '.join(places)}"
         return "no place of this rule is free for it; make bridges narrower or fewer"
+
+
+@dataclass(frozen=True)
+class BridgeMark:
+    """A mark of a drawing that says where a bridge is.
+
+    Parameters
+    ----------
+    name
+        Kind, handle and layer of the mark.
+    place
+        Its middle (m).
+    """
+
+    name: str
+    place: tuple[float, float]
+
+
+def marked_places(plans: Sequence[BendPlan], marks: Sequence[BridgeMark], width: float) -> list[tuple[float, ...]]:
+    """Find where along each rule the marks lie (m): each on the rule that passes nearest to it.
+
+    Raises
+    ------
+    InputError
+        No rule passes within half a bridge's width of a mark.
+    """
+    start = np.vstack([plan.vertices[:-1] for plan in plans])
+    way = np.vstack([np.diff(plan.vertices, axis=0) for plan in plans])
+    owner = np.repeat(np.arange(len(plans)), [len(plan.vertices) - 1 for plan in plans])
+    before = np.concatenate([np.cumsum(plan.feeds) - plan.feeds for plan in plans])
+    square = np.maximum((way**2).sum(axis=1), 1e-300)
+    found: list[list[float]] = [[] for _ in plans]
+    faults = []
+    for mark in marks:
+        off = np.array(mark.place) - start
+        part = np.clip((off * way).sum(axis=1) / square, 0.0, 1.0)
+        away = np.hypot(*(off - part[:, None] * way).T)
+        k = int(np.argmin(away))
+        x, y = 1e3 * np.array(mark.place)
+        if away[k] > width / 2:
+            to_x, to_y = 1e3 * (start[k] + part[k] * way[k])
+            faults.append(
+                f"{mark.name} at ({x:.3f}, {y:.3f}) mm marks a bridge, but no rule passes within {500 * width:g} mm of it; the "
+                f"nearest does at ({to_x:.3f}, {to_y:.3f}) mm: move the mark there"
+            )
+        else:
+            found[owner[k]].append(float(before[k] + part[k] * math.sqrt(square[k])))
+    if faults:
+        raise InputError(*faults[:_MOST_FAULTS])
+    return [tuple(places) for places in found]
 
 
 def with_cuts(program: NcProgram, bridges: tuple[Bridge, ...], rule: BridgeRule) -> NcProgram:

@@ -246,7 +246,7 @@ def test_bridges_by_job_are_cut_by_the_machine(drawing: Make, tmp_path: Path, ca
 @pytest.mark.parametrize(
     ("table", "message"),
     [
-        ('width = "6 mm"\nspacing = "90 mm"\nat = ["50 mm"]', "spacing and at exclude each other"),
+        ('width = "6 mm"\nspacing = "90 mm"\nat = ["50 mm"]', "spacing, at and layer exclude each other"),
         ('spacing = "90 mm"', "width is missing"),
         ('width = "6 mm"', "spacing is missing"),
         ('width = "6 mm"\nspacing = "0 mm"', "spacing"),
@@ -293,3 +293,60 @@ def test_an_arc_takes_bridges_only_between_its_bends(drawing: Make, tmp_path: Pa
     code, _, err = run(capsys, path, "--out", tmp_path / "out", "--no-figures", "--bridges", "6@60")
     assert code == 2
     assert "no place of this rule is free for it" in err
+
+
+def test_bridges_by_marks_of_a_layer(drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    def draw(m: Any, _: Any) -> None:
+        m.add_lwpolyline(STEP)
+        m.add_lwpolyline([(0, 200), (100, 200)])
+        m.add_point((100, 40), dxfattribs={"layer": "Bridges"})
+        m.add_line((47, 0), (53, 0), dxfattribs={"layer": "Bridges"})  # drawn along the rule
+        m.add_line((30, 195), (30, 205), dxfattribs={"layer": "Bridges"})  # drawn across it
+        m.add_text("6 mm", dxfattribs={"layer": "Bridges"})
+
+    job = job_with(tmp_path, '\n[bridges]\nwidth = "6 mm"\nlayer = "BRIDGES"\ncommand = "M20"\n')
+    code, answer, _ = run(capsys, drawing(draw), "--job", job, "--out", tmp_path / "out", "--no-figures")
+    assert code == 0
+    assert answer["outlines"] == 2
+    assert [(b["program"], b["middle_mm"]) for b in answer["bridges"]] == [
+        ("DRAWING-1", 50.0), ("DRAWING-1", 140.0), ("DRAWING-2", 30.0),
+    ]  # fmt: skip
+    assert any("TEXT (no mark of a bridge: draw a point or a line)" in text for text in answer["warnings"])
+
+
+def test_a_layer_without_marks_is_told(drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    job = job_with(tmp_path, '\n[bridges]\nwidth = "6 mm"\nlayer = "BRIDGES"\n')
+    path = drawing(lambda m, _: m.add_lwpolyline(STEP))
+    code, answer, _ = run(capsys, path, "--job", job, "--out", tmp_path / "out", "--no-figures")
+    assert code == 0
+    assert answer["bridges"] == []
+    assert "no bridge is marked: layer BRIDGES holds no point and no line" in answer["warnings"]
+
+
+def test_a_mark_beside_every_rule_is_refused(drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    def draw(m: Any, _: Any) -> None:
+        m.add_lwpolyline(STEP)
+        m.add_point((50, 10), dxfattribs={"layer": "BRIDGES"})
+        m.add_point((100, 0), dxfattribs={"layer": "BRIDGES"})
+
+    path = drawing(draw)
+    job = job_with(tmp_path, '\n[bridges]\nwidth = "6 mm"\nlayer = "BRIDGES"\n')
+    code, _, err = run(capsys, path, "--job", job, "--out", tmp_path / "out", "--no-figures")
+    assert code == 2
+    assert ("on layer BRIDGES at (50.000, 10.000) mm marks a bridge, but no rule passes within 3 mm of it; the nearest does at "
+            "(50.000, 0.000) mm: move the mark there") in err  # fmt: skip
+
+
+def test_a_mark_on_a_bend_is_refused_with_where_it_may_go(
+    drawing: Make, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+):
+    def draw(m: Any, _: Any) -> None:
+        m.add_lwpolyline(STEP)
+        m.add_point((100, 0), dxfattribs={"layer": "BRIDGES"})
+
+    job = job_with(tmp_path, '\n[bridges]\nwidth = "6 mm"\nlayer = "BRIDGES"\n')
+    code, _, err = run(capsys, drawing(draw), "--job", job, "--out", tmp_path / "out", "--no-figures")
+    assert code == 2
+    assert (
+        "it lies on bend 1 at (100.000, 0.000) mm, and the tool needs 2 mm; it may go to 95.000 mm or 105.000 mm" in err
+    )
