@@ -136,6 +136,5 @@ def optimise(job: Job, step: Step = ignore) -> Design:
     step("finding minimum cut lengths")
     design = Design(placed, solution, bound, report, comparison, cut_lengths(placed), aware, robust, band)
     # a bound is that of the place which was chosen, so it proves nothing of other places
-    if job.machine.placed and design.gap is not None and design.gap <= PROVED:
-        return replace(design, solution=replace(solution, status=SolveStatus.OPTIMAL))
-    return design
+    proved = job.machine.placed and design.gap is not None and design.gap <= PROVED
+    return replace(design, solution=replace(solution, status=SolveStatus.OPTIMAL if proved else SolveStatus.BEST_FOUND))
