@@ -22,6 +22,7 @@ from camwright.validation.bounds.path_dual import (
     turning_peak,
     turning_square,
 )
+from camwright.validation.bounds.path_limited import least_square_limited
 from camwright.validation.bounds.path_task import PathTask
 from camwright.validation.motion import greatest_magnitude
 from camwright.validation.motor import motor_torque, work_drawn
@@ -87,7 +88,7 @@ def _path(task: Task, inertia: FloatArray) -> PathTask:
     """Path of the return, with an inertia at its places."""
     v = task.cut.line_speed
     speeds = float(task.sync(task.sync.end, 1)) * v, float(task.sync(task.sync.start, 1)) * v
-    return PathTask(inertia, task.height, speeds, task.cut.return_zone / v, task.limits.speed)
+    return PathTask(inertia, task.height, speeds, task.cut.return_zone / v, task.limits.speed, task.limits.acceleration)
 
 
 def _constant(profile: CamProfile, task: Task, objective: MotorObjective, motion: Bound) -> Bound:
@@ -144,20 +145,20 @@ def _along_path(profile: CamProfile, task: Task, objective: MotorObjective) -> B
     machine = task.machine
     q = task.slave_at_sync_end + np.linspace(0.0, task.height, PLACES)
     path = _path(task, np.asarray(machine.inertia(q)) + 0.0 * q)
-    ratio, torque = machine.motor_ratio, motor_torque(profile, task)
+    ratio, torque, turns = machine.motor_ratio, motor_torque(profile, task), task.reverses and path.may_rest
     if objective == "rms_torque":
         return _square(path, torque, task)
     if objective == "energy":
         zone = _zone_energy(profile, torque, task)
         found = work_drawn(torque, profile, machine) - zone
         # a motion that turns must come from rest to the last speed
-        turning = path.energies[1] if task.reverses else math.inf
+        turning = path.energies[1] if turns else math.inf
         return Bound(zone + (min(least_drawn(path, found), turning) if found > 0 else 0.0), PATH)
     zone = _zone_peak(profile, task)
     greatest = greatest_magnitude(torque, 0).value
     if greatest <= zone * (1 + EDGE):
         return Bound(zone, ZONE)
-    turning = turning_peak(path, _around(task)) / ratio if task.reverses else math.inf
+    turning = turning_peak(path, _around(task)) / ratio if turns else math.inf
     back = min(_least_peak(path, zone * ratio, greatest * ratio) / ratio, turning)
     return Bound(zone, ZONE) if zone >= back else Bound(back, PATH)
 
@@ -173,7 +174,7 @@ def _square(path: PathTask, torque: CamProfile, task: Task) -> Bound:
     whole = torque.mean_square(0) * cut.period
     zone = _zone_square(torque, task)
     level = max(whole - zone, 1e-300) * ratio**2
-    if task.reverses:
+    if task.reverses and path.may_rest:
         level = min(level, turning_square(path, _around(task)))
     found, method = _least_square(path, level)
     return Bound(math.sqrt((max(found, 0.0) / ratio**2 + zone) / cut.period), method)
@@ -181,7 +182,7 @@ def _square(path: PathTask, torque: CamProfile, task: Task) -> Bound:
 
 def _least_square(path: PathTask, level: float) -> tuple[float, str]:
     """Bound of the integral of the squared torque by both roads, at most the level, and the better one's name."""
-    found, method = min(least_square_in_time(path), level), CONVEX
+    found, method = min(max(least_square_in_time(path), least_square_limited(path)), level), CONVEX
     if found < level * (1 - NEAR):
         standing = standing_square(path)
         below = level if standing > level else BELOW**2 * standing

@@ -32,6 +32,8 @@ SMALL = 1e-3
 REGULAR = 1e-9
 """Weight that keeps what no place asks for from running away."""
 
+EMPTY = 1e-12
+"""Share of the greatest kinetic energy by which a tube's bounds may cross by rounding."""
 RESTS, RESTS_OUT = 4001, 12.0
 """Times of a rest that are looked at, and how far the logarithm of the ratio of its two parts goes on either side."""
 BETWEEN_RESTS = 1e-3
@@ -45,6 +47,17 @@ class Tube:
     low: FloatArray
     high: FloatArray
 
+    @property
+    def empty(self) -> bool:
+        """Whether no motion stays in it."""
+        return bool((self.low > self.high + EMPTY * float(self.high.max())).any())
+
+
+def _within_reach(task: PathTask, low: FloatArray, high: FloatArray) -> Tube:
+    """Tube of the motions between two kinetic energies that keep to speed and acceleration."""
+    least, greatest = task.reach
+    return Tube(np.maximum(low, least), np.minimum(high, greatest))
+
 
 def square_tube(task: PathTask, level: float) -> Tube:
     """Tube of the motions whose integral of the squared torque over time is below a level."""
@@ -54,12 +67,14 @@ def square_tube(task: PathTask, level: float) -> Tube:
     line = ends[0] + (ends[1] - ends[0]) * s / whole
     spare = max(9.0 / 16.0 * level - (ends[1] - ends[0]) ** 2 / whole, 0.0)
     half = np.sqrt(spare * s * (whole - s) / whole)
-    return Tube(np.maximum(line - half, 0.0) ** (4 / 3), np.minimum((line + half) ** (4 / 3), task.top))
+    return _within_reach(task, np.maximum(line - half, 0.0) ** (4 / 3), (line + half) ** (4 / 3))
 
 
 def standing_square(task: PathTask) -> float:
-    """Least integral of the squared torque of a motion that stands somewhere."""
-    s = task.stretched[1:-1]
+    """Least integral of the squared torque of a motion that stands somewhere; infinite where the acceleration forbids that."""
+    s = task.stretched[1:-1][task.reach[0][1:-1] <= 0.0]
+    if not len(s) or not task.may_rest:
+        return math.inf
     first, last = (energy**1.5 for energy in task.energies)
     return 16.0 / 9.0 * float((first / s + last / (task.stretched[-1] - s)).min())
 
@@ -116,7 +131,7 @@ def drawn_tube(task: PathTask, level: float) -> Tube:
     """Tube of the motions that draw less energy than a level."""
     first, last = task.energies
     count = len(task.inertia)
-    return Tube(np.full(count, max(last - level, 0.0)), np.minimum(np.full(count, first + level), task.top))
+    return _within_reach(task, np.full(count, max(last - level, 0.0)), np.full(count, first + level))
 
 
 def peak_tube(task: PathTask, level: float) -> Tube:
@@ -125,25 +140,25 @@ def peak_tube(task: PathTask, level: float) -> Tube:
     q = np.linspace(0.0, task.way, len(task.inertia))
     low = np.maximum(first - level * q, last - level * (task.way - q))
     high = np.minimum(first + level * q, last + level * (task.way - q))
-    return Tube(np.maximum(low, 0.0), np.minimum(high, task.top))
+    return _within_reach(task, np.maximum(low, 0.0), high)
 
 
 def least_square(task: PathTask, level: float) -> float:
     """Lower bound of the integral of the squared torque over time of every motion: at most the level, (N·m)² s."""
-    return min(level, _bound(task, square_tube(task, level), "square", level))
+    tube = square_tube(task, level)
+    return level if tube.empty else min(level, _bound(task, tube, "square", level))
 
 
 def least_drawn(task: PathTask, level: float) -> float:
     """Lower bound of the energy drawn by every motion: at most the level (J)."""
-    return min(level, _bound(task, drawn_tube(task, level), "drawn", level))
+    tube = drawn_tube(task, level)
+    return level if tube.empty else min(level, _bound(task, tube, "drawn", level))
 
 
 def no_motion_below(task: PathTask, level: float) -> bool:
     """Tell whether it is proved that every motion has a torque above a level somewhere."""
     tube = peak_tube(task, level)
-    if bool((tube.low > tube.high * (1 + 1e-12)).any()):
-        return True
-    return _bound(task, tube, "peak", level) > 0.0
+    return tube.empty or _bound(task, tube, "peak", level) > 0.0
 
 
 def _bound(task: PathTask, tube: Tube, kind: str, level: float) -> float:

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from camwright.profiles.polynomial.profile import FloatArray
+
+ROUNDING = 1e-9
+"""Share of the way by which a motion may miss its end: rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,6 +30,8 @@ class PathTask:
         Time that the motion takes (s).
     greatest
         Greatest speed allowed.
+    acceleration
+        Greatest acceleration allowed, either way.
     """
 
     inertia: FloatArray
@@ -33,6 +39,7 @@ class PathTask:
     speeds: tuple[float, float]
     time: float
     greatest: float
+    acceleration: float = math.inf
 
     @cached_property
     def stretched(self) -> FloatArray:
@@ -50,3 +57,40 @@ class PathTask:
     def top(self) -> FloatArray:
         """Greatest kinetic energy allowed at the places (J)."""
         return 0.5 * self.inertia * self.greatest**2
+
+    @cached_property
+    def reach(self) -> tuple[FloatArray, FloatArray]:
+        """Least and greatest kinetic energy at the places (J) of a motion that never turns and keeps to speed and acceleration."""
+        if not math.isfinite(self.acceleration):
+            return np.zeros(len(self.inertia)), self.top
+        q = np.linspace(0.0, self.way, len(self.inertia))
+        gains = 2.0 * self.acceleration * q, 2.0 * self.acceleration * (self.way - q)
+        first, last = (speed**2 for speed in self.speeds)
+        low = np.maximum(np.maximum(first - gains[0], last - gains[1]), 0.0)
+        high = np.minimum(first + gains[0], last + gains[1])
+        return 0.5 * self.inertia * low, np.minimum(0.5 * self.inertia * high, self.top)
+
+    @property
+    def may_rest(self) -> bool:
+        """Whether a motion that keeps to speed and acceleration can come to rest on the way, or turn, and still arrive in time.
+
+        From ``v`` to rest in ``t`` it covers at most ``V²/A - v²/(2 A)`` with ``V = (A t + v)/2``, or goes on at its greatest speed.
+        That is convex in ``t``, so of all times of the rest the earliest or the latest leaves most.
+        """
+        if not math.isfinite(self.acceleration):
+            return True
+        earliest, latest = self.speeds[0] / self.acceleration, self.time - self.speeds[1] / self.acceleration
+        if earliest > latest:
+            return False
+        farthest = max(
+            self._farthest(self.speeds[0], t) + self._farthest(self.speeds[1], self.time - t)
+            for t in (earliest, latest)
+        )
+        return farthest >= self.way * (1 - ROUNDING)
+
+    def _farthest(self, speed: float, time: float) -> float:
+        """Longest way from a speed to rest in a time."""
+        limit = self.acceleration
+        top = min(0.5 * (limit * time + speed), self.greatest)
+        spare = max(time - (2 * top - speed) / limit, 0.0)
+        return (top**2 - 0.5 * speed**2) / limit + top * spare

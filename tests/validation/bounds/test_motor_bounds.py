@@ -29,6 +29,7 @@ from camwright.validation.bounds.path_dual import (
     turning_peak,
     turning_square,
 )
+from camwright.validation.bounds.path_limited import least_square_limited
 from camwright.validation.bounds.path_task import PathTask
 from camwright.validation.motor import measure_motor
 
@@ -212,3 +213,37 @@ def test_a_crank_that_may_turn_has_as_sharp_a_bound_as_one_that_may_not() -> Non
         found[reversal] = lower_bound(profile, task, "rms_torque").value / measure_motor(profile, task).rms_torque
     assert found[True] >= found[False] - 1e-3
     assert found[True] > 0.97
+
+
+def test_without_a_limit_that_binds_the_acceleration_s_road_is_the_other_one() -> None:
+    q = np.linspace(0.0, 2.0, 501)
+    path = PathTask(_inertia(q), 2.0, (1.0, 1.5), 0.8, 9.0, 1e3)
+    assert least_square_limited(path) == pytest.approx(least_square_in_time(path), rel=5e-3)
+    assert least_square_limited(replace(path, acceleration=math.inf)) == 0.0
+
+
+@pytest.mark.parametrize("acceleration", [8.0, 10.0, 14.0])
+def test_no_motion_within_its_acceleration_goes_below_the_bound_that_knows_it(acceleration: float) -> None:
+    """The motion of greatest acceleration up and down of a constant inertia is the only one in its time: the bound is its torque's."""
+    way, v, inertia = 1.0, 1.0, 0.6
+    top = math.sqrt(v**2 + acceleration * way)
+    time = 2 * (top - v) / acceleration
+    path = PathTask(np.full(501, inertia), way, (v, v), time * (1 + 1e-4), 50.0, acceleration)
+    only = (inertia * acceleration) ** 2 * time
+    assert only * 0.97 <= least_square_limited(path) <= only * (1 + 1e-4)
+    assert least_square_in_time(path) < 0.95 * only
+    assert not path.may_rest
+    assert standing_square(path) == math.inf
+
+
+def test_the_reach_and_the_rests_of_an_acceleration() -> None:
+    """Two brakings at the limit, ``v²/(2 A)`` and ``w²/(2 A)``, fill a way in ``v/A + w/A``: then, and not a little sooner, it may rest."""
+    v, w, limit = 1.0, 2.0, 4.0
+    way, time = (v**2 + w**2) / (2 * limit), (v + w) / limit
+    path = PathTask(np.full(101, 2.0), way, (v, w), time * (1 + 1e-12), 9.0, limit)
+    assert path.may_rest
+    assert not replace(path, time=0.999 * time).may_rest
+    low, high = path.reach
+    assert (low[0], low[-1]) == (pytest.approx(v**2), pytest.approx(w**2))
+    assert low.min() == pytest.approx(0.0, abs=0.05)
+    assert (low <= high * (1 + 1e-12)).all()
