@@ -10,6 +10,7 @@ import math
 import sys
 import time
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
@@ -19,6 +20,8 @@ from camwright.profiles.errors import CamwrightError
 from camwright.profiles.machines import RotaryKnife
 from camwright.studies.envelope import Edge, envelope_answer
 from camwright.studies.reach import fails, stand_in
+
+RESULTS = Path(__file__).parent / "results" / "envelopes.csv"
 
 SEED, LENGTHS, TRIED = 7, 7, 12
 """Seed of the jobs, cut lengths of a map, and places tried on each edge."""
@@ -88,9 +91,13 @@ def main() -> None:
         ):
             for total, more in enumerate(wrong(job, edge, random, checked=checked)):
                 totals[name][total] += more
+    seconds = (time.process_time() - began) / count
+    lines = ["edge,envelopes,seed,places,wrong,processor_s_an_envelope"]
     for name, (bad, tried) in totals.items():
         print(f"{name}: {bad} of {tried} places wrong")
-    print(f"{(time.process_time() - began) / count:.1f} s an envelope")
+        lines.append(f"{name},{count},{SEED},{tried},{bad},{seconds:.1f}")
+    print(f"{seconds:.1f} s an envelope")
+    RESULTS.write_text("\n".join(lines) + "\n")
 
 
 if __name__ == "__main__":

@@ -46,6 +46,8 @@ ASIDE, ASIDE_EACH, LOOKED = 2e-3, 4e-2, 6
 FURTHER = (1.0, 1.02, 1.1)
 # Shares of the least tolerance that a programme keeps, tried in turn.
 WIDER = (1.0 + ASIDE, 1.01, 1.1, 1.5)
+# What binds where the error alone can be held to the tolerance, and the ratio of the axis cannot be held to what goes with it.
+AXIS_RATIO = "axis_ratio"
 # So much faster grows what is looked at.
 GROWN = 4.0
 # Samples that a servo remembers and those of a cycle, together, that are looked at.
@@ -263,11 +265,14 @@ def _infeasible(problem: AxisProblem, settles: _Ways | None) -> InfeasibleError:
     ways = "; ".join(
         f"{each.change}{' from' if each.change == 'line_speeds' else ''} {{{each.change}}}" for each in suggestions
     )
+    alone = AxisProgramme(problem).solve("sync_error", None)
+    by_ratio = alone is not None and alone[1] <= 1.0
     excess = (needed - tolerance) * 1e3
     text = (
         f"{{@sync_tolerance}} = {{tolerance}}: no {problem.command} command within the limits holds the axis to it in the shear zone and "
         f"the ratio of the axis to {_percent(cut, tolerance)} (twice the tolerance over the shear zone); the least that one holds is "
         f"{{needed}} and {_percent(cut, needed)}, {{excess}} too much"
+        + ("; the error alone is held to {alone}: the ratio binds" if by_ratio else "")
         + ("" if kept is None or kept == cut.line_speed else "; one is held to it from {line_speeds} up")
         + (f"; what works: {ways}" if ways else "")
     )
@@ -275,10 +280,11 @@ def _infeasible(problem: AxisProblem, settles: _Ways | None) -> InfeasibleError:
         ("tolerance", Value(tolerance, "m", 6)),
         ("needed", Value(needed, "m", 6)),
         ("excess", Value(needed - tolerance, "m", 4)),
+        *((("alone", Value(alone[1] * tolerance, "m", 3)),) if alone is not None and by_ratio else ()),
     )
     return InfeasibleError(
         Message(text, (*values, *((each.change, _offered(each, cut)) for each in suggestions))),
-        "sync_tolerance",
+        AXIS_RATIO if by_ratio else "sync_tolerance",
         excess,
         "mm",
         suggestions,
