@@ -148,7 +148,12 @@ def _views(study: ListStudy) -> list[RenderableType]:
 def _seams(study: ListStudy) -> RenderableType:
     """Show what was found at the seams of each target's tables."""
     seams = new_table(title="Seams of the tables as read back", title_justify="left")
-    for name in ("target", "numbers", "velocity jump\nm/s", "acceleration jump\nm/s²", ""):
+    units = study.planned.job.units
+    speed, acceleration = (
+        f"velocity jump\n{unit_shown('m/s', units)}",
+        f"acceleration jump\n{unit_shown('m/s^2', units)}",
+    )
+    for name in ("target", "numbers", speed, acceleration, ""):
         seams.add_column(name, justify="right" if "jump" in name else "left")
     for table in study.tables:
         told = [
@@ -158,7 +163,11 @@ def _seams(study: ListStudy) -> RenderableType:
         ]
         verdict = new_text("; ".join(told), "bold red") if told else new_text("passed", "green")
         seams.add_row(
-            table.name, table.number_format, number(table.jump.velocity), number(table.jump.acceleration), verdict
+            table.name,
+            table.number_format,
+            number(converted(table.jump.velocity, "m/s", units)),
+            number(converted(table.jump.acceleration, "m/s^2", units)),
+            verdict,
         )
     return seams
 
@@ -168,7 +177,7 @@ def _said(study: ListStudy, changes: int) -> str:
     planned = study.planned
     units, plan = planned.job.units, planned.line
     lines = [
-        f"{plan.time:.5g} s on a line that ramps with {planned.job.line.acceleration:.4g} m/s²",
+        f"{plan.time:.5g} s on a line that ramps with {with_unit(planned.job.line.acceleration or 0.0, 'm/s^2', 4, units)}",
         f"{planned.time_at_slowest:.5g} s at the slowest piece's speed",
         f"scrap {with_unit(planned.asked.scrap, 'm', 5, units)}",
     ]

@@ -343,7 +343,8 @@ def _tops(
         if (found[more] <= 0.0).any():
             length = float(lengths[more][found[more] <= 0.0][0])
             raise InfeasibleError(
-                f"no cam of {with_unit(length, 'm', 4, job.units)} bears the line's ramp of {ramp:.4g} m/s^2; let it ramp more gently",
+                f"no cam of {with_unit(length, 'm', 4, job.units)} bears the line's ramp of "
+                f"{with_unit(ramp, 'm/s^2', 4, job.units)}; let it ramp more gently",
                 "line.acceleration",
                 None,
                 "m/s^2",

@@ -21,7 +21,7 @@ def greatest_gain(delay: int) -> float:
 
 def gain_without_overshoot(delay: int) -> float:
     """Greatest gain whose answer to a step does not overshoot, ``n^n / (n+1)^(n+1)``: the two real roots meet. 1 without a delay."""
-    return float(delay**delay) / float((delay + 1) ** (delay + 1))
+    return (delay / (delay + 1)) ** delay / (delay + 1)
 
 
 def noise_share(gain: float, delay: int = 0) -> float:

@@ -117,3 +117,20 @@ def test_an_audit_of_an_inch_job_is_in_inches(job: Path, tmp_path: Path, capsys:
     assert "following error of the servo (in)" in said
     assert "-0.0 %" not in said
     assert not re.search(r"\((mm|m/s[²³]?)\)", said)
+
+
+@pytest.mark.parametrize("command", ["ramps", "marks", "cutlist", "simulate"])
+def test_production_is_told_in_inches(
+    command: str, job: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "200")
+    order = tmp_path / "order.csv"
+    order.write_text("length [in],quantity\n24,2\n18,1\n", encoding="utf-8")
+    ramp = ["--line-acceleration", "3 ft/s^2"]
+    more = {"cutlist": [str(order), *ramp], "simulate": ["--list", str(order), *ramp]}.get(command, [])
+    assert main([command, str(job), *more, "--out", str(tmp_path / "out"), "--no-figures"]) == 0
+    said = capsys.readouterr().out
+    assert not METRIC.search(said), METRIC.search(said)
+    assert "m/s" not in said
+    if command == "cutlist":
+        assert "ramps with 3 ft/s²" in said

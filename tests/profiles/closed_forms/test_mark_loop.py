@@ -19,6 +19,9 @@ def errors(gain: float, delay: int, noise: np.ndarray, start: float) -> np.ndarr
 def test_gains_of_the_first_delays() -> None:
     assert [greatest_gain(n) for n in range(5)] == pytest.approx([2, 1, 0.618, 0.445, 0.347], abs=5e-4)
     assert [gain_without_overshoot(n) for n in range(5)] == pytest.approx([1, 1 / 4, 0.148, 0.105, 0.082], abs=5e-4)
+    assert gain_without_overshoot(1000) == pytest.approx(
+        1 / (1000.5 * math.e), rel=1e-6
+    )  # beyond what whole numbers can be divided by
 
 
 @pytest.mark.parametrize("delay", range(5))
