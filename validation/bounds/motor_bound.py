@@ -22,7 +22,7 @@ from camwright.validation.bounds.path_dual import (
     turning_peak,
     turning_square,
 )
-from camwright.validation.bounds.path_limited import least_square_limited
+from camwright.validation.bounds.path_limits import least_square_limited
 from camwright.validation.bounds.path_task import PathTask
 from camwright.validation.motion import greatest_magnitude
 from camwright.validation.motor import motor_torque, work_drawn

@@ -29,7 +29,7 @@ from camwright.validation.bounds.path_dual import (
     turning_peak,
     turning_square,
 )
-from camwright.validation.bounds.path_limited import least_square_limited
+from camwright.validation.bounds.path_limits import least_square_limited
 from camwright.validation.bounds.path_task import PathTask
 from camwright.validation.motor import measure_motor
 
