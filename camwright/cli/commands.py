@@ -129,7 +129,7 @@ COMMANDS: dict[str, Command] = {
         "camwright recipe board.toml --targets codesys --revision B",
     ),
     "verify": Command(
-        "Prove that a recipe folder is what was written, and that its tables are the motion that it promises.",
+        "Prove that a recipe folder is what was written, that its tables are the motion that it promises, and its sheet the cam's.",
         SHEET,
         "camwright verify recipe",
     ),

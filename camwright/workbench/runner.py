@@ -20,6 +20,9 @@ JOB_FILE = "job.toml"
 """What the page's job is called where commands run."""
 
 
+_PROCESSES = multiprocessing.get_context("spawn")
+"""How processes begin: with nothing of the server's."""
+
 CommandLine = Callable[[Sequence[str]], int]
 """The command line: arguments to exit code, its answer on standard output."""
 
@@ -64,7 +67,6 @@ class Runner:
 
     def __init__(self, command_line: CommandLine) -> None:
         self._command_line = command_line
-        self._context = multiprocessing.get_context("spawn")
         self._child = self._spawn()
         self._newest: dict[str, int] = {}
         self._running: str | None = None
@@ -73,8 +75,8 @@ class Runner:
 
     def _spawn(self) -> _Child:
         """Start a process that waits for commands."""
-        ours, theirs = self._context.Pipe()
-        process = self._context.Process(target=_serve, args=(theirs, self._command_line), daemon=True)
+        ours, theirs = _PROCESSES.Pipe()
+        process = _PROCESSES.Process(target=_serve, args=(theirs, self._command_line), daemon=True)
         with _deaf():
             process.start()
         theirs.close()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, field
 from typing import cast
 
 import numpy as np
@@ -32,6 +33,28 @@ STILL = 1e-7
 LEAST_PEAK = 1e-6
 
 
+@dataclass
+class _Before:
+    """What earlier programmes leave to later ones.
+
+    Parameters
+    ----------
+    tight
+        Orders of the limits whose rows have been found to matter.
+    turned
+        Unknowns of the last answer whose motor's objective was made least.
+    vertices
+        Optima of linear programmes, by what was asked.
+    answer
+        The last answer and its command.
+    """
+
+    tight: set[int]
+    turned: FloatArray | None = None
+    vertices: dict[tuple[object, ...], Vertex | None] = field(default_factory=dict)
+    answer: tuple[FloatArray, CamProfile] | None = None
+
+
 class AxisProgramme:
     """The programmes of one `AxisProblem`; rows found by one answer serve the next.
 
@@ -44,10 +67,7 @@ class AxisProgramme:
         self.ramps = RampRows(problem)
         self.solved = 0
         # a return alone comes near to its limits, a whole cycle has room: rows of its limits come when they matter
-        self._tight = set(range(4)) if problem.command == "in_sync" else set[int]()
-        self._turned: FloatArray | None = None
-        self._vertices: dict[tuple[object, ...], Vertex | None] = {}
-        self._answer: tuple[FloatArray, CamProfile] | None = None
+        self._before = _Before(set(range(4)) if problem.command == "in_sync" else set())
 
     @property
     def margin(self) -> float:
@@ -150,9 +170,9 @@ class AxisProgramme:
 
     def profile(self, unknowns: FloatArray) -> CamProfile:
         """Return the command of an answer, from the start of the return; asked again, the same one."""
-        if self._answer is None or self._answer[0] is not unknowns:
-            self._answer = unknowns, self.problem.basis.profile(unknowns * self.problem.scale)
-        return self._answer[1]
+        if self._before.answer is None or self._before.answer[0] is not unknowns:
+            self._before.answer = unknowns, self.problem.basis.profile(unknowns * self.problem.scale)
+        return self._before.answer[1]
 
     def keeps_axis_limits(self, profile: CamProfile) -> bool:
         """Whether the nominal axis keeps its limits, to the share that rows of it are drawn in by."""
@@ -165,7 +185,7 @@ class AxisProgramme:
         self.rows.begin(linear=_linear(cost), ratio=elastic or band == 1.0)
         if OBJECTIVES[cost].of == "motor" or cost == "sync_error":
             # the former are not quickly solved again; in the latter nothing but limits holds what the shear zone does not see
-            self._tight = set(range(4))
+            self._before.tight = set(range(4))
         while True:
             found = self._solve_once(cost, band, caps, elastic=elastic)
             if found is None or not self._tighten(found[0]):
@@ -175,13 +195,13 @@ class AxisProgramme:
         """Ask from now on for the rows of limits that an answer without them breaks; whether there are any."""
         broken = set()
         for order, (low, high) in self.problem.limits.items():
-            if order not in self._tight:
+            if order not in self._before.tight:
                 matrix, constant = self.problem.basis.differences[order]
                 values = matrix @ (unknowns * self.problem.scale) + constant
                 room = LIMIT_MARGIN * max(abs(low), abs(high)) if order else 0.0
                 if values.min() < low + room or values.max() > high - room:
                     broken.add(order)
-        self._tight |= broken
+        self._before.tight |= broken
         return self.ramps.tighten(unknowns, LIMIT_MARGIN) or bool(broken)
 
     def _solve_once(
@@ -193,10 +213,10 @@ class AxisProgramme:
         peak = _linear(cost)
         # rows only ever come: the optimum with fewer of them is where the next programme begins
         kind = (cost, band, tuple(caps.items()), elastic)
-        programme = ConvexProgramme(count + peak, self._vertices.get(kind))
+        programme = ConvexProgramme(count + peak, self._before.vertices.get(kind))
         bounds = self.problem.limits
         for order, (low, high) in bounds.items():
-            if order not in self._tight and order not in caps:
+            if order not in self._before.tight and order not in caps:
                 continue
             peak_allowed = max(caps.get(order, math.inf), LEAST_PEAK * high)
             size = min(max(abs(low), abs(high)), peak_allowed)
@@ -228,7 +248,7 @@ class AxisProgramme:
             matrix, constant = self.problem.basis.differences[OBJECTIVES[cost].order]
             programme.add_peak(matrix * (self.problem.scale / unit), constant / unit, -1.0, 1.0)
         answer = programme.solve(np.append(np.zeros(count), 1.0))
-        self._vertices[kind] = programme.vertex
+        self._before.vertices[kind] = programme.vertex
         return None if answer is None else (answer[:-1], max(0.0, float(answer[-1])) * unit)
 
     def _least_torque(self, programme: ConvexProgramme, cost: MotorObjective) -> tuple[FloatArray, float] | None:
@@ -236,9 +256,9 @@ class AxisProgramme:
         gentle = self._mean_square(programme, 2)
         if gentle is None:
             return None
-        start = gentle[0] if self._turned is None else self._turned
-        self._turned = self.problem.torque.minimise(cost, programme.rows(), start)
-        return self._turned, self.problem.torque.value(self._turned, cost)
+        start = gentle[0] if self._before.turned is None else self._before.turned
+        self._before.turned = self.problem.torque.minimise(cost, programme.rows(), start)
+        return self._before.turned, self.problem.torque.value(self._before.turned, cost)
 
     def _mean_square(self, programme: ConvexProgramme, order: int) -> tuple[FloatArray, float] | None:
         """Least mean square of a derivative: linear between the nodes (order 2) or constant on the intervals (order 3)."""

@@ -88,7 +88,7 @@ def dual_simplex(
     active = state.active
     if start is None and active.min() < len(cost):
         return None  # the box binds
-    return Vertex(state.x, state.matrix[active], state.bound[active])
+    return Vertex(state.x, state.of.matrix[active], state.of.bound[active])
 
 
 def _corner(cost: FloatArray) -> Vertex:
@@ -97,23 +97,32 @@ def _corner(cost: FloatArray) -> Vertex:
     return Vertex(sign * _BOX, np.diag(sign), np.full(len(cost), _BOX))
 
 
+@dataclass(frozen=True, eq=False)
+class _Programme:
+    """Rows ``matrix @ x <= bound``, their lengths, and the cost."""
+
+    matrix: FloatArray
+    bound: FloatArray
+    size: FloatArray
+    cost: FloatArray
+
+
 class _State:
     """A vertex on the way: rows that bind there, the inverse of their matrix, their prices."""
 
     def __init__(self, matrix: FloatArray, bound: FloatArray, cost: FloatArray) -> None:
-        self.matrix, self.bound, self._cost = matrix, bound, cost
-        self._size = np.maximum(np.linalg.norm(matrix, axis=1), 1e-300)
+        self.of = _Programme(matrix, bound, np.maximum(np.linalg.norm(matrix, axis=1), 1e-300), cost)
         self.active: NDArray[np.intp] = np.arange(len(cost))
         self._since = 0
         self._renew()
 
     def _renew(self) -> None:
         """Make the inverse anew, and of it the point and the prices."""
-        held, bound = self.matrix[self.active], self.bound[self.active]
+        held, bound = self.of.matrix[self.active], self.of.bound[self.active]
         self._inverse = np.linalg.inv(held)
         x = self._inverse @ bound
         self.x = x + self._inverse @ (bound - held @ x)
-        self.price = -(self._cost @ self._inverse)
+        self.price = -(self.of.cost @ self._inverse)
         self._since = 0
 
     def run(self) -> NoPoint | None:
@@ -125,7 +134,7 @@ class _State:
             Rows that bind are parallel by rounding, or there were too many exchanges.
         """
         for _ in range(_MOST // _EXCHANGES):
-            broken = self.matrix @ self.x - self.bound
+            broken = self.of.matrix @ self.x - self.of.bound
             broken[self.active] = 0.0
             rows = np.nonzero(broken > _ACCURATE)[0]
             if not len(rows):
@@ -134,7 +143,7 @@ class _State:
                 self._renew()
                 continue
             if len(rows) > _PASS:
-                rows = rows[np.argpartition(-broken[rows] / self._size[rows], _PASS)[:_PASS]]
+                rows = rows[np.argpartition(-broken[rows] / self.of.size[rows], _PASS)[:_PASS]]
             proof = self._among(rows, broken[rows])
             if proof is not None:
                 return proof
@@ -142,7 +151,7 @@ class _State:
 
     def _among(self, rows: NDArray[np.intp], broken: FloatArray) -> NoPoint | None:
         """Exchange some rows among those given, that which is broken most first."""
-        matrix, size = self.matrix[rows], self._size[rows]
+        matrix, size = self.of.matrix[rows], self.of.size[rows]
         for _ in range(_EXCHANGES):
             worst = int((broken / size).argmax())
             if broken[worst] <= _ACCURATE:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
+
 from camwright.profiles.tables.st_program import (
     Assignment,
     Call,
@@ -21,16 +23,23 @@ _TYPED = frozenset(
 )
 
 
+@dataclass(frozen=True)
+class _Found:
+    """Statements found so far, and assignments whose place is not known, by their last name and line."""
+
+    declarations: list[Declaration] = field(default_factory=list)
+    assignments: list[Assignment] = field(default_factory=list)
+    calls: list[Call] = field(default_factory=list)
+    unplaced: list[tuple[str, int]] = field(default_factory=list)
+
+
 class Reader:
     """Reads one text from its first word to its last; `program` is the result."""
 
     def __init__(self, text: str, place: str) -> None:
         self.words = Words(text, place)
         self.variables: dict[str, int] = {}
-        self.declarations: list[Declaration] = []
-        self.assignments: list[Assignment] = []
-        self.calls: list[Call] = []
-        self.unplaced: list[tuple[str, int]] = []
+        self._found = _Found()
         self._last = ""
 
     # -- statements -------------------------------------------------------------------------------------------------
@@ -42,7 +51,8 @@ class Reader:
                 self.statement()
             else:
                 self.words.step()
-        return Program(tuple(self.declarations), tuple(self.assignments), tuple(self.calls), tuple(self.unplaced))
+        found = self._found
+        return Program(tuple(found.declarations), tuple(found.assignments), tuple(found.calls), tuple(found.unplaced))
 
     def statement(self) -> None:
         """Read a declaration, an assignment or a call; of anything else one word is passed over."""
@@ -63,10 +73,10 @@ class Reader:
             elif isinstance(value, Word) and (number := self.known(value)) is not None:
                 value = number
             if path is None:
-                self.unplaced.append((self._last, line))
+                self._found.unplaced.append((self._last, line))
             self.assign(path, value, line)
         elif self.words.now.text == "(":
-            self.calls.append(self.call(str(path[-1]) if path else "", 0))
+            self._found.calls.append(self.call(str(path[-1]) if path else "", 0))
 
     def assign(self, path: tuple[str | int, ...] | None, value: Value, line: int) -> None:
         """Note an assignment; whole numbers given to plain variables are remembered, for they serve as indices."""
@@ -77,7 +87,7 @@ class Reader:
                 self.variables[path[0]] = int(value)
             else:
                 self.variables.pop(path[0], None)
-        self.assignments.append(Assignment(path, value, line))
+        self._found.assignments.append(Assignment(path, value, line))
 
     def sum_of(self, value: Value) -> Value:
         """Add a number to a variable, ``point + 1``; any other expression is no number, which table readers refuse."""
@@ -120,7 +130,9 @@ class Reader:
             value = self.value(0)
             if isinstance(value, float) and not bounds and value == int(value):
                 self.variables[name.lower()] = int(value)
-        self.declarations.append(Declaration(name, type_name.rpartition(".")[2].lower(), tuple(bounds), value, line))
+        self._found.declarations.append(
+            Declaration(name, type_name.rpartition(".")[2].lower(), tuple(bounds), value, line)
+        )
 
     def bound(self) -> int:
         """One bound of an array."""
