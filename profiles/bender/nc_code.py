@@ -116,7 +116,7 @@ def read_program(text: str, place: str = "program", command: str | None = None) 
         A line that is none of: header, feed, bend, return, end; or a bend without a return. Each is named with its
         line.
     """
-    read = _Read(command=command)
+    read = _Read(command)
     faults: list[str] = []
     for row, line in enumerate(text.splitlines(), start=1):
         found = None if read.ended else _MOTION.fullmatch(line)
@@ -129,27 +129,31 @@ def read_program(text: str, place: str = "program", command: str | None = None) 
         faults.append(f"{place}: the program has no end (M30)")
     if faults:
         raise InputError(*faults)
-    feeds = np.array([*read.feeds, read.fed], dtype=np.int64)
-    return NcProgram(read.name, feeds, np.array(read.bends, dtype=np.int64), np.array(read.cuts, dtype=np.int64))
+    feeds = np.array([*read.of.feeds, read.fed], dtype=np.int64)
+    return NcProgram(read.name, feeds, np.array(read.of.bends, dtype=np.int64), np.array(read.of.cuts, dtype=np.int64))
+
+
+@dataclass(frozen=True)
+class _Parts:
+    """Feeds before each bend (µm), bends, and what was fed from the start at each cut (µm)."""
+
+    feeds: list[int] = field(default_factory=list)
+    bends: list[int] = field(default_factory=list)
+    cuts: list[int] = field(default_factory=list)
 
 
 @dataclass
 class _Read:
     """What has been read of a program; each line answers with its fault, if it has one."""
 
+    command: str | None
     name: str = ""
-    feeds: list[int] = field(default_factory=list)
-    bends: list[int] = field(default_factory=list)
+    of: _Parts = field(default_factory=_Parts)
     fed: int = 0
     """Fed since the last bend (µm)."""
     bent: bool = False
     """Whether the mould has not returned yet."""
     ended: bool = False
-    command: str | None = None
-    total: int = 0
-    """Fed from the start (µm)."""
-    cuts: list[int] = field(default_factory=list)
-    """Fed from the start at each cut (µm)."""
 
     def words(self, line: str) -> str | None:
         """Read a line without motion: a name, words of the head, the end."""
@@ -158,7 +162,7 @@ class _Read:
         elif self.ended:
             return f"{line[:60]!r} stands after the end of the program"
         elif self.command is not None and not self.bent and _CUT.sub("", line) == self.command:
-            self.cuts.append(self.total)
+            self.of.cuts.append(sum(self.of.feeds) + self.fed)
         elif not (_END.fullmatch(line) or _HEAD.fullmatch(line)):
             return f"{line[:60]!r} is not a header, feed, bend, return or end line"
         elif self.bent:
@@ -177,12 +181,11 @@ class _Read:
         if word == _ANGLE:
             if not 0 < value < FULL_TURN or value == FULL_TURN // 2:
                 return f"mould angle {value / 1e3:.3f}°; a bend lies between 0 and 360°, not at 180°"
-            self.feeds.append(self.fed)
-            self.bends.append(value if value < FULL_TURN // 2 else value - FULL_TURN)
+            self.of.feeds.append(self.fed)
+            self.of.bends.append(value if value < FULL_TURN // 2 else value - FULL_TURN)
             self.fed, self.bent = 0, True
             return None
         self.fed += value
-        self.total += value
         return f"feed {value / 1e3:.3f} mm; the rule is fed forwards only" if value <= 0 else None
 
 
