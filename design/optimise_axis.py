@@ -271,10 +271,10 @@ def _infeasible(problem: AxisProblem, settles: _Ways | None) -> InfeasibleError:
     text = (
         f"{{@sync_tolerance}} = {{tolerance}}: no {problem.command} command within the limits holds the axis to it in the shear zone and "
         f"the ratio of the axis to {_percent(cut, tolerance)} (twice the tolerance over the shear zone); the least that one holds is "
-        f"{{needed}} and {_percent(cut, needed)}, {{excess}} too much"
+        f"{{needed}} and {_percent(cut, needed)}, {{excess}} too much, whatever the axis does elsewhere"
         + ("; the error alone is held to {alone}: the ratio binds" if by_ratio else "")
         + ("" if kept is None or kept == cut.line_speed else "; one is held to it from {line_speeds} up")
-        + (f"; what works: {ways}" if ways else "")
+        + (f"; what works, the axis within its limits: {ways}" if ways else "")
     )
     values = (
         ("tolerance", Value(tolerance, "m", 6)),

@@ -28,14 +28,14 @@ What = Literal["profile", "servo", "comparison"]
 
 @dataclass(frozen=True, eq=False)
 class Result(designing.Design):
-    """A `camwright.Design` with what a notebook needs.
+    r"""A `camwright.Design` with what a notebook needs.
 
     Examples
     --------
     >>> from camwright import load_job, optimise
     >>> result = optimise(load_job())
     >>> "<table>" in result._repr_html_(), result.plot("comparison").title
-    (True, 'paper-600: all profiles, by peak acceleration; † breaks a limit')
+    (True, 'paper-600: all profiles, by peak acceleration\n† breaks a limit of the job')
     """
 
     def plot(self, what: What = "profile") -> Drawing:

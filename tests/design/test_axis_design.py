@@ -114,7 +114,12 @@ def test_a_tolerance_that_no_command_keeps_is_refused_with_ways_out_that_work(na
     assert error.unit == "mm"
     assert error.binding == ("axis_ratio" if "the ratio binds" in str(error) else "sync_tolerance")
     assert f"sync tolerance = {cut.sync_tolerance:g} m" in str(error)
-    assert {each.change for each in error.suggestions} == {"sync_tolerance", "line_speed", "length"}
+    only = (
+        name == "one command only"
+    )  # its axis breaks a limit whatever the tolerance, so no other tolerance alone would do
+    assert {each.change for each in error.suggestions} == {"line_speed", "length"} | (
+        set() if only else {"sync_tolerance"}
+    )
     for each in error.suggestions:
         assert f"{each.change} {each.value:.6g} {each.unit}" in str(error)
         values = {name: getattr(cut, name) for name in UNITS} | {each.change: each.value * UNITS[each.change]}
@@ -126,8 +131,10 @@ def test_a_tolerance_that_no_command_keeps_is_refused_with_ways_out_that_work(na
             servo_response(found.profile, Task(KNIFE, changed, LIMITS), PAPER).shear_zone_error
             <= changed.sync_tolerance
         )
+    if only:
+        return
     wider = next(each for each in error.suggestions if each.change == "sync_tolerance")
-    assert cut.sync_tolerance * 1e3 + error.excess == pytest.approx(wider.value, rel=5e-3)
+    assert cut.sync_tolerance * 1e3 + error.excess <= wider.value * (1 + 5e-3)  # the axis keeps its limits there, too
     least = replace(cut, sync_tolerance=0.98 * (cut.sync_tolerance + error.excess * 1e-3))
     with pytest.raises(InfeasibleError):
         solve_axis(Task(KNIFE, least, LIMITS), "peak_acceleration", command, (PAPER,), suggest=False)
