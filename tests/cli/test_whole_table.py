@@ -79,3 +79,13 @@ def test_columns_of_the_environment_are_obeyed(
     monkeypatch.setenv("COLUMNS", "60")
     assert main() == 0
     assert max(cell_len(line) for line in capsys.readouterr().out.splitlines()) <= 60
+
+
+def test_cells_without_a_column_of_their_own_are_shown() -> None:
+    table = WholeTable(None, {"show_header": False})
+    table.add_row("case", "1")
+    console = Console(width=40, file=StringIO())
+    console.print(table)
+    shown = console.file.getvalue()  # type: ignore[attr-defined]
+    assert "case" in shown
+    assert "1" in shown

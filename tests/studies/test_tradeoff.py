@@ -126,10 +126,10 @@ def test_a_law_that_leaves_the_stroke_breaks_a_limit(carriage: TradeOff) -> None
 def failing(names: set[str]) -> Callable[..., Solution]:
     """Solver that fails on some objectives."""
 
-    def solve_or_fail(task: Task, objective: CommandObjective) -> Solution:
+    def solve_or_fail(task: Task, objective: CommandObjective, *, suggest: bool) -> Solution:
         if objective in names:
             raise SolverError(f"no luck with {objective}")
-        return solve(task, objective)
+        return solve(task, objective, suggest=suggest)
 
     return solve_or_fail
 

@@ -74,7 +74,9 @@ class WholeTable:
     def _columns(self) -> list[_Column]:
         """Put the cells of rows into columns and measure them."""
         found = []
-        for number, (heading, look) in enumerate(self._headings):
+        more = max((len(cells) for cells, _ in self._rows), default=0) - len(self._headings)
+        bare: list[tuple[Cell, dict[str, Any]]] = [("", {})] * more  # cells beyond the columns that were added
+        for number, (heading, look) in enumerate([*self._headings, *bare]):
             cells = tuple(cells[number] if number < len(cells) else "" for cells, _ in self._rows)
             shown = (heading, *cells) if self.look.get("show_header", True) else cells
             most = _longest(shown, words=False)
