@@ -61,7 +61,7 @@ def line_ramps(profile: CamProfile, job: Job) -> LineRamps:
     >>> job = load_job()
     >>> found = line_ramps(optimise(job).profile, job)
     >>> round(found.alone.value, 2), found.up_to.ramp.binds
-    (20.86, 'jerk')
+    (21.15, 'jerk')
     """
     task = job.task
     sync = ramped_sync(profile, task, job.servo) if spectral_radius(job.servo) < 1.0 else None
