@@ -105,8 +105,8 @@ def read_table(target: Target, text: str, place: str) -> CamTable:
 
 _OTHERS = (
     (r"<TcSmItem\b", "an item of a TwinCAT project (.xti)"),
-    (r"\b(?:MOVELINK|FLEXLINK)\s*\(", "a Trio program that moves by MOVELINK or FLEXLINK calls, not by a table"),
-    (r"^\s*E[MP]\s*\d+\s*,\s*\d+[\s\S]*\bET\s*\[", "a Galil program with an ECAM table (EM, EP, ET)"),
+    (r"\b(?:MOVELINK|FLEXLINK)\s{0,9}\(", "a Trio program that moves by MOVELINK or FLEXLINK calls, not by a table"),
+    (r"^[ \t]{0,99}ET[ \t]{0,9}\[", "a Galil program with an ECAM table (EM, EP, ET)"),
 )
 """What other files are, by words that they have: named, so that nobody looks for the option that reads them."""
 

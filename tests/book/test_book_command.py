@@ -40,7 +40,7 @@ def test_the_answer_has_the_agreed_keys(inline: list[int], tmp_path: Path, capsy
         "resumed": 0,
     }
     assert answer["designs_per_s"] > 0
-    assert 10 < answer["peak_rss_mb"] < 1500
+    assert 10 < answer["peak_rss_mb"] < 8000  # of this process, which has run other tests before
     assert [Path(file).name for file in answer["files"]] == [
         "index.html",
         "index.xlsx",

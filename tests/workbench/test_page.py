@@ -14,6 +14,12 @@ Put = Callable[[str, str], None]
 def dragged(page: Any, handle: str, right: float, up: float = 0.0) -> None:
     """Take a handle at its middle and move it by some pixels."""
     box = page.locator(handle).first.bounding_box()
+    for _ in range(50):  # plots that are being drawn anew have no handles for a moment
+        if box is not None:
+            break
+        page.wait_for_timeout(100)
+        box = page.locator(handle).first.bounding_box()
+    assert box is not None
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
     page.mouse.move(x, y)
     page.mouse.down()
