@@ -39,6 +39,7 @@ def book(
     return answer, {design["job"]["si"]["machine"]["sync_at"] for design in designs}
 
 
+@pytest.mark.slow
 def test_one_place_for_all_designs_and_what_it_costs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     plain, own = book(tmp_path, CRANK, capsys)
     assert len(own) == 2

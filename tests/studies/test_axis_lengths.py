@@ -171,6 +171,7 @@ def test_a_tolerance_out_of_reach_ends_with_exit_code_3(capsys: pytest.CaptureFi
     assert caught.value.suggestions == ()
 
 
+@pytest.mark.slow
 def test_a_crank_is_designed_for_its_torque(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     text = (EXAMPLES / "chasing-shear.toml").read_text()
     torques = []

@@ -62,6 +62,7 @@ def found() -> tuple[AxisLengths, BandLengths]:
     return single, band
 
 
+@pytest.mark.slow
 def test_the_issues_shortest_cuts_over_its_band(found: tuple[AxisLengths, BandLengths]) -> None:
     single, band = found
     assert band.line_speeds == pytest.approx((8 / 60, 80 / 60))

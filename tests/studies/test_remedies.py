@@ -96,6 +96,7 @@ def test_without_time_nothing_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     assert found(LAZY) == ()
 
 
+@pytest.mark.slow
 def test_each_suggestion_of_an_infeasible_job_is_designed_and_passes() -> None:
     job = parse_job(FAST, "fast.toml")
     with pytest.raises(InfeasibleError, match="designed and checked") as caught:

@@ -129,6 +129,7 @@ def test_no_ramp_in_time_leaves_the_limits(name: str, line: Line) -> None:
 
 
 @pytest.mark.parametrize("objective", ["rms_torque", "peak_torque", "energy"])
+@pytest.mark.slow
 def test_objectives_of_the_motor_bear_the_ramp(objective: CommandObjective) -> None:
     job = load_job(EXAMPLES / "chasing-shear.toml")
     at = solve(job.task, "peak_acceleration").machine

@@ -95,6 +95,7 @@ def test_a_strong_motor_changes_nothing() -> None:
     assert strong.minimised == pytest.approx(plain.minimised, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_weak_motor_binds_and_the_suggestion_works() -> None:
     limits = replace(LIMITS, motor=MotorCurve(((0.0, 2.2), (110.0, 2.2))))
     with pytest.raises(InfeasibleError, match=r"motor binds") as caught:
