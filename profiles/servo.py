@@ -8,6 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from camwright.profiles.halving import halved
 from camwright.profiles.polynomial.profile import FloatArray
 
 
@@ -236,16 +237,14 @@ def gain_margin(servo: Servo) -> float:
 
     A gain that is small enough is always stable and one that is great enough never is: the factor is bisected to 1e-9.
     """
+
+    def stable(factor: float) -> bool:
+        return spectral_radius(replace(servo, position_gain=factor * servo.position_gain)) < 1.0
+
     high = 1.0
-    while spectral_radius(replace(servo, position_gain=high * servo.position_gain)) < 1.0:
+    while stable(high):
         high *= 2.0
     low = 0.5 * high
-    while not spectral_radius(replace(servo, position_gain=low * servo.position_gain)) < 1.0:
+    while not stable(low):
         high, low = low, 0.5 * low
-    while high - low > 1e-9 * high:
-        middle = 0.5 * (low + high)
-        if spectral_radius(replace(servo, position_gain=middle * servo.position_gain)) < 1.0:
-            low = middle
-        else:
-            high = middle
-    return low
+    return halved(stable, low, high, 1e-9)[0]

@@ -19,6 +19,7 @@ from camwright.design.returns.scaling import resolved
 from camwright.profiles.closed_forms.overshoot import least_overshoot
 from camwright.profiles.closed_forms.transfer import Bounds
 from camwright.profiles.errors import InputError
+from camwright.profiles.halving import halved
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile
@@ -252,12 +253,4 @@ def edge(works: Callable[[float], bool], good: float, bad: float, tolerance: flo
     """Find the value nearest to ``bad`` that works, by bisection from ``good``; None if ``good`` does not work."""
     if not works(good):
         return None
-    while abs(good - bad) > tolerance * abs(bad):
-        middle = 0.5 * (good + bad)
-        if middle in (good, bad):
-            break
-        if works(middle):
-            good = middle
-        else:
-            bad = middle
-    return good
+    return halved(works, good, bad, tolerance)[0]

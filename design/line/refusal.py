@@ -12,6 +12,7 @@ from camwright.design.line.ramped import bears_ramp
 from camwright.design.returns.curve_limits import motor_limits
 from camwright.design.returns.problem import return_problem
 from camwright.profiles.errors import InfeasibleError, InputError, Suggestion
+from camwright.profiles.halving import halved
 from camwright.profiles.message import Message, Value
 from camwright.profiles.task import Task
 
@@ -117,7 +118,5 @@ def _nearest(
         bad = good
     else:
         return
-    for _ in range(HALVINGS):
-        middle = 0.5 * (good + bad)
-        good, bad = (middle, bad) if works(middle) else (good, middle)
+    good, _ = halved(works, good, bad, most=HALVINGS)
     yield from written(change, good, factor, unit, far > given, works, (1.0,))

@@ -18,13 +18,13 @@ from camwright.profiles.closed_forms.run_up import (
 )
 from camwright.profiles.closed_forms.transfer import Bounds, State, Transfer
 from camwright.profiles.closed_forms.turn_back import gentlest_turn, quickest_home, turns_within
+from camwright.profiles.halving import halved
 from camwright.profiles.limits import Limits
 from camwright.profiles.ramp import Aim, Ramp, Stand
 
 ALLOWED = 1e-9
 """Share by which the sync zone may exceed a limit: rounding."""
 
-_HALVINGS = 200
 _STRIDE = 2.0
 _FASTEST = 1e6
 """Factor on the line speed beyond which nothing is looked for."""
@@ -139,7 +139,7 @@ def balanced(at: Stand) -> Stand:
 
     if not enough(1.0):
         return middle
-    least = least_arcs(_eased(at, _edge(enough, 1.0, 0.0)))
+    least = least_arcs(_eased(at, halved(enough, 1.0, 0.0)[0]))
     assert least.run_up is not None  # noqa: S101 - that is what was found
     return at.parked_at(at.zone_start - least.run_up.arc - 0.5 * (whole - least.whole))
 
@@ -164,7 +164,7 @@ def fastest_line(at: Stand, works: Callable[[Stand], bool]) -> float | None:
             if good < 1 / _FASTEST:
                 return None
         good /= _STRIDE
-    return _edge(holds, good, bad) * speed
+    return halved(holds, good, bad)[0] * speed
 
 
 def zone_kept(at: Stand) -> bool:
@@ -260,13 +260,3 @@ def _eased(at: Stand, share: float) -> Stand:
     limits = at.task.limits
     eased = replace(limits, acceleration=share * limits.acceleration)
     return Stand(at.task.with_limits(eased), at.zone, at.park)
-
-
-def _edge(works: Callable[[float], bool], good: float, bad: float) -> float:
-    """Value nearest to ``bad`` that works, by bisection to rounding."""
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (good + bad)
-        if middle in (good, bad):
-            break
-        good, bad = (middle, bad) if works(middle) else (good, middle)
-    return good

@@ -12,6 +12,7 @@ import math
 from dataclasses import dataclass
 
 from camwright.profiles.errors import InputError
+from camwright.profiles.halving import halved
 from camwright.profiles.polynomial.profile import CamProfile
 
 
@@ -184,12 +185,6 @@ def shortest_return_length(height: float, speed: float, acceleration: float, jer
     speed, acceleration, jerk
         Limits of the slave over the master: greatest ratio (above 1), ratio slope (1/m) and its slope (1/m²).
     """
-    low, high = 0.0, height
-    while True:
-        middle = 0.5 * (low + high)
-        if middle in (low, high):
-            return high
-        if middle + greatest_reach(middle, speed - 1, acceleration, jerk) < height:
-            low = middle
-        else:
-            high = middle
+    return halved(lambda length: length + greatest_reach(length, speed - 1, acceleration, jerk) >= height, height, 0.0)[
+        0
+    ]

@@ -13,9 +13,9 @@ consistent set of units; velocities and distances are not negative.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
 from camwright.profiles.closed_forms.transfer import Bounds, State, Transfer, farthest
+from camwright.profiles.halving import halved
 
 REST = State(0.0, 0.0)
 """The state of a slave that stands."""
@@ -23,8 +23,8 @@ REST = State(0.0, 0.0)
 ROUNDING = 1e-12
 """Share of a distance by which it may be too short: rounding."""
 
-_HALVINGS = 200
-"""Bisections at most; each ends where two floats are neighbours."""
+_DOUBLINGS = 200
+"""Of a time, until it is long enough."""
 
 
 def shortest(end: State, bounds: Bounds) -> Transfer | None:
@@ -54,7 +54,7 @@ def gentlest(distance: float, end: State, bounds: Bounds) -> Transfer | None:
         easiest = _within(floor, end, bounds)
         if easiest is not None and easiest.distance <= distance:
             return quickest(distance, end, Bounds(0.0, bounds.greatest_velocity, floor, bounds.jerk))
-        peak = _edge(
+        peak, _ = halved(
             lambda top: (way := _within(top, end, bounds)) is not None and way.distance <= distance,
             bounds.acceleration,
             floor,
@@ -84,7 +84,7 @@ def coolest(distance: float, end: State, bounds: Bounds) -> Transfer | None:
     first = bounds.jerk
     while fits(0.5 * first):
         first *= 0.5
-    return _rise(end, bounds.acceleration, _edge(fits, first, 0.5 * first), bounds)
+    return _rise(end, bounds.acceleration, halved(fits, first, 0.5 * first)[0], bounds)
 
 
 def quickest(distance: float, end: State, bounds: Bounds) -> Transfer | None:
@@ -106,11 +106,11 @@ def quickest(distance: float, end: State, bounds: Bounds) -> Transfer | None:
         return way is not None and way.distance >= distance
 
     late = start
-    for _ in range(_HALVINGS):
+    for _ in range(_DOUBLINGS):
         late *= 2.0
         if reaches(late):
             break
-    return farthest(_edge(reaches, late, start), REST, end, forwards)
+    return farthest(halved(reaches, late, start)[0], REST, end, forwards)
 
 
 def backwards(way: Transfer) -> Transfer:
@@ -173,13 +173,3 @@ def _rise(end: State, top: float, first: float, bounds: Bounds) -> Transfer | No
         hold = (v - level * level / (2 * first) - (level * level - last * last) / (2 * jerk)) / level
     closing = (last - level) / jerk
     return Transfer(REST, ((level / first, first), (max(hold, 0.0), 0.0), (abs(closing), math.copysign(jerk, closing))))
-
-
-def _edge(works: Callable[[float], bool], good: float, bad: float) -> float:
-    """Value nearest to ``bad`` that works, from one that does, by bisection to rounding."""
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (good + bad)
-        if middle in (good, bad):
-            break
-        good, bad = (middle, bad) if works(middle) else (good, middle)
-    return good

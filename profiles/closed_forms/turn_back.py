@@ -9,17 +9,18 @@ peak the quickest is taken. All arguments are in one consistent set of units.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 from camwright.profiles.closed_forms.overshoot import shortest_stop
 from camwright.profiles.closed_forms.run_up import REST
 from camwright.profiles.closed_forms.transfer import Bounds, State, Transfer, nearest
+from camwright.profiles.halving import halved
 
 ROUNDING = 1e-12
 """Share of the room by which a turn may go beyond: rounding."""
 
-_HALVINGS = 200
+_DOUBLINGS = 200
+"""Of a time, until it is long enough."""
 
 
 def gentlest_turn(velocity: float, room: float, way: float, bounds: Bounds) -> Transfer | None:
@@ -45,11 +46,11 @@ def gentlest_turn(velocity: float, room: float, way: float, bounds: Bounds) -> T
 
     if not stops(bounds.acceleration):
         return None
-    least = _least(stops, 0.0, bounds.acceleration)
+    least, _ = halved(stops, bounds.acceleration, 0.0)
     if not turns(least):  # it lets go of the deceleration before the turn, for home is near
         if not turns(bounds.acceleration):
             return None
-        least = _least(turns, least, bounds.acceleration)
+        least, _ = halved(turns, bounds.acceleration, least)
     return quickest_home(velocity, way, replace(bounds, acceleration=least))
 
 
@@ -64,29 +65,12 @@ def quickest_home(velocity: float, way: float, bounds: Bounds) -> Transfer | Non
         return found if found is not None and found.distance <= -way else None
 
     low, high = 0.0, 2 * (velocity / bounds.acceleration + bounds.acceleration / bounds.jerk)
-    for _ in range(_HALVINGS):
+    for _ in range(_DOUBLINGS):
         if reached(high) is not None:
             break
         low, high = high, 2 * high
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (low + high)
-        if middle in (low, high):
-            break
-        if reached(middle) is None:
-            low = middle
-        else:
-            high = middle
-    return reached(high)
-
-
-def _least(works: Callable[[float], bool], low: float, high: float) -> float:
-    """Least value that works, by bisection to rounding: the lower one does not work, the higher one does."""
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (low + high)
-        if middle in (low, high):
-            break
-        low, high = (low, middle) if works(middle) else (middle, high)
-    return high
+    time, _ = halved(lambda time: reached(time) is not None, high, low)
+    return reached(time)
 
 
 def turns_within(velocity: float, room: float, way: float, bounds: Bounds) -> bool:

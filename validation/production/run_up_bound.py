@@ -18,12 +18,12 @@ from collections.abc import Callable
 import numpy as np
 
 from camwright.profiles.closed_forms.transfer import State
+from camwright.profiles.halving import halved
 from camwright.profiles.polynomial.profile import FloatArray
 
 ROUNDING = 1e-12
 """Share of a way that is rounding."""
 
-_HALVINGS = 200
 _PLACES = 20_001
 _PRICES = 60
 """Steps of the search for the best price; every price gives a bound."""
@@ -134,10 +134,4 @@ def _least(enough: Callable[[float], bool], floor: float, ceiling: float) -> flo
         return floor
     if not enough(ceiling):
         return math.inf
-    low, high = floor, ceiling
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (low + high)
-        if middle in (low, high):
-            break
-        low, high = (low, middle) if enough(middle) else (middle, high)
-    return low
+    return halved(enough, ceiling, floor)[1]
