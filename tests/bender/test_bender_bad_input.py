@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from block_trees import nested, wide
 
 from camwright.bender.dxf_guard import MOST_ENTITIES
 from camwright.bender.job import BUNDLED_BENDER
@@ -28,27 +29,6 @@ def refused(capsys: pytest.CaptureFixture[str], path: Path, out: Path, *more: st
     assert sorted(path.parent.iterdir()) == before
     assert not out.exists()
     return err
-
-
-def nested(m, d):
-    for i in range(12):
-        block = d.blocks.new(f"B{i}")
-        if i:
-            block.add_blockref(f"B{i - 1}", (0, 0))
-        else:
-            block.add_line((0, 0), (1, 0))
-    m.add_blockref("B11", (0, 0))
-
-
-def wide(m, d):
-    for i in range(7):
-        block = d.blocks.new(f"B{i}")
-        for k in range(10):
-            if i:
-                block.add_blockref(f"B{i - 1}", (k, 0))
-            else:
-                block.add_line((k, 0), (k + 1, 0))
-    m.add_blockref("B6", (0, 0))
 
 
 ROWS = {

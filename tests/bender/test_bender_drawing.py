@@ -7,6 +7,7 @@ from pathlib import Path
 import ezdxf
 import numpy as np
 import pytest
+from block_trees import nested, wide
 from ezdxf.math import closed_uniform_bspline
 from hypothesis import given
 from hypothesis import strategies as st
@@ -204,27 +205,6 @@ def nan_line(m, _):
     m.add_line((0, 0), (math.nan, 1))
 
 
-def nested(m, d):
-    for i in range(12):
-        block = d.blocks.new(f"B{i}")
-        if i:
-            block.add_blockref(f"B{i - 1}", (0, 0))
-        else:
-            block.add_line((0, 0), (1, 0))
-    m.add_blockref("B11", (0, 0))
-
-
-def exponential(m, d):
-    for i in range(7):
-        block = d.blocks.new(f"B{i}")
-        for k in range(10):
-            if i:
-                block.add_blockref(f"B{i - 1}", (k, 0))
-            else:
-                block.add_line((k, 0), (k + 1, 0))
-    m.add_blockref("B6", (0, 0))
-
-
 @pytest.mark.parametrize(
     ("draw", "message"),
     [
@@ -251,7 +231,7 @@ def exponential(m, d):
         (lambda m, *_: m.add_lwpolyline([(0, 0)]), "fewer than two vertices"),
         (lambda m, *_: m.add_polymesh((3, 3)), "it is a mesh"),
         (nested, "blocks are nested more than 8 deep"),
-        (exponential, f"unfold to more than {MOST_ENTITIES} entities"),
+        (wide, f"unfold to more than {MOST_ENTITIES} entities"),
     ],
 )
 def test_refused_with_file_entity_and_reason(drawing: Make, draw, message: str):

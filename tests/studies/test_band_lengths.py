@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from shaped_job import JOB
 
 from camwright.answers.limits import shortest_cuts_answer
 from camwright.design.optimise_axis import solve_axis
@@ -18,34 +19,6 @@ from camwright.studies.band_lengths import BandLengths, band_lengths
 from camwright.validation.bounds.minimum_length import over_line_speeds
 from camwright.validation.servo.line_speeds import line_speed_errors
 
-JOB = """
-name = "band"
-[machine]
-kind = "rotary_knife"
-circumference = "400 mm"
-[cut]
-length = "300 mm"
-line_speed = "80 m/min"
-sync_zone = "120 mm"
-shear_zone = "40 mm"
-sync_tolerance = "0.1 mm"
-[limits]
-speed = "200 m/min"
-acceleration = "100 m/s^2"
-jerk = "20000 m/s^3"
-[servo]
-bandwidth = "120 rad/s"
-damping = 0.7
-position_gain = "35 1/s"
-sample_time = "4 ms"
-velocity_feedforward = 1.0
-[objective]
-servo_aware = true
-command = "shaped"
-minimise = "sync_error"
-[output]
-origin = "return"
-"""
 MANY = np.linspace(8.0, 80.0, 120) / 60
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from shaped_job import JOB
 
 from camwright.cli.main import main
 from camwright.jobs.job import BUNDLED_JOB, parse_job
@@ -145,34 +146,10 @@ def test_the_last_line_is_the_verdict(
     assert any(map(advice, lines)) is bool(code)
 
 
-BAND = """
-name = "band"
-[machine]
-kind = "rotary_knife"
-circumference = "400 mm"
-[cut]
-length = "260 mm"
-line_speed = "80 m/min"
-sync_zone = "120 mm"
-shear_zone = "40 mm"
-sync_tolerance = "0.02 mm"
-[limits]
-speed = "200 m/min"
-acceleration = "100 m/s^2"
-jerk = "20000 m/s^3"
-[servo]
-bandwidth = "120 rad/s"
-damping = 0.7
-position_gain = "35 1/s"
-sample_time = "4 ms"
-velocity_feedforward = 1.0
-[objective]
-servo_aware = true
-command = "shaped"
-minimise = "rms_acceleration"
-[output]
-origin = "return"
-"""
+BAND = (
+    JOB.replace('"300 mm"', '"260 mm"').replace('"0.1 mm"', '"0.02 mm"').replace('"sync_error"', '"rms_acceleration"')
+)
+"""Too short for its tolerance over its line speeds."""
 
 
 @pytest.mark.slow

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from hypothesis import Phase, assume, given, settings
 from hypothesis import strategies as st
+from shaped_job import JOB
 
 from camwright.jobs.job import Job, load_job, parse_job
 from camwright.profiles.cut import Cut
@@ -33,33 +34,10 @@ from camwright.validation.servo.line_speeds import line_speed_errors
 
 BENCHMARKS = Path(__file__).resolve().parents[2] / "benchmarks"
 PAPER = load_job()
-SHAPED = """
-name = "shaped"
-[machine]
-kind = "rotary_knife"
-circumference = "400 mm"
-[cut]
-length = "300 mm"
-line_speed = "80 m/min"
-sync_zone = "120 mm"
-shear_zone = "40 mm"
-sync_tolerance = "0.25 mm"
-[limits]
-speed = "200 m/min"
-acceleration = "100 m/s^2"
-jerk = "20000 m/s^3"
-[servo]
-bandwidth = "120 rad/s"
-damping = 0.7
-position_gain = "35 1/s"
-sample_time = "4 ms"
-velocity_feedforward = 1.0
-[objective]
-servo_aware = true
-command = "shaped"
-minimise = "sync_error"
-line_speeds = "100 %"
-"""
+SHAPED = JOB.replace('"0.1 mm"', '"0.25 mm"').replace(
+    'minimise = "sync_error"', 'minimise = "sync_error"\nline_speeds = "100 %"'
+)
+"""Shaped for its full line speed alone."""
 
 
 def band_of(profile: CamProfile, job: Job) -> SpeedBand:
