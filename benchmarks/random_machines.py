@@ -221,7 +221,7 @@ def apply(job: RandomJob, suggestion: Suggestion) -> RandomJob:
 def outcome(job: RandomJob) -> tuple[str, str]:
     """Design a job and validate it; how it ended, and what failed with its numbers."""
     solution = solve(job.task, job.objective)
-    report = judge(solution.profile, job.task.with_machine(solution.machine), servo_for(job.cut), sweep=False)
+    report = judge(solution.profile, job.task.with_machine(solution.machine), servo_for(job.cut))
     failed = [check for check in report.checks if not check.passed]
     numbers = "; ".join(f"{check.name} {check.value!r} limit {check.limit!r} at {check.at!r}" for check in failed)
     return ("check failed" if failed else PASSED), numbers
@@ -231,7 +231,7 @@ def quintic_passes(job: RandomJob) -> bool:
     """Tell whether the quintic return passes every check of a job, a crank's sync zone in the middle of its range if it is free."""
     machine, cut, limits = placed(job.machine, job.cut), job.cut, job.limits
     profile = baseline("poly_3_4_5", Task(machine, cut, FREE))
-    report = judge(profile, Task(machine, cut, limits), servo_for(cut), sweep=False)
+    report = judge(profile, Task(machine, cut, limits), servo_for(cut))
     return report.passed
 
 

@@ -65,7 +65,7 @@ def ended(job: RandomJob, servo: Servo, command: Command, objective: ObjectiveNa
     axis = solution.axis
     if axis is None:
         return "no axis", ""
-    report = judge(solution.profile, Task(solution.machine, cut, job.limits), servo, sweep=False, servo_aware=True)
+    report = judge(solution.profile, Task(solution.machine, cut, job.limits), servo, servo_aware=True)
     if objective == "sync_error" and axis.error > cut.sync_tolerance:
         return "least error too large", ""
     failed = {check.name for check in report.checks if not check.passed} - (set() if axis.axis_limits else OF_THE_AXIS)

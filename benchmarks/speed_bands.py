@@ -67,7 +67,7 @@ def designed(rng: np.random.Generator, kind: str, way: int) -> Cam | None:
         else:
             solution = solve_axis(task, objective, "shaped" if way == 2 else "in_sync", (servo,), suggest=False)
         task = task.with_machine(solution.machine)
-        report = judge(solution.profile, task, servo, sweep=False, servo_aware=way > 0)
+        report = judge(solution.profile, task, servo, servo_aware=way > 0)
         begun = process_time()
         band = speed_band(solution.profile, task, (servo,), report, servo_aware=way > 0)
     except CamwrightError:
@@ -78,7 +78,7 @@ def designed(rng: np.random.Generator, kind: str, way: int) -> Cam | None:
 def passes(cam: Cam, line_speed: float) -> bool:
     """Judge a cam anew at a line speed, the sync error at 64 phases."""
     task = cam.task.at_speed(line_speed)
-    report = judge(cam.profile, task, cam.servo, sweep=False, servo_aware=cam.servo_aware)
+    report = judge(cam.profile, task, cam.servo, servo_aware=cam.servo_aware)
     share = line_speed / cam.task.cut.line_speed
     error = shear_zone_errors(cam.profile, cam.task, [cam.servo.at_speed(share)], PHASES)[0]
     return report.passed and bool(error <= task.cut.sync_tolerance)

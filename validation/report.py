@@ -6,7 +6,8 @@ Each check compares a value with a limit that it must not exceed, within the all
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -77,10 +78,8 @@ class ValidationReport:
         of the sync zone; horizontal sync has none. None for other machines. Information, judged by no check.
     servo
         Response of the job's servo, ``None`` if it is unstable.
-    sweep
-        Responses over the published ranges of the servo's parameters, ``None`` if they were not asked for: information, judged by no check.
-    length_errors
-        Where the cut falls at shares of the line speed, empty if the sweep was not asked for or the servo is unstable: information too.
+    profile, task, loop
+        What was judged, and the servo that it was judged with.
     """
 
     checks: tuple[Check, ...]
@@ -89,13 +88,24 @@ class ValidationReport:
     motor: MotorMeasures
     tangential_mismatch: float | None
     servo: ServoResponse | None
-    sweep: Sweep | None
-    length_errors: tuple[LengthError, ...]
+    profile: CamProfile = field(repr=False)
+    task: Task = field(repr=False)
+    loop: Servo = field(repr=False)
 
     @property
     def passed(self) -> bool:
         """Whether every check passed."""
         return all(check.passed for check in self.checks)
+
+    @cached_property
+    def sweep(self) -> Sweep:
+        """Responses over the published ranges of the servo's parameters: information, worked out when it is asked for."""
+        return servo_sweep(self.profile, self.task, self.loop)
+
+    @cached_property
+    def length_errors(self) -> tuple[LengthError, ...]:
+        """Where the cut falls at shares of the line speed, empty if the servo is unstable: information too."""
+        return () if self.servo is None else length_errors(self.profile, self.task, self.loop)
 
 
 def judge(
@@ -103,7 +113,6 @@ def judge(
     task: Task,
     servo: Servo,
     *,
-    sweep: bool = True,
     servo_aware: bool = False,
     slowest: float = 1.0,
 ) -> ValidationReport:
@@ -117,9 +126,6 @@ def judge(
         The machine, its sync zone placed, the cut that it is judged for, and the limits of the slave.
     servo
         The servo.
-    sweep
-        Whether to run the servos of the published ranges, and lower line speeds, too, which no check needs and which takes most of the
-        time.
     servo_aware
         Whether to judge it as a servo-aware design: the axis, too, must keep the limits of speed, acceleration and reversal, and is in sync
         in the shear zone by design, so that there is no transition to judge.
@@ -152,8 +158,9 @@ def judge(
         motor=motor,
         tangential_mismatch=task.machine.tangential_mismatch(task.cut),
         servo=response,
-        sweep=servo_sweep(profile, task, servo) if sweep else None,
-        length_errors=length_errors(profile, task, servo) if sweep and response is not None else (),
+        profile=profile,
+        task=task,
+        loop=servo,
     )
 
 

@@ -25,12 +25,9 @@ from camwright.profiles.errors import InfeasibleError, InputError, SolverError
 from camwright.profiles.mark_range import MarkRange
 from camwright.stored.design_file import design_text
 from camwright.studies.axis_study import axis_study, solve_job
-from camwright.studies.comparison import Comparison
 from camwright.studies.design import Design
-from camwright.studies.measured import Measured
 from camwright.studies.reach import highest_speed
 from camwright.studies.speed_band import SpeedBand, job_band
-from camwright.studies.within_limits import keeps_limits
 from camwright.validation.bounds.bound import Bound
 from camwright.validation.production.line_ramp import line_ramp
 from camwright.validation.report import judge
@@ -150,20 +147,14 @@ def _designed(job: Job) -> Design:
     """
     solution = solve_job(job, suggest=False)
     placed = replace(job, machine=solution.machine)
-    report = judge(
-        solution.profile, placed.task, job.servo, sweep=False, servo_aware=job.servo_aware, slowest=job.slowest
-    )
+    report = judge(solution.profile, placed.task, job.servo, servo_aware=job.servo_aware, slowest=job.slowest)
     if report.servo is None:
         raise InputError("the servo is unstable")
-    kept = keeps_limits(solution.profile, report.motion, placed)
-    row = Measured("optimised", solution.profile, report.motion, report.tool, report.motor, report.servo, kept, None)
     return Design(
         job=placed,
         solution=solution,
         bound=Bound(math.nan, NOT_COMPUTED),
         report=report,
-        comparison=Comparison(placed, (row,)),
-        lengths=None,
         axis=axis_study(placed, solution),
         robust=None,
         band=job_band(solution.profile, placed, report) if report.passed else SpeedBand((), ()),

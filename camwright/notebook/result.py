@@ -120,7 +120,7 @@ class Result(designing.Design):
 
 
 def optimise(job: Job, step: Step = ignore) -> Result:
-    """Find the optimal cam of a job, prove it, and compare it with the baselines: arguments and errors as of the command's design.
+    """Find the optimal cam of a job and prove it: arguments and errors as of the command's design.
 
     Examples
     --------

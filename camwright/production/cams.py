@@ -149,9 +149,7 @@ def list_cam(number: int, job: Job, length: float, perfect: float, top: float, l
             continue
         break
     placed = replace(asked, machine=solution.machine)
-    report = judge(
-        solution.profile, placed.task, job.servo, sweep=False, servo_aware=job.servo_aware, slowest=placed.slowest
-    )
+    report = judge(solution.profile, placed.task, job.servo, servo_aware=job.servo_aware, slowest=placed.slowest)
     return ListCam(number, placed, perfect, solution, report)
 
 

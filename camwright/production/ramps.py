@@ -136,7 +136,7 @@ class Ramps:
         """The checks on the one-shot cam: limits, stroke, torque, and the servo from rest."""
         cycle, task = one_shot_cycle(self.stand, self.one_shot, self.zone_end, waiting(self.job))
         aware = self.job.servo_aware or self.job.cut.shaped
-        return judge(cycle, task, self.job.servo, sweep=False, servo_aware=aware)
+        return judge(cycle, task, self.job.servo, servo_aware=aware)
 
     @property
     def checks(self) -> tuple[Check, ...]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 from camwright.design.optimise import Solution
 from camwright.design.returns.ipopt import SolveStatus
@@ -23,13 +24,13 @@ from camwright.validation.report import ValidationReport, judge
 PROVED = 1e-3
 """An objective within this share of its bound is proved to be optimal."""
 
-STEPS = 5
-"""Steps that `optimise` tells beside the measuring of each profile."""
+STEPS = 4
+"""Steps that `optimise` tells."""
 
 
 @dataclass(frozen=True, eq=False)
 class Design:
-    """An optimal cam, proved and compared.
+    """An optimal cam, proved, and what it is compared with.
 
     Parameters
     ----------
@@ -41,10 +42,6 @@ class Design:
         What the objective cannot go below, found on an independent road.
     report
         The checks on the optimal cycle.
-    comparison
-        The optimal cycle beside the baselines.
-    lengths
-        How short the machine can cut; ``None`` for machines that the published equations are not about.
     axis
         What a servo-aware design promises of the axis; ``None`` for a servo-blind one.
     robust
@@ -64,8 +61,6 @@ class Design:
     solution: Solution
     bound: Bound
     report: ValidationReport
-    comparison: Comparison
-    lengths: CutLengths | None
     axis: AxisStudy | None
     robust: Robustness | None
     band: SpeedBand
@@ -75,12 +70,22 @@ class Design:
         """The optimal cycle over the master period ``[0, x_c]``."""
         return self.solution.profile
 
+    @cached_property
+    def comparison(self) -> Comparison:
+        """The optimal cycle beside the baselines, measured when it is asked for: the proof needs none of it."""
+        return compare(self.job, self.profile)
+
+    @cached_property
+    def lengths(self) -> CutLengths | None:
+        """How short the machine can cut, when it is asked for; ``None`` for machines that the published equations are not about."""
+        return cut_lengths(self.job)
+
     @property
     def objective(self) -> float:
         """The objective at the job's line speed: m/s² or m/s³ (rad for m with a crank), N·m or J at the motor, m of sync error."""
         if OBJECTIVES[self.job.objective].of != "motor":
             return self.solution.minimised
-        value: float | None = getattr(self.comparison["optimised"].motor, self.job.objective)
+        value: float | None = getattr(self.report.motor, self.job.objective)
         return math.inf if value is None else value
 
     @property
@@ -97,7 +102,7 @@ class Design:
 
 
 def optimise(job: Job, step: Step = ignore) -> Design:
-    """Find the optimal cam of a job, prove it, and compare it with the baselines.
+    """Find the optimal cam of a job and prove it; what it is compared with is measured when that is asked for.
 
     Parameters
     ----------
@@ -130,11 +135,9 @@ def optimise(job: Job, step: Step = ignore) -> Design:
     step("checking")
     report = judge(solution.profile, placed.task, job.servo, servo_aware=job.servo_aware, slowest=job.slowest)
     aware, robust = axis_study(placed, solution), robustness(placed, solution.profile, solution)
-    comparison = compare(placed, solution.profile, step=step)
     step("finding its line speeds")
     band = job_band(solution.profile, placed, report)
-    step("finding minimum cut lengths")
-    design = Design(placed, solution, bound, report, comparison, cut_lengths(placed), aware, robust, band)
+    design = Design(placed, solution, bound, report, aware, robust, band)
     # a bound is that of the place which was chosen, so it proves nothing of other places
     proved = job.machine.placed and design.gap is not None and design.gap <= PROVED
     return replace(design, solution=replace(solution, status=SolveStatus.OPTIMAL if proved else SolveStatus.BEST_FOUND))

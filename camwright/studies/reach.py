@@ -120,9 +120,7 @@ def fails(job: Job, task: Task, objective: MotionObjective) -> str:
         return RAMP if error.binding.startswith("line.") else error.binding
     except (InputError, SolverError):
         return "design"
-    report = judge(
-        solution.profile, task.with_machine(solution.machine), job.servo, sweep=False, servo_aware=job.servo_aware
-    )
+    report = judge(solution.profile, task.with_machine(solution.machine), job.servo, servo_aware=job.servo_aware)
     return next((check.name for check in report.checks if not check.passed), "")
 
 

@@ -99,9 +99,7 @@ def _passes(job: Job) -> bool:
     """Whether a job is designed, passes every check, and keeps the tolerance over the ranges of its servo."""
     solution = solve_job(job, suggest=False)
     task = job.task.with_machine(solution.machine)
-    if not judge(
-        solution.profile, task, job.servo, sweep=False, servo_aware=job.servo_aware, slowest=job.slowest
-    ).passed:
+    if not judge(solution.profile, task, job.servo, servo_aware=job.servo_aware, slowest=job.slowest).passed:
         return False
     if not job.servo_aware or job.servo_tolerance is None:
         return True

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from rich.console import Console, RenderableType
@@ -15,8 +16,10 @@ from camwright.profiles.objective import ObjectiveName
 from camwright.profiles.servo_tolerance import ServoTolerance
 from camwright.studies.axis_study import solve_job
 from camwright.studies.comparison import Comparison, compare
+from camwright.studies.design import optimise
 from camwright.validation.report import judge
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
 PAPER = load_job()
 
 
@@ -75,8 +78,25 @@ def test_every_name_and_number_can_be_read(width: int) -> None:
     assert "…" not in shown
     for row in comparison.rows:
         assert f"{row.name} {'' if row.within_limits else '†'}" in shown
-    report = judge(comparison["optimised"].profile, PAPER.task, PAPER.servo, sweep=False)
+    report = judge(comparison["optimised"].profile, PAPER.task, PAPER.servo)
     shown = text_of(checks_view(report.checks, PAPER.units), width)
     assert "…" not in shown
     assert all(f"{check.name} " in shown for check in report.checks)
     assert max(map(len, shown.splitlines())) <= width
+
+
+def test_a_proof_measures_nothing_that_it_does_not_need(monkeypatch: pytest.MonkeyPatch) -> None:
+    def asked(*_: object) -> None:
+        raise AssertionError("measured before it was asked for")
+
+    for name in ("camwright.studies.design.compare", "camwright.studies.design.cut_lengths"):
+        monkeypatch.setattr(name, asked)
+    for name in ("servo_sweep", "length_errors"):
+        monkeypatch.setattr(f"camwright.validation.report.{name}", asked)
+    for job in (PAPER, load_job(EXAMPLES / "flying-saw.toml")):
+        result = optimise(job)
+        assert result.passed
+        assert result.gap is not None
+        for whole, part in ((result, "comparison"), (result, "lengths"), (result.report, "sweep")):
+            with pytest.raises(AssertionError, match="before it was asked for"):
+                getattr(whole, part)

@@ -23,7 +23,7 @@ def passes(job: Job) -> bool:
     except InfeasibleError:
         return False
     task = job.task.with_machine(solution.machine)
-    return judge(solution.profile, task, job.servo, sweep=False, servo_aware=job.servo_aware).passed
+    return judge(solution.profile, task, job.servo, servo_aware=job.servo_aware).passed
 
 
 @pytest.mark.parametrize("name", ["paper-600", "cross-cutter", "flying-saw", "thick-product"])

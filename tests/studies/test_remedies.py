@@ -69,13 +69,13 @@ def passes(text: str) -> bool:
     job = parse_job(text, "job.toml")
     solution = solve_job(job)
     task = job.task.with_machine(solution.machine)
-    return judge(solution.profile, task, job.servo, sweep=False, servo_aware=job.servo_aware).passed
+    return judge(solution.profile, task, job.servo, servo_aware=job.servo_aware).passed
 
 
 def found(text: str) -> tuple[Remedy, ...]:
     job = parse_job(text, "job.toml")
     profile = solve_job(job).profile
-    report = judge(profile, job.task, job.servo, sweep=False)
+    report = judge(profile, job.task, job.servo)
     return remedies(job, report, job_band(profile, job, report))
 
 
@@ -166,9 +166,7 @@ def test_a_band_that_no_command_keeps_is_told_its_least_tolerance_and_the_part_t
     told = BAND.replace('"shaped"', f'"shaped"\nline_speeds = ["{low:.15g} m/min", "100 %"]')
     narrow = parse_job(told, "band")
     solution = solve_job(narrow, suggest=False)
-    assert judge(
-        solution.profile, narrow.task, narrow.servo, sweep=False, servo_aware=True, slowest=narrow.slowest
-    ).passed
+    assert judge(solution.profile, narrow.task, narrow.servo, servo_aware=True, slowest=narrow.slowest).passed
     # less than the tolerance that is told as the least is refused, a little more is kept
     least = job.cut.sync_tolerance + (error.excess or 0.0) * 1e-3
     for factor, holds in ((0.98, False), (1.02, True)):

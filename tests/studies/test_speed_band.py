@@ -41,7 +41,7 @@ SHAPED = JOB.replace('"0.1 mm"', '"0.25 mm"').replace(
 
 
 def band_of(profile: CamProfile, job: Job) -> SpeedBand:
-    return job_band(profile, job, judge(profile, job.task, job.servo, sweep=False, servo_aware=job.servo_aware))
+    return job_band(profile, job, judge(profile, job.task, job.servo, servo_aware=job.servo_aware))
 
 
 def edge(profile: CamProfile, job: Job, low: float, high: float) -> float:
@@ -49,7 +49,7 @@ def edge(profile: CamProfile, job: Job, low: float, high: float) -> float:
 
     def passes(speed: float) -> bool:
         task = job.task.at_speed(speed)
-        return judge(profile, task, job.servo, sweep=False, servo_aware=job.servo_aware).passed
+        return judge(profile, task, job.servo, servo_aware=job.servo_aware).passed
 
     first = passes(low)
     assert passes(high) is not first
@@ -62,7 +62,7 @@ def edge(profile: CamProfile, job: Job, low: float, high: float) -> float:
 @pytest.mark.parametrize(("name", "order"), [("speed", 1), ("acceleration", 2), ("jerk", 3)])
 def test_the_highest_line_speed_of_a_limit_is_exact(name: str, order: int) -> None:
     profile = baseline("cycloid", PAPER.task)
-    motion = judge(profile, PAPER.task, PAPER.servo, sweep=False).motion
+    motion = judge(profile, PAPER.task, PAPER.servo).motion
     peak = (motion.peak_speed, motion.peak_acceleration, motion.peak_jerk)[order - 1]
     assert peak is not None
     free = Limits(1e3, 1e5, 1e7)
@@ -116,7 +116,7 @@ def test_a_motor_ends_the_band_where_its_torque_does() -> None:
     job = replace(PAPER, machine=task.machine, limits=task.limits)
     profile = baseline("cycloid", task)
     band = band_of(profile, job)
-    motor = judge(profile, task, job.servo, sweep=False).motor
+    motor = judge(profile, task, job.servo).motor
     assert motor.peak_torque is not None
     expected = job.cut.line_speed * np.sqrt(4.0 / motor.peak_torque)  # inertia alone: as the square
     assert band.parts[0][1] == pytest.approx(expected, rel=2 * ACCURACY)
@@ -243,5 +243,5 @@ def test_random_jobs_judged_anew_in_and_out_of_their_band(benchmark: ModuleType)
 
 def test_a_band_needs_no_job() -> None:
     profile = baseline("cycloid", PAPER.task)
-    report = judge(profile, PAPER.task, PAPER.servo, sweep=False)
+    report = judge(profile, PAPER.task, PAPER.servo)
     assert speed_band(profile, PAPER.task, (PAPER.servo,), report) == job_band(profile, PAPER, report)

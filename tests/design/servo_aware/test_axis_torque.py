@@ -87,7 +87,7 @@ def test_a_shaped_design_needs_less_than_designs_for_the_motion(cost: MotorObjec
     for other in others:
         values = np.stack([other.profile(x, order) for order in range(3)])
         assert mixed(1e-3, values) >= here * (1 - (1e-5 if cost != "peak_torque" else 5e-3))
-    report = judge(found.profile, Task(CRANK, cut, LIMITS), STIFF, sweep=False, servo_aware=True)
+    report = judge(found.profile, Task(CRANK, cut, LIMITS), STIFF, servo_aware=True)
     assert [check.name for check in report.checks if not check.passed] == []
 
 

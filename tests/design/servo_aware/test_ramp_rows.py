@@ -34,7 +34,7 @@ def test_the_command_bears_the_ramp_and_the_axis_keeps_the_tolerance(line: Line)
     assert allowed.speeding.value >= line.speeding
     assert allowed.braking.value >= line.braking
     assert line_ramp(steady.profile, job.task).ramp.value < 1e-3
-    report = judge(solution.profile, job.task, job.servo, sweep=False, servo_aware=True, slowest=job.slowest)
+    report = judge(solution.profile, job.task, job.servo, servo_aware=True, slowest=job.slowest)
     assert report.passed
     assert 1.0 < solution.minimised / steady.minimised < 1.012
 
@@ -44,7 +44,7 @@ def test_a_shaped_command_bears_it_too() -> None:
     job = replace(load_job(SHORT), line=Line(1.0, 2.0, jerk=5.0))
     solution = solve_job(job)
     assert greatest_form(solution.profile, job.task) <= 1.0
-    report = judge(solution.profile, job.task, job.servo, sweep=False, servo_aware=True, slowest=job.slowest)
+    report = judge(solution.profile, job.task, job.servo, servo_aware=True, slowest=job.slowest)
     assert report.passed
 
 

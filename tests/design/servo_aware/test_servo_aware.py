@@ -200,7 +200,7 @@ def test_every_machine_keeps_limits_closure_and_tolerance(
     simulated = servo_response(profile, Task(machine, cut, LIMITS), servo).shear_zone_error
     assert axis.errors[0] == pytest.approx(simulated, abs=1e-9)
     assert simulated <= cut.sync_tolerance
-    report = judge(profile, Task(machine, cut, limits), servo, sweep=False, servo_aware=True)
+    report = judge(profile, Task(machine, cut, limits), servo, servo_aware=True)
     failed = {check.name for check in report.checks if not check.passed}
     assert failed <= (set() if axis.axis_limits else {"axis_speed", "axis_acceleration", "axis_reversal"})
 
@@ -252,7 +252,7 @@ def test_random_knife_jobs_end_in_a_design_that_holds_or_in_a_way_out(
     assert axis.errors[0] == pytest.approx(simulated, abs=1e-9)
     if cost != "sync_error":
         assert simulated <= tolerance
-    report = judge(solution.profile, Task(KNIFE, cut, LIMITS), servo, sweep=False, servo_aware=True)
+    report = judge(solution.profile, Task(KNIFE, cut, LIMITS), servo, servo_aware=True)
     names = {check.name for check in report.checks if not check.passed}
     allowed = {"shear_zone_error"} if cost == "sync_error" else set()
     assert names <= (allowed if axis.axis_limits else allowed | {"axis_speed", "axis_acceleration", "axis_reversal"})

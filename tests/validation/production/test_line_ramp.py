@@ -52,12 +52,10 @@ def test_a_cam_that_uses_its_jerk_limit_up_leaves_no_room_for_a_ramp() -> None:
     found = line_ramp(profile, job.task)
     assert found.ramp.value < 1e-6
     assert found.ramp.binds == "jerk"
-    judged = {
-        check.name: check for check in judge(profile, job.task.with_line(Line(1.0)), job.servo, sweep=False).checks
-    }
+    judged = {check.name: check for check in judge(profile, job.task.with_line(Line(1.0)), job.servo).checks}
     assert not judged["line_ramp"].passed
     assert (judged["line_ramp"].value, judged["line_ramp"].unit) == (1.0, "m/s^2")
-    assert "line_ramp" not in {check.name for check in judge(profile, job.task, job.servo, sweep=False).checks}
+    assert "line_ramp" not in {check.name for check in judge(profile, job.task, job.servo).checks}
 
 
 @pytest.mark.parametrize(
