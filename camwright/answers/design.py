@@ -21,6 +21,16 @@ from camwright.studies.remedies import Remedy
 
 def design_answer(design: Design, ways: Sequence[Remedy], files: Sequence[Path]) -> dict[str, Any]:
     """Answer of ``camwright design``."""
+    return brief_answer(design, files) | {
+        "profiles": profiles_answer(design.comparison),
+        "remedies": [asdict(way) for way in ways],
+        "minimum_cut_length_mm": lengths_answer(design.lengths),
+        **lead_answer(design.job, design.report.length_errors),
+    }
+
+
+def brief_answer(design: Design, files: Sequence[Path]) -> dict[str, Any]:
+    """Answer of ``camwright design --brief``: the cam, what proves it, and the line speeds that it is released for."""
     return {
         "job": design.job.name,
         "status": design.solution.status.value,
@@ -28,15 +38,11 @@ def design_answer(design: Design, ways: Sequence[Remedy], files: Sequence[Path])
         "lower_bound_method": design.bound.method,
         "starts": agreement_answer(design),
         "pieces": design.profile.pieces,
-        "profiles": profiles_answer(design.comparison),
         "checks": checks_answer(design.report.checks),
         "passed": design.passed,
-        "remedies": [asdict(way) for way in ways],
         **band_answer(design.band),
-        "minimum_cut_length_mm": lengths_answer(design.lengths),
         "servo_aware": axis_answer(design.axis),
         "robust": robust_answer(design.robust),
-        **lead_answer(design.job, design.report.length_errors),
         "tangential_mismatch": design.report.tangential_mismatch,
         "files": [str(file) for file in files],
     }

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
-from camwright.answers.design import design_answer
+import typer
+
+from camwright.answers.design import brief_answer, design_answer
 from camwright.answers.objective import objective_unit
 from camwright.cli.options import JobOrPaper, Json, NoFigures, Out, Quiet, final_paths, job_work, output_directory
 from camwright.cli.views.checks import checks_view
@@ -20,10 +22,10 @@ from camwright.figures.design import design_figures
 from camwright.house.numbers import number, with_unit
 from camwright.house.output import Voice, complain
 from camwright.house.owned import owned
+from camwright.house.progress import Step
 from camwright.jobs.job import load_job
 from camwright.stored.save import design_files
 from camwright.studies.axis_study import AxisStudy
-from camwright.studies.comparison import law_names
 from camwright.studies.design import STEPS, Design, optimise
 from camwright.studies.remedies import Remedy, remedies
 
@@ -31,32 +33,53 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
 
+_BESIDE = 4
+"""Steps of a design that is not brief: what it is compared with, files, ways out."""
+
+
 def run(
     job: JobOrPaper = None,
     out: Out = None,
     as_json: Json = False,
     no_figures: NoFigures = False,
+    brief: Annotated[
+        bool, typer.Option("--brief", help="The cam, its bound, checks and line speeds alone; no figures.")
+    ] = False,
     quiet: Quiet = False,
 ) -> int:
     """Design the optimal cam of a job; write the design, the cam table and the figures."""
     asked = load_job(job)
     directory = output_directory(out, asked)
     voice = Voice(as_json, quiet)
-    with voice.progress(STEPS + len(law_names(asked.task)) + 3) as step:
+    with voice.progress(STEPS + (1 if brief else _BESIDE)) as step:
         result = optimise(asked, step)
+        if not brief:
+            _compare(result, step)
         texts = design_files(result)
         step("writing files")
         with owned(directory, job_work("design", asked, job, out), complain) as aside:
             for name, text in texts.items():
                 (aside / name).write_bytes(text.encode())
-            if not no_figures:
+            if not no_figures and not brief:
                 design_figures(result, aside)
             files = final_paths(aside, directory)
-        step("looking for a way out")
-        ways = remedies(asked, result.report, result.band)
+        if not brief:
+            step("looking for a way out")
+            ways = remedies(asked, result.report, result.band)
 
-    voice.answer(lambda: design_answer(result, ways, files), lambda: _view(result, ways, files))
+    if brief:
+        voice.answer(lambda: brief_answer(result, files), lambda: _brief_view(result, files))
+    else:
+        voice.answer(lambda: design_answer(result, ways, files), lambda: _view(result, ways, files))
     return 0 if result.passed else 1
+
+
+def _compare(design: Design, step: Step) -> None:
+    """Measure what a design is compared with: what cannot be measured is refused before a file is written."""
+    step("measuring the baselines")
+    _ = design.comparison
+    step("finding minimum cut lengths")
+    _ = design.lengths
 
 
 def _view(design: Design, ways: Sequence[Remedy], files: Sequence[Path]) -> RenderableType:
@@ -72,6 +95,18 @@ def _view(design: Design, ways: Sequence[Remedy], files: Sequence[Path]) -> Rend
         files_view(files),
         band_view(design.band, design.job.units),
         *_ways(design, ways),
+        new_text(_verdict(design), "bold" if design.passed else "bold red"),
+    )
+
+
+def _brief_view(design: Design, files: Sequence[Path]) -> RenderableType:
+    """Show the cam and its proof: objective, checks, files, line speeds."""
+    return stacked(
+        new_text("\n".join(_head(design))),
+        checks_view(design.report.checks, design.job.units),
+        *_axis(design),
+        files_view(files),
+        band_view(design.band, design.job.units),
         new_text(_verdict(design), "bold" if design.passed else "bold red"),
     )
 

@@ -109,7 +109,8 @@ def _check(body: dict[str, Any]) -> Call:
 
 def _design(body: dict[str, Any]) -> Call:
     figures = () if flag_of(body, "figures") else ("--no-figures",)
-    return Call((("design", JOB_FILE, "--json", *figures, *_OUT),), _job(body))
+    brief = ("--brief",) if flag_of(body, "brief") else ()
+    return Call((("design", JOB_FILE, "--json", *figures, *brief, *_OUT),), _job(body))
 
 
 def _compare(body: dict[str, Any]) -> Call:
@@ -130,7 +131,7 @@ def _envelope(body: dict[str, Any]) -> Call:
 
 
 def _export(body: dict[str, Any]) -> Call:
-    design = ("design", JOB_FILE, "--json", "--no-figures", *_OUT)
+    design = ("design", JOB_FILE, "--json", "--brief", *_OUT)
     units = ("--units", _plain(body, "units")) if body.get("units") else ()
     tables = ("export", "out/design.json", "--to", _targets(body), *units, "--out", "tables", "--json")
     return Call((design, tables), _job(body))

@@ -146,7 +146,7 @@ class Workbench:
         """Design a job, and write both where the workbench was started."""
         try:
             body = await _body(request)
-            text, call = job_text(body), call_of("design", body)
+            text, call = job_text(body), call_of("design", {**body, "brief": True})
         except InputError as error:
             return _refusal(error, _NO_CALL)
         try:

@@ -99,6 +99,26 @@ def test_design_prints_the_promised_object(designed: tuple[Path, dict[str, Any]]
     assert answer["files"] == [str(place / "cam.csv"), str(place / "design.json")]
 
 
+def test_a_brief_design_is_the_same_cam_with_the_same_proof(
+    designed: tuple[Path, dict[str, Any]], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    place, answer = designed
+    assert main(["design", "--brief", "--out", str(tmp_path / "cam"), "--json"]) == 0
+    brief = strict(capsys.readouterr().out)
+    assert answer.keys() - brief.keys() == {
+        "profiles", "remedies", "minimum_cut_length_mm",
+        "lead_time_ms", "length_error_mm", "length_error_with_lead_mm", "length_variation_mm",
+    }  # fmt: skip
+    assert {key: answer[key] for key in brief if key != "files"} == {k: v for k, v in brief.items() if k != "files"}
+    for name in ("cam.csv", "design.json", LIST):
+        assert (tmp_path / "cam" / name).read_bytes() == (place / name).read_bytes()
+    assert main(["design", "--brief", "--out", str(tmp_path / "cam")]) == 0
+    shown = capsys.readouterr().out
+    assert "settling" in shown
+    assert "linear_return" not in shown
+    assert shown.splitlines()[-1].startswith("paper-600: passed every check")
+
+
 def test_design_writes_its_files_and_nothing_else(designed: tuple[Path, dict[str, Any]]) -> None:
     assert sorted(entry.name for entry in designed[0].iterdir()) == [LIST, "cam.csv", "design.json"]
 

@@ -78,6 +78,7 @@ def example_cases(example: str) -> Iterator[Case]:
 
     yield case("check", "check", job)
     yield case("design", "design", job, *out("design"))
+    yield case("design-brief", "design", job, "--brief", *out("design-brief"), slow=example == "short-cut")
     for name in OBJECTIVES:
         changed = f"jobs/objective/{example}--{name}.toml"
         yield case(f"objective-{name}", "design", changed, "--no-figures", *out(f"objective-{name}"))

@@ -83,6 +83,7 @@ def test_a_failed_check_is_named_with_what_works(page: Any, put: Put) -> None:
     assert "failed: " in page.inner_text("#badge")
     assert "Sync error in the shear zone" in page.inner_text("#badge")
     page.locator("#panel td.failed").first.wait_for()
+    page.locator("#panel button", has_text="sync tolerance = 0.02068 mm").wait_for()  # told after the proof
 
 
 def test_a_fault_stands_at_its_field(page: Any, put: Put) -> None:

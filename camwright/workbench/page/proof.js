@@ -25,7 +25,7 @@ async function prove() {
   const mine = (asked += 1);
   state.status = "proving";
   changed("status");
-  const { ok, data } = await post("design", { toml: state.text }, running.signal);
+  const { ok, data } = await post("design", { toml: state.text, brief: true }, running.signal);
   if (mine !== asked || data.status === "stale") return;
   state.refusal = ok ? null : data;
   state.status = ok ? (data.passed ? "proved" : "failed") : refusedAs(data);

@@ -5,7 +5,7 @@ import { digits, printed, shownSi, withUnit } from "../numbers.js";
 import { state } from "../state.js";
 import { wayOut } from "../head.js";
 import { checkName, word } from "../words.js";
-import { noDesign } from "./asking.js";
+import { ask, noDesign } from "./asking.js";
 
 export function show(panel) {
   const { proof } = state;
@@ -20,9 +20,10 @@ export function show(panel) {
   });
   const list = table([word("check"), "", word("value"), word("limit"), ""], lines);
   proof.checks.forEach((check, number) => { row(list, number).title = check.source; });
-  const parts = [head, released(proof), list];
-  if (proof.remedies?.length) parts.splice(1, 0, remedies(proof.remedies));
-  return panel.replaceChildren(...parts);
+  if (proof.passed) return panel.replaceChildren(head, released(proof), list);
+  const ways = make("p");
+  panel.replaceChildren(head, ways, released(proof), list);
+  return ask(ways, "design", { toml: state.text }, ({ remedies }) => waysOut(remedies)); // what failed is told before
 }
 
 function released({ speed_band: band }) {
@@ -31,8 +32,6 @@ function released({ speed_band: band }) {
   return make("p", `${word("released")}: ${band.map(([low, high]) => `${speed(low)} … ${speed(high)}`).join(", ")} ${printed("m/min")}`);
 }
 
-function remedies(list) {
-  const box = make("p", `${word("what works")} `);
-  box.append(...list.map(wayOut));
-  return box;
+function waysOut(list) {
+  return list.length ? [`${word("what works")} `, ...list.map(wayOut)] : word("nothing works");
 }
