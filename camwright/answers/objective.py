@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from camwright.jobs.job import Job
 from camwright.profiles.objective import OBJECTIVES
-from camwright.studies.design import Design
+
+if TYPE_CHECKING:
+    from camwright.studies.design import Design
 
 
 def objective_unit(job: Job) -> str:

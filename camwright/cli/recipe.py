@@ -17,8 +17,9 @@ from camwright.profiles.errors import InputError
 from camwright.profiles.tables.targets import TARGETS, target_of
 from camwright.recipes.build import STEPS, designed, make_recipe
 from camwright.recipes.compare import Change, compare_answer, compare_recipes, read_recipe
+from camwright.recipes.language import Language
 from camwright.recipes.manifest import MANIFEST_FILE, sha256
-from camwright.recipes.model import Language, Particulars, Recipe
+from camwright.recipes.model import Particulars, Recipe
 from camwright.recipes.signature import SIGNATURE_FILE, require_private_key, signed
 from camwright.recipes.write import WRITE_STEPS, is_recipe, recipe_files, write_folder
 from camwright.stored.design_file import MOST_BYTES, parse_design

@@ -11,23 +11,16 @@ import numpy as np
 
 from camwright.answers.line_ramps import line_ramps_answer
 from camwright.answers.measures import report_answer
-from camwright.drives.alignment import aligned
-from camwright.drives.options import with_slopes
+from camwright.drives.running_cam import running_cam
 from camwright.house.progress import Step, ignore
 from camwright.jobs.job import Job
-from camwright.jobs.place import not_placed, place_in
-from camwright.jobs.table_cycle import whole_cycle
-from camwright.profiles.errors import InputError
-from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.tables.cam_table import CamTable
-from camwright.profiles.tables.count_grid import without_rounding
 from camwright.profiles.tables.target import Target
-from camwright.profiles.tables.targets import detect, read_table, target_of
 from camwright.profiles.tables.text import read_text
 from camwright.studies.line_ramps import line_ramps
 from camwright.studies.remedies import solve_or_advise
-from camwright.validation.rebuilt import TableJudgement, differences, judge_table, one_cycle, sampled_peaks
+from camwright.validation.rebuilt import TableJudgement, differences, judge_table, sampled_peaks
 from camwright.validation.report import ValidationReport, judge
 
 MEASURES: dict[str, str] = {
@@ -118,62 +111,6 @@ class Audit:
         return None if own == 0.0 else 1.0 - best / own
 
 
-@dataclass(frozen=True, eq=False)
-class RunningCam:
-    """A cam as its drive runs it.
-
-    Parameters
-    ----------
-    target, table, notes, job, counted
-        As of `Audit`.
-    rebuilt
-        The cam from the job's master zero on, as many cycles as the table holds (slave unit over m).
-    count
-        Size of the counts that its positions are in (slave unit); 0 where it has none.
-    """
-
-    target: Target
-    table: CamTable
-    notes: tuple[str, ...]
-    job: Job
-    rebuilt: CamProfile
-    count: float
-    counted: bool
-
-    @property
-    def cycle(self) -> CamProfile:
-        """One cycle of the job."""
-        return one_cycle(self.rebuilt, self.job.cut)
-
-
-def running_cam(
-    text: str,
-    place: str,
-    job: Job,
-    target: str | None = None,
-    units: str | None = None,
-    travel: str | None = None,
-    slopes: str | None = None,
-) -> RunningCam:
-    """Rebuild the cam of a file's text as its drive does; arguments as of `audit`, messages begin with the place.
-
-    Raises
-    ------
-    InputError
-        The text is not read, or is no cam of this job.
-    """
-    layout = detect(text, place) if target is None else target_of(target)
-    placed = replace(job, machine=_with_place(job.machine, text, place))
-    whole = whole_cycle(with_slopes(read_table(layout, text, place), slopes), placed, place, units, travel)
-    table, counted = whole.table, without_rounding(whole.table)
-    rebuilt = whole.units.to_si(layout.rebuild(table if counted is None else counted.table))
-    one_cycle(rebuilt, job.cut)  # refuses another period
-    count = 0.0 if counted is None else counted.count * whole.units.slave.size
-    rebuilt, notes = aligned(rebuilt.shift(-rebuilt.start), placed, count=count)
-    told = (*table.notes, *whole.notes, *((counted.note,) if counted else ()), *notes)
-    return RunningCam(layout, table, told, placed, rebuilt, count, counted is not None)
-
-
 def audit(
     path: Path,
     job: Job,
@@ -246,19 +183,6 @@ def audit(
         _sampled(solution.profile, job),
         found.counted,
     )
-
-
-def _with_place(machine: Machine, text: str, place: str) -> Machine:
-    """Give the job's machine; where the job leaves the place of its sync zone free, it is that of the file."""
-    if machine.placed:
-        return machine
-    found = place_in(machine, text)
-    if found is None:
-        raise not_placed(machine, place)
-    try:
-        return machine.placed_at(float(found))
-    except ValueError as error:
-        raise InputError(f"{place}: {machine.place_name} {found!r} is not a number") from error
 
 
 def _sampled(cycle: CamProfile, job: Job) -> Sampled:

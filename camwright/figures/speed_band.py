@@ -19,8 +19,9 @@ from camwright.figures.strokes import GREY, Stroke
 from camwright.figures.style import title
 from camwright.house.numbers import unit_shown, with_unit
 from camwright.house.pictures import APART, Band, Item, Line, Picture, Tick
+from camwright.jobs.servos import servos_of
 from camwright.profiles.polynomial.profile import FloatArray
-from camwright.studies.axis_study import cam_for_one_speed, servos_of
+from camwright.studies.axis_study import cam_for_one_speed
 from camwright.studies.design import Design
 from camwright.validation.servo.line_speeds import line_speed_errors
 

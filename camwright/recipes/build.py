@@ -16,11 +16,11 @@ from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.recipes.expected import STEPS as EXPECTED_STEPS
 from camwright.recipes.expected import expected, recipe_checks, sound
+from camwright.recipes.language import Language
 from camwright.recipes.manifest import sha256
 from camwright.recipes.model import (
     RECIPE_VERSION,
     JobRecord,
-    Language,
     Origin,
     Particulars,
     Points,

@@ -7,12 +7,13 @@ import tomllib
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import get_args
+from typing import TYPE_CHECKING
 
 from camwright.house.numbers import METRIC, Units, in_print, number, unit_shown, units_of
-from camwright.recipes.model import Language, Recipe
+from camwright.recipes.language import LANGUAGES, Language
 
-LANGUAGES: tuple[Language, ...] = get_args(Language)
+if TYPE_CHECKING:
+    from camwright.recipes.model import Recipe
 
 DECIMAL: dict[Language, str] = {"en": ".", "de": ",", "zh": "."}
 """What stands before decimals."""

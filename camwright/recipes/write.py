@@ -12,8 +12,9 @@ from camwright.house.progress import Step, ignore
 from camwright.profiles.errors import InputError
 from camwright.recipes.build import NO_PARTICULARS, MadeRecipe, make_recipe
 from camwright.recipes.html import recipe_html
+from camwright.recipes.language import Language
 from camwright.recipes.manifest import MANIFEST_FILE, job_of_manifest, manifest_text, read_manifest, sha256
-from camwright.recipes.model import Language, Particulars, Recipe
+from camwright.recipes.model import Particulars, Recipe
 from camwright.recipes.pdf import recipe_pdf
 from camwright.recipes.recipe_file import RECIPE_FILE, recipe_text
 from camwright.recipes.signature import SIGNATURE_FILE

@@ -6,7 +6,7 @@ import hashlib
 import json
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from camwright.answers.axis import axis_answer, robust_answer
 from camwright.answers.objective import agreement_answer, objective_answer
@@ -20,7 +20,9 @@ from camwright.profiles.machines.fields import Choice, MachineField, Whole, fiel
 from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.servo_tolerance import ServoTolerance
-from camwright.studies.design import Design
+
+if TYPE_CHECKING:  # who reads a design needs nothing of what makes one
+    from camwright.studies.design import Design
 
 MOST_BYTES = 1 << 26
 """The most bytes that a design or table file may have."""

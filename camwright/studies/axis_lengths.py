@@ -9,9 +9,9 @@ from camwright.design.servo_aware.axis_problem import AxisProblem
 from camwright.design.servo_aware.command_basis import Command
 from camwright.design.servo_aware.programme import AxisProgramme
 from camwright.jobs.job import Job
+from camwright.jobs.servos import servos_of
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import SolverError
-from camwright.studies.axis_study import servos_of
 from camwright.validation.bounds import minimum_length as least
 from camwright.validation.bounds.zone_search import ZoneSearch
 

@@ -10,6 +10,7 @@ import numpy as np
 from camwright.design.optimise import Solution, solve
 from camwright.design.optimise_axis import solve_axis
 from camwright.jobs.job import Job
+from camwright.jobs.servos import between_of, servos_of
 from camwright.jobs.wording import in_job_words
 from camwright.profiles.errors import InfeasibleError, InputError, SolverError
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
@@ -87,13 +88,6 @@ class AxisStudy:
     used: tuple[float, ...]
 
 
-def servos_of(job: Job) -> tuple[Servo, ...]:
-    """Servos with which a servo-aware design must keep the tolerance: the nominal one, then the corners of its ranges."""
-    if job.servo_tolerance is None or not job.servo_tolerance.varying:
-        return (job.servo,)
-    return (job.servo, *job.servo_tolerance.vertices(job.servo))
-
-
 def shares_of(slowest: float) -> tuple[float, ...]:
     """Line speeds that a servo-aware design looks at first, as shares of the job's, from the full one down."""
     return (
@@ -101,11 +95,6 @@ def shares_of(slowest: float) -> tuple[float, ...]:
         if slowest == 1.0
         else tuple(np.linspace(1.0, slowest, 3 + math.ceil(_LOOKED * (1.0 - slowest))).tolist())
     )
-
-
-def between_of(job: Job) -> tuple[Servo, ...]:
-    """Servos between the corners of a job's ranges, which a servo-aware design looks at too."""
-    return () if job.servo_tolerance is None else job.servo_tolerance.between(job.servo)
 
 
 def solve_job(job: Job, *, suggest: bool = True) -> Solution:

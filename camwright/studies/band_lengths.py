@@ -10,10 +10,11 @@ from camwright.design.servo_aware.axis_problem import AxisProblem, thinned
 from camwright.design.servo_aware.command_basis import Command
 from camwright.design.servo_aware.programme import AxisProgramme
 from camwright.jobs.job import Job
+from camwright.jobs.servos import servos_of
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import SolverError
 from camwright.studies.axis_lengths import AxisLengths
-from camwright.studies.axis_study import servos_of, shares_of
+from camwright.studies.axis_study import shares_of
 from camwright.validation.bounds.minimum_length import fastest_cut, over_line_speeds
 from camwright.validation.bounds.zone_search import ZoneSearch
 

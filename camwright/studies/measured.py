@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from camwright.jobs.job import Job
+from camwright.jobs.servos import servos_of
 from camwright.profiles.objective import OBJECTIVES, ObjectiveName
 from camwright.profiles.polynomial.profile import CamProfile
-from camwright.studies.axis_study import servos_of, sync_error
+from camwright.studies.axis_study import sync_error
 from camwright.studies.within_limits import keeps_limits
 from camwright.validation.motion import MotionMeasures, measure_motion, measure_tool
 from camwright.validation.motor import MotorMeasures, measure_motor

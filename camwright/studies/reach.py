@@ -12,10 +12,10 @@ from camwright.design.returns.curve_limits import motor_limits
 from camwright.design.servo_aware.axis_problem import AxisProblem
 from camwright.design.servo_aware.programme import AxisProgramme
 from camwright.jobs.job import Job
+from camwright.jobs.servos import between_of, servos_of
 from camwright.profiles.errors import InfeasibleError, InputError, SolverError
 from camwright.profiles.objective import MotionObjective, of_command, of_motion
 from camwright.profiles.task import Task
-from camwright.studies.axis_study import between_of, servos_of
 from camwright.validation.report import judge
 
 ACCURACY, SERVO_AWARE_ACCURACY = 1e-4, 5e-3

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from camwright.jobs.job import Job
+from camwright.jobs.servos import servos_of
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
-from camwright.studies.axis_study import servos_of
 from camwright.studies.speed_scan import NAMES, SpeedScan
 from camwright.validation.production.line_ramp import line_ramp
 from camwright.validation.report import ALLOWANCE, ValidationReport

@@ -11,8 +11,7 @@ from typing import Any
 
 from camwright.profiles.errors import InputError
 from camwright.profiles.tables.targets import TARGETS, target_of
-from camwright.recipes.catalogue import LANGUAGES
-from camwright.recipes.model import Language
+from camwright.recipes.language import LANGUAGES, Language
 from camwright.workbench.runner import JOB_FILE
 
 _OUT = ("--out", "out")

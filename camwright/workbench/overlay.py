@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from camwright.drives.audit import running_cam
+from camwright.drives.running_cam import running_cam
 from camwright.jobs.job import parse_job
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import FloatArray

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from camwright.jobs.servos import servos_of
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.servo import spectral_radius
 from camwright.profiles.task import Task
 from camwright.stored.design_file import parse_design
-from camwright.studies.axis_study import servos_of
 from camwright.validation.servo.axis_run import ServoRun
 from camwright.validation.servo.line_speeds import line_speed_errors
 from camwright.validation.servo.response import servo_response, sync_error

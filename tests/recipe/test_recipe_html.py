@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from camwright.recipes.build import MadeRecipe
-from camwright.recipes.catalogue import LANGUAGES, catalogue
+from camwright.recipes.catalogue import catalogue
 from camwright.recipes.figure import figure_svg
 from camwright.recipes.html import recipe_html
-from camwright.recipes.model import Language
+from camwright.recipes.language import LANGUAGES, Language
 
 VOID = {"meta", "link", "br", "hr", "img", "input"}
 

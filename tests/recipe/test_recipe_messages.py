@@ -14,10 +14,10 @@ from camwright.profiles.machines import MACHINES
 from camwright.profiles.machines.fields import fields_of
 from camwright.profiles.tables.targets import TARGETS
 from camwright.recipes.build import MadeRecipe
-from camwright.recipes.catalogue import LANGUAGES, catalogue
+from camwright.recipes.catalogue import catalogue
 from camwright.recipes.facts import PRODUCT, SERVO
 from camwright.recipes.fonts import has_glyph
-from camwright.recipes.model import Language
+from camwright.recipes.language import LANGUAGES, Language
 from camwright.recipes.sheet import sheet
 
 ROOT = Path(__file__).parents[2]

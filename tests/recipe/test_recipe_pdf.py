@@ -14,8 +14,8 @@ import pytest
 
 from camwright.jobs.job import parse_job
 from camwright.recipes.build import MadeRecipe, designed, make_recipe
-from camwright.recipes.catalogue import LANGUAGES, catalogue
-from camwright.recipes.model import Language
+from camwright.recipes.catalogue import catalogue
+from camwright.recipes.language import LANGUAGES, Language
 from camwright.recipes.pdf import recipe_pdf
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -11,9 +11,10 @@ from camwright import load_job
 from camwright.design.optimise import solve
 from camwright.jobs.numbers import job_numbers
 from camwright.recipes.build import MadeRecipe
-from camwright.recipes.catalogue import LANGUAGES, catalogue
+from camwright.recipes.catalogue import catalogue
 from camwright.recipes.facts import limit_facts
-from camwright.recipes.model import JobRecord, Language
+from camwright.recipes.language import LANGUAGES, Language
+from camwright.recipes.model import JobRecord
 from camwright.recipes.ramps import ramp_blocks, ramp_record
 from camwright.studies.line_ramps import line_ramps
 

@@ -8,7 +8,8 @@ import pytest
 
 from camwright.recipes.build import MadeRecipe
 from camwright.recipes.catalogue import catalogue
-from camwright.recipes.model import Language, Recipe, SpeedPart
+from camwright.recipes.language import Language
+from camwright.recipes.model import Recipe, SpeedPart
 from camwright.recipes.release import boxed, marked, status_text, warnings
 from camwright.recipes.sheet import sheet
 

@@ -10,8 +10,7 @@ import openpyxl
 import pytest
 
 from camwright.recipes.build import MadeRecipe
-from camwright.recipes.catalogue import LANGUAGES
-from camwright.recipes.model import Language
+from camwright.recipes.language import LANGUAGES, Language
 from camwright.recipes.xlsx import recipe_xlsx
 
 
