@@ -72,7 +72,8 @@ def _listen(port: int) -> socket.socket:
     InputError
         The port is taken, or not for everybody.
     """
-    listening = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+    # asyncio sends answers without delay (TCP_NODELAY) only where the protocol is named: else each may wait 40 ms for the browser
+    listening = socket.socket(socket.AF_INET, socket.SOCK_STREAM, socket.IPPROTO_TCP)
     listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
         listening.bind(("127.0.0.1", port))

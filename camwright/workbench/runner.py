@@ -1,4 +1,4 @@
-"""`Runner`: one process that runs commands for the page; what it answers is what the command line answers, for it is the command line."""
+"""`Runner`: a process that runs commands for the page; what it answers is what the command line answers, for it is the command line."""
 
 from __future__ import annotations
 
@@ -56,8 +56,14 @@ class _Child:
     line: Connection
 
 
+_REHEARSAL = ("design", "--brief", "--json", "--out", "out")
+"""What a spare process runs before it is needed: a design of the bundled job has imported and made all that takes long."""
+
+
 class Runner:
-    """Runs commands in a process of its own, one call at a time; a newer call of the same kind ends an older one.
+    """Runs commands in a process of its own, one call at a time; a newer call of the same kind ends an older one with its process.
+
+    A second one stands by from the first answer on, so that who follows an ended call does not wait for a process to begin.
 
     Parameters
     ----------
@@ -68,15 +74,16 @@ class Runner:
     def __init__(self, command_line: CommandLine) -> None:
         self._command_line = command_line
         self._child = self._spawn()
+        self._spare: _Child | None = None
         self._newest: dict[str, int] = {}
         self._running: str | None = None
         self._closed = False
         self._free = asyncio.Lock()
 
-    def _spawn(self) -> _Child:
+    def _spawn(self, *, rehearse: bool = False) -> _Child:
         """Start a process that waits for commands."""
         ours, theirs = _PROCESSES.Pipe()
-        process = _PROCESSES.Process(target=_serve, args=(theirs, self._command_line), daemon=True)
+        process = _PROCESSES.Process(target=_serve, args=(theirs, self._command_line, rehearse), daemon=True)
         with _deaf():
             process.start()
         theirs.close()
@@ -108,6 +115,8 @@ class Runner:
             ran = await asyncio.get_running_loop().run_in_executor(None, _received, child.line)
             if child is self._child:
                 self._running = None
+            if self._spare is None and not self._closed:
+                self._spare = self._spawn(rehearse=True)
         if ran is None or call != self._newest[kind]:
             raise StaleError
         return ran
@@ -118,20 +127,23 @@ class Runner:
         self._end(kind)
 
     def _end(self, kind: str) -> None:
-        """End a call of a kind if it runs, and start a process anew for those that wait."""
+        """End a call of a kind if it runs; the spare process takes its place."""
         if self._running == kind and not self._closed:
-            self._stop()
-            self._running, self._child = None, self._spawn()
-
-    def _stop(self) -> None:
-        """End the process, whatever it does."""
-        self._child.process.terminate()
-        self._child.process.join()  # the line ends with it, which whoever waits there is told
+            _stop(self._child)
+            self._running, self._child, self._spare = None, self._spare or self._spawn(), None
 
     def close(self) -> None:
-        """End the process; calls that wait for it are told that they are stale, and so are all that come later."""
+        """End the processes; calls that wait for them are told that they are stale, and so are all that come later."""
         self._closed = True
-        self._stop()
+        for child in (self._child, self._spare):
+            if child is not None:
+                _stop(child)
+
+
+def _stop(child: _Child) -> None:
+    """End a process, whatever it does."""
+    child.process.terminate()
+    child.process.join()  # the line ends with it, which whoever waits there is told
 
 
 @contextlib.contextmanager
@@ -159,9 +171,11 @@ def _received(line: Connection) -> Ran | None:
     return found if isinstance(found, Ran) else None
 
 
-def _serve(line: Connection, command_line: CommandLine) -> None:
+def _serve(line: Connection, command_line: CommandLine, rehearse: bool) -> None:
     """Run commands as they come, until the other end is closed."""
     with contextlib.suppress(EOFError, OSError, KeyboardInterrupt):  # the page is gone
+        if rehearse:
+            _run(command_line, (_REHEARSAL,), {})
         while True:
             commands, inputs = line.recv()
             line.send(_run(command_line, commands, inputs))

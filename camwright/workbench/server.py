@@ -15,9 +15,8 @@ from typing import Any
 from starlette.applications import Starlette
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
-from starlette.responses import FileResponse, JSONResponse, Response
-from starlette.routing import Mount, Route
-from starlette.staticfiles import StaticFiles
+from starlette.responses import JSONResponse, Response
+from starlette.routing import Route
 
 from camwright.answers.error import error_answer
 from camwright.jobs.job import parse_job
@@ -26,7 +25,8 @@ from camwright.jobs.wording import error_words
 from camwright.profiles.errors import CamwrightError, InputError
 from camwright.profiles.returns import baseline_names
 from camwright.profiles.tables.targets import TARGETS
-from camwright.recipes.catalogue import LANGUAGES, catalogue
+from camwright.recipes.catalogue import catalogue
+from camwright.recipes.language import LANGUAGES
 from camwright.workbench.calls import (
     NAMES,
     Call,
@@ -39,15 +39,13 @@ from camwright.workbench.calls import (
     number_of,
     text_of,
 )
+from camwright.workbench.files import PAGE, PageFiles
 from camwright.workbench.guard import Guard
 from camwright.workbench.overlay import overlay
 from camwright.workbench.preview import designed, preview
 from camwright.workbench.runner import JOB_FILE, Ran, Runner, StaleError
 from camwright.workbench.saving import Saved
 from camwright.workbench.servo import servo_view
-
-PAGE = Path(__file__).parent / "page"
-"""The page's files."""
 
 WORDS = PAGE / "words"
 """The page's own words, a file a language."""
@@ -78,10 +76,6 @@ class Workbench:
 
     def __init__(self, text: str, folder: Path, runner: Runner) -> None:
         self._text, self._saved, self._runner = text, Saved(folder, text), runner
-
-    async def page(self, _: Request) -> Response:
-        """Give the page."""
-        return FileResponse(PAGE / "index.html")
 
     async def job(self, _: Request) -> Response:
         """Give what the page begins with: the job, the keys that its form is made from, targets, baselines, languages."""
@@ -173,7 +167,7 @@ def application(text: str, folder: Path, token: str, runner: Runner) -> Guard:
     runner
         What answers their calls; it is closed with the application.
     """
-    bench = Workbench(text, folder, runner)
+    bench, files = Workbench(text, folder, runner), PageFiles()
 
     @contextlib.asynccontextmanager
     async def living(_: Starlette) -> AsyncIterator[None]:
@@ -181,13 +175,13 @@ def application(text: str, folder: Path, token: str, runner: Runner) -> Guard:
         runner.close()
 
     routes = [
-        Route("/", bench.page),
+        Route("/", files.index),
+        Route("/page/{name:path}", files.file),
         Route("/api/job", bench.job),
         Route("/api/words", bench.words),
         *(Route(f"/api/{name}", bench.at_once, methods=["POST"]) for name in _AT_ONCE),
         Route("/api/save", bench.save, methods=["POST"]),
         *(Route(f"/api/{name}", bench.call, methods=["POST"]) for name in NAMES),
-        Mount("/page", StaticFiles(directory=PAGE)),
     ]
     return Guard(Starlette(routes=routes, lifespan=living), token)
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
+import multiprocessing
 import os
 import signal
 import socket
@@ -17,9 +19,12 @@ from typing import Any
 
 import pytest
 
+from camwright.cli.main import main
 from camwright.jobs.job import BUNDLED_JOB
+from camwright.workbench.runner import Runner, StaleError
 
 PAPER = BUNDLED_JOB.read_text(encoding="utf-8")
+DESIGN = ("design", "job.toml", "--brief", "--json", "--out", "out")
 SLOW = (Path(__file__).parents[2] / "examples" / "short-cut.toml").read_text(encoding="utf-8")
 
 
@@ -107,3 +112,27 @@ def test_a_newer_design_ends_an_older_one_and_leaves_other_calls_alone(address: 
     assert answers["old"] == {"status": "stale", "message": "a newer call took its place"}
     assert answers["beside"]["exit_code"] == 0
     assert answers["new"]["passed"] is True
+
+
+def test_a_process_stands_by_for_who_follows_an_ended_call() -> None:
+    others = {child.pid for child in multiprocessing.active_children()}
+    runner = Runner(main)
+
+    async def follow() -> tuple[set[int | None], set[int | None]]:
+        await runner.run("check", (("check", "job.toml", "--json"),), {"job.toml": PAPER.encode()})
+        before = {child.pid for child in multiprocessing.active_children()}
+        old = asyncio.create_task(runner.run("design", (DESIGN,), {"job.toml": SLOW.encode()}))
+        await asyncio.sleep(0.3)
+        ran = await runner.run("design", (DESIGN,), {"job.toml": PAPER.encode()})
+        assert json.loads(ran.answer)["passed"] is True
+        with pytest.raises(StaleError):
+            await old
+        return before, {child.pid for child in multiprocessing.active_children()}
+
+    try:
+        before, after = (found - others for found in asyncio.run(follow()))
+    finally:
+        runner.close()
+    assert len(before) == len(after) == 2
+    assert len(before & after) == 1  # it stood by while the old call ran, and answered the new one
+    assert {child.pid for child in multiprocessing.active_children()} == others

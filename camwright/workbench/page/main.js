@@ -141,6 +141,10 @@ function keys(event) {
 
 async function translate(language) {
   await speak(language);
+  build();
+}
+
+function build() {
   sliders.build($("sliders"));
   sliders.refresh($("sliders"));
   form.build($("form"));
@@ -173,14 +177,15 @@ function wire() {
 }
 
 async function start() {
-  const { data } = await get("api/job");
+  const languages = [...$("language").options].map((each) => each.value);
+  $("language").value = languages.find((each) => navigator.language.startsWith(each)) ?? "en";
+  const [{ data }] = await Promise.all([get("api/job"), speak($("language").value)]);
   Object.assign(state, { keys: data.keys, targets: data.targets, known: { laws: data.laws } });
   begin(data.toml);
+  committed("commit"); // on its way while the form is built
+  $("toml").value = state.text;
+  build();
   wire();
-  const language = data.languages.find((each) => navigator.language.startsWith(each)) ?? "en";
-  $("language").value = language;
-  await translate(language);
-  changed("commit");
 }
 
 start();
