@@ -87,7 +87,7 @@ def with_arcs(piece: Piece, allowed: Callable[[float], float], gap: float) -> tu
         The line, and what was found in it; first what was replaced, then what lies too far from its arc to be. Lines
         that stand for curves are left as they are.
     """
-    if piece.flattening > 0:
+    if piece.flattening > 0 or not _runs(piece):
         return piece, ()
     points, bulges, found, off = [piece.points[:1]], [], [], 0.0
     done = 0

@@ -11,16 +11,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from camwright.bender.job import BenderJob
-from camwright.design.bender.moves import (
-    Dwell,
-    TimeTable,
-    overlapped_table,
-    sequential_table,
-)
+from camwright.bender.machine_run import MachineRun, machine_run
+from camwright.design.bender.moves import Dwell, TimeTable
 from camwright.profiles.bender.bridges import Bridge, BridgeMark, marked_places, place_bridges, with_cuts
 from camwright.profiles.bender.compensation import compensate
 from camwright.profiles.bender.division import EqualSides
-from camwright.profiles.bender.motion import Moves, double_s_moves, trapezoid_moves
 from camwright.profiles.bender.nc_code import read_program, write_program
 from camwright.profiles.bender.nearby import crossings
 from camwright.profiles.bender.outline import Outline
@@ -28,9 +23,8 @@ from camwright.profiles.bender.plan import BendPlan, plan_bends
 from camwright.profiles.bender.program import NcProgram
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import FloatArray
-from camwright.validation.bender.arrival import arrivals
 from camwright.validation.bender.bridges import BridgeProof, prove_bridges
-from camwright.validation.bender.collision import Collision, collisions
+from camwright.validation.bender.collision import Collision
 from camwright.validation.bender.virtual_bender import BendingProof, prove
 from camwright.validation.check import Check
 
@@ -47,9 +41,11 @@ _LONGEST_NAME = 20
 """Characters of a program's name: Fagor's header takes no more."""
 
 _MOST_FAULTS = 20
-_SETTLED = 200
 _ALIKE = 12
 """Digits after the point (m, rad) to which the bends of outlines agree that are run alike."""
+
+_ALIKE_PLACE = 1e-9
+"""Distance (m) to which the places of outlines agree that are bent alike."""
 
 _NEAR = 1e-6
 """Part of the mould's range within which a bend's mould angle is computed to tell whether it exceeds the range."""
@@ -101,6 +97,13 @@ class BentOutline:
     bridge_gap: float
     paper_bends: int
     paper_error: float
+
+    def moved_to(self, plan: BendPlan, name: str) -> BentOutline:
+        """Give the same for an outline of the same shape elsewhere, under a name of its own."""
+        shift = plan.vertices[0] - self.plan.vertices[0]
+        proof = replace(self.proof, points=self.proof.points + shift, worst=self.proof.worst + shift)
+        text = self.text.replace(self.program.name, name, 1)  # it stands in the head
+        return replace(self, plan=plan, program=replace(self.program, name=name), text=text, proof=proof)
 
     @property
     def sha256(self) -> str:
@@ -171,21 +174,15 @@ def bend_outlines(
     InputError
         What the bender cannot do, of all outlines.
     """
-    plans, faults = [], []
-    for outline in outlines:
-        plan, found = _planned(outline, job)
-        faults += found
-        plans.append(plan)
-    if job.bridges.at and len(plans) > 1:
-        faults.append(
-            f"[bridges] at names places along one rule, and the drawing has {len(plans)}; write spacing instead, or choose one "
-            "with --style"
-        )
-    if faults:
-        raise InputError(*faults[:_MOST_FAULTS])
+    shapes = [_shape(outline) for outline in outlines]
+    plans = _plans(outlines, shapes, job)
     places = marked_places(plans, marks, job.bridges.width)
-    programs = []
+    keys = [(shape, tuple(place) if marks else ()) for shape, place in zip(shapes, places, strict=True)]
+    written: dict[_Key, tuple[NcProgram, tuple[Bridge, ...]]] = {}
+    faults: list[str] = []
     for i, plan in enumerate(plans):
+        if keys[i] in written:
+            continue
         program = compensate(plan, job.springback, program_name(stem, i, len(plans)))
         try:
             bridges = place_bridges(plan, replace(job.bridges, at=places[i]) if marks else job.bridges)
@@ -193,12 +190,64 @@ def bend_outlines(
         except InputError as error:
             faults += error.faults
             continue
-        faults += _range_faults(program, plan, job)
-        programs.append((plan, program, bridges))
+        found = _range_faults(program, plan, job)
+        faults += found
+        if not found:
+            written[keys[i]] = program, bridges
     if faults:
         raise InputError(*faults[:_MOST_FAULTS])
-    known: dict[tuple[bytes, ...], _Run] = {}
-    return tuple(_finished(plan, program, bridges, job, known) for plan, program, bridges in programs)
+    known: dict[tuple[bytes, ...], MachineRun] = {}
+    first: dict[_Key, BentOutline] = {}
+    bent = []
+    for i, (plan, key) in enumerate(zip(plans, keys, strict=True)):
+        if key in first:
+            bent.append(first[key].moved_to(plan, program_name(stem, i, len(plans))))
+        else:
+            first[key] = _finished(plan, *written[key], job, known)
+            bent.append(first[key])
+    return tuple(bent)
+
+
+_Key = tuple[bytes, tuple[float, ...]]
+"""Shape of an outline, and where its marks are: outlines that agree in both are bent alike."""
+
+
+def _plans(outlines: Sequence[Outline], shapes: Sequence[bytes], job: BenderJob) -> list[BendPlan]:
+    """Plan the bends of all outlines, those of one shape once.
+
+    Raises
+    ------
+    InputError
+        What the bender cannot do.
+    """
+    plans: list[BendPlan] = []
+    faults: list[str] = []
+    known: dict[bytes, BendPlan] = {}
+    for outline, shape in zip(outlines, shapes, strict=True):
+        if shape in known:
+            plans.append(known[shape].moved_to(outline))
+            continue
+        plan, found = _planned(outline, job)
+        faults += found
+        if len(faults) >= _MOST_FAULTS:
+            break
+        if not found:
+            known[shape] = plan
+        plans.append(plan)
+    if job.bridges.at and len(outlines) > 1:
+        faults.append(
+            f"[bridges] at names places along one rule, and the drawing has {len(outlines)}; write spacing instead, or choose one "
+            "with --style"
+        )
+    if faults:
+        raise InputError(*faults[:_MOST_FAULTS])
+    return plans
+
+
+def _shape(outline: Outline) -> bytes:
+    """Tell what an outline is wherever it lies, to a nanometre, a thousandth of what a program can say."""
+    places = np.rint((outline.points - outline.points[0]) / _ALIKE_PLACE).astype(np.int64)
+    return places.tobytes() + outline.bulges.tobytes() + repr(outline.flattening).encode()
 
 
 def program_name(stem: str, index: int, count: int) -> str:
@@ -262,28 +311,12 @@ def _range_faults(program: NcProgram, plan: BendPlan, job: BenderJob) -> list[st
     return faults
 
 
-@dataclass(frozen=True, eq=False)
-class _Run:
-    """What the machine does in a program, wherever its outline lies: collisions, time tables, dwells, and how both axes arrive.
-
-    ``feed`` and ``mould`` are the greatest overshoots (m, rad).
-    """
-
-    collisions: tuple[Collision, ...]
-    times: TimeTable
-    paper_times: TimeTable
-    dwell: Dwell
-    paper_dwell: Dwell
-    feed: float
-    mould: float
-
-
 def _finished(
     plan: BendPlan,
     program: NcProgram,
     bridges: tuple[Bridge, ...],
     job: BenderJob,
-    known: dict[tuple[bytes, ...], _Run],
+    known: dict[tuple[bytes, ...], MachineRun],
 ) -> BentOutline:
     """Write a program and prove it; ``known`` keeps what the machine does, as outlines are often repeated in a drawing."""
     drive = job.drive
@@ -295,7 +328,7 @@ def _finished(
     alike = read.feeds, read.bends, np.round(plan.radii, _ALIKE), np.round(plan.turns, _ALIKE)
     key = tuple(part.tobytes() for part in alike)
     if key not in known:
-        known[key] = _run(read, plan, proof, job)
+        known[key] = machine_run(read, plan, proof, job)
     run = known[key]
     paper = plan_bends(plan.outline, EqualSides(), job.least_turn) if plan.outline.arcs.any() else plan
     return BentOutline(
@@ -316,42 +349,3 @@ def _finished(
         paper.bends,
         paper.chord_error,
     )
-
-
-def _run(read: NcProgram, plan: BendPlan, proof: BendingProof, job: BenderJob) -> _Run:
-    """Run a program in the machine."""
-    drive = job.drive
-    feeds = np.asarray(read.feeds * 1e-6, dtype=np.float64)
-    moulds = np.asarray(np.radians(read.bends / 1e3), dtype=np.float64)
-    feed = _worst(double_s_moves(_spread(feeds), drive.feed), job, job.feed_window)
-    mould = _worst(double_s_moves(_spread(np.abs(moulds)), drive.mould), job, job.mould_window)
-    paper_feed = _worst(trapezoid_moves(_spread(feeds), drive.feed), job, job.feed_window)
-    paper_mould = _worst(trapezoid_moves(_spread(np.abs(moulds)), drive.mould), job, job.mould_window)
-    dwell, paper_dwell = Dwell(feed[0], mould[0]), Dwell(paper_feed[0], paper_mould[0])
-    return _Run(
-        collisions(proof.points, moulds, job.envelope),
-        overlapped_table(feeds, moulds, plan.turns, drive, dwell),
-        sequential_table(feeds, moulds, drive, paper_dwell),
-        dwell,
-        paper_dwell,
-        feed[1],
-        mould[1],
-    )
-
-
-def _spread(distances: FloatArray) -> FloatArray:
-    """Different distances of moves, from the least to the greatest; some of them if there are many."""
-    unique = np.unique(distances)
-    return (
-        unique[np.unique(np.linspace(0, len(unique) - 1, min(len(unique), _SETTLED)).astype(int))]
-        if len(unique)
-        else unique
-    )
-
-
-def _worst(moves: Moves, job: BenderJob, window: float) -> tuple[float, float]:
-    """Longest settling time (s) and greatest overshoot (m or rad) of an axis among its moves."""
-    if not len(moves.time):
-        return 0.0, 0.0
-    found = arrivals(moves, job.servo, window)
-    return float(found.settling.max()), float(found.overshoot.max())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,6 +41,10 @@ class BendPlan:
     radii: FloatArray
     segments: NDArray[np.int64]
     chord_error: float
+
+    def moved_to(self, outline: Outline) -> BendPlan:
+        """Give the plan of an outline of the same shape that lies elsewhere."""
+        return replace(self, outline=outline, vertices=self.vertices + (outline.points[0] - self.outline.points[0]))
 
     @property
     def bends(self) -> int:

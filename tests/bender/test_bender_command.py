@@ -11,13 +11,16 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from camwright.bender.job import BUNDLED_BENDER, load_bender
+from camwright.bender.program_file import bend_outlines
 from camwright.bender.springback_file import BUNDLED
 from camwright.cli.main import main
 from camwright.house.owned import LIST
 from camwright.profiles.bender.nc_code import read_program
+from camwright.profiles.bender.outline import Outline
 from camwright.profiles.errors import InputError
 
 Make = Callable[..., Path]
@@ -527,3 +530,29 @@ def test_outlines_alike_are_run_once_and_judged_each_for_itself(
     assert [f"side 1 from ({300 * i}.000, 0.{i}00) mm" in text for i, text in enumerate(told)] == [True] * 3
     lists = [(tmp_path / "out" / f"drawing-{i}-bends.csv").read_text() for i in (1, 2, 3, 4)]
     assert lists[0] == lists[1] == lists[2] == (tmp_path / "one" / "one-bends.csv").read_text() != lists[3]
+
+
+def test_an_outline_that_is_bent_like_another_is_what_it_is_alone():
+    job, dice = load_bender(), np.random.default_rng(3)
+    shape = 1e-3 * np.array([[0, 0], [60, 0], [60, 20], [30, 45], [0, 20], [0, 0]])
+    bulges = np.array([0, 0.3, 0, -0.2, 0])
+    places = [(0.0, 0.0), *(1e-6 * dice.integers(0, 10**6, 2) for _ in range(5))]
+    outlines = [Outline(shape + place, bulges, f"LINE {i}") for i, place in enumerate(places)]
+    together = bend_outlines(outlines, job, "rule")
+    for i, (found, outline) in enumerate(zip(together, outlines, strict=True)):
+        (alone,) = bend_outlines([outline], job, "rule")
+        assert found.program.name == f"RULE-{i + 1}"
+        assert found.text == alone.text.replace("RULE", f"RULE-{i + 1}")
+        assert found.plan.outline is outline
+        np.testing.assert_allclose(found.plan.vertices, alone.plan.vertices, atol=1e-12)
+        np.testing.assert_allclose(found.proof.points, alone.proof.points, atol=1e-9)
+        assert found.proof.deviation == pytest.approx(alone.proof.deviation, abs=1e-9)
+        assert [check.passed for check in found.checks] == [check.passed for check in alone.checks]
+
+
+def test_faults_of_outlines_alike_are_told_once_a_shape():
+    sharp = 1e-3 * np.array([[0, 0], [40, 0], [0.0, 0.001]])
+    outlines = [Outline(sharp + 0.1 * i, np.zeros(2), f"LINE {i}") for i in range(3)]
+    with pytest.raises(InputError) as refused:
+        bend_outlines(outlines, load_bender(), "rule")
+    assert len(refused.value.faults) == 3  # a fault names its outline: none is passed over while there is room

@@ -1,0 +1,79 @@
+"""What the bender does in a program, wherever its outline lies: collisions, time tables, and how its axes settle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from camwright.bender.job import BenderJob
+from camwright.design.bender.moves import (
+    Dwell,
+    TimeTable,
+    overlapped_table,
+    sequential_table,
+)
+from camwright.profiles.bender.motion import Moves, double_s_moves, trapezoid_moves
+from camwright.profiles.bender.plan import BendPlan
+from camwright.profiles.bender.program import NcProgram
+from camwright.profiles.polynomial.profile import FloatArray
+from camwright.validation.bender.arrival import arrivals
+from camwright.validation.bender.collision import Collision, collisions
+from camwright.validation.bender.virtual_bender import BendingProof
+
+_SETTLED = 200
+
+
+@dataclass(frozen=True, eq=False)
+class MachineRun:
+    """What the machine does in a program, wherever its outline lies: collisions, time tables, dwells, and how both axes arrive.
+
+    ``feed`` and ``mould`` are the greatest overshoots (m, rad).
+    """
+
+    collisions: tuple[Collision, ...]
+    times: TimeTable
+    paper_times: TimeTable
+    dwell: Dwell
+    paper_dwell: Dwell
+    feed: float
+    mould: float
+
+
+def machine_run(read: NcProgram, plan: BendPlan, proof: BendingProof, job: BenderJob) -> MachineRun:
+    """Run a program in the machine."""
+    drive = job.drive
+    feeds = np.asarray(read.feeds * 1e-6, dtype=np.float64)
+    moulds = np.asarray(np.radians(read.bends / 1e3), dtype=np.float64)
+    feed = _worst(double_s_moves(_spread(feeds), drive.feed), job, job.feed_window)
+    mould = _worst(double_s_moves(_spread(np.abs(moulds)), drive.mould), job, job.mould_window)
+    paper_feed = _worst(trapezoid_moves(_spread(feeds), drive.feed), job, job.feed_window)
+    paper_mould = _worst(trapezoid_moves(_spread(np.abs(moulds)), drive.mould), job, job.mould_window)
+    dwell, paper_dwell = Dwell(feed[0], mould[0]), Dwell(paper_feed[0], paper_mould[0])
+    return MachineRun(
+        collisions(proof.points, moulds, job.envelope),
+        overlapped_table(feeds, moulds, plan.turns, drive, dwell),
+        sequential_table(feeds, moulds, drive, paper_dwell),
+        dwell,
+        paper_dwell,
+        feed[1],
+        mould[1],
+    )
+
+
+def _spread(distances: FloatArray) -> FloatArray:
+    """Different distances of moves, from the least to the greatest; some of them if there are many."""
+    unique = np.unique(distances)
+    return (
+        unique[np.unique(np.linspace(0, len(unique) - 1, min(len(unique), _SETTLED)).astype(int))]
+        if len(unique)
+        else unique
+    )
+
+
+def _worst(moves: Moves, job: BenderJob, window: float) -> tuple[float, float]:
+    """Longest settling time (s) and greatest overshoot (m or rad) of an axis among its moves."""
+    if not len(moves.time):
+        return 0.0, 0.0
+    found = arrivals(moves, job.servo, window)
+    return float(found.settling.max()), float(found.overshoot.max())
