@@ -10,13 +10,18 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain
 
 import numpy as np
 
 from camwright.bender.piece import Piece, along
 from camwright.profiles.bender.boxes import Indices, overlapping
 from camwright.profiles.bender.outline import FLAT
+from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import FloatArray
+
+_MOST_CUTS = 100_000
+"""Stretches that may lie on others: more would take longer than a user waits."""
 
 _BUCKETS = 180
 """Directions of lines that are compared with each other and with the next bucket's."""
@@ -102,16 +107,18 @@ def without_overlaps(pieces: Sequence[Piece], tolerance: float) -> tuple[list[Pi
     InputError
         Too many lines lie beside each other.
     """
-    segments = _segments(pieces)
+    kept, copies = _copies(pieces)
+    distinct = [pieces[k] for k in kept]
+    segments = _segments(distinct)
     cuts: dict[int, list[_Cut]] = {}
     for j, cut in _cuts(segments, tolerance):
         cuts.setdefault(j, []).append(cut)
-    if not cuts:
+    if not (cuts or copies):
         return list(pieces), ()
-    first_of = np.searchsorted(segments.piece, np.arange(len(pieces)))
+    first_of = np.searchsorted(segments.piece, np.arange(len(distinct)))
     touched = {int(segments.piece[j]) for j in cuts}
     found: list[Piece] = []
-    for k, piece in enumerate(pieces):
+    for k, piece in enumerate(distinct):
         if k in touched:
             own = {
                 j - int(first_of[k]): cuts[j] for j in range(first_of[k], first_of[k] + len(piece.bulges)) if j in cuts
@@ -119,7 +126,31 @@ def without_overlaps(pieces: Sequence[Piece], tolerance: float) -> tuple[list[Pi
             found += _remains(piece, own, tolerance)
         else:
             found.append(piece)
-    return found, _named(cuts, segments, pieces)
+    named = [(kept[k], overlap) for k, overlap in _named(cuts, segments, distinct)]
+    named += [(j, _copied(pieces[i], pieces[j])) for j, i in copies.items()]
+    return found, tuple(overlap for _, overlap in sorted(named, key=lambda entry: entry[0]))
+
+
+def _copies(pieces: Sequence[Piece]) -> tuple[list[int], dict[int, int]]:
+    """Tell the pieces that are no copies, and of which each copy is one: many copies make no pairs among themselves."""
+    first: dict[bytes, int] = {}
+    kept: list[int] = []
+    copies: dict[int, int] = {}
+    for k, piece in enumerate(pieces):
+        # adding 0 turns -0 into 0
+        shapes = [one.points.tobytes() + (one.bulges + 0.0).tobytes() for one in (piece, piece.reverse())]
+        known = next((first[shape] for shape in shapes if shape in first), None)
+        if known is None:
+            kept.append(k)
+            first[shapes[0]] = k
+        else:
+            copies[k] = known
+    return kept, copies
+
+
+def _copied(first: Piece, second: Piece) -> Overlap:
+    start, end = second.points[:2].tolist()
+    return Overlap(first.name, second.name, second.length, tuple(start), tuple(end))
 
 
 def between_styles(styles: Sequence[Sequence[Piece]], tolerance: float) -> tuple[Overlap, ...]:
@@ -137,8 +168,9 @@ def between_styles(styles: Sequence[Sequence[Piece]], tolerance: float) -> tuple
     InputError
         Too many lines lie beside each other.
     """
-    pieces = [piece for own in styles for piece in own]
-    style = np.repeat(np.arange(len(styles)), [len(own) for own in styles])
+    distinct = [[own[k] for k in _copies(own)[0]] for own in styles]  # copies of one style are named there
+    pieces = [piece for own in distinct for piece in own]
+    style = np.repeat(np.arange(len(styles)), [len(own) for own in distinct])
     if len(np.unique(style)) < 2:
         return ()
     segments = _segments(pieces)
@@ -146,14 +178,20 @@ def between_styles(styles: Sequence[Sequence[Piece]], tolerance: float) -> tuple
     for j, cut in _cuts(segments, tolerance):
         if style[segments.piece[j]] != style[segments.piece[cut.owner]]:
             cuts.setdefault(j, []).append(cut)
-    return _named(cuts, segments, pieces)
+    return tuple(overlap for _, overlap in _named(cuts, segments, pieces))
 
 
 def _cuts(segments: _Segments, tolerance: float) -> Iterator[tuple[int, _Cut]]:
     """Stretches that lie on earlier segments, with the number of the segment that loses them."""
     flat = np.abs(segments.bulge) * segments.chord <= 2 * FLAT
-    yield from _line_cuts(segments, np.flatnonzero(flat), tolerance)
-    yield from _arc_cuts(segments, np.flatnonzero(~flat), tolerance)
+    lines, arcs = np.flatnonzero(flat), np.flatnonzero(~flat)
+    found = chain(_line_cuts(segments, lines, tolerance), _arc_cuts(segments, arcs, tolerance))
+    for count, cut in enumerate(found):
+        if count == _MOST_CUTS:
+            raise InputError(
+                f"more than {_MOST_CUTS} stretches of lines lie on others; purge what is drawn many times over"
+            )
+        yield cut
 
 
 def _segments(pieces: Sequence[Piece]) -> _Segments:
@@ -279,8 +317,8 @@ def _run(run: list[tuple[FloatArray, FloatArray, float]], piece: Piece) -> Piece
     return replace(piece, points=points, bulges=np.array([bulge for _, _, bulge in run]))
 
 
-def _named(cuts: dict[int, list[_Cut]], segments: _Segments, pieces: Sequence[Piece]) -> tuple[Overlap, ...]:
-    """Gather the cuts of each two entities."""
+def _named(cuts: dict[int, list[_Cut]], segments: _Segments, pieces: Sequence[Piece]) -> list[tuple[int, Overlap]]:
+    """Gather the cuts of each two entities, with the number of the second."""
     lengths = segments.length
     found: dict[tuple[int, int], Overlap] = {}
     for j in sorted(cuts):
@@ -292,4 +330,4 @@ def _named(cuts: dict[int, list[_Cut]], segments: _Segments, pieces: Sequence[Pi
             else:
                 names = pieces[pair[0]].name, pieces[pair[1]].name
                 found[pair] = Overlap(*names, size, cut.start, cut.end)
-    return tuple(found.values())
+    return [(second, overlap) for (_, second), overlap in found.items()]

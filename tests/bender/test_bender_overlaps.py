@@ -2,6 +2,7 @@
 
 import math
 import re
+import time
 from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
@@ -151,8 +152,26 @@ def test_as_many_stretches_as_there_are_on_a_ruler(rows):
     assert bool(found) == (sum(abs(b - a) for _, a, b in drawn) > len(cells))
 
 
-def test_too_many_doubles_are_refused(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("camwright.profiles.bender.boxes.MOST_PAIRS", 100)
-    pieces = [Piece(np.array([[0.0, 0.0], [1.0, 0.0]]), np.zeros(1), f"{i}") for i in range(20)]
-    with pytest.raises(InputError, match="more than 100 pairs of lines lie beside each other"):
+@pytest.mark.parametrize(
+    ("limit", "message"),
+    [
+        ("camwright.profiles.bender.boxes.MOST_PAIRS", "more than 100 pairs of lines lie beside each other"),
+        ("camwright.bender.overlaps._MOST_CUTS", "more than 100 stretches of lines lie on others"),
+    ],
+)
+def test_too_many_doubles_are_refused(limit: str, message: str, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(limit, 100)
+    pieces = [Piece(np.array([[0.0, 0.0], [1.0 + 0.01 * i, 0.0]]), np.zeros(1), f"{i}") for i in range(20)]
+    with pytest.raises(InputError, match=message):
         without_overlaps(pieces, TOLERANCE)
+
+
+def test_many_copies_are_one_line_and_each_is_named():
+    line = np.array([[0.0, 0.0], [1.0, 0.0]])
+    pieces = [Piece(line[::-1] if i % 2 else line, np.zeros(1), f"{i}") for i in range(3000)]
+    begin = time.process_time()
+    left, found = without_overlaps(pieces, TOLERANCE)
+    assert time.process_time() - begin < 1.0
+    assert [piece.name for piece in left] == ["0"]
+    assert [(overlap.first, overlap.second) for overlap in found] == [("0", f"{i}") for i in range(1, 3000)]
+    assert {overlap.length for overlap in found} == {1.0}
