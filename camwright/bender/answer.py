@@ -14,6 +14,7 @@ from camwright.bender.calibration import Calibration
 from camwright.bender.drawing import Drawing
 from camwright.bender.job import BenderJob
 from camwright.bender.program_file import COLLISIONS, ROUNDING, BentOutline
+from camwright.profiles.notice import Notice, Number
 from camwright.validation.bender.collision import MOST_REPORTED
 from camwright.validation.check import Check
 
@@ -71,19 +72,34 @@ class BentDrawing:
             found += [*_bridge_lines(outline), *collision_lines(outline, self.job)]
         count = sum(bool(outline.collisions) for outline in self.outlines)
         if count and not self.collisions_accepted:
-            found.append(
-                f"the check {COLLISIONS} failed in {count} {'program' if count == 1 else 'programs'}; if the rule is guided by "
-                "hand or lifted over the mould at these bends, accept it with --accept-collisions"
-            )
+            found.append(_failed_collisions(count))
         return tuple(found)
+
+
+def _failed_collisions(count: int) -> Notice:
+    way_out = (
+        "if the rule is guided by hand or lifted over the mould at these bends, accept it with --accept-collisions"
+    )
+    if count == 1:
+        return Notice(f"the check {COLLISIONS} failed in one program; {way_out}")
+    return Notice(f"the check {COLLISIONS} failed in {{count}} programs; {way_out}", count=str(count))
 
 
 def size_warnings(found: Drawing, job: BenderJob) -> tuple[str, ...]:
     """Say that a drawing is larger than what the machine is made for: its unit may be wrong."""
     if max(found.size) <= job.greatest_size:
         return ()
-    large = f"the drawing is {size_words(found)} large, beyond the machine's {1e3 * job.greatest_size:g} mm"
-    return (f'{large}; if its unit is not {found.unit}, write units = "mm" under [drawing] of the bender job',)
+    width, height = found.size
+    return (
+        Notice(
+            "the drawing is {width} mm × {height} mm large, beyond the machine's {greatest} mm; if its unit is not {unit}, write "
+            'units = "mm" under [drawing] of the bender job',
+            width=Number(1e3 * width, ".3f"),
+            height=Number(1e3 * height, ".3f"),
+            greatest=Number(1e3 * job.greatest_size, "g"),
+            unit=found.unit,
+        ),
+    )
 
 
 def size_words(found: Drawing) -> str:
@@ -106,21 +122,38 @@ def collision_lines(outline: BentOutline, job: BenderJob) -> list[str]:
     blocks = outline.program.bend_blocks()
     numbers = job.numbering.numbers(outline.program.blocks)
     name = outline.program.name
-    texts = []
+    texts: list[str] = []
     groups = [list(hits) for _, hits in groupby(outline.collisions, key=lambda hit: (hit.side, hit.what))]
     for hits in groups[:_SHOWN]:
         side = hits[0].side
         x, y = 1e3 * outline.proof.points[side]
-        what = "the mould" if hits[0].what == "mould" else "the rule that is still straight"
         bends, lines = [str(hit.bend + 1) for hit in hits], [f"N{numbers[blocks[hit.bend]]:03d}" for hit in hits]
         texts.append(
-            f"{name}, {_listed('line', lines)} ({_listed('bend', bends)}): the part bent so far, side {side + 1} from "
-            f"({x:.3f}, {y:.3f}) mm, meets {what}; start elsewhere, reverse the outline or guide the rule by hand"
+            Notice(
+                "{program}, {lines} ({bends}): the part bent so far, side {side} from ({x}, {y}) mm, meets the mould; start "
+                "elsewhere, reverse the outline or guide the rule by hand"
+                if hits[0].what == "mould"
+                else "{program}, {lines} ({bends}): the part bent so far, side {side} from ({x}, {y}) mm, meets the rule that is "
+                "still straight; start elsewhere, reverse the outline or guide the rule by hand",
+                program=name,
+                lines=Notice("line {number}" if len(lines) == 1 else "lines {number}", number=", ".join(lines)),
+                bends=Notice("bend {number}" if len(bends) == 1 else "bends {number}", number=", ".join(bends)),
+                side=str(side + 1),
+                x=Number(x, ".3f"),
+                y=Number(y, ".3f"),
+            )
         )
     more = sum(map(len, groups[_SHOWN:]))
     if more:
-        least = "at least " if len(outline.collisions) >= MOST_REPORTED else ""
-        texts.append(f"{name}: {least}{more} more bends at which the part meets the mould or the rule")
+        texts.append(
+            Notice(
+                "{program}: at least {count} more bends at which the part meets the mould or the rule"
+                if len(outline.collisions) >= MOST_REPORTED
+                else "{program}: {count} more bends at which the part meets the mould or the rule",
+                program=name,
+                count=str(more),
+            )
+        )
     return texts
 
 
@@ -130,15 +163,17 @@ def _bridge_lines(outline: BentOutline) -> list[str]:
     if not moved:
         return []
     furthest = max(moved, key=lambda bridge: abs(bridge.moved))
-    text = (
-        f"{outline.program.name}: {len(moved)} of {len(outline.bridges)} bridges are moved along the rule to stay clear of bends and "
-        f"ends, the one at {1e3 * furthest.middle:.3f} mm by {1e3 * abs(furthest.moved):.3f} mm"
-    )
-    return [text]
-
-
-def _listed(noun: str, values: list[str]) -> str:
-    return f"{noun} {values[0]}" if len(values) == 1 else f"{noun}s {', '.join(values)}"
+    return [
+        Notice(
+            "{program}: {count} of {all} bridges are moved along the rule to stay clear of bends and ends, the one at {middle} mm "
+            "by {moved} mm",
+            program=outline.program.name,
+            count=str(len(moved)),
+            all=str(len(outline.bridges)),
+            middle=Number(1e3 * furthest.middle, ".3f"),
+            moved=Number(1e3 * abs(furthest.moved), ".3f"),
+        )
+    ]
 
 
 def answer(result: BentDrawing, programs: Sequence[Path], files: Sequence[Path]) -> dict[str, Any]:

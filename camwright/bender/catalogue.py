@@ -8,6 +8,8 @@ from functools import cache
 from pathlib import Path
 from typing import Literal, get_args
 
+from camwright.profiles.notice import Notice, Number
+
 SheetLanguage = Literal["en", "de", "zh"]
 LANGUAGES: tuple[SheetLanguage, ...] = get_args(SheetLanguage)
 
@@ -24,10 +26,13 @@ class SheetWords:
         The language.
     messages
         Messages by key, with ``{name}`` where a value belongs.
+    notices
+        What is said for the templates of notices, which are English.
     """
 
     language: SheetLanguage
     messages: dict[str, str]
+    notices: dict[str, str]
 
     def __call__(self, key: str, **values: str) -> str:
         """Give a message, its values filled in."""
@@ -35,6 +40,16 @@ class SheetWords:
         for name, value in values.items():
             text = text.replace(f"{{{name}}}", value)
         return text
+
+    def said(self, told: str) -> str:
+        """Say a notice in the language; what is none, such as the words of a library, stays as it is."""
+        if not isinstance(told, Notice):
+            return told
+        values = {
+            name: self.number(value.value, value.form) if isinstance(value, Number) else self.said(value)
+            for name, value in told.values.items()
+        }
+        return self.notices.get(told.text, told.text).format(**values)
 
     def number(self, value: float, form: str) -> str:
         """Write a number in a format of Python, such as ``".3f"``, with the decimal mark of the language."""
@@ -45,4 +60,10 @@ class SheetWords:
 @cache
 def sheet_words(language: SheetLanguage) -> SheetWords:
     """Read the messages of a language."""
-    return SheetWords(language, json.loads((_MESSAGES / f"{language}.json").read_text(encoding="utf-8")))
+    messages = json.loads((_MESSAGES / f"{language}.json").read_text(encoding="utf-8"))
+    return SheetWords(language, messages, {} if language == "en" else _notices(language))
+
+
+def _notices(language: SheetLanguage) -> dict[str, str]:
+    entries = json.loads((_MESSAGES / "notices.json").read_text(encoding="utf-8"))
+    return {english: said[language] for english, said in entries.items()}

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from camwright.bender.piece import Piece
 from camwright.profiles.bender.outline import FLAT, wrapped
+from camwright.profiles.notice import Notice, Number
 from camwright.profiles.polynomial.profile import FloatArray
 
 _FEWEST = 3
@@ -46,15 +47,23 @@ class FoundArc:
     bent: bool
 
     def __str__(self) -> str:
-        arc = f"an arc of radius {1e3 * self.radius:.3f} mm and {math.degrees(self.included):.2f}°"
-        if self.bent:
-            return (
-                f"{self.chords} chords of {self.name} lie on {arc} within {1e3 * self.distance:.4f} mm and are bent as that arc; "
-                "--arcs keep bends them as drawn"
-            )
-        return (
-            f"{self.chords} chords of {self.name} have their ends on {arc}, but lie up to {1e3 * self.distance:.4f} mm from it, "
-            "farther than the arc rule allows, and are bent as drawn; draw the arc, or allow more under [arcs] of the bender job"
+        return self.told
+
+    @property
+    def told(self) -> Notice:
+        """What to say of them."""
+        return Notice(
+            "{count} chords of {name} lie on an arc of radius {radius} mm and {included}° within {distance} mm and are bent as that "
+            "arc; --arcs keep bends them as drawn"
+            if self.bent
+            else "{count} chords of {name} have their ends on an arc of radius {radius} mm and {included}°, but lie up to {distance} "
+            "mm from it, farther than the arc rule allows, and are bent as drawn; draw the arc, or allow more under [arcs] of the "
+            "bender job",
+            count=str(self.chords),
+            name=self.name,
+            radius=Number(1e3 * self.radius, ".3f"),
+            included=Number(math.degrees(self.included), ".2f"),
+            distance=Number(1e3 * self.distance, ".4f"),
         )
 
 

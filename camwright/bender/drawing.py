@@ -25,6 +25,7 @@ from camwright.bender.piece import Piece
 from camwright.profiles.bender.bridges import BridgeMark
 from camwright.profiles.bender.outline import Outline
 from camwright.profiles.errors import InputError
+from camwright.profiles.notice import Notice
 
 _MOST_FAULTS = 20
 _LEAST = 1e-7
@@ -145,19 +146,28 @@ def read_drawing(path: Path, reading: Reading) -> Drawing:
         layers, everything, others = _gathered(path, document, reading, UNITS[unit], left_out, marks)
     chosen = _chosen(path, everything, layers, reading.style, left_out)
     lines = [_lines(path, found, reading, left_out) for found in chosen]
-    outlines = [Outline(p.points, p.bulges, f"{path.name}: {p.name}", p.flattening) for one in lines for p in one.paths]
+    outlines = [
+        Outline(p.points, p.bulges, Notice("{file}: {what}", file=path.name, what=p.name), p.flattening)
+        for one in lines
+        for p in one.paths
+    ]
     styles = [found.style for found, one in zip(chosen, lines, strict=True) for _ in one.paths]
     overlaps = tuple(overlap for one in lines for overlap in one.overlaps)
     near = tuple(ends for one in lines for ends in one.near)
     doubts += _unmarked(reading.bridge_layer, marks)
     told = [
-        *(f"left out {count} × {what}" for what, count in sorted((+left_out).items())),
-        *_few([f"{overlap}; it is bent once" for overlap in overlaps], "entities lie on others"),
-        *_few(_mixed(chosen, [*everything, *others], reading.gap), "entities lie on others of another style"),
-        *_few([str(ends) for ends in near], "pairs of ends nearly meet"),
-        *_few([str(arc) for one in lines for arc in one.arcs], "runs of chords lie on arcs"),
+        *(Notice("left out {count} × {what}", count=str(n), what=what) for what, n in sorted((+left_out).items())),
+        *_few(
+            [Notice("{overlap}; it is bent once", overlap=overlap.told) for overlap in overlaps],
+            "{count} more entities lie on others",
+        ),
+        *_few(
+            _mixed(chosen, [*everything, *others], reading.gap), "{count} more entities lie on others of another style"
+        ),
+        *_few([ends.told for ends in near], "{count} more pairs of ends nearly meet"),
+        *_few([arc.told for one in lines for arc in one.arcs], "{count} more runs of chords lie on arcs"),
     ]
-    warnings += (*doubts, *(f"{path.name}: {text}" for text in told))
+    warnings += (*doubts, *(Notice("{file}: {what}", file=path.name, what=text) for text in told))
     return Drawing(tuple(outlines), tuple(styles), unit, _size(outlines), overlaps, near, warnings, tuple(marks))
 
 
@@ -168,10 +178,9 @@ def _unit(path: Path, document: Any, units: str | None) -> tuple[str, tuple[str,
     if units is not None:
         if header == units or code == 0:
             return units, ()
-        said = header or f"unit code {code}"
-        return units, (
-            f"{path.name}: its header says {said} ($INSUNITS), the bender job says {units}: read in {units}",
-        )
+        said = header or Notice("unit code {code}", code=str(code))
+        text = "{file}: its header says {said} ($INSUNITS), the bender job says {units}: read in {units}"
+        return units, (Notice(text, file=path.name, said=said, units=units),)
     if header is not None:
         return header, ()
     if code == 0:
@@ -209,7 +218,7 @@ def _gathered(
                     aside += _aside(seen, others, resolution, unit)
                 continue
             if not is_line_work(seen.entity):
-                left_out[f"{seen.entity.dxftype()} (no line work)"] += 1
+                left_out[Notice("{kind} (no line work)", kind=seen.entity.dxftype())] += 1
                 continue
             own = found.setdefault(seen.style.key, _Found(seen.style))
             try:
@@ -231,14 +240,16 @@ def _gathered(
 
 def _unmarked(layer: str | None, marks: Sequence[BridgeMark]) -> tuple[str, ...]:
     """Say that the layer of the bridges marks none."""
-    return () if layer is None or marks else (f"no bridge is marked: layer {layer} holds no point and no line",)
+    if layer is None or marks:
+        return ()
+    return (Notice("no bridge is marked: layer {layer} holds no point and no line", layer=layer),)
 
 
 def _mark(seen: Seen, unit: float, marks: list[BridgeMark], left_out: Counter[str]) -> None:
     """Take a point, or the middle of a line, as the mark of a bridge."""
     kind, dxf = seen.entity.dxftype(), seen.entity.dxf
     if kind not in ("POINT", "LINE"):
-        left_out[f"{kind} (no mark of a bridge: draw a point or a line)"] += 1
+        left_out[Notice("{kind} (no mark of a bridge: draw a point or a line)", kind=kind)] += 1
         return
     ends = (dxf.location,) if kind == "POINT" else (dxf.start, dxf.end)
     x, y = (unit * sum(end[k] for end in ends) / len(ends) for k in (0, 1))
@@ -261,15 +272,19 @@ def _aside(seen: Seen, others: dict[tuple[str, str, str], _Found], resolution: R
     return len(piece.bulges)
 
 
-def _mixed(chosen: Sequence[_Found], everything: Sequence[_Found], tolerance: float) -> list[str]:
+def _mixed(chosen: Sequence[_Found], everything: Sequence[_Found], tolerance: float) -> list[Notice]:
     """Name what is bent and lies on something of another style, bent or not."""
     try:
         overlaps = between_styles([found.pieces for found in everything], tolerance)
     except InputError as error:
-        return [f"lines of different styles that lie on each other are not looked for: {error}"]
+        text = "lines of different styles that lie on each other are not looked for: {reason}"
+        return [Notice(text, reason=str(error))]
     bent = {piece.name for found in chosen for piece in found.pieces}
     return [
-        f"{overlap}; their styles differ, so each stays as it is: remove one of them if it is drawn by mistake"
+        Notice(
+            "{overlap}; their styles differ, so each stays as it is: remove one of them if it is drawn by mistake",
+            overlap=overlap.told,
+        )
         for overlap in overlaps
         if overlap.first in bent or overlap.second in bent
     ]
@@ -331,7 +346,7 @@ def _lines(path: Path, found: _Found, reading: Reading, left_out: Counter[str]) 
         lasting = [piece for piece in pieces if piece.length > reading.gap]
         if not lasting:
             raise InputError(f"nothing is longer than the gap of {1e3 * reading.gap:g} mm that is closed")
-        left_out["line not longer than the gap"] += len(pieces) - len(lasting)
+        left_out[Notice("line not longer than the gap")] += len(pieces) - len(lasting)
         joined = join(lasting, reading.gap)
     except InputError as error:
         raise InputError(*(f"{path}: {fault}" for fault in error.faults)) from error
@@ -361,6 +376,6 @@ def _size(outlines: Sequence[Outline]) -> tuple[float, float]:
     return float(width), float(height)
 
 
-def _few(texts: list[str], what: str) -> list[str]:
+def _few(texts: Sequence[Notice], rest: str) -> list[Notice]:
     more = len(texts) - _MOST_FAULTS
-    return texts if more <= 0 else [*texts[:_MOST_FAULTS], f"{more} more {what}"]
+    return [*texts] if more <= 0 else [*texts[:_MOST_FAULTS], Notice(rest, count=str(more))]

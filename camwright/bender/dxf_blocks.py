@@ -11,6 +11,7 @@ from camwright.bender.dxf_entities import is_line_work, title
 from camwright.bender.dxf_guard import MOST_ENTITIES
 from camwright.bender.dxf_styles import Layers, Style
 from camwright.profiles.errors import InputError
+from camwright.profiles.notice import Notice
 
 _DEEPEST = 8
 
@@ -83,9 +84,7 @@ def _walk(layout: Any, layers: Layers, left_out: Counter[str], around: Style | N
         style = layers.style_of(entity, around)
         why = layers.hidden(style.layer) or ("invisible" if entity.dxf.get("invisible", 0) else "")
         if why:
-            what = "entity" if entity.dxftype() != "INSERT" else f"block reference #{_handle(entity)}"
-            within = f" in block reference {origin}" if origin else ""
-            left_out[f"{what}{within} on layer {style.layer} ({why})"] += 1
+            left_out[_hidden(entity, origin, style.layer, why)] += 1
         elif entity.dxftype() != "INSERT":
             yield Seen(entity, style, title(entity, origin, style.layer))
         else:
@@ -95,6 +94,22 @@ def _walk(layout: Any, layers: Layers, left_out: Counter[str], around: Style | N
                 yield from _walk(
                     cell.virtual_entities(skipped_entity_callback=_not_placed), layers, left_out, style, inside
                 )
+
+
+def _hidden(entity: Any, origin: str, layer: str, why: str) -> Notice:
+    """Say what is not shown, and why."""
+    reason = Notice(why)
+    if entity.dxftype() == "INSERT":
+        handle = f"#{_handle(entity)}"
+        if origin:
+            text = "block reference {handle} in block reference {origin} on layer {layer} ({why})"
+            return Notice(text, handle=handle, origin=origin, layer=layer, why=reason)
+        return Notice("block reference {handle} on layer {layer} ({why})", handle=handle, layer=layer, why=reason)
+    if origin:
+        return Notice(
+            "entity in block reference {origin} on layer {layer} ({why})", origin=origin, layer=layer, why=reason
+        )
+    return Notice("entity on layer {layer} ({why})", layer=layer, why=reason)
 
 
 def _handle(entity: Any) -> str:

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from camwright.bender.dxf_curves import polyline_of
 from camwright.bender.piece import Piece
 from camwright.profiles.errors import InputError
+from camwright.profiles.notice import Notice, Number
 
 _FRAME = 16
 """Flag of a vertex that frames a fitted spline and is no part of the line."""
@@ -24,12 +25,14 @@ _PLANE = 1e-9
 """Difference of height, in drawing units, up to which an entity lies in a plane."""
 
 
-def title(entity: Any, origin: str = "", layer: str | None = None) -> str:
+def title(entity: Any, origin: str = "", layer: str | None = None) -> Notice:
     """Kind, handle and layer of an entity, for messages; of one inside a block also where it is placed."""
     source = entity if entity.dxf.handle else entity.source_of_copy
-    handle = "" if source is None else f" #{source.dxf.handle}"
-    where = f" in block reference {origin}" if origin else ""
-    return f"{entity.dxftype()}{handle}{where} on layer {entity.dxf.layer if layer is None else layer}"
+    what = entity.dxftype() if source is None else f"{entity.dxftype()} #{source.dxf.handle}"
+    shown = entity.dxf.layer if layer is None else layer
+    if origin:
+        return Notice("{what} in block reference {origin} on layer {layer}", what=what, origin=origin, layer=shown)
+    return Notice("{what} on layer {layer}", what=what, layer=shown)
 
 
 def is_line_work(entity: Any) -> bool:
@@ -110,17 +113,19 @@ def piece_of(entity: Any, name: str, resolution: Resolution) -> Drawn:
 
 def _cleaned(piece: Piece, least: float) -> Drawn:
     """Leave out what has no length, and take arcs that no machine could tell from a line as lines."""
-    points, bulges, notes = piece.points, piece.bulges, []
+    points, bulges = piece.points, piece.bulges
+    notes: list[str] = []
     absurd = np.abs(bulges) > MOST_BULGE
     if absurd.any():
-        notes.append(f"bulge {bulges[absurd][0]:g} of {piece.name}, taken as a line")
+        bulge = Number(float(bulges[absurd][0]), "g")
+        notes.append(Notice("bulge {bulge} of {name}, taken as a line", bulge=bulge, name=piece.name))
         bulges = np.where(absurd, 0.0, bulges)
     chord = np.hypot(*np.diff(points, axis=0).T)
     lasting = (chord > 0) & (chord * np.maximum(np.abs(bulges), 1.0) > least)
     if not lasting.any():
-        return Drawn(None, (f"{piece.name} (no length)",))
+        return Drawn(None, (Notice("{name} (no length)", name=piece.name),))
     if not lasting.all():
-        notes.append(f"segment without length of {piece.name}")
+        notes.append(Notice("segment without length of {name}", name=piece.name))
         points, bulges = points[np.concatenate([[True], lasting])], bulges[lasting]
         if piece.closed:
             points[-1] = points[0]

@@ -12,6 +12,7 @@ import numpy as np
 
 from camwright.bender.dxf_guard import look_at
 from camwright.profiles.errors import InputError
+from camwright.profiles.notice import Notice
 
 _SHOWN = 5
 
@@ -52,10 +53,12 @@ def open_dxf(path: Path) -> tuple[Any, tuple[str, ...]]:
             f"{path}: {len(guessed)} numbers cannot be read ({first[:200]}), and a guessed coordinate is none; export the drawing again"
         )
     found = [entry.message for entry in entries]
-    warnings = [f"{path.name}: the file is damaged ({first[:200]}) and was read as far as it could be repaired"]
-    warnings += [f"{path.name}: repaired: {message}" for message in found[:_SHOWN]]
+    name = path.name
+    damaged = "{file}: the file is damaged ({reason}) and was read as far as it could be repaired"
+    warnings = [Notice(damaged, file=name, reason=first[:200])]
+    warnings += [Notice("{file}: repaired: {repair}", file=name, repair=message) for message in found[:_SHOWN]]
     if len(found) > _SHOWN:
-        warnings.append(f"{path.name}: {len(found) - _SHOWN} more repairs")
+        warnings.append(Notice("{file}: {count} more repairs", file=name, count=str(len(found) - _SHOWN)))
     return document, tuple(warnings)
 
 

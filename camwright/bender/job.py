@@ -22,6 +22,7 @@ from camwright.profiles.bender.division import DivisionRule
 from camwright.profiles.bender.nc_code import Flavour, Numbering
 from camwright.profiles.bender.springback import Springback
 from camwright.profiles.errors import InputError
+from camwright.profiles.notice import Notice
 from camwright.profiles.servo import Servo
 from camwright.validation.bender.collision import MouldEnvelope
 
@@ -143,7 +144,10 @@ def load_bender(path: Path | None = None) -> BenderJob:
     warnings = springback.warnings()
     if file.springback.table == EXAMPLE:
         warnings += (
-            f"{springback.name}: this springback table is an example, not measured on your rule; calibrate one",
+            Notice(
+                "{table}: this springback table is an example, not measured on your rule; calibrate one",
+                table=springback.name,
+            ),
         )
     return BenderJob(
         name=file.name,

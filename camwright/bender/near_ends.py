@@ -10,6 +10,7 @@ import numpy as np
 
 from camwright.bender.piece import Piece
 from camwright.profiles.bender.boxes import overlapping
+from camwright.profiles.notice import Notice, Number
 
 NEAR = 1e-3
 """Distance (m) up to which free ends nearly meet, whatever the gap."""
@@ -44,11 +45,24 @@ class NearEnds:
     place: tuple[float, float]
 
     def __str__(self) -> str:
+        return self.told
+
+    @property
+    def told(self) -> Notice:
+        """What to say of them."""
         x, y = self.place
-        who = f"{self.first} and {self.second} end" if self.first != self.second else f"the ends of {self.first} are"
-        return (
-            f"{who} {1e3 * self.distance:.3g} mm apart at ({1e3 * x:.3f}, {1e3 * y:.3f}) mm and are not joined; "
-            f'gap = "{1e3 * self.gap:.2g} mm" under [drawing] of the bender job joins them'
+        return Notice(
+            '{first} and {second} end {distance} mm apart at ({x}, {y}) mm and are not joined; gap = "{gap} mm" under [drawing] of '
+            "the bender job joins them"
+            if self.first != self.second
+            else 'the ends of {first} are {distance} mm apart at ({x}, {y}) mm and are not joined; gap = "{gap} mm" under [drawing] '
+            "of the bender job joins them",
+            first=self.first,
+            second=self.second,
+            distance=Number(1e3 * self.distance, ".3g"),
+            gap=f"{1e3 * self.gap:.2g}",
+            x=Number(1e3 * x, ".3f"),
+            y=Number(1e3 * y, ".3f"),
         )
 
 

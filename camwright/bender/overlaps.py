@@ -18,6 +18,7 @@ from camwright.bender.piece import Piece, along
 from camwright.profiles.bender.boxes import Indices, overlapping
 from camwright.profiles.bender.outline import FLAT
 from camwright.profiles.errors import InputError
+from camwright.profiles.notice import Notice, Number
 from camwright.profiles.polynomial.profile import FloatArray
 
 _MOST_CUTS = 100_000
@@ -48,10 +49,21 @@ class Overlap:
     end: tuple[float, float]
 
     def __str__(self) -> str:
+        return self.told
+
+    @property
+    def told(self) -> Notice:
+        """What to say of them."""
         (x0, y0), (x1, y1) = self.start, self.end
-        return (
-            f"{self.second} lies on {self.first} over {1e3 * self.length:.3f} mm, from ({1e3 * x0:.3f}, {1e3 * y0:.3f}) "
-            f"to ({1e3 * x1:.3f}, {1e3 * y1:.3f}) mm"
+        return Notice(
+            "{second} lies on {first} over {length} mm, from ({x0}, {y0}) to ({x1}, {y1}) mm",
+            first=self.first,
+            second=self.second,
+            length=Number(1e3 * self.length, ".3f"),
+            x0=Number(1e3 * x0, ".3f"),
+            y0=Number(1e3 * y0, ".3f"),
+            x1=Number(1e3 * x1, ".3f"),
+            y1=Number(1e3 * y1, ".3f"),
         )
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from camwright.profiles.errors import InputError
+from camwright.profiles.notice import Notice
 from camwright.profiles.polynomial.profile import FloatArray
 
 
@@ -72,5 +73,7 @@ def chained(pieces: Sequence[Piece], name: str, *, closed: bool) -> Piece:
         raise InputError(
             f"{name}: an entity at ({x:.3f}, {y:.3f}) mm is not longer than the gap that is closed; remove it"
         )
-    title = name if len(pieces) == 1 else f"{name} and {len(pieces) - 1} joined to it"
+    title = (
+        name if len(pieces) == 1 else Notice("{name} and {count} joined to it", name=name, count=str(len(pieces) - 1))
+    )
     return Piece(points, np.concatenate([piece.bulges for piece in pieces]), title, max(p.flattening for p in pieces))

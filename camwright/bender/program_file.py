@@ -247,7 +247,7 @@ def _plans(outlines: Sequence[Outline], shapes: Sequence[bytes], job: BenderJob)
 def _shape(outline: Outline) -> bytes:
     """Tell what an outline is wherever it lies, to a nanometre, a thousandth of what a program can say."""
     places = np.rint((outline.points - outline.points[0]) / _ALIKE_PLACE).astype(np.int64)
-    return places.tobytes() + outline.bulges.tobytes() + repr(outline.flattening).encode()
+    return bytes(places.tobytes() + outline.bulges.tobytes() + repr(outline.flattening).encode())
 
 
 def program_name(stem: str, index: int, count: int) -> str:

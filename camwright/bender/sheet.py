@@ -59,7 +59,7 @@ def sheet_data(result: BentDrawing, language: SheetLanguage) -> dict[str, Any]:
             for r, b in zip(table.radius.tolist(), np.degrees(table.radius_mould).tolist(), strict=True)
         ],
         "step": number(float(np.degrees(table.step)), "g"),
-        "warnings": list(result.warnings),
+        "warnings": [words.said(text) for text in result.warnings],
         "passed": result.passed,
         "judgement": _judgement(result, words),
         "outlines": [
@@ -126,7 +126,7 @@ def _outline_data(outline: BentOutline, style: str, result: BentDrawing, words: 
     rows, bridges = bend_rows(outline, result.job, _MOST_ROWS), bridge_rows(outline, result.job)
     return {
         "name": outline.program.name,
-        "source": outline.plan.outline.name,
+        "source": words.said(outline.plan.outline.name),
         "sha256": outline.sha256,
         "facts": [
             [words("style"), style],

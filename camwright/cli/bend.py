@@ -32,6 +32,7 @@ from camwright.house.owned import Work, owned
 from camwright.house.progress import Step
 from camwright.profiles.bender.bridges import BridgeRule
 from camwright.profiles.errors import InputError
+from camwright.profiles.notice import Notice
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -136,7 +137,7 @@ def run(
         work = Work("bend", drawing.stem, result.sha256)
         files = _write(result, names, directory, work, language=None if no_figures else language, step=step)
     if port is not None and not result.passed:
-        result = replace(result, notes=(*result.notes, f"nothing is sent to {port}: a check failed"))
+        result = replace(result, notes=(*result.notes, Notice("nothing is sent to {port}: a check failed", port=port)))
     elif port is not None:
         line = SerialLine(port, baud, handshake, data_bits, parity, stop_bits)
         _send(result, line, lambda text: transfer(text, bender.flavour, attributes, end), wait, voice)

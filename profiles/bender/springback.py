@@ -12,6 +12,7 @@ import numpy as np
 from camwright.profiles.bender.curve import Curve
 from camwright.profiles.bender.plan import BendPlan
 from camwright.profiles.errors import InputError
+from camwright.profiles.notice import Notice, Number
 from camwright.profiles.polynomial.profile import FloatArray
 
 Interpolation = Literal["linear", "cubic"]
@@ -93,23 +94,38 @@ class Springback:
     def warnings(self) -> tuple[str, ...]:
         """Rows that cannot be true: the mould turned less far than the workpiece, or arcs that do not run evenly."""
         low = [
-            f"{self.name}: angle table, row {i + 1}: mould angle {math.degrees(b):.3f}° is less than the workpiece "
-            "angle "
-            f"{math.degrees(a):.3f}°; springback opens a bend, so this row under-bends: measure it again"
+            Notice(
+                "{table}: angle table, row {row}: mould angle {mould}° is less than the workpiece angle {workpiece}°; springback "
+                "opens a bend, so this row under-bends: measure it again",
+                table=self.name,
+                row=str(i + 1),
+                mould=Number(math.degrees(b), ".3f"),
+                workpiece=Number(math.degrees(a), ".3f"),
+            )
             for i, (a, b) in enumerate(zip(self.workpiece, self.mould, strict=True))
             if b < a - 1e-9
         ]
         low += [
-            f"{self.name}: radius table, row {i + 1}: mould angle {math.degrees(b):.3f}° is less than the step of "
-            f"{math.degrees(self.step):.3f}°; springback opens a bend, so this row under-bends: measure it again"
+            Notice(
+                "{table}: radius table, row {row}: mould angle {mould}° is less than the step of {step}°; springback opens a "
+                "bend, so this row under-bends: measure it again",
+                table=self.name,
+                row=str(i + 1),
+                mould=Number(math.degrees(b), ".3f"),
+                step=Number(math.degrees(self.step), ".3f"),
+            )
             for i, b in enumerate(self.radius_mould)
             if b < self.step - 1e-9
         ]
         slopes = np.sign(np.diff(self.radius_mould))
         low += [
-            f"{self.name}: radius table, row {i + 2}: the mould angle "
-            f"{math.degrees(self.radius_mould[i + 1]):.3f}° turns back on the "
-            "trend of the rows before it; springback changes one way with the radius: measure it again"
+            Notice(
+                "{table}: radius table, row {row}: the mould angle {mould}° turns back on the trend of the rows before it; "
+                "springback changes one way with the radius: measure it again",
+                table=self.name,
+                row=str(i + 2),
+                mould=Number(math.degrees(self.radius_mould[i + 1]), ".3f"),
+            )
             for i in 1 + np.flatnonzero(slopes[1:] * slopes[:-1] < 0)
         ]
         return tuple(low)
