@@ -13,7 +13,7 @@ from camwright.validation.motion import require_period
 from camwright.validation.servo.lifting import BLOCK, lift, lift_side_by_side, loops_of
 from camwright.validation.servo.monte_carlo import shear_zone_errors
 from camwright.validation.servo.response import shear_zone_peaks
-from camwright.validation.servo.simulation import PHASES, WHOLE, memory, shear_zone_run
+from camwright.validation.servo.simulation import PHASES, WHOLE_PART, memory, shear_zone_run
 
 _SIDE_BY_SIDE = 8
 """Servos that are run side by side; more of them save nothing."""
@@ -70,7 +70,7 @@ def _side_by_side(
     shortest = min(servo.sample_time for servo in servos)
     found = np.empty((len(servos), len(speeds)))
     for column, speed in enumerate(speeds):
-        if past + task.cut.shear_zone / (speed * shortest) > WHOLE:
+        if past + task.cut.shear_zone / (speed * shortest) > WHOLE_PART:
             slower = task.at_speed(speed)
             found[:, column] = [shear_zone_errors(profile, slower, [servo], phases)[0] for servo in servos]
         else:

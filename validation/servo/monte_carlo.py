@@ -13,7 +13,7 @@ from camwright.profiles.task import Task
 from camwright.validation.motion import require_period
 from camwright.validation.servo.lifting import lift_side_by_side, loops_of
 from camwright.validation.servo.response import shear_zone_error, shear_zone_of, slow_sync_error
-from camwright.validation.servo.simulation import PHASES, WHOLE, memory_at, shear_zone_run
+from camwright.validation.servo.simulation import PHASES, WHOLE_PART, memory_at, shear_zone_run
 
 _VALUES = 2**17
 """Command values that are held at a time."""
@@ -56,7 +56,7 @@ def shear_zone_errors(profile: CamProfile, task: Task, servos: Sequence[Servo], 
     past = np.array([memory_at(radius) if radius < 1.0 else 0 for radius in radii.tolist()])
     travel = task.cut.line_speed * np.array([servo.sample_time for servo in servos])
     within = np.ceil(task.cut.shear_zone / travel).astype(np.intp)
-    for i in np.nonzero((past > 0) & (past + within > WHOLE))[0].tolist():
+    for i in np.nonzero((past > 0) & (past + within > WHOLE_PART))[0].tolist():
         closed = slow_sync_error(profile, task, servos[i], *shear_zone_of(task.cut), phases)
         if closed is not None:
             found[i], past[i] = closed, 0

@@ -27,6 +27,9 @@ below what a drive resolves."""
 _AS_GREAT = 1.0 - 1e-6
 """Share of the greatest error that counts as it; the first such point is taken."""
 
+_ROUNDING = 1e-15
+"""Share of the positions by which errors differ that are the same: they are differences of positions."""
+
 _Index = Any
 """Anything that picks points of an array."""
 
@@ -107,7 +110,8 @@ def _with_places(
     start = task.cut.return_start + task.cut.return_zone
     greatest = (zone, (zone[0], -zone[1]), (run.master, _following_error(run, profile, task)(...)), shear)
     met = [start + place for place in (response.crossing, response.settling) if place is not None]
-    return response, [*met, *(place for master, size in greatest for place in humps(master, size))]
+    noise = _ROUNDING * max(abs(profile.advance), task.cut.length)
+    return response, [*met, *(place for master, size in greatest for place in humps(master, size, noise))]
 
 
 _Curve = tuple[FloatArray, FloatArray]

@@ -45,8 +45,9 @@ moves the axis by less than 1e-12 of its size, over all of S1's ranges."""
 _MOST_VALUES = 2**17
 """Command values of one simulation above which fewer phases are taken (never fewer than `SUBSTEPS`)."""
 
-WHOLE = 2**13
-"""Samples of one phase, memory and simulated part together, up to which all of them are simulated one after another."""
+WHOLE, WHOLE_PART = 2**13, 2**11
+"""Samples of one phase, memory and simulated part together, up to which all of them are simulated one after another: of a cycle, which has
+fewer phases in closed form, and of a part of it, where closed form is the quicker from here on."""
 
 _MOST_SAMPLES = 2**17
 """Most samples of one phase where there is no closed form."""
@@ -84,6 +85,7 @@ def slow_axis(
     part: tuple[float, float],
     places: Sequence[float] = (),
     phases: int = SUBSTEPS,
+    most: int | None = None,
 ) -> SlowAxis | None:
     """Put the axis of one servo in a part of the cycle into closed form; ``None`` where its samples are simulated one by one.
 
@@ -99,11 +101,13 @@ def slow_axis(
         Master positions in it whose neighbours are asked for: ends of zones.
     phases
         Sampling phases.
+    most
+        Samples up to which there is none; `WHOLE_PART` if not given.
     """
     require_period(profile, cut)
     past, sample = memory(servo.loop), cut.line_speed * servo.sample_time
     first, last = (part[0] - cut.return_start) / sample, (part[1] - cut.return_start) / sample
-    if past + last - first <= WHOLE:
+    if past + last - first <= (WHOLE_PART if most is None else most):
         return None
     slow = SlowAxis(
         profile=profile,
@@ -253,7 +257,7 @@ def slow_cycle(profile: CamProfile, cut: Cut, servo: Servo) -> SlowAxis | None:
     shear = zone + cut.shear_zone_at
     places = (zone, shear, min(shear + cut.shear_zone, zone + cut.sync_zone))
     end = cut.return_start + cut.length
-    return slow_axis(profile, cut, servo, (1, 0), (cut.return_start, end), places)
+    return slow_axis(profile, cut, servo, (1, 0), (cut.return_start, end), places, most=WHOLE)
 
 
 def slow_run(profile: CamProfile, master: FloatArray, found: FloatArray) -> ServoRun:

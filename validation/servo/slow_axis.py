@@ -27,14 +27,14 @@ Samples = NDArray[np.int64]
 
 _Found = TypeVar("_Found")
 
-_SHARE = 0.25
+_SHARE = 0.5
 """Distance of samples in a transient, as a share of the time in which its quickest part falls to 1/e or turns by 1 rad."""
 
 _GONE = 1e-15
 """A transient that is smaller than this share of its beginning is gone."""
 
-_SMOOTH, _ADDED = 32, 32
-"""Samples on a piece beside its transient, and samples that are added in a gap."""
+_SMOOTH, _ADDED = 32, 8
+"""Samples on a piece beside its transient, and samples that are added evenly in a gap."""
 
 _MOST_KEPT = 2**12
 """Samples of the first round, beside the least that every piece needs."""
@@ -53,6 +53,10 @@ _MOST_GROWTH = 10.0
 
 _EDGE = 3
 """Samples that are kept on either side of a place that is asked for."""
+
+_AWAY = np.array([*range(1, _EDGE), *(_EDGE << power for power in range(48))], dtype=np.int64)
+_TOWARDS: Samples = np.concatenate([-_AWAY[::-1], [0], _AWAY])
+"""Samples about a place where something is decided, each twice as far from it as the one before."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -211,13 +215,19 @@ class SlowAxis:
         return np.unique(kept[(kept >= self.first) & (kept <= self.last)])
 
     def finer(self, samples: Samples, places: Iterable[float]) -> Samples:
-        """Add samples in the gaps on both sides of master positions."""
-        added = [samples]
+        """Choose more samples in the gaps about master positions: some evenly, and ever closer ones towards each place."""
+        added = []
         for place in places:
-            at = int(samples.searchsorted(math.floor((place - self.origin) / self.sample)))
-            near = samples[max(at - 3, 0) : at + 4]
+            place_sample = math.floor((place - self.origin) / self.sample)
+            at = int(samples.searchsorted(place_sample))
+            near = samples[max(at - 2, 0) : at + 3]
+            about = place_sample + _TOWARDS
             added.append(np.linspace(near[:-1], near[1:], _ADDED + 2).astype(np.int64).ravel())
-        return np.unique(np.concatenate(added))
+            added.append(about[(about >= near[0]) & (about <= near[-1])])
+        if not added:
+            return samples[:0]
+        asked = np.unique(np.concatenate(added))
+        return asked[samples[samples.searchsorted(asked).clip(max=len(samples) - 1)] != asked]
 
     def at(self, samples: Samples) -> tuple[FloatArray, FloatArray]:
         """Master positions and, there, the derivatives of the axis over the master that are asked for.
@@ -262,7 +272,7 @@ def decided(axis: SlowAxis, measure: Callable[[FloatArray, FloatArray], tuple[_F
     known = axis.at(samples)
     found, places = measure(*known)
     for _ in range(_ROUNDS):
-        added = np.setdiff1d(axis.finer(samples, places), samples, assume_unique=True)
+        added = axis.finer(samples, places)
         if not len(added):
             break
         all_samples = np.concatenate([samples, added])
@@ -276,30 +286,44 @@ def decided(axis: SlowAxis, measure: Callable[[FloatArray, FloatArray], tuple[_F
     return found
 
 
-def humps(master: FloatArray, size: FloatArray) -> list[float]:
-    """Find where a size is greatest, at any phase: its greatest value and its highest humps, a sample each.
+def humps(master: FloatArray, size: FloatArray, noise: float = 0.0) -> list[float]:
+    """Find where a size is greatest, at any phase: its greatest value and its highest humps.
 
     Parameters
     ----------
     master, size
         Points and their size, shape ``(phases, points)``.
+    noise
+        Differences up to this are rounding.
 
     Returns
     -------
     list
-        Master positions (m), a few. Humps that are rounding are left out.
+        Master positions (m), a few: where the parabola through a hump's samples is greatest. Humps that are rounding are left out.
     """
-    highest = size.max(axis=0)
-    starts = np.arange(0, len(highest), SUBSTEPS)
-    by_sample = np.maximum.reduceat(highest, starts)
-    floor = _ROUNDING * float(np.abs(by_sample).max())
-    # the first of those that are as great: a plateau's own rounding must not lead from place to place
-    first = int((by_sample >= by_sample.max() - floor).argmax())
+    starts = np.arange(0, size.shape[1], SUBSTEPS)
+    by_sample = np.maximum.reduceat(size.max(axis=0), starts)
+    floor = max(_ROUNDING * float(np.abs(by_sample).max()), noise)
     padded = np.concatenate([[-np.inf], by_sample, [-np.inf]])
     left, right = by_sample - padded[:-2], by_sample - padded[2:]
     tops = np.nonzero((np.minimum(left, right) >= 0.0) & (np.maximum(left, right) > floor))[0]
-    tops = tops[by_sample[tops].argsort()[::-1][:_HUMPS]]
-    return [float(master[0, starts[top]]) for top in (first, *tops.tolist())]
+    tops = tops[by_sample[tops].argsort()[::-1][:_HUMPS]].tolist()
+    # the first of those that are as great: a plateau's own rounding must not lead from place to place
+    first = int((by_sample >= by_sample.max() - floor).argmax())
+    if max(left[first], right[first]) > floor:
+        tops.append(first)
+    at = master[0, starts]
+    return [_vertex(at, top, float(left[top]), float(right[top])) for top in tops]
+
+
+def _vertex(at: FloatArray, top: int, left: float, right: float) -> float:
+    """Place of the top of the parabola through a highest sample and its neighbours, which are lower by so much."""
+    place = float(at[top])
+    if not (math.isfinite(left) and math.isfinite(right)) or min(left, right) < 0.0:
+        return place
+    before, after = place - float(at[top - 1]), float(at[top + 1]) - place
+    bend = left / before + right / after
+    return place + 0.5 * (left * after / before - right * before / after) / bend
 
 
 def _pieces(begins: Samples, samples: Samples) -> Samples:
@@ -366,14 +390,17 @@ def _offsets(servo: Servo, most: int) -> Samples:
     """Choose samples after a break between which a transient does nothing of its own, close at first."""
     poles = np.linalg.eigvals(closed_loop(servo)[0]).astype(complex)
     poles = poles[np.abs(poles) > _GONE]
-    lasts = math.log(_GONE) / np.log(np.minimum(np.abs(poles), spectral_radius(servo)))
-    rates = np.abs(np.log(poles))
+    lasts = (math.log(_GONE) / np.log(np.minimum(np.abs(poles), spectral_radius(servo)))).tolist()
+    rates = np.abs(np.log(poles)).tolist()
+    parts = [(last, max(rate for rate, felt in zip(rates, lasts, strict=True) if felt >= last)) for last in sorted(lasts)]
     share = _SHARE
     while True:
         found, at = [0, 1, 2], 2
-        while at < lasts.max(initial=0.0):
-            at += max(1, int(share / float(rates[lasts > at].max())))
-            found.append(at)
+        for last, quickest in parts:
+            step = max(1, int(share / quickest))
+            while at < last:
+                at += step
+                found.append(at)
         if len(found) <= max(most, 2 * _EDGE) or share > 1e3:
             return np.array(found, dtype=np.int64)
         share *= 2.0

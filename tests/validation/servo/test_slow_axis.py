@@ -39,7 +39,8 @@ ROUNDING = 2e-12
 def whole(monkeypatch: pytest.MonkeyPatch, most: float) -> None:
     """Simulate sample by sample up to so many samples."""
     monkeypatch.setattr(simulation, "WHOLE", most)
-    monkeypatch.setattr(monte_carlo, "WHOLE", most)
+    for module in (simulation, monte_carlo):
+        monkeypatch.setattr(module, "WHOLE_PART", most)
 
 
 def both(monkeypatch: pytest.MonkeyPatch, measure):  # type: ignore[no-untyped-def]
