@@ -28,6 +28,7 @@ from camwright.design.returns.structure import (
     subdivide,
     tidy,
 )
+from camwright.design.returns.touching import touching_motions
 from camwright.design.returns.transcription import (
     Arc,
     ScaledMotion,
@@ -150,7 +151,7 @@ def _solve_scaled(problem: ScaledProblem) -> tuple[CamProfile, SolveStatus, int]
     if extreme is not None and _room(problem) < NO_ROOM:
         return tidy(from_extreme(extreme), problem).profile(), SolveStatus.OPTIMAL, 0
     known, iterations = _confirmed(problem)
-    gentlest = _kept(least_peak_motion(problem), problem) if known is None else known
+    gentlest = known or _kept(least_peak_motion(problem), problem) or _touching(problem)
     if gentlest is not None:
         return gentlest, SolveStatus.OPTIMAL, iterations
     witness = from_extreme(extreme) if extreme is not None else _possible(problem)
@@ -224,6 +225,12 @@ def _kept(motion: ScaledMotion | None, problem: ScaledProblem) -> CamProfile | N
         return None
     profile = tidy(motion, problem).profile()
     return profile if excess(profile, problem) <= ALLOWED_EXCESS else None
+
+
+def _touching(problem: ScaledProblem) -> CamProfile | None:
+    """Give the motion of least mean square acceleration that touches its stroke, None if another limit binds too."""
+    kept = (_kept(motion, problem) for motion in touching_motions(problem))
+    return next((profile for profile in kept if profile is not None), None)
 
 
 def _unconfined(problem: ScaledProblem) -> ScaledProblem:

@@ -172,8 +172,8 @@ class Programme:
         unknown = {name: ca.SX.sym(name, size) for name, size in self._sizes.items()}
         jerk_limit, drift = (ca.SX.sym(name) for name in "Jd")
         lengths = unknown["h"] if shape.free_lengths else ca.SX.sym("h", m)
-        self._equations, between = dynamics(unknown, lengths, p)
-        equal, positive = list(self._equations), []
+        equations, between = dynamics(unknown, lengths, p)
+        equal, positive = [equations], []
         if shape.free_lengths:
             equal.append(ca.sum1(lengths) - 1)
         equal += _known_arcs(shape, unknown["a"])
@@ -181,31 +181,30 @@ class Programme:
             # The least mean square has no jumps of the jerk. Where arcs meet, moving the node changes it in third order only, so without
             # these equations nodes would be all but undetermined.
             equal += [unknown["j"][i * p - 1] - unknown["j"][i * p] for i in range(1, m)]
-        for i in range(m):
-            for k in range(p):
-                step = p * (unknown["a"][i * p + k + 1] - unknown["a"][i * p + k])
-                if shape.objective == "rms_jerk":
-                    equal.append(lengths[i] * unknown["j"][i * p + k] - step)
-                elif shape.objective == "peak_jerk":
-                    bound = unknown["t"] * lengths[i]
-                    positive += [bound - step, bound + step]
-                else:  # divided by the limit: a row of size one, however high the limit
-                    positive += [lengths[i] - step / jerk_limit, lengths[i] + step / jerk_limit]
+        steps, widths = p * (unknown["a"][1:] - unknown["a"][:-1]), _in_turn([lengths] * p)
+        if shape.objective == "rms_jerk":
+            equal.append(widths * unknown["j"] - steps)
+        elif shape.objective == "peak_jerk":
+            bound = unknown["t"] * widths
+            positive.append(_in_turn([bound - steps, bound + steps]))
+        else:  # divided by the limit: a row of size one, however high the limit
+            shares = steps / jerk_limit
+            positive.append(_in_turn([widths - shares, widths + shares]))
         if shape.objective == "peak_acceleration":
-            inner = unknown["a"]
-            positive += [unknown["t"] - inner[k] for k in range(m * p + 1)]
-            positive += [unknown["t"] + inner[k] for k in range(m * p + 1)]
+            positive += [unknown["t"] - unknown["a"], unknown["t"] + unknown["a"]]
         # On a long piece the hull of a polynomial of higher degree is far too wide; halved often enough, it fits.
         bent: list[Any] = []
         paces: list[Any] = []
         if shape.at_nodes:
-            between = []
+            between = ca.SX(0, 1)
         elif split > 1:
-            bent, between = _finer(shape, unknown, lengths, split)
+            bent, pieces = _finer(shape, unknown, lengths, split)
+            between = ca.vertcat(*pieces)
             if shape.objective == "rms_jerk":
                 paces = _finer_jerk(shape, unknown["j"], jerk_limit, split)
         places = _places(unknown, lengths, p, drift, SPLIT if shape.free_lengths else 1) if shape.confined else []
-        self._counts = (len(equal), len(positive), len(between), len(bent), len(paces), len(places))
+        rows = [ca.vertcat(*part) for part in (equal, positive, [between], bent, paces, places)]
+        self._counts = tuple(part.numel() for part in rows)
         parameters = ca.vertcat(jerk_limit, drift)
         if not shape.free_lengths:
             parameters = ca.vertcat(parameters, lengths)
@@ -213,7 +212,7 @@ class Programme:
             "x": ca.vertcat(*(unknown[name] for name in self._sizes)),
             "p": parameters,
             "f": _cost(shape, unknown, lengths),
-            "g": ca.vertcat(*equal, *positive, *between, *bent, *paces, *places),
+            "g": ca.vertcat(*rows),
         }
         self._solver = ca.nlpsol("camwright", "ipopt", programme, options)
 
@@ -319,39 +318,41 @@ class Programme:
         return dict(zip(self._sizes, np.split(flat, ends[:-1]), strict=True))
 
 
-def dynamics(unknown: dict[str, Any], lengths: Any, p: int) -> tuple[list[Any], list[Any]]:
+def _in_turn(columns: list[Any]) -> Any:
+    """Take the first of all columns, then the second of all, and so on."""
+    return ca.vec(ca.horzcat(*columns).T)
+
+
+def _by_piece(accelerations: Any, count: int, p: int) -> list[Any]:
+    """Bernstein coefficients of ``q''``, each of all pieces: `p + 1` columns of shape ``(M, 1)``."""
+    return [accelerations[k : k + (count - 1) * p + 1 : p] for k in range(p + 1)]
+
+
+def dynamics(unknown: dict[str, Any], lengths: Any, p: int) -> tuple[Any, Any]:
     """Exact integration over the pieces: the equations at the nodes, and the ratio's coefficients inside the pieces."""
-    equations, between = [], []
-    for i in range(unknown["v"].numel() - 1):
-        h = lengths[i]
-        ratio = [unknown["v"][i]]
-        for k in range(p + 1):
-            ratio.append(ratio[-1] + h * unknown["a"][i * p + k] / (p + 1))
-        position = unknown["q"][i]
-        for k in range(p + 2):
-            position = position + h * ratio[k] / (p + 2)
-        equations += [ratio[-1] - unknown["v"][i + 1], position - unknown["q"][i + 1]]
-        between += ratio[1:-1]
-    return equations, between
+    ratio = [unknown["v"][:-1]]
+    for bend in _by_piece(unknown["a"], unknown["v"].numel() - 1, p):
+        ratio.append(ratio[-1] + lengths * bend / (p + 1))
+    position = unknown["q"][:-1]
+    for coefficient in ratio:
+        position = position + lengths * coefficient / (p + 2)
+    return _in_turn([ratio[-1] - unknown["v"][1:], position - unknown["q"][1:]]), _in_turn(ratio[1:-1])
 
 
 def _places(unknown: dict[str, Any], lengths: Any, p: int, drift: Any, split: int) -> list[Any]:
     """Bernstein coefficients of the slave's position on each piece cut into equal parts: those of ``q`` and of the line."""
-    places: list[Any] = []
-    start = ca.SX(0)
-    cut = ca.DM(_inner(p + 2, split)[1:])
-    for i in range(unknown["v"].numel() - 1):
-        h = lengths[i]
-        ratio, position = unknown["v"][i], unknown["q"][i]
-        row = []
-        for k in range(p + 3):
-            row.append(position + drift * (start + h * k / (p + 2)))
-            position = position + h * ratio / (p + 2)
-            if k <= p:
-                ratio = ratio + h * unknown["a"][i * p + k] / (p + 1)
-        places += ca.vertsplit(cut @ ca.vertcat(*row))
-        start = start + h
-    return places
+    count = unknown["v"].numel() - 1
+    starts = [ca.SX(0)]
+    for i in range(count - 1):
+        starts.append(starts[-1] + lengths[i])
+    start, bends = ca.vertcat(*starts), _by_piece(unknown["a"], count, p)
+    ratio, position, rows = unknown["v"][:-1], unknown["q"][:-1], []
+    for k in range(p + 3):
+        rows.append(position + drift * (start + lengths * k / (p + 2)))
+        position = position + lengths * ratio / (p + 2)
+        if k <= p:
+            ratio = ratio + lengths * bends[k] / (p + 1)
+    return [ca.vec(ca.DM(_inner(p + 2, split)[1:]) @ ca.horzcat(*rows).T)]
 
 
 def _finer(shape: Shape, unknown: dict[str, Any], lengths: Any, split: int) -> tuple[list[Any], list[Any]]:

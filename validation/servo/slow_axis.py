@@ -227,7 +227,7 @@ class SlowAxis:
         if not added:
             return samples[:0]
         asked = np.unique(np.concatenate(added))
-        return asked[samples[samples.searchsorted(asked).clip(max=len(samples) - 1)] != asked]
+        return np.asarray(asked[samples[samples.searchsorted(asked).clip(max=len(samples) - 1)] != asked])
 
     def at(self, samples: Samples) -> tuple[FloatArray, FloatArray]:
         """Master positions and, there, the derivatives of the axis over the master that are asked for.
@@ -392,7 +392,9 @@ def _offsets(servo: Servo, most: int) -> Samples:
     poles = poles[np.abs(poles) > _GONE]
     lasts = (math.log(_GONE) / np.log(np.minimum(np.abs(poles), spectral_radius(servo)))).tolist()
     rates = np.abs(np.log(poles)).tolist()
-    parts = [(last, max(rate for rate, felt in zip(rates, lasts, strict=True) if felt >= last)) for last in sorted(lasts)]
+    parts = [
+        (last, max(rate for rate, felt in zip(rates, lasts, strict=True) if felt >= last)) for last in sorted(lasts)
+    ]
     share = _SHARE
     while True:
         found, at = [0, 1, 2], 2

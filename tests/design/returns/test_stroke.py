@@ -11,7 +11,9 @@ from scipy.optimize import linprog
 from camwright.design.optimise import solve
 from camwright.design.returns.problem import return_problem
 from camwright.design.returns.scaling import ScaledProblem, motion_scale, scale_problem
+from camwright.design.returns.solver import _kept, grid_objective
 from camwright.design.returns.stroke import least_peak_motion
+from camwright.design.returns.touching import touching_motions
 from camwright.profiles.cut import Cut
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import LinearCarriage
@@ -115,6 +117,37 @@ def test_a_slower_line_asks_for_no_more_of_a_mean_square(objective: MotionObject
         values.append(solve(Task(SAW, cut, LIMITS), objective).minimised / speed**order)
     assert values[1] <= values[0] * (1 + 3e-3)
     assert values[2] <= values[1] * (1 + 3e-3)
+
+
+@pytest.mark.parametrize(
+    ("stroke", "length", "touches"), [(7.0, 5.0, 0), (1.5, 5.0, 0), (1.5, 8.0, 2), (1.2, 5.0, 2), (1.2, 50.0, 2)]
+)
+def test_a_mean_square_that_touches_the_stroke_is_exact(stroke: float, length: float, touches: int) -> None:
+    task = Task(LinearCarriage(stroke), replace(CUT, length=length), LOOSE)
+    problem = return_problem(task, "rms_acceleration")
+    scale = motion_scale(problem)
+    scaled_problem = scale_problem(problem, scale)
+    solution = solve(task, "rms_acceleration")
+    motion = next(each for each in touching_motions(scaled_problem) if _kept(each, scaled_problem) is not None)
+    assert len(motion.lengths) == solution.back.pieces == 3 + touches
+    assert solution.status.name == "OPTIMAL"
+    bound = lower_bound(solution.profile, task, "rms_acceleration").value
+    assert bound <= solution.minimised * (1 + 1e-9)
+    assert solution.minimised <= bound * (1 + 1e-3)
+    assert solution.minimised <= grid_objective(problem) * V**2  # which no motion on a grid is below
+    back = solution.back
+    for at in back.breaks[2:-2] if touches else ():  # the acceleration is continuous, and the slave turns at the touch
+        assert float(back(at, 1)) == pytest.approx(0.0, abs=1e-9)
+        assert float(back(at - 1e-12, 2)) == pytest.approx(float(back(at, 2)), abs=1e-4)
+
+
+def test_a_mean_square_whose_limits_bind_is_no_touching_one() -> None:
+    free = scaled(CUT, LOOSE, "rms_acceleration")
+    *_, motion = touching_motions(free)
+    assert _kept(motion, free) is not None
+    tight = replace(free, greatest_slope=0.95 * float(np.abs(motion.accelerations).max()))
+    assert all(_kept(motion, tight) is None for motion in touching_motions(tight))
+    assert not list(touching_motions(scaled(CUT, LIMITS)))  # a peak
 
 
 def test_without_a_stroke_or_a_peak_there_is_none() -> None:
