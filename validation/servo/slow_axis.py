@@ -322,6 +322,8 @@ def _vertex(at: FloatArray, top: int, left: float, right: float) -> float:
     if not (math.isfinite(left) and math.isfinite(right)) or min(left, right) < 0.0:
         return place
     before, after = place - float(at[top - 1]), float(at[top + 1]) - place
+    if min(before, after) <= 0.0:  # the ends of a zone, by which rows are filled up
+        return place
     bend = left / before + right / after
     return place + 0.5 * (left * after / before - right * before / after) / bend
 

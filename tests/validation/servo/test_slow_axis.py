@@ -192,3 +192,12 @@ def test_a_table_of_many_pieces_is_no_harder() -> None:
     response = servo_response(profile, Task(RotaryKnife(0.4), cut, FREE), PAPER)
     assert time.process_time() - began < 5.0
     assert response.peak_following_error > 0.0
+
+
+def test_what_decides_may_lie_where_a_zone_begins() -> None:
+    # beside the rows of the sync zone that are filled up with its first place
+    cut = Cut(6.0, 1e-4, 0.2, 0.1, 0.1, 1e-4)
+    task = Task(LinearCarriage(0.8), cut, FREE)
+    response = servo_response(baseline("poly_4_5_6_7", task), task, replace(PAPER, sample_time=1e-3))
+    assert response.settling == 0.0
+    assert response.shear_zone_error <= 1e-12
