@@ -30,7 +30,9 @@ _ROUNDS = 60
 """Steps of the golden section: the last is far below a nanometre."""
 
 
-def aligned(rebuilt: CamProfile, job: Job, *, count: float = 0.0) -> tuple[CamProfile, tuple[str, ...]]:
+def aligned(
+    rebuilt: CamProfile, job: Job, *, count: float = 0.0, grain: float = 0.0
+) -> tuple[CamProfile, tuple[str, ...]]:
     """Begin the cycle where it fits the job's sync zone best, and put the slave's zero where the job has it.
 
     The zero is found from the cam alone: the beginnings tried are those at which an end of the zone falls on a point of
@@ -44,6 +46,9 @@ def aligned(rebuilt: CamProfile, job: Job, *, count: float = 0.0) -> tuple[CamPr
     count
         Size of the counts that its positions are in (slave unit), if that is coarse: its exact ratio is noise then, and
         chords between the places take its part; beginnings that differ by what a count does are as good as each other.
+    grain
+        What its positions are rounded to, if they are, however finely (slave unit): the last digit shakes the ratio, and
+        beginnings that differ by no more are as good as each other, too.
 
     Returns
     -------
@@ -74,7 +79,10 @@ def aligned(rebuilt: CamProfile, job: Job, *, count: float = 0.0) -> tuple[CamPr
             found.append(np.maximum(position, np.abs(slip).max(axis=1) * cut.sync_zone / cut.sync_tolerance))
         return np.concatenate(found)
 
-    slack = count * lever / cut.sync_tolerance * (_IN_ZONE - 1)  # a chord that is off by one count
+    step = cut.sync_zone / (_IN_ZONE - 1) if count > 0.0 else 0.5 * cut.length / rebuilt.pieces
+    slack = (
+        (count or grain) * lever / cut.sync_tolerance * cut.sync_zone / step
+    )  # a chord, or a ratio, off by its rounding
     begins = _beginnings(rebuilt, stretch, zone, cut.sync_zone, cut.length)
     anchored = _anchored(begins, rebuilt.breaks / stretch, (zone, zone + cut.sync_zone), cut.length)
     begin = _best(begins, misfit, cut.length, max(_EXACT, slack), anchored)
@@ -118,10 +126,10 @@ def _anchored(begins: FloatArray, points: FloatArray, ends: tuple[float, float],
 
 
 def _best(begins: FloatArray, misfit: Misfit, length: float, slack: float, anchored: NDArray[np.bool_]) -> float:
-    """Find the best beginning: the middle of those that fit exactly, or the best between neighbours.
+    """Find the best beginning: the middle of those that fit as well as rounding lets tell, or the best between neighbours.
 
-    Where one fits exactly whose zone begins and ends on points of the cam, it is that: a beginning a micrometre beside it fits as well,
-    for what the ratio can tell.
+    Where one fits whose zone begins and ends on points of the cam, it is that: a beginning a micrometre beside it fits as well,
+    for what the ratio can tell. Of several in a cam that is rounded it is the one nearest to the middle.
     """
     found = misfit(begins)
     least = int(found.argmin())
@@ -134,6 +142,11 @@ def _best(begins: FloatArray, misfit: Misfit, length: float, slack: float, ancho
         first, last = _run(good, least)
         width = (begins[last] - begins[first]) % length
         middle = (begins[first] + 0.5 * width) % length
+        if slack > _EXACT and good[anchored].any():
+            sure = begins[good & anchored]
+            away = np.abs((sure - middle + 0.5 * length) % length - 0.5 * length)
+            if away.min() <= 0.5 * width:
+                return float(sure[int(away.argmin())])
         if float(misfit(np.array([middle]))[0]) <= bound:
             return float(middle)
     low = begins[least - 1] - (length if least == 0 else 0.0)

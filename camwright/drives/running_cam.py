@@ -13,9 +13,9 @@ from camwright.profiles.errors import InputError
 from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.tables.cam_table import CamTable
-from camwright.profiles.tables.count_grid import without_rounding
+from camwright.profiles.tables.count_grid import rounded_to, without_rounding
 from camwright.profiles.tables.target import Target
-from camwright.profiles.tables.targets import detect, read_table, target_of
+from camwright.profiles.tables.targets import detect, layout_of, read_table
 from camwright.validation.rebuilt import one_cycle
 
 
@@ -63,14 +63,15 @@ def running_cam(
     InputError
         The text is not read, or is no cam of this job.
     """
-    layout = detect(text, place) if target is None else target_of(target)
+    layout = detect(text, place) if target is None else layout_of(target)
     placed = replace(job, machine=_with_place(job.machine, text, place))
     whole = whole_cycle(with_slopes(read_table(layout, text, place), slopes), placed, place, units, travel)
     table, counted = whole.table, without_rounding(whole.table)
     rebuilt = whole.units.to_si(layout.rebuild(table if counted is None else counted.table))
     one_cycle(rebuilt, job.cut)  # refuses another period
     count = 0.0 if counted is None else counted.count * whole.units.slave.size
-    rebuilt, notes = aligned(rebuilt.shift(-rebuilt.start), placed, count=count)
+    grain = rounded_to(whole.table.y) * whole.units.slave.size
+    rebuilt, notes = aligned(rebuilt.shift(-rebuilt.start), placed, count=count, grain=grain)
     told = (*table.notes, *whole.notes, *((counted.note,) if counted else ()), *notes)
     return RunningCam(layout, table, told, placed, rebuilt, count, counted is not None)
 

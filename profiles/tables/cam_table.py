@@ -11,11 +11,12 @@ from camwright.profiles.errors import InputError
 from camwright.profiles.machines.machine import SlaveUnit
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 
-PieceLaw = Literal["line", "quintic", "spline"]
+PieceLaw = Literal["line", "cubic", "quintic", "spline"]
 """What lies between two knots.
 
-``line``: the chord. ``quintic``: the polynomial of degree 5 through position, ratio and ratio slope of both knots.
-``spline``: part of a cubic spline through the positions; what closes it at the ends is the target's affair.
+``line``: the chord. ``cubic``: the polynomial of degree 3 through position and ratio of both knots. ``quintic``: that of
+degree 5 through position, ratio and ratio slope of both knots. ``spline``: part of a cubic spline through the positions;
+what closes it at the ends is the target's affair.
 """
 
 Kind = Literal["open", "closed", "appending"]

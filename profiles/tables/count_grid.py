@@ -42,6 +42,11 @@ class Counted:
     note: str
 
 
+_MOST_DIGITS = 9
+_OFF_DIGIT = 1e-15
+"""What a decimal number may be off its digits, as a part of it: it is stored in binary."""
+
+
 def without_rounding(table: CamTable) -> Counted | None:
     """Take the rounding to counts off a table of positions, where it would drown the acceleration.
 
@@ -86,6 +91,15 @@ def grid_of(y: FloatArray) -> float | None:
         if count is not None and _fits(y, steps, count):
             return count
     return None
+
+
+def rounded_to(y: FloatArray) -> float:
+    """Find what positions are rounded to: the greatest power of ten, or count, of which they are multiples; 0 for none."""
+    for digits in range(_MOST_DIGITS + 1):
+        scaled = y * 10.0**digits
+        if np.abs(scaled - np.rint(scaled)).max() <= _OFF_DIGIT * max(1.0, float(np.abs(scaled).max())):
+            return float(10.0**-digits)
+    return grid_of(y) or 0.0
 
 
 def _refined(ordered: FloatArray, rough: float) -> float | None:

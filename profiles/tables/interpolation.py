@@ -25,29 +25,40 @@ def in_format(table: CamTable, number_format: NumberFormat) -> CamTable:
 
 
 def quintics(table: CamTable) -> CamProfile:
-    """Lines and quintics through position, ratio and ratio slope of the knots, in the table's units.
+    """Lines, cubics through position and ratio, and quintics through position, ratio and ratio slope of the knots, in the table's units.
 
     With ``u`` from 0 to 1 over a piece of width ``h`` and the remainders ``P, V, A`` of position, ratio, ratio slope at
     its end after the start's own parabola, the powers 3 to 5 of ``u`` are ``10P - 4Vh + Ah²/2``,
-    ``-15P + 7Vh - Ah²`` and ``6P - 3Vh + Ah²/2``.
+    ``-15P + 7Vh - Ah²`` and ``6P - 3Vh + Ah²/2``. Those of a cubic, ``P`` and ``V`` after the start's tangent, are
+    ``3P - Vh`` and ``Vh - 2P``.
 
     Raises
     ------
     InputError
-        A quintic piece whose knots hold no ratio or ratio slope.
+        A cubic or quintic piece whose knots hold no ratio, or a quintic's no ratio slope.
     """
-    quintic = np.array([law == "quintic" for law in table.laws])
-    held = np.isfinite(table.ratio) & np.isfinite(table.ratio_slope)
-    missing = quintic & ~(held[:-1] & held[1:])
+    quintic, cubic = (np.array([law == name for law in table.laws]) for name in ("quintic", "cubic"))
+    tangent = np.isfinite(table.ratio)
+    held = tangent & np.isfinite(table.ratio_slope)
+    missing = (quintic & ~(held[:-1] & held[1:])) | (cubic & ~(tangent[:-1] & tangent[1:]))
     if missing.any():
-        raise InputError(
-            f"piece {int(np.argmax(missing)) + 1} is a quintic, but a knot of it has no ratio or ratio slope"
+        i = int(np.argmax(missing))
+        what = (
+            "quintic, but a knot of it has no ratio or ratio slope"
+            if quintic[i]
+            else "cubic, but a knot of it has no ratio"
         )
+        raise InputError(f"piece {i + 1} is a {what}")
     h = np.diff(table.x)
     y0, y1 = table.y[:-1], table.y[1:]
     coefficients = np.zeros((len(h), 6))
     coefficients[:, 0] = y0
     coefficients[~quintic, 1] = ((y1 - y0) / h)[~quintic]
+    if cubic.any():
+        v0, v1 = table.ratio[:-1] * h, table.ratio[1:] * h
+        p, v = y1 - y0 - v0, v1 - v0
+        for k, value in enumerate([v0, 3 * p - v, v - 2 * p], start=1):
+            coefficients[cubic, k] = (value / h**k)[cubic]
     if quintic.any():
         v0, v1 = table.ratio[:-1] * h, table.ratio[1:] * h
         a0, a1 = table.ratio_slope[:-1] * h**2, table.ratio_slope[1:] * h**2

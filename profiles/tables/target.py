@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
+from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.tables.cam_table import CamTable, Unit, Units
 from camwright.profiles.tables.number_formats import NumberFormat
@@ -131,6 +132,17 @@ def slash_comments(lines: list[str]) -> str:
 
 
 _HARMLESS = str.maketrans({"{": "(", "}": ")", "\\": "/", "*": "+"})
+
+
+def not_written(table: CamTable, header: Header) -> dict[str, str]:
+    """Refuse to write a layout that is read only.
+
+    Raises
+    ------
+    InputError
+        Always.
+    """
+    raise InputError(f"the table of {table.points} points of {header.name} is not written: this layout is read only")
 
 
 def companion(lines: list[str], steps: tuple[str, ...]) -> str:

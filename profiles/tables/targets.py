@@ -9,6 +9,7 @@ from camwright.profiles.tables import (
     br,
     codesys,
     csv_target,
+    galil,
     isg,
     kollmorgen,
     lenze,
@@ -17,6 +18,7 @@ from camwright.profiles.tables import (
     schneider_asc,
     sew,
     siemens,
+    st_arrays,
     technosoft,
     trio,
     twincat,
@@ -52,6 +54,9 @@ TARGETS: dict[str, Target] = {
 }
 """All targets by name."""
 
+LAYOUTS: dict[str, Target] = {**TARGETS, **{layout.name: layout for layout in (galil.LAYOUT, st_arrays.LAYOUT)}}
+"""All layouts that are read, by name: those of the targets, and some that are not written."""
+
 _SIGNS: tuple[tuple[str, str], ...] = (
     ("logix", r"<RSLogix5000Content|DataType=\"CAM(?:_PROFILE)?\""),
     ("codesys-cambuilder", r"\.Append\s{0,99}\(\s{0,99}(?:\w{1,20}\.)?Poly5"),
@@ -66,6 +71,7 @@ _SIGNS: tuple[tuple[str, str], ...] = (
     ("kollmorgen-kas", r"(?m)^TABLE_BEGIN"),
     ("schneider-asc", r"(?m)^CamPoints\s{0,99}$"),
     ("trio", r"(?m)^[ \t]{0,99}TABLE[ \t]{0,99}\("),
+    ("galil", galil.SIGN),
     ("sew", r"\A\s{0,100}[0-9]{1,5};?\s*\n"),
     ("lenze", r"\A\s{0,99}[-+.,0-9]{1,40}[ \t]{1,20}[-+.,0-9]{1,40}(?:[ \t]{1,20}[-+.,0-9]{1,40})?[ \t]{0,20}//"),
 )
@@ -88,6 +94,20 @@ def target_of(name: str) -> Target:
     return found
 
 
+def layout_of(name: str) -> Target:
+    """Look up a layout that is read, by its name in any case.
+
+    Raises
+    ------
+    InputError
+        There is none.
+    """
+    found = LAYOUTS.get(name.lower())
+    if found is None:
+        raise InputError(f"there is no layout {name[:40]!r}; the layouts are {', '.join(LAYOUTS)}")
+    return found
+
+
 def read_table(target: Target, text: str, place: str) -> CamTable:
     """Read a table, and where its head states the number of points, make sure that they are all there.
 
@@ -106,7 +126,6 @@ def read_table(target: Target, text: str, place: str) -> CamTable:
 _OTHERS = (
     (r"<TcSmItem\b", "an item of a TwinCAT project (.xti)"),
     (r"\b(?:MOVELINK|FLEXLINK)\s{0,9}\(", "a Trio program that moves by MOVELINK or FLEXLINK calls, not by a table"),
-    (r"^[ \t]{0,99}ET[ \t]{0,9}\[", "a Galil program with an ECAM table (EM, EP, ET)"),
 )
 """What other files are, by words that they have: named, so that nobody looks for the option that reads them."""
 
@@ -127,7 +146,9 @@ def detect(text: str, place: str) -> Target:
     text = program_text(text, place)
     for name, sign in _SIGNS:
         if re.search(sign, text, re.IGNORECASE):
-            return TARGETS[name]
+            return LAYOUTS[name]
+    if st_arrays.is_written_so(text):
+        return st_arrays.LAYOUT
     if technosoft.is_written_so(text):
         return technosoft.TARGET
     if _has_columns(text, place):
@@ -138,7 +159,7 @@ def detect(text: str, place: str) -> Target:
                 f"{place}: {what}, which is not read; write the cam's points as two columns, master and slave with their units, "
                 "and audit that"
             )
-    raise InputError(f"{place}: the layout is not recognised; name it with --target, one of {', '.join(TARGETS)}")
+    raise InputError(f"{place}: the layout is not recognised; name it with --target, one of {', '.join(LAYOUTS)}")
 
 
 def _has_columns(text: str, place: str) -> bool:

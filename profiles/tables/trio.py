@@ -24,6 +24,7 @@ MOST_POINTS = 16_000
 _LINE = re.compile(r"TABLE\s*\(([^()]*)\)", re.IGNORECASE)
 _TABLE = re.compile(r"TABLE\s*\(", re.IGNORECASE)
 _CAMBOX = re.compile(r"CAMBOX\s*\(([^()]*)\)(?:\s*AXIS\s*\([^()]*\))?", re.IGNORECASE)
+_GIVEN = re.compile(r"([A-Za-z]\w{0,59})\s*=(.*)")
 _PLAIN = re.compile(r"[-+.0-9eE]{1,40}")
 
 
@@ -49,21 +50,26 @@ def write(table: CamTable, header: Header) -> dict[str, str]:
 def read(text: str, place: str) -> CamTable:
     """Values of the ``TABLE`` lines of a program; from its ``CAMBOX`` line which of them, the multiplier and the link distance.
 
-    Other statements are passed over. Without a ``CAMBOX`` line of numbers all values are the table, and master
-    positions are counted in its steps.
+    Variables that the program gives one number are known. Other statements are passed over. Without a ``CAMBOX`` line of
+    numbers all values are the table, and master positions are counted in its steps.
     """
     values: dict[int, float] = {}
     calls: list[tuple[list[str], int]] = []
+    known: dict[str, str | None] = {}
     for number, line in enumerate(lines_of(text, place), start=1):
         for statement in _statements(line):
-            call = _CAMBOX.fullmatch(statement)
-            if call:
+            call, given = _CAMBOX.fullmatch(statement), _GIVEN.fullmatch(statement)
+            if given:
+                name, value = given[1].lower(), given[2].strip()
+                known[name] = value if known.setdefault(name, value) == value and _PLAIN.fullmatch(value) else None
+            elif call:
                 calls.append(([cell.strip() for cell in call[1].split(",")], number))
             elif _TABLE.match(statement):
                 _fill(values, statement, place, number)
     if not values:
         raise refuse(place, None, "there is no line TABLE(address, value, …) in it")
     check_count(len(values), 2, MOST_POINTS, place)
+    calls = [([known.get(cell.lower()) or cell for cell in cells], number) for cells, number in calls]
     plain = [(cells, number) for cells, number in calls if len(cells) >= 4 and all(map(_PLAIN.fullmatch, cells[:4]))]
     if len({tuple(cells[:4]) for cells, _ in plain}) > 1:
         raise refuse(place, plain[1][1], "there is more than one CAMBOX; leave the one that is meant in the file")

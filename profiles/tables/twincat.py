@@ -32,6 +32,10 @@ MOST_ROWS = 16_777_216
 MOST_READ = 20_000  # rows; far above any sensible table
 
 _FUNCTIONS = {"polynom1": 1, "polynom3": 3, "polynom5": 5, "polynom5_mm": 15}
+_LAWS: dict[int, PieceLaw] = {1: "line", 3: "cubic", 5: "quintic", 15: "quintic"}
+_AT_REST = {3: "a POLYNOM3", 5: "a POLYNOM5"}
+"""Functions that lead from rest to rest."""
+
 _MEMBERS = frozenset(
     (
         "pointindex",
@@ -46,7 +50,6 @@ _MEMBERS = frozenset(
     )
 )
 _MOTION_MEMBERS = ("masterpos", "slavepos", "slavevelo", "slaveacc")
-_LINE, _REST, _MOTION = 1, 5, 15
 _IGNORE = 0
 
 
@@ -129,12 +132,11 @@ def _table(kept: list[tuple[dict[str, Value], int, int]], text: str, place: str)
     check_ascending(columns[0], lines, place)
     laws: list[PieceLaw] = []
     for k, (_, line, function) in enumerate(kept[:-1]):
-        laws.append("line" if function == _LINE else "quintic")
+        laws.append(_LAWS[function])
         rest = all(columns[c][j] == 0.0 for c in (2, 3) for j in (k, k + 1))
-        if function == _REST and not rest:
-            raise refuse(
-                place, line, "a POLYNOM5 leads from rest to rest, but a point of it has a velocity or acceleration"
-            )
+        if function in _AT_REST and not rest:
+            what = f"{_AT_REST[function]} leads from rest to rest, but a point of it has a velocity or acceleration"
+            raise refuse(place, line, what)
     return make_table(*columns, law=tuple(laws), units=units_in(text))
 
 
@@ -185,9 +187,12 @@ def _function(value: Value | None, place: str, line: int) -> int:
         number = float(_FUNCTIONS.get(name, -1))
     else:
         name, number = str(value), value if isinstance(value, float) else -1.0
-    if number not in (_LINE, _REST, _MOTION):
+    if number not in _LAWS:
         raise refuse(
-            place, line, f"the motion function {shown(name)} is not read; POLYNOM1, POLYNOM5 and POLYNOM5_MM are"
+            place,
+            line,
+            f"the motion function {shown(name)} is not read; POLYNOM1, POLYNOM3, POLYNOM5 and POLYNOM5_MM are: export the cam as a "
+            "table of positions and audit that",
         )
     return int(number)
 

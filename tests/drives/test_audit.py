@@ -16,6 +16,7 @@ from camwright.drives.alignment import aligned
 from camwright.drives.audit import Audit, audit, audit_answer
 from camwright.drives.export import export
 from camwright.drives.options import with_slopes
+from camwright.drives.running_cam import running_cam
 from camwright.figures.audit import audit_figures
 from camwright.house.owned import LIST
 from camwright.jobs.job import Job
@@ -325,6 +326,19 @@ def test_the_zero_of_a_carriage_does_not_matter_either(law: str) -> None:
             assert found.value == pytest.approx(wanted.value, rel=1e-9, abs=1e-11)
         grid = np.linspace(0.0, 0.999 * job.cut.length, 99)
         assert moved(grid) == pytest.approx(best(grid), abs=1e-9)
+
+
+@pytest.mark.parametrize("digits", [3, 4, 6])
+@pytest.mark.parametrize("points", [121, 361])
+@pytest.mark.parametrize("law", ["double_s", "modified_sine"])
+def test_the_zero_of_rounded_positions_is_found(law: str, points: int, digits: int) -> None:
+    """The last digit shakes the ratio, and so would choose a zero up to 0.3 mm away."""
+    profile = baseline(law, JOB.task)
+    x = np.linspace(0.0, profile.length, points)
+    rows = "".join(f"{1e3 * a:.9f},{1e3 * b:.{digits}f}\n" for a, b in zip(x, profile(x), strict=True))
+    found = running_cam("x [mm],y [mm]\n" + rows, "cam.csv", JOB)
+    at = np.linspace(0.0, profile.length, 1001)[:-1]
+    assert np.abs(found.cycle(at) - profile(at)).max() < 0.02 * JOB.cut.sync_tolerance
 
 
 @pytest.mark.parametrize("shift", [0.0, 0.0004, 0.13733, 0.4441])

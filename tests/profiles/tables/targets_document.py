@@ -65,8 +65,15 @@ too), a missing last row is added and one too many left out, a master that turns
 that leaves out where its cycle ends takes the pitch of the job if it runs on to that, else `--travel '400 mm'` says it.
 An L5X with a CAM and the CAM_PROFILE computed from it is judged by the profile; a CAM without slopes asks for
 `--slopes A,B`; a profile that was never calculated, and a tag whose two copies differ, are refused. TwinCAT sources
-(`.TcPOU`, `.TcGVL`) and whole Trio programs (`TABLE`, `BASE`, comments, `CAMBOX` with link distance and multiplier) are read.
+(`.TcPOU`, `.TcGVL`) and whole Trio programs (`TABLE`, `BASE`, comments, variables, `CAMBOX` with link distance and multiplier) are read;
+motion functions of TwinCAT are POLYNOM1, POLYNOM3, POLYNOM5 and POLYNOM5_MM.
 A number in structured text that is no plain number is refused with its line.
+
+Some layouts are read and not written: `galil`, the ECAM table of a Galil program (`EP`, `ET[0]=...`, numbers only; straight lines
+between), and `st-arrays`, structured text with one array of master and one of slave positions, as the cam editor Quintic exports it (a
+cubic spline is assumed); its CSV is read as columns. Named and refused, with the way out, are TwinCAT's `.xti` items and Trio programs of
+`MOVELINK` and `FLEXLINK` calls: no public source says exactly what motion they make. Of Omron, Inovance and Delta no layout is known; their
+points as two columns are read like anybody's.
 
 Columns of numbers may be separated by commas, semicolons, tabs, bars or blanks, with a decimal point or comma, in quotes,
 with `sep=;`, with an index column, in UTF-8, UTF-16, GBK or code page 1252. Headings may take several lines; units stand

@@ -416,7 +416,6 @@ def test_any_bytes_are_read_or_refused(data: bytes) -> None:
             "an item of a TwinCAT project (.xti)",
         ),
         ("BASE(1)\nMOVELINK(100, 200, 10, 10, 0)\n", "a Trio program that moves by MOVELINK or FLEXLINK calls"),
-        ("EAA\nEM 2000,1000\nEP 20,0\nET[0]=0\nET[1]=3\n", "a Galil program with an ECAM table"),
     ],
 )
 def test_files_that_are_not_read_are_named_with_a_way_out(text: str, what: str) -> None:
