@@ -16,6 +16,10 @@ Aim = Literal["peak_acceleration", "rms_acceleration", "shortest"]
 """What is made least of a ramp: the peak of its acceleration, the heat of one start, or the master that it takes."""
 
 
+_ROUNDING = 1e-12
+"""Share of the guide by which a park may lie beyond its end."""
+
+
 @dataclass(frozen=True)
 class Ramp:
     """A motion between rest and the sync zone, at a line speed; over the master it is the same at every other.
@@ -110,6 +114,12 @@ class Stand:
         """How far the slave may go beyond the sync zone (slave unit); infinite where it goes round."""
         guide = self.task.machine.guide
         return math.inf if guide is None else guide[1] - self.zone_end
+
+    @property
+    def parked_within(self) -> bool:
+        """Whether the park lies on the guide of a slave that has one, but for rounding."""
+        guide = self.task.machine.guide
+        return guide is None or guide[0] - _ROUNDING * (guide[1] - guide[0]) <= self.park <= guide[1]
 
     @property
     def into(self) -> State:

@@ -19,7 +19,7 @@ from camwright.house.json_text import to_json
 from camwright.house.output import BROKEN_PIPE, complain, prepare_streams, silence_stdout
 from camwright.house.provenance import camwright_version
 from camwright.jobs.wording import error_words, unforeseen
-from camwright.profiles.errors import CamwrightError, SolverError
+from camwright.profiles.errors import CamwrightError, InputError, SolverError
 
 INTERRUPTED = 130
 """Exit code when the user stops the command, as a shell reports it."""
@@ -104,10 +104,26 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 2
 
 
+def _require_named_output(arguments: Sequence[str]) -> None:
+    """Refuse ``--out ""``, which as a path is the working directory: a variable of a script that was never set.
+
+    Raises
+    ------
+    InputError
+        The name is empty.
+    """
+    for number, argument in enumerate(arguments):
+        name, sign, value = argument.partition("=")
+        given = value if sign else next(iter(arguments[number + 1 :]), None)
+        if name == "--out" and given is not None and not given.strip():
+            raise InputError("--out: the name is empty; name where to write to, or leave --out out")
+
+
 def _run(arguments: list[str]) -> int:
     """Run a command; the exit code, errors told."""
     failure: CamwrightError | None
     try:
+        _require_named_output(arguments)
         return int(_application(_called(arguments))(arguments, prog_name="camwright", standalone_mode=False) or 0)
     except CamwrightError as error:
         exit_code, message, failure = error.exit_code, "\n".join(error_words(error)), error

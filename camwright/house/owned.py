@@ -168,7 +168,7 @@ def _is_news(entry: Entry, work: Work, fresh: Mapping[str, str]) -> bool:
 def _replaced(directory: Path, entry: Entry, work: Work, fresh: Mapping[str, str]) -> str:
     """Say what is replaced, and what stays though it is of something else."""
     state = "an earlier state of " if entry.of(work) else ""
-    what = f"the {entry.command} of {state}{entry.name!r} (SHA-256 {entry.sha256[:12]})"
+    what = f"what {entry.command} made of {state}{entry.name!r} (SHA-256 {entry.sha256[:12]})"
     stay = sorted(entry.files.keys() - fresh.keys()) if work.adds or not entry.of(work) else []
     if not stay:
         return f"{directory}: {what} is replaced"

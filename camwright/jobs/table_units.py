@@ -14,6 +14,7 @@ from camwright.profiles.task import Task
 
 _ANGLE = re.compile(r"([+-]?[0-9]{1,9}(?:\.[0-9]{1,9})?(?:e-?[0-9])?) ?(deg|rev)")
 _COUNTS = re.compile(r"([1-9][0-9]{0,9})(?: counts?)? ?/ ?rev")
+_PER_TURN = re.compile(r"/ ?rev$")
 _LENGTHS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "um": 1e-6, "in": 0.0254, "ft": 0.3048}
 
 
@@ -183,8 +184,20 @@ def _unit(name: str, known: dict[str, float], kind: str, turn: float | None) -> 
     if (counts := _COUNTS.fullmatch(name)) is not None and "rev" in known:
         return f"1/{counts[1]}rev", known["rev"] / int(counts[1])
     if name[:1].isdigit() and len(name) <= 20:
+        if _PER_TURN.search(name):
+            raise InputError(
+                f"--units: {name!r}: counts in a turn are a whole number from 1 to 9999999999, of a slave or a master that turns; write "
+                "e.g. 36000/rev"
+            )
         size = _part_of_turn(name, turn) if kind == "length" else None
-        return name.replace(" ", ""), quantity(name, kind) if size is None else size
+        if size is None:
+            try:
+                size = quantity(name, kind)
+            except InputError as error:
+                raise InputError(*(f"--units: {fault}" for fault in error.faults)) from error
+        if size == 0.0:
+            raise InputError(f"--units: {name!r}: zero; a unit is greater")
+        return name.replace(" ", ""), size
     raise InputError(
         f"--units: there is no unit {name[:20]!r} here; the units are {', '.join(known)}, or a quantity like "
         f"{'0.5 um' if kind == 'length' else '0.01 deg'}"

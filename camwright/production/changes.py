@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from camwright.design.production.transition import design_transition, transition_speed
 from camwright.production.cams import ListCam
@@ -87,6 +88,10 @@ class Change:
     jump: SeamJump
     times: int
     transition: Transition | None = None
+
+    def first_pieces(self, of: NDArray[np.intp]) -> NDArray[np.intp]:
+        """Pieces of a list, counted from 0, which it begins; ``of`` says which cam, counted from 0, makes each piece."""
+        return 1 + np.flatnonzero((of[:-1] == self.before - 1) & (of[1:] == self.after - 1))
 
 
 def find_changes(

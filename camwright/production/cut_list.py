@@ -16,6 +16,14 @@ from camwright.house.progress import Step, ignore
 from camwright.jobs.job import Job
 from camwright.production.cams import ListCam, highest_speed, list_cam, list_job, ramping_speed
 from camwright.production.changes import Change, find_changes
+from camwright.production.list_checks import (
+    require_passed,
+    require_possible,
+    require_ramp,
+    require_room,
+    require_running,
+    require_simulable,
+)
 from camwright.production.tables import TargetSeams, list_tables
 from camwright.profiles.cut_list import CutList
 from camwright.profiles.errors import InfeasibleError, InputError
@@ -26,11 +34,6 @@ from camwright.studies.reach import stand_in
 from camwright.validation.production.line_ramp import line_ramp
 from camwright.validation.production.motion_table import ShiftCam, motion_table
 from camwright.validation.production.shift import Shift, ShiftRun, run_shift
-
-MOST_CAMS = 300
-"""Most cams of a list."""
-
-_MOST_FAULTS = 20
 
 _ALLOWED = 1e-3
 """Share by which a ramp may be harder than what is borne: what a solver's margin leaves."""
@@ -93,10 +96,6 @@ class ListPlan:
         borne = np.array([line_ramp(cam.solution.profile, cam.job.task).ramp.value for cam in self.cams])
         return np.asarray(self.line.hardest_between(joints) > borne[self.of] * (1.0 + _ALLOWED))
 
-    def first_pieces(self, change: Change) -> NDArray[np.intp]:
-        """Pieces, counted from 0, which a change begins."""
-        return first_pieces(self.of, change)
-
 
 @dataclass(frozen=True, eq=False)
 class ListStudy:
@@ -155,7 +154,7 @@ def study_list(job: Job, asked: CutList, names: Sequence[str], step: Step = igno
     return ListStudy(planned, tables, run)
 
 
-def plan_list(job: Job, asked: CutList, line: LineRun | None = None, step: Step = ignore) -> ListPlan:
+def plan_list(job: Job, asked: CutList, line: LineRun | None = None, step: Step = ignore, runs: int = 1) -> ListPlan:
     """Design the cams of a cut list and plan the speed of the line over it.
 
     Parameters
@@ -169,26 +168,32 @@ def plan_list(job: Job, asked: CutList, line: LineRun | None = None, step: Step 
         Speed of the line; the fastest plan if not given.
     step
         Told what begins now.
+    runs
+        How often a servo will run through it.
 
     Raises
     ------
     InputError
-        A length leaves no room for the sync zone.
+        A length leaves no room for the sync zone, the line does not get through, or running its servos would not end.
     InfeasibleError
         A gap cannot be cut at any line speed, or a change needs the line to stop.
     SolverError
         The solver failed.
     """
     job, gaps = list_job(job), asked.gaps
-    _require_room(job, asked)
-    if line is not None:
-        require_passed(gaps, line)
+    require_room(job, asked)
+    material = float(gaps.sum())
+    if line is None:
+        require_ramp(job)
+    else:
+        require_passed(material, line)
+    require_simulable(material / job.cut.line_speed if line is None else float(line.when(material)), job, runs)
     lengths, first, inverse = np.unique(gaps, return_index=True, return_inverse=True)
     order = np.argsort(first, kind="stable")
     lengths, of = lengths[order], np.argsort(order)[inverse].astype(np.intp)
     step("finding the highest line speeds")
     perfect = np.array([highest_speed(job, length) for length in lengths.tolist()])
-    _require_possible(job, asked, of, perfect)
+    require_possible(job, asked, of, perfect)
     step("finding which cams run while the line ramps")
     acceleration, tops = job.line.acceleration, np.minimum(perfect, job.cut.line_speed)
     if line is not None:  # for the speeds that they will see
@@ -206,16 +211,12 @@ def plan_list(job: Job, asked: CutList, line: LineRun | None = None, step: Step 
     step("looking at the changes")
     pairs = collections.Counter((a + 1, b + 1) for a, b in pairwise(of.tolist()) if a != b)
     changes = find_changes(cams, pairs, stand_in(job))
-    _require_running(job, asked, of, changes, cams)
+    require_running(job, asked, of, changes, cams)
     step("planning the speed of the line")
     highest = _highest(cams, of, changes)
     run = fastest_line(gaps, highest, acceleration or 0.0) if line is None else line
+    require_simulable(float(run.when(material)), job, runs)
     return ListPlan(job, asked, cams, of, changes, highest, run)
-
-
-def first_pieces(of: NDArray[np.intp], change: Change) -> NDArray[np.intp]:
-    """Pieces, counted from 0, which a change of a list begins; ``of`` as in `ListPlan`."""
-    return 1 + np.flatnonzero((of[:-1] == change.before - 1) & (of[1:] == change.after - 1))
 
 
 def list_shift(
@@ -242,55 +243,12 @@ def list_shift(
     zeros = [cam.running.zero for cam in cams] + [cams[change.after - 1].running.zero for change in through]
     order = of.copy()
     for number, change in enumerate(through):
-        order[first_pieces(of, change)] = len(cams) + number
+        order[change.first_pieces(of)] = len(cams) + number
     parts = [ShiftCam(profile, zero) for profile, zero in zip(profiles or own, zeros, strict=True)]
     places = {cam.running.zero: cam.job.task for cam in cams}
     kinds = np.array([list(places).index(cam.running.zero) for cam in cams], dtype=np.intp)
     table = motion_table(parts, order, cams[0].job.machine.pitch, cams[0].job.cut.sync_zone, longer)
     return Shift(table, list(places.values()), kinds[of])
-
-
-def _require_room(job: Job, asked: CutList) -> None:
-    """Refuse lengths that leave no room for the sync zone, by their line, and more lengths than a list may have."""
-    zone, units = job.cut.sync_zone, job.units
-    short, first = np.unique(asked.lines[asked.gaps <= zone], return_index=True)
-    gaps = asked.gaps[asked.gaps <= zone][first].tolist()
-    if len(short):
-        raise InputError(
-            *(
-                f"{asked.place}, line {line}: a length of {with_unit(gap, 'm', 4, units)} leaves no room for the sync zone of "
-                f"{with_unit(zone, 'm', 4, units)}; cut longer pieces, or shorten [cut] sync_zone"
-                for line, gap in zip(short.tolist()[:_MOST_FAULTS], gaps, strict=False)
-            )
-        )
-    lengths = len(np.unique(asked.gaps))
-    if lengths > MOST_CAMS:
-        raise InputError(
-            f"{asked.place}: {lengths} different gaps between cuts, the limit is {MOST_CAMS}; round the lengths, or split the list"
-        )
-
-
-def require_passed(lengths: FloatArray, line: LineRun) -> None:
-    """Refuse a line that stands still before the list is cut."""
-    needed = float(lengths.sum())
-    if line.length < needed and line.speeds[-1] == 0.0:
-        raise InputError(
-            f"the line stands still after {line.length:.6g} m, the list needs {needed:.6g} m; let it run longer, or shorten the list"
-        )
-
-
-def _require_possible(job: Job, asked: CutList, of: NDArray[np.intp], perfect: FloatArray) -> None:
-    """Refuse gaps that no line speed allows."""
-    for number in np.flatnonzero(perfect <= 0.0).tolist():
-        at = int(np.flatnonzero(of == number)[0])
-        raise InfeasibleError(
-            f"{asked.where(at)}: {with_unit(float(asked.gaps[at]), 'm', 4, job.units)} cannot be cut at any line speed; "
-            "a shorter sync zone or a longer piece would help: ask camwright limits",
-            "cut_length",
-            None,
-            "m",
-            (),
-        )
 
 
 def _tops(
@@ -353,38 +311,11 @@ def _tops(
         slower |= more
 
 
-def _require_running(
-    job: Job, asked: CutList, of: NDArray[np.intp], changes: dict[tuple[int, int], Change], cams: Sequence[ListCam]
-) -> None:
-    """Refuse a list with a change that no motion makes while the line runs."""
-    for change in changes.values():
-        if change.times and change.how == "stop":
-            at = int(first_pieces(of, change)[0])
-            one, other = (
-                with_unit(cams[number - 1].length, "m", 4, job.units) for number in (change.before, change.after)
-            )
-            way = (
-                f"place the sync zone at one place for all: --common-place, or {{@machine}}.{job.machine.place_name}"
-                if job.machine.place_name
-                else 'let the command be in sync: [objective] command = "in_sync"'
-                if job.cut.shaped
-                else "put a length between them"
-            )
-            raise InfeasibleError(
-                f"{asked.where(at)}: from {one} to {other} no motion within the limits leads while the line runs; "
-                + way.replace("{@machine}.", "[machine] "),
-                "change",
-                None,
-                "m",
-                (),
-            )
-
-
 def _highest(cams: Sequence[ListCam], of: NDArray[np.intp], changes: dict[tuple[int, int], Change]) -> FloatArray:
     """Give the highest line speed of each piece: its cam's, or that of the transition which begins it."""
     highest = np.array([cam.line_speed for cam in cams])[of]
     for change in changes.values():
         if change.transition is not None:
-            here = first_pieces(of, change)
+            here = change.first_pieces(of)
             highest[here] = np.minimum(highest[here], change.line_speed)
     return highest

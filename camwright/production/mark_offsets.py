@@ -2,24 +2,25 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from camwright.house.files import read_text
+from camwright.production.columns import columns, measured, read_table_text, role
 from camwright.profiles.errors import InputError
+from camwright.profiles.tables.delimited import read_sheet
 
 LEAST_SPEEDS = 3
 """Line speeds that a fit needs: with two every line is as good."""
 
+OFFSETS_HEADER = "speed [m/min],offset [mm]"
+
 _MOST_BYTES = 1 << 20
 _MOST_FAULTS = 10
-_SPEEDS = {"line_speed_m_per_min": 1 / 60, "line_speed_m_per_s": 1.0, "line_speed_ft_per_min": 0.3048 / 60}
-_OFFSETS = {"offset_mm": 1e-3, "offset_m": 1.0, "offset_in": 0.0254}
+_GREATEST = 1e6
+"""Greatest line speed (m/s) and offset (m)."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +54,8 @@ def dead_time(path: Path) -> DeadTime:
     Parameters
     ----------
     path
-        CSV with a column ``line_speed_m_per_min`` (or ``…_m_per_s``, ``…_ft_per_min``) and a column ``offset_mm`` (or ``…_m``, ``…_in``).
+        Table with a column of line speeds and one of offsets, each with its unit in the heading: ``speed [m/min],offset [mm]``, or
+        ``line_speed_m_per_min,offset_mm``; in English, German or Chinese.
 
     Raises
     ------
@@ -76,33 +78,20 @@ def dead_time(path: Path) -> DeadTime:
 
 
 def _read(path: Path) -> tuple[list[float], list[float]]:
-    rows = list(csv.reader(io.StringIO(read_text(path, "file of offsets", _MOST_BYTES).removeprefix("\ufeff"))))
-    header = [name.strip() for name in rows[0]]
-    speed = next((name for name in header if name in _SPEEDS), None)
-    offset = next((name for name in header if name in _OFFSETS), None)
-    if speed is None or offset is None:
-        raise InputError(
-            f"{path}, row 1: the columns are {', '.join(header)[:80]}; one of {', '.join(_SPEEDS)} and one of "
-            f"{', '.join(_OFFSETS)} are needed"
-        )
-    at, factors = (header.index(speed), header.index(offset)), (_SPEEDS[speed], _OFFSETS[offset])
-    speeds: list[float] = []
-    offsets: list[float] = []
-    faults: list[str] = []
-    for number, row in enumerate(rows[1:], start=2):
-        if not any(cell.strip() for cell in row):
-            continue
-        try:
-            v, y = (float(row[place]) * factor for place, factor in zip(at, factors, strict=True))
-        except (ValueError, IndexError):
-            faults.append(f"{path}, row {number}: {','.join(row)[:60]!r} is not numbers; write e.g. 80,1.35")
-            continue
-        if not (0 <= v < 1e6 and abs(y) < 1e6):
-            faults.append(
-                f"{path}, row {number}: {','.join(row)[:60]!r}: a line speed is not below zero, and both are below 1e6 m/s and m"
-            )
-        speeds.append(v)
-        offsets.append(y)
+    """Read line speeds (m/s) and offsets (m)."""
+    text = read_table_text(path, "file of offsets", _MOST_BYTES)
+    sheet = read_sheet(text, str(path), role, OFFSETS_HEADER, "file of offsets")
+    at = columns(sheet, ("speed", "offset"), needed=2, header=OFFSETS_HEADER)
+    speeds, offsets = (
+        measured(sheet, at[name], name, kind, OFFSETS_HEADER)
+        for name, kind in (("speed", "speed"), ("offset", "length"))
+    )
+    wrong = (speeds < 0) | (speeds >= _GREATEST) | (np.abs(offsets) >= _GREATEST)
+    faults = [
+        f"{path}, line {sheet.lines[row]}: a line speed of {speeds[row]:.6g} m/s and an offset of {offsets[row]:.6g} m; the speed is not "
+        f"below zero, and both are below {_GREATEST:g}"
+        for row in np.flatnonzero(wrong)[:_MOST_FAULTS].tolist()
+    ]
     if faults:
-        raise InputError(*faults[:_MOST_FAULTS])
-    return speeds, offsets
+        raise InputError(*faults)
+    return speeds.tolist(), offsets.tolist()

@@ -195,7 +195,7 @@ def ramps(
     at = stand(placed.task, zone, park)
     at = balanced(at) if free else at
     first, last = ramp_in(at, aim), ramp_out(at, aim)
-    if first is None or last is None or not zone_kept(at):
+    if first is None or last is None or not zone_kept(at) or not at.parked_within:
         raise refused(at, free=free)
     step("finding where they end")
     arcs, fastest = least_arcs(at), fastest_line(at, can_stand)

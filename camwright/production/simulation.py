@@ -7,10 +7,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from camwright.design.production.line_plan import fastest_line
+from camwright.design.production.line_plan import HARDEST, fastest_line
+from camwright.house.numbers import with_unit
 from camwright.house.progress import Step, ignore
 from camwright.jobs.job import Job
-from camwright.production.cut_list import ListPlan, list_shift, plan_list, require_passed
+from camwright.production.cut_list import ListPlan, list_shift, plan_list
+from camwright.production.list_checks import require_passed
 from camwright.profiles.cut_list import CutList
 from camwright.profiles.errors import InputError
 from camwright.profiles.line_run import LineRun
@@ -154,9 +156,12 @@ def simulate_shift(
         As `plan_list`.
     """
     _require_simple(job, disturbances)
-    if line is not None and job.line.acceleration is None and line.hardest > 0.0:
+    if (
+        line is not None and job.line.acceleration is None and 0.0 < line.hardest <= HARDEST
+    ):  # harder is a jump, which no cam bears
         job = replace(job, line=replace(job.line, acceleration=line.hardest))
-    planned = plan_list(job, asked, line, step)
+    servos = _servos(job, disturbances)
+    planned = plan_list(job, asked, line, step, len(servos) * len(MOTIONS))
     draw = np.random.default_rng(disturbances.seed)
     pieces = asked.pieces
     longer = _normal(draw, pieces) * disturbances.marks if disturbances.marks else None
@@ -168,19 +173,18 @@ def simulate_shift(
     slip = _normal(draw, pieces) * disturbances.slip if disturbances.slip else np.zeros(0)
     noise = _normal(draw, _NOISES) * disturbances.noise if disturbances.noise else np.zeros(0)
     wrong = Disturbance(noise, slip)
-    servos = _servos(job, disturbances)
-    require_passed(lengths, planned.line)
-    runs, shift = {}, None
+    require_passed(float(lengths.sum()), planned.line)
+    found, shift = {}, None
     for motion in MOTIONS:
         step(f"running {motion.replace('_', ' ')}")
         shift = list_shift(planned.cams, planned.of, planned.changes, _profiles(planned, motion), longer)
-        runs[motion] = _runs(shift, planned.line, servos, wrong, lengths)
+        found[motion] = _runs(shift, planned.line, servos, wrong, lengths)
     assert shift is not None  # noqa: S101 - there are motions
     times = planned.line.when(shift.places()[:, 1])
     joints = shift.table.joints
     fast = int((planned.line.fastest_between(joints) > planned.highest * (1.0 + _ROUNDING)).sum())
     hard = int(planned.ramped_too_hard(joints).sum())
-    return ShiftStudy(planned, line is not None, disturbances, lengths, times, fast, hard, len(servos), runs)
+    return ShiftStudy(planned, line is not None, disturbances, lengths, times, fast, hard, len(servos), found)
 
 
 def _normal(draw: np.random.Generator, count: int) -> FloatArray:
@@ -191,6 +195,11 @@ def _normal(draw: np.random.Generator, count: int) -> FloatArray:
 def _require_simple(job: Job, disturbances: Disturbances) -> None:
     """Refuse what cannot be simulated: marks on a machine whose ratio changes in sync, servos without ranges."""
     faults = []
+    if _FARTHEST * disturbances.noise > job.cut.sync_zone:
+        faults.append(
+            f"--noise: {with_unit(disturbances.noise, 'm', 4, job.units)} a sample, drawn up to four times that, is more than the sync "
+            f"zone of {with_unit(job.cut.sync_zone, 'm', 4, job.units)}, and no encoder's; write e.g. 5 um"
+        )
     if disturbances.marks and (not job.machine.placed or not job.task.straight or job.cut.shaped):
         faults.append(
             "--marks: pieces are made longer by stretching the return, which needs a constant ratio in sync and a command that is in sync; "

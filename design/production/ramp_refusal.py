@@ -60,6 +60,8 @@ def _reason(at: Stand, *, free: bool) -> tuple[str, dict[str, Value], float | No
         return "{@line_speed} = {speed}: the sync zone itself breaks a limit", values, None
     if not (at.run_up > 0 and (at.run_out > 0 or at.task.machine.guide is not None)):
         return *_within_zone(at, free=free), None
+    if at.task.machine.guide is not None and not at.parked_within:
+        return *_off_the_guide(at, at.task.machine.guide), None
     arcs = least_arcs(at)
     up, out = (None if each is None else each.arc for each in (arcs.run_up, arcs.run_out))
     size = 1e3 if unit == "m" else math.degrees(1.0)
@@ -104,6 +106,14 @@ def _within_zone(at: Stand, *, free: bool) -> tuple[str, dict[str, Value]]:
     return text, {"park": Value(park, unit, 6), "begins": begins, "ends": Value(at.zone_end, unit, 6)}
 
 
+def _off_the_guide(at: Stand, guide: tuple[float, float]) -> tuple[str, dict[str, Value]]:
+    """Say that a park lies where the guide is not."""
+    unit = at.task.machine.slave_unit
+    text = f"--park: the {at.task.machine.noun} stands at {{park}}, outside its stroke from {{low}} to {{high}}"
+    values = {"park": at.park, "low": guide[0], "high": guide[1]}
+    return text, {name: Value(value, unit, 6) for name, value in values.items()}
+
+
 def _ways_out(at: Stand, *, free: bool) -> list[tuple[Suggestion, Value, str]]:
     """List changes that were tried and work: the nearest park, and the highest line speed."""
     found: list[tuple[Suggestion, Value, str]] = []
@@ -135,6 +145,8 @@ def _nearest_park(at: Stand) -> tuple[float, bool] | None:
     if span < 0:
         return None
     given = at.park
+    if machine.guide is not None and given < earliest and can_start_and_stop(at.parked_at(earliest)):
+        return earliest, False
     if machine.guide is None and given + machine.pitch - latest < earliest - given:
         given += machine.pitch  # the same place, nearer to the latest park
     inside = at.parked_at(min(max(given, earliest + _MARGIN * span), latest - _MARGIN * span))

@@ -101,7 +101,12 @@ def least_arcs(at: Stand) -> Arcs:
 
 def can_start_and_stop(at: Stand) -> bool:
     """Whether the machine can start from its park and stop there."""
-    return zone_kept(at) and ramp_in(at, "shortest") is not None and ramp_out(at, "shortest") is not None
+    return (
+        zone_kept(at)
+        and at.parked_within
+        and ramp_in(at, "shortest") is not None
+        and ramp_out(at, "shortest") is not None
+    )
 
 
 def has_room(at: Stand) -> bool:

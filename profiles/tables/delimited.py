@@ -22,16 +22,21 @@ LONGEST_LINE = 20_000
 
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,4})?")
 _COMMA = re.compile(r"[+-]?(?:[0-9]+,[0-9]*|,[0-9]+)(?:[eE][+-]?[0-9]{1,4})?")
-_STAMP = re.compile(r"[0-9]{1,4}[-./:][0-9]{1,2}[-./:][0-9]{1,4}(?:[ T][0-9:.,]{1,20})?(?: ?[AP]M)?")
+_STAMP = re.compile(
+    r"[0-9]{1,4}[-./:][0-9]{1,2}[-./:][0-9]{1,4}(?:[ T][0-9:.,]{1,20})?(?: ?[AP]M)?(?:Z| ?[+-][0-9]{2}:?[0-9]{2})?"
+)
 _FAULT_CELL = re.compile(r"#(?:[A-Z/0]{3,12}[!?]|N/A|NV)[\s,;|]")
 """What a spreadsheet writes for a cell that it cannot compute: the row that begins with one is no comment."""
 _GROUPED = re.compile(r"[+-]?[0-9]{1,3}(?:([.,' \u00a0\u2009\u202f])[0-9]{3})(?:\1[0-9]{3})*(?:[.,][0-9]*)?")
+_COUNTED = re.compile(r"\s*[\[(]?(?:pcs|stk|stück|pieces|件|个|张|片)\.?[\])]?\s*", re.IGNORECASE)
 _SAID = re.compile(r"sep=(.)", re.IGNORECASE)
 _REMARK = re.compile(r"\s+//.*")
 _MISFIT = (
     "{count} cells where {where} {width}; separate cells by one sign, and where it is the comma write numbers with a decimal "
     "point"
 )
+GROUPS = "has its thousands set apart; export the numbers without such signs, like 1234.5"
+"""What is wrong with a number whose thousands are set apart."""
 _SAMPLE = 200
 """Lines that the separator is judged by."""
 _WIDEST = 400
@@ -130,6 +135,11 @@ class Sheet:
         return all(number_in(cells[at], self.comma) is not None for cells in self.rows)
 
 
+def is_stamp(cell: str) -> bool:
+    """Whether a cell is a date, with a time of day and the zone that it is in or without."""
+    return _STAMP.fullmatch(cell.strip()) is not None
+
+
 def number_in(cell: str, comma: bool) -> float | None:
     """Read a cell with a decimal point, or where allowed a comma; ``None`` for what is no number."""
     plain = cell.strip().replace("\u2212", "-")
@@ -207,17 +217,18 @@ def read_sheet(
     return Sheet(place, columns, kept, tuple(number for number, _ in rows), heading, comma)
 
 
+def grouped(cell: str) -> bool:
+    """Whether a cell is a number whose thousands are set apart."""
+    plain = cell.strip().strip('"').strip()
+    return _GROUPED.fullmatch(plain) is not None and number_in(plain, True) is None
+
+
 def _require_no_groups(place: str, lines: Sequence[tuple[int, Sequence[str]]]) -> None:
     """Refuse cells whose thousands are set apart, by line: which sign is the decimal one would be a guess."""
     for number, cells in lines:
         for cell in cells:
-            plain = cell.strip().strip('"').strip()
-            if _GROUPED.fullmatch(plain) and number_in(plain, True) is None:
-                raise refuse(
-                    place,
-                    number,
-                    f"{plain[:50]!r} has its thousands set apart; export the numbers without such signs, like 1234.5",
-                )
+            if grouped(cell):
+                raise refuse(place, number, f"{cell.strip()[:50]!r} {GROUPS}")
 
 
 def _lines(text: str, place: str) -> tuple[list[tuple[int, str]], list[tuple[int, str]], str | None]:
@@ -286,7 +297,7 @@ def _is_row(cells: Sequence[str], comma: bool) -> bool:
     """Whether a line holds numbers: it begins with one, or a time of day, and has two."""
     filled = [cell.strip() for cell in cells if cell.strip()]
     found = sum(number_in(cell, comma) is not None for cell in filled)
-    return found >= 2 and (number_in(filled[0], comma) is not None or _STAMP.fullmatch(filled[0]) is not None)
+    return found >= 2 and (number_in(filled[0], comma) is not None or is_stamp(filled[0]))
 
 
 def _require_no_spoilt_row(
@@ -296,7 +307,7 @@ def _require_no_spoilt_row(
     below = False
     for number, cells in headings:
         filled = [cell.strip() for cell in cells]
-        wrong = [cell for cell in filled if number_in(cell, comma) is None]
+        wrong = [cell for cell in filled if number_in(cell, comma) is None and not is_stamp(cell)]
         if below and len(wrong) == 1 and len(filled) > 1:
             raise refuse(
                 place, number, f"{shown(wrong[0])} is no number, and the row stands below the names of the columns"
@@ -336,7 +347,7 @@ def _columns(
         return _scope_columns(headings, scope[-1], width), headings[scope[-1]][0]
     lines: list[tuple[int, list[str]]] = []
     for number, cells in headings:  # a unit may stand alone below the names
-        if len(_trimmed(cells)) > 1 or (lines and _is_unit_row(cells)):
+        if len(_trimmed(cells)) > 1 or (lines and is_unit_row(cells)):
             lines.append((number, _padded(cells, width)))
     if not lines:
         return (Column(""),) * width, 0
@@ -345,7 +356,7 @@ def _columns(
     ]
     at = known[-1] if known else _lowest_names(lines)
     number, cells = lines[at]
-    below = [units for _, units in lines[at + 1 :] if _is_unit_row(units)]
+    below = [units for _, units in lines[at + 1 :] if is_unit_row(units)]
     columns = []
     for k, cell in enumerate(cells):
         name, unit, right = split_unit(cell)
@@ -357,12 +368,14 @@ def _columns(
 
 def _lowest_names(lines: Sequence[tuple[int, list[str]]]) -> int:
     """Find the lowest heading that is no row of units."""
-    return next((k for k in reversed(range(len(lines))) if not _is_unit_row(lines[k][1])), len(lines) - 1)
+    return next((k for k in reversed(range(len(lines))) if not is_unit_row(lines[k][1])), len(lines) - 1)
 
 
-def _is_unit_row(cells: Sequence[str]) -> bool:
+def is_unit_row(cells: Sequence[str]) -> bool:
+    """Whether a line holds units: one at least, beside them nothing but words for pieces."""
     filled = [cell for cell in cells if cell.strip()]
-    return bool(filled) and all(bare_unit(cell) is not None for cell in filled)
+    units = [cell for cell in filled if bare_unit(cell) is not None]
+    return bool(units) and all(cell in units or _COUNTED.fullmatch(cell) for cell in filled)
 
 
 def _padded(cells: Sequence[str], width: int) -> list[str]:

@@ -14,7 +14,7 @@ from camwright.profiles.errors import InputError
 from camwright.profiles.machines.machine import SlaveUnit
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.profiles.tables.column_words import is_measured, trace_role
-from camwright.profiles.tables.delimited import Sheet, read_sheet
+from camwright.profiles.tables.delimited import Sheet, is_stamp, read_sheet
 from camwright.profiles.trace import Trace
 
 MOST_ROWS = 10_000
@@ -156,6 +156,11 @@ def _factors(sheet: Sheet, at: dict[str, list[int]]) -> tuple[dict[str, float], 
             if name in _POSITIONS and bare:
                 factors[name] = 1e-3
                 continue
+            if name == "time" and sheet.rows and is_stamp(sheet.rows[0][at[name][-1]]):
+                raise InputError(
+                    f"{sheet.place}, line {sheet.lines[0]}: {sheet.rows[0][at[name][-1]].strip()[:40]!r} is a time of day; export the time "
+                    "since the start of the recording, e.g. time [ms]"
+                )
             example = next(cell for cell in _WITH_MASTER.split(",") if cell.startswith(name))
             raise InputError(f"{where}: column {name} has no unit; write it in brackets, e.g. {example}")
         if not column.known or column.unit not in units:

@@ -292,6 +292,8 @@ def test_version_and_help(capsys: pytest.CaptureFixture[str]) -> None:
         (["check", "a\0b"], "embedded null"),
         (["design", "none.toml"], "none.toml: there is no such job file"),
         (["validate", "none.csv", "--job", JOB], "none.csv: there is no such profile file"),
+        (["design", JOB, "--out", ""], "--out: the name is empty; name where to write to, or leave --out out"),
+        (["export", JOB, "--out="], "--out: the name is empty"),
         (["validate", ".", "--job", JOB], ".: a directory, not a profile file"),
         (["validate", JOB, "--job", JOB], "there is no table of two columns in it"),
     ],

@@ -91,6 +91,23 @@ def test_dead_time_is_the_slope_of_measured_offsets(capsys: pytest.CaptureFixtur
     assert "marks.csv" in out
 
 
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("speed [m/min],offset [mm]\n20,1.1\n40,1.4\n80,2.0\n", "utf-8"),
+        ("Geschwindigkeit [m/min];Versatz [mm]\n20;1,1\n40;1,4\n80;2,0\n", "utf-16"),
+        ("速度（m/min）\t偏移（mm）\n20\t1.1\n40\t1.4\n80\t2.0\n", "gb18030"),
+        ("# shift 2\nline_speed_m_per_s;offset_m\n0,5;0,00125\n1;0,0017\n1,5;0,00215\n", "cp1252"),
+    ],
+)
+def test_offsets_as_spreadsheets_write_them(text: str, code: str, tmp_path: Path) -> None:
+    file = tmp_path / "offsets.csv"
+    file.write_bytes(text.encode(code))
+    found = dead_time(file)
+    assert found.time == pytest.approx(0.9e-3)
+    assert found.constant == pytest.approx(0.8e-3)
+
+
 def test_kollmorgens_table(tmp_path: Path) -> None:
     """The maker's example: -3.1992° at 4000 rpm, so 0.0008 deg per rpm, are -133.33 µs."""
     file = tmp_path / "offsets.csv"
@@ -154,12 +171,16 @@ def test_rejections(options: tuple[str, ...], words: str, capsys: pytest.Capture
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("speed,offset\n1,2\n", "one of line_speed_m_per_min"),
+        ("speed,offset\n1,2\n", "line 1: column speed has no unit; write a header like speed [m/min],offset [mm]"),
+        ("when,offset [mm]\n1,2\n", "line 1: there is no column speed"),
         ("line_speed_m_per_min,offset_mm\n10,1\n20,2\n", "2 line speeds; measure offsets at 3 at least"),
-        ("line_speed_m_per_min,offset_mm\n10,1\n20,two\n30,3\n", "row 3: '20,two' is not numbers"),
-        ("line_speed_m_per_min,offset_mm\n10,1\n20\n30,3\n", "row 3: '20' is not numbers"),
-        ("line_speed_m_per_min,offset_mm\n-10,1\n20,2\n30,3\n", "row 2: '-10,1': a line speed is not below zero"),
-        ("line_speed_m_per_min,offset_mm\n10,nan\n20,2\n30,3\n", "row 2: '10,nan'"),
+        ("line_speed_m_per_min,offset_mm\n10,1\n20,two\n30,3\n", "line 3: offset 'two' is not a finite number"),
+        ("line_speed_m_per_min,offset_mm\n10,1\n20\n30,3\n", "line 3: 1 cells where the header has 2"),
+        (
+            "line_speed_m_per_min,offset_mm\n-10,1\n20,2\n30,3\n",
+            "line 2: a line speed of -0.166667 m/s and an offset of 0.001 m",
+        ),
+        ("line_speed_m_per_min,offset_mm\n10,nan\n20,2\n30,3\n", "line 2: 'nan' is no number"),
     ],
 )
 def test_faults_of_measured_offsets(text: str, words: str, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:

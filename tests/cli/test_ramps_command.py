@@ -137,6 +137,15 @@ def test_rejections(
     assert not (tmp_path / "out").exists()
 
 
+def test_a_park_beside_the_guide_is_refused(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    saw = str(Path(__file__).parents[2] / "examples/flying-saw.toml")
+    code, _, err = called(capsys, saw, "--out", str(tmp_path / "out"), "--park", "-1 mm")
+    assert code == 3
+    assert "--park: the carriage stands at -1 mm, outside its stroke from 0 mm to 1200 mm" in err
+    assert "tried: park later, at 0 mm (--park)" in err
+    assert not (tmp_path / "out").exists()
+
+
 def test_the_same_job_gives_the_same_bytes(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     for place in ("a", "b"):
         assert called(capsys, PAPER, "--out", str(tmp_path / place), "--quiet")[0] == 0
@@ -152,13 +161,16 @@ def test_an_older_table_of_what_is_withheld_is_set_aside(capsys: pytest.CaptureF
     assert (tmp_path / "ramp_in_paper_600_kas.csv.withheld-old").read_text() == "old"
 
 
-def test_own_older_tables_are_set_aside_when_a_park_off_the_guide_withholds_the_new_ones(
+def test_own_older_tables_are_set_aside_when_an_axis_that_is_late_withholds_the_new_ones(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    saw = str(Path(__file__).parents[2] / "examples/flying-saw.toml")
+    text = (Path(__file__).parents[2] / "examples/flying-saw.toml").read_text(encoding="utf-8")
+    saw = tmp_path / "saw.toml"
+    saw.write_text(text)
     options = ("--out", str(tmp_path), "--no-figures", "--json")
-    assert called(capsys, saw, *options, "--park", "100 mm")[0] == 0
-    code, _, err = called(capsys, saw, *options, "--park", "-1 mm")
+    assert called(capsys, str(saw), *options)[0] == 0
+    saw.write_text(text.replace("sync_tolerance", 'shear_zone_at = "0 mm"\nsync_tolerance', 1))
+    code, _, err = called(capsys, str(saw), *options)
     assert code == 1, err
     tables = sorted(file.name for file in tmp_path.glob("*.csv*"))
     assert tables == [f"{kind}_flying_saw_cam.csv.withheld-old" for kind in ("one_shot", "ramp_in", "ramp_out")]

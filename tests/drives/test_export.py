@@ -103,6 +103,8 @@ def test_points_units_and_accuracy() -> None:
         (lambda: parse_targets("codesys,omron"), "there is no target 'omron'"),
         (lambda: parse_targets(" ,"), "--to names one or more targets"),
         (lambda: parse_units("mm", JOB.task), "--units takes the master's unit and the slave's"),
+        (lambda: parse_units("mm,0/rev", JOB.task), "--units: '0/rev': counts in a turn are a whole number from 1"),
+        (lambda: parse_units("0 mm,mm", JOB.task), "--units: '0 mm': zero"),
         (lambda: parse_units("mm,furlong", JOB.task), "there is no unit 'furlong'"),
         (lambda: export(PROFILE, JOB, ["s7-1500t", "codesys"], points=60), "s7-1500t: s7-1500t takes 2 to 51 points"),
     ],

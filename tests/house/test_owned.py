@@ -59,7 +59,7 @@ def test_works_of_several_commands_stand_side_by_side(tmp_path: Path) -> None:
 def test_what_another_command_wrote_is_replaced_and_told(tmp_path: Path) -> None:
     write(tmp_path, replace(ONE, command="quick", name="knife"), cam="1", more="1")
     (note,) = write(tmp_path, cam="2")
-    assert note == f"{tmp_path}: of the quick of 'knife' (SHA-256 111111111111) cam is replaced, more stay"
+    assert note == f"{tmp_path}: of what quick made of 'knife' (SHA-256 111111111111) cam is replaced, more stay"
     write(tmp_path, figure="3")  # cam is of the design now, and goes with it
     assert names(tmp_path) == ["figure", "more"]
 
@@ -67,7 +67,7 @@ def test_what_another_command_wrote_is_replaced_and_told(tmp_path: Path) -> None
 def test_an_earlier_state_is_replaced_and_told(tmp_path: Path) -> None:
     write(tmp_path, cam="1", figure="1")
     (note,) = write(tmp_path, TWO, cam="2")
-    assert note == f"{tmp_path}: the design of an earlier state of 'a job' (SHA-256 111111111111) is replaced"
+    assert note == f"{tmp_path}: what design made of an earlier state of 'a job' (SHA-256 111111111111) is replaced"
     assert names(tmp_path) == ["cam"]
 
 
@@ -187,7 +187,7 @@ def test_two_jobs_of_one_name_do_not_overwrite_each_other(
     assert Path("out/paper-600/design.json").read_bytes() == before
     Path("a.toml").unlink()  # the same file under another name, or edited: its design is replaced, and told
     assert main(["design", "b.toml", "--no-figures", "--quiet"]) == 0
-    assert "the design of an earlier state of 'paper-600'" in capsys.readouterr().err
+    assert "what design made of an earlier state of 'paper-600'" in capsys.readouterr().err
     assert Path("out/paper-600/design.json").read_bytes() != before
 
 

@@ -102,6 +102,24 @@ def test_tables_fit_a_narrow_terminal(order: str, capsys: pytest.CaptureFixture[
     [
         (["cutlist", JOB, "order.csv"], "how hard the line ramps is not stated"),
         (["cutlist", JOB, "none.csv", *RAMP], "none.csv: there is no such cut list"),
+        (
+            ["cutlist", JOB, "order.csv", "--line-acceleration", "1e9 m/s^2"],
+            "the line's ramp is 1e9 m/s², a jump; a plan takes at most 10000 m/s²",
+        ),
+        (
+            ["cutlist", JOB, "order.csv", "--line-acceleration", "1e-9 m/s^2"],
+            "which is none; a plan takes 1e−6 m/s² at least",
+        ),
+        (
+            ["cutlist", JOB, "far.csv", *RAMP],
+            "far.csv, line 3: a piece of 1e9 mm is over 50000 times the sync zone of 200 mm",
+        ),
+        (["cutlist", JOB, "order.csv", *RAMP, "--out", ""], "--out: the name is empty"),
+        (
+            ["simulate", JOB, "--list", "order.csv", "--line", "creep.csv"],
+            "the list takes 2.7e+08 s on this line, which is 1.35e+11 samples of the servos; at most 3e+08 are run",
+        ),
+        (["simulate", JOB, "--list", "order.csv", *RAMP, "--noise", "1 km"], "--noise: 1000000 mm a sample"),
         (["cutlist", JOB, "order.csv", "--line-acceleration", "1 m"], "a length, but an acceleration is expected"),
         (["simulate", JOB, "--list", "order.csv"], "how hard the line ramps is not stated"),
         (
@@ -118,6 +136,8 @@ def test_tables_fit_a_narrow_terminal(order: str, capsys: pytest.CaptureFixture[
 def test_bad_input_is_refused_in_words(
     call: list[str], message: str, order: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    Path("far.csv").write_text("length [mm],quantity\n600,3\n1e9,1\n")
+    Path("creep.csv").write_text("time [s],speed [m/min]\n0,1e-6\n1,1e-6\n")
     assert main(call) == 2
     error = capsys.readouterr().err
     assert message in error

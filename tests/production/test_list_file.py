@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from camwright.production.list_file import line_run_text, parse_cut_list, parse_line_run
+from camwright.production.list_file import line_run_text, parse_cut_list, parse_line_run, read_cut_list, read_line_run
 from camwright.profiles.cut_list import ListRow
 from camwright.profiles.errors import InputError
 from camwright.profiles.line_run import LineRun
@@ -32,6 +33,29 @@ from camwright.profiles.line_run import LineRun
 def test_lists_as_people_write_them(text: str) -> None:
     found = parse_cut_list(text, "L.csv").rows
     assert [(round(row.length, 12), row.quantity, row.kind) for row in found] == [(0.6, 3, "cut"), (0.0245, 1, "crop")]
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("Länge [mm];Stückzahl\n600,5;3\n300;2\n", "utf-8"),
+        ("Länge [mm];Stückzahl\n600,5;3\n300;2\n", "utf-16"),
+        ("Schnittlänge (mm)\tStückzahl\n600,5\t3\n300\t2\n", "cp1252"),
+        ("产品长度（mm）,数量\n600.5,3\n300,2\n", "gb18030"),
+        ("Part number,length [mm],quantity,remark\nA-1,600.5,3,two holes\nB-2,300,2,\n", "utf-8"),
+        ("Pos;Länge;Stück\n;mm;Stk\n1;600,5;3\n2;300;2\n", "utf-16-le"),
+    ],
+)
+def test_lists_as_spreadsheets_save_them(text: str, code: str, tmp_path: Path) -> None:
+    file = tmp_path / "order.csv"
+    file.write_bytes(text.encode(code))
+    assert [(row.length, row.quantity) for row in read_cut_list(file).rows] == [(0.6005, 3), (0.3, 2)]
+
+
+def test_line_speeds_as_spreadsheets_save_them(tmp_path: Path) -> None:
+    file = tmp_path / "line.csv"
+    file.write_bytes("Zeit [s];Liniengeschwindigkeit [m/min]\n0;30\n1,5;60\n".encode("utf-16"))
+    assert read_line_run(file).speeds.tolist() == [0.5, 1.0]
 
 
 def test_inches_are_exact() -> None:
@@ -60,6 +84,12 @@ def test_inches_are_exact() -> None:
                 "L, line 4: quantity '2.5' is no whole number from 1 to 200000; write how many, e.g. 3",
                 "L, line 5: quantity '' is no whole number from 1 to 200000; write how many, e.g. 3",
                 "L, line 6: '-600 mm': negative; a length greater than zero is expected; write e.g. \"600 mm\"",
+            ),
+        ),
+        (
+            "length [mm];quantity\n1.200,5;3\n",
+            (
+                "L, line 2: length '1.200,5' has its thousands set apart; export the numbers without such signs, like 1234.5",
             ),
         ),
         ("600 kg,3\n", ("L, line 1: '600 kg': a mass, but a length is expected; write e.g. \"600 mm\"",)),
@@ -132,6 +162,10 @@ def test_a_plan_that_is_written_is_read_back() -> None:
         ),
         ("time [s],speed [m/s]\n0,1\n1,-2\n", "P, line 3: a speed of -2 m/s; a line runs forwards: write 0 or more"),
         ("time [s],speed [m/s]\n0,1\n", "P: one row; the speed of the line needs two at least, the first at its start"),
+        (
+            "time [s],speed [m/s]\n0,1\n1,1e7\n",
+            "P, line 3: 1e+07 m/s after 1 s; at most 1e+06 m/s and 1e+06 s are read",
+        ),
         ("time [s],position [m]\n0,1\n1,2\n", "P, line 1: there is no column speed; write a header like"),
     ],
 )

@@ -8,6 +8,9 @@ Master phase (a mark that is late by ``d``): the return lasts ``T = (L + d) / v`
 
 Slave offset: the timing of the return stays, ``T = L / v``, and the slave is ``o(t) = -d k q(t/T)`` off, with its ratio ``k`` in sync. The
 shear zone then lies ``d`` later in the sync zone.
+
+Both run over the master. Where the line ramps with ``a`` and jerk ``j`` each motion must also keep ``|acceleration| + |velocity| a/v``
+and ``|jerk| + 3 |acceleration| a/v + |velocity| j/v`` within the limits.
 """
 
 from __future__ import annotations
@@ -48,20 +51,25 @@ class Held:
         Limits of the velocity; infinite where it is not looked at.
     acceleration, jerk
         Limits of the magnitudes; infinite alike.
+    ramp, ramp_jerk
+        Acceleration and jerk of the line over its speed (1/s, 1/s²): by what share of velocity and acceleration a ramp adds to the others.
     """
 
     least: float
     greatest: float
     acceleration: float
     jerk: float
+    ramp: float = 0.0
+    ramp_jerk: float = 0.0
 
 
 def held(task: Task, *, acceleration_alone: bool = False) -> Held:
-    """Give the limits of a task, or its limit of the acceleration alone."""
-    limits = task.limits
+    """Give the limits of a task, or its limit of the acceleration alone, and what its line adds."""
+    limits, line, v = task.limits, task.line, task.cut.line_speed
+    ramp, ramp_jerk = line.hardest / v, line.known_jerk / v
     if acceleration_alone:
-        return Held(-math.inf, math.inf, limits.acceleration, math.inf)
-    return Held(task.least_velocity, limits.speed, limits.acceleration, limits.jerk)
+        return Held(-math.inf, math.inf, limits.acceleration, math.inf, ramp, ramp_jerk)
+    return Held(task.least_velocity, limits.speed, limits.acceleration, limits.jerk, ramp, ramp_jerk)
 
 
 def phase_range(cam: CamProfile, task: Task, limits: Held) -> MarkRange:
@@ -152,9 +160,11 @@ def _kept(velocity: FloatArray, acceleration: FloatArray, jerk: FloatArray, limi
     room = ALLOWED * (limits.greatest if math.isfinite(limits.greatest) else 1.0)
     if velocity.min() < limits.least - room or velocity.max() > limits.greatest + room:
         return False
-    if np.abs(acceleration).max() > limits.acceleration * (1 + ALLOWED):
+    pace, push = np.abs(velocity), np.abs(acceleration)
+    if (push + limits.ramp * pace).max() > limits.acceleration * (1 + ALLOWED):
         return False
-    return not np.abs(jerk).max() > limits.jerk * (1 + ALLOWED)
+    jerked = np.abs(jerk) + 3.0 * limits.ramp * push + limits.ramp_jerk * pace
+    return not jerked.max() > limits.jerk * (1 + ALLOWED)
 
 
 def _farthest(kept: Callable[[float], bool], end: float) -> float | None:

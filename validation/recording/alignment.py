@@ -124,7 +124,7 @@ def aligned(
     Raises
     ------
     InputError
-        The master stands still or there are too few rows a cycle, or the command is not that of the cam.
+        Master or command stand still, there are too few rows a cycle, or the command is not that of the cam.
     """
     cut, times = task.cut, trace.times - trace.start
     gears = gears_of(task.machine, trace.unit, gear)
@@ -132,6 +132,10 @@ def aligned(
         raise InputError(
             f"{place}: positions in {trace.unit} are no slave of a {task.machine.kind}, which is counted in "
             f"{task.machine.slave_unit}; record the axis itself"
+        )
+    if float(np.ptp(trace.command)) == 0.0:
+        raise InputError(
+            f"{place}: the command stands still, so no cam runs; record some cycles of a line that runs, and the axis' own set value"
         )
     master = None if trace.master is None else _counted_on(trace.master, trace.master_unit, cut.length, place)
     found = []

@@ -58,6 +58,8 @@ def test_rounded_times_are_equally_spaced() -> None:
          "t.csv, line 1: column actual has no unit; write it in brackets, e.g. actual [mm]"),
         (text(*rows(), header="time,command [mm],actual [mm]"),
          "t.csv, line 1: column time has no unit; write it in brackets, e.g. time [ms]"),
+        (text("2026-01-01T10:00:00.000+02:00,1,2", "2026-01-01T10:00:00.004+02:00,1,2", header="time,command [mm],actual [mm]"),
+         "t.csv, line 2: '2026-01-01T10:00:00.000+02:00' is a time of day; export the time since the start"),
         (text(*rows(), header="time [mm],command [mm],actual [mm]"),
          "t.csv, line 1: column time cannot be in 'mm'; its unit is one of s, ms, us"),
         (text(*rows(), header="time [ms],command [V],actual [mm]"), "column command cannot be in 'V'; its unit is one of m, "),

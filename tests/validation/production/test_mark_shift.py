@@ -9,6 +9,7 @@ import pytest
 from camwright.design.optimise import solve
 from camwright.jobs.examples import example
 from camwright.jobs.job import load_job
+from camwright.profiles.line import Line
 from camwright.profiles.mark_range import MarkRange
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.task import Task
@@ -69,6 +70,36 @@ def test_the_ends_are_those_of_the_motion_in_time(share: float, offset: bool) ->
         kept = limits.greatest, limits.acceleration, limits.jerk, 1e-9
         assert all(value <= limit * 1.005 for value, limit in zip(inside, kept, strict=True))
         assert any(value > limit for value, limit in zip(beyond, kept, strict=True))
+
+
+@pytest.mark.parametrize("offset", [False, True])
+def test_where_the_line_ramps_the_shifted_motion_keeps_its_limits_too(offset: bool) -> None:
+    """A line that passes each phase at full speed while it ramps: accelerations and jerks by differences over time."""
+    full = PAPER.with_length(0.35)
+    cam, slower = cam_of(full), full.at_speed(0.9 * full.cut.line_speed)
+    task = slower.with_line(Line(acceleration=2.0))
+    v, length = task.cut.line_speed, task.cut.return_zone
+    find = offset_range if offset else phase_range
+    ranges = [find(cam, each, held(each)) for each in (slower, task)]
+    steady, found = (each.latest if offset else each.earliest for each in ranges)
+    assert abs(steady) > abs(found) > 0.0
+
+    def worst(shift: float) -> float:
+        end, step, of_limits = length if offset else length + shift, 2e-5, []
+        for a in (2.0, -2.0):
+            t = step * np.arange(-2, 3)
+            x = np.linspace(0.01, 0.99, 2001)[:, None] * end + v * t + 0.5 * a * t**2
+            u = np.clip(x / end, 0.0, 1.0)
+            q = 10 * u**3 - 15 * u**4 + 6 * u**5
+            y = cam(np.clip(x, 0.0, length)) - shift * q if offset else cam(np.clip(x - shift * q, 0.0, length))
+            second = (y[:, 3] - 2.0 * y[:, 2] + y[:, 1]) / step**2
+            third = (y[:, 4] - 2.0 * y[:, 3] + 2.0 * y[:, 1] - y[:, 0]) / (2.0 * step**3)
+            of_limits += [np.abs(second).max() / 30.0, np.abs(third).max() / 3000.0]
+        return max(of_limits)
+
+    assert worst(0.99 * found) <= 1.0 + 2e-3
+    assert worst(1.02 * found) > 1.0
+    assert worst(steady) > 1.005
 
 
 def test_an_offset_is_not_in_sync_where_the_ratio_changes() -> None:

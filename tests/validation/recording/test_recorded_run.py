@@ -326,6 +326,7 @@ RUN = twin(paper())
     [
         (RUN, csv_text(replace(RUN, command=np.sin(9 * RUN.times), actual=np.sin(9 * RUN.times))),
          "the command is not the cam of this design: "),
+        (RUN, csv_text(replace(RUN, command=np.full_like(RUN.times, 0.005))), "the command stands still, so no cam runs"),
         (RUN, csv_text(replace(RUN, master=np.zeros_like(RUN.master))), "the master does not move"),
         (RUN, csv_text(replace(RUN, master=900 * RUN.master)), "look at the unit of the master"),
         (RUN, csv_text(replace(RUN, master=0.01 * RUN.master)), "not the cam of this design"),
