@@ -179,7 +179,9 @@ def _bend(body: dict[str, Any]) -> Call:
     path = f"{_DROPPED}/{name}"
     bender = ("--job", JOB_FILE) if "toml" in body else ()
     reverse = ("--reverse",) if flag_of(body, "reverse") else ()
-    command = ("bend", path, *bender, "--styles", "all", *reverse, "--json", "--out", "bent")
+    accept = ("--accept-collisions",) if flag_of(body, "accept_collisions") else ()
+    spoken = ("--language", language_of(body))
+    command = ("bend", path, *bender, "--styles", "all", *reverse, *accept, *spoken, "--json", "--out", "bent")
     return Call((command,), (_job(body) if bender else {}) | {path: data})
 
 

@@ -39,7 +39,8 @@ def samples(profile: CamProfile, task: Task) -> Samples:
     -------
     dict
         ``x_m``, ``y`` and ``ratio`` over the master, ``speed``, ``acceleration`` and ``jerk`` over time, and ``torque`` at the motor (N m)
-        where the machine moves something and the cycle has no jump. `POINTS` of each, a row of `_DIGITS` digits.
+        where the machine moves something and the cycle has no jump; beside it ``available_torque``, what the motor gives at its speed
+        there (N m), where the job has its curve. `POINTS` of each, a row of `_DIGITS` digits.
     """
     x, v = np.linspace(profile.start, profile.end, POINTS), task.cut.line_speed
     y, ratio, slope, third = (profile(x, order) for order in range(4))
@@ -52,6 +53,8 @@ def samples(profile: CamProfile, task: Task) -> Samples:
     }
     if task.machine.moves_something and is_steady(profile, task.machine):
         columns["torque"] = _torque(profile, task, y, ratio, slope)
+        if task.limits.motor is not None:
+            columns["available_torque"] = task.limits.motor.torque(ratio * v * task.machine.motor_ratio)
     return {"x_m": x.tolist(), **rounded(columns)}
 
 

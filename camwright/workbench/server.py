@@ -25,7 +25,6 @@ from camwright.jobs.wording import error_words
 from camwright.profiles.errors import CamwrightError, InputError
 from camwright.profiles.returns import baseline_names
 from camwright.profiles.tables.targets import TARGETS
-from camwright.recipes.catalogue import catalogue
 from camwright.recipes.language import LANGUAGES
 from camwright.workbench.calls import (
     NAMES,
@@ -39,19 +38,14 @@ from camwright.workbench.calls import (
     number_of,
     text_of,
 )
-from camwright.workbench.files import PAGE, PageFiles
+from camwright.workbench.files import PageFiles
 from camwright.workbench.guard import Guard
 from camwright.workbench.overlay import overlay
 from camwright.workbench.preview import designed, preview
 from camwright.workbench.runner import JOB_FILE, Ran, Runner, StaleError
 from camwright.workbench.saving import Saved
 from camwright.workbench.servo import servo_view
-
-WORDS = PAGE / "words"
-"""The page's own words, a file a language."""
-
-_SHARED = ("check.", "word.", "binding.")
-"""Groups of messages of the recipes that the page names things by too."""
+from camwright.workbench.words import page_words
 
 _NO_CALL = 422
 """Status of a call that is not what it should be; what a command refuses is an answer like any other."""
@@ -98,9 +92,7 @@ class Workbench:
             language = language_of(request.query_params)
         except InputError as error:
             return _refusal(error, _NO_CALL)
-        own = json.loads((WORDS / f"{language}.json").read_text(encoding="utf-8"))
-        shared = {key: text for key, text in catalogue(language).messages.items() if key.startswith(_SHARED)}
-        return JSONResponse(shared | own)
+        return JSONResponse(page_words(language))
 
     async def at_once(self, request: Request) -> Response:
         """Answer what takes no solver, or hardly one, beside the command that may run."""

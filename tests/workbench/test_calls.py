@@ -115,6 +115,15 @@ def test_every_example_has_a_preview(name: str) -> None:
     assert shown["laws"].keys() == {"linear_return", "poly_3_4_5"}
 
 
+def test_torque_stands_beside_what_the_motor_gives() -> None:
+    curve = 'motor = [["0 rpm", "2.2 N m"], ["500 rpm", "2 N m"], ["2500 rpm", "0.9 N m"]]\n\n[servo]'
+    text = (EXAMPLES / "flying-saw.toml").read_text(encoding="utf-8").replace("[servo]", curve)
+    shown = preview(text)["samples"]
+    speed = np.abs(shown["speed"]) / 0.04 * 60  # rpm of a screw of 40 mm
+    assert shown["available_torque"] == pytest.approx(np.interp(speed, [0, 500, 2500], [2.2, 2.0, 0.9]), abs=2e-6)
+    assert "available_torque" not in preview(text.replace(curve, "[servo]"))["samples"]
+
+
 def test_a_preview_of_a_motion_objective_is_the_design(bench: TestClient) -> None:
     shown = bench.post("/api/preview", json={"toml": PAPER}).json()
     designed = bench.post("/api/design", json={"toml": PAPER}).json()

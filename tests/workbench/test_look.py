@@ -61,6 +61,12 @@ def test_the_page_speaks_three_languages(page: Any) -> None:
         page.locator("#undo", has_text=undo).wait_for()
         page.locator("#panel td", has_text=check).wait_for()
         assert page.get_attribute("html", "lang") == language
+    page.select_option("#language", "de")
+    page.locator('.field[data-path="cut.sync_tolerance"] label', has_text="Synchrontoleranz").wait_for()
+    page.locator('[id="field-cut.sync_tolerance"]').focus()
+    assert "cut.sync_tolerance: wie weit die Achse" in page.inner_text("#about")
+    page.locator("#panel td", has_text="0,020273").wait_for()  # decimals as its recipes have them
+    assert page.input_value('[id="field-cut.sync_tolerance"]') == "0.1 mm"  # as it stands in the job file
 
 
 @pytest.mark.parametrize("width", [390, 768, 1280])

@@ -177,5 +177,8 @@ def test_a_drawing_is_bent(page: Any) -> None:
     assert "meets the mould" in text
     assert "120 × 98 mm" in text
     assert page.locator("#panel img").first.evaluate("image => image.naturalWidth") > 0
+    page.locator("#panel td.failed").wait_for()
+    page.check("#panel label:has-text('although the bent part meets the mould') input")
+    page.locator("#panel td.passed").wait_for()
     page.select_option("#panel select", "carton-3")
     assert page.locator("#panel details", has_text="carton-3").locator("tbody tr").count() == 3

@@ -52,7 +52,25 @@ def test_every_language_has_the_same_words() -> None:
     known = {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in (PAGE / "words").glob("*.json")}
     assert set(known) == {"en", "de", "zh"}
     for language, words in known.items():
-        assert list(words) == list(known["en"]), language
+        own = [key for key in words if not key.startswith("meaning.")]
+        assert own == [key for key in known["en"] if not key.startswith("meaning.")], language
+
+
+def test_every_key_of_a_job_is_named_and_explained_in_every_language(words: dict[str, str]) -> None:
+    paths = {key.path for key in job_keys()}
+    assert {f"{group}.{path}" for group in ("field", "meaning") for path in paths} <= words.keys()
+    of_jobs = {key.partition(".")[2] for key in words if key.startswith(("meaning.", "field."))}
+    assert of_jobs <= paths, "words of keys that no job has"
+
+
+def test_meanings_are_translated_and_the_english_ones_stand_in_one_place() -> None:
+    known = {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in (PAGE / "words").glob("*.json")}
+    paths = {key.path: key.meaning for key in job_keys()}
+    assert not any(key.startswith("meaning.") for key in known["en"])
+    for language in ("de", "zh"):
+        meanings = {key.partition(".")[2]: text for key, text in known[language].items() if key.startswith("meaning.")}
+        assert meanings.keys() == paths.keys()
+        assert all(text != paths[path] for path, text in meanings.items())
 
 
 def test_another_language_is_refused(bench: TestClient) -> None:

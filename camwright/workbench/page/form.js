@@ -27,17 +27,27 @@ export function build(form) {
 function field(key, value) {
   const box = make("div", undefined, "field");
   box.dataset.path = key.path;
-  const label = make("label", key.name.replaceAll("_", " "));
+  const label = make("label", word(`field.${key.path}`));
   const input = choices(key) ? choice(key) : make("input");
   input.id = `field-${key.path}`;
   label.htmlFor = input.id;
-  box.title = `${key.path}: ${key.meaning}. ${key.takes}`;
+  box.title = about(key);
+  box.addEventListener("focusin", () => { document.getElementById("about").textContent = about(key); });
   if (!choices(key)) input.placeholder = key.default ? plain(key.default) : `${word("optional")}: ${plain(key.example)}`;
-  input.value = plain(value);
+  put(input, plain(value));
   input.addEventListener("change", () => (key.path === "machine.kind" ? setMachine(input.value) : set(key.path, typed(key, input.value.trim()))));
   box.append(label, input);
   return box;
 }
+
+/** Put a value into a field; a choice that has no such word, as its default is one with none, shows its default. */
+function put(input, value) {
+  input.value = value;
+  if (input.tagName === "SELECT" && input.selectedIndex < 0) input.value = "";
+}
+
+/** What a key means, by its place in the job file, and what may stand there. */
+const about = (key) => `${key.path}: ${word(`meaning.${key.path}`)}. ${document.documentElement.lang === "en" ? key.takes : `${word("for example")} ${plain(key.example)}`}`;
 
 /** The words that a key takes, where it takes no others. */
 function choices(key) {
@@ -78,8 +88,7 @@ export function refresh(form) {
   for (const box of form.querySelectorAll(".field")) {
     const input = box.querySelector("input, select");
     const value = known[box.dataset.path] ?? "";
-    if (input !== document.activeElement || input.tagName === "SELECT") input.value = plain(value);
-    if (input.tagName === "SELECT" && input.selectedIndex < 0) input.value = "";
+    if (input !== document.activeElement || input.tagName === "SELECT") put(input, plain(value));
   }
 }
 

@@ -1,17 +1,20 @@
 // Numbers and units as they are printed, and the units that the user chose for master and slave.
 
+import { word } from "./words.js";
+
 const RAISED = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };
 const raised = (text) => [...String(text)].map((sign) => RAISED[sign]).join("");
 
-/** A number of five digits with a true minus; very small and very large ones as a power of ten. */
+/** A number of five digits with a true minus and the decimal sign of the language; very small and very large ones as a power of ten. */
 export function digits(value, count = 5) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
   const size = Math.abs(value);
+  const print = (text) => text.replace("-", "−").replace(".", word("decimal"));
   if (size > 0 && (size < 1e-4 || size >= 1e7)) {
     const [mantissa, exponent] = value.toExponential(1).split("e");
-    return `${mantissa.replace("-", "−")}·10${raised(Number(exponent))}`;
+    return `${print(mantissa)}·10${raised(Number(exponent))}`;
   }
-  return Number(value.toPrecision(count)).toString().replace("-", "−");
+  return print(Number(value.toPrecision(count)).toString());
 }
 
 /** A unit as it is printed: "rad/s^2" is rad/s², "N m" is N·m; 1 is no unit. */

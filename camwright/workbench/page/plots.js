@@ -37,6 +37,8 @@ function span(row, shown, beside) {
     high = Math.max(high, limit);
     if (row.limit !== "speed" || low < 0) low = Math.min(low, -limit);
   }
+  const most = Math.max(0, ...(shown.samples[row.within] ?? []));
+  if (most < 2.2 * Math.max(-low, high)) [low, high] = [Math.min(low, -most), Math.max(high, most)];
   const room = 0.08 * (high - low || 1);
   return [low - room, high + room];
 }
@@ -66,6 +68,7 @@ export function draw(drawing, shown, onGrip) {
     drawing.append(svg("text", { class: "title", x: LEFT, y: top - 6 }, row.unit === "1" ? word(row.name) : `${word(row.name)} (${row.unit})`));
     for (const { kind, samples } of beside) if (row.of(samples)) drawing.append(svg("path", { class: `curve ${kind}`, d: path(along.of(samples), row.of(samples), across, down) }));
     drawing.append(svg("path", { class: "curve", "data-row": row.name, d: path(x, row.of(shown.samples), across, down) }));
+    if (shown.samples[row.within]) bounds(drawing, shown, row, { ...place, down, top, low, high });
     if (row.limit) limitLines(drawing, row, shown, { ...place, low, high, top, down, onGrip });
     marks(drawing, row.of(shown.samples), { ...place, down });
   });
@@ -110,6 +113,17 @@ function limitLines(drawing, row, shown, { low, high, top, down, left, right, on
   }
   const label = svg("text", { class: `limit-name${kind}`, x: right - 4, y: beyond ? top - 6 : down(limit) - 4, "text-anchor": "end" }, beyond ? `▴ ${text}` : text);
   drawing.append(label);
+}
+
+/** What the motor gives at its speed, either way: a limit that changes along the cycle. */
+function bounds(drawing, shown, row, { x, across, down, right, top, low, high }) {
+  const most = shown.samples[row.within];
+  const binding = shown.binding.includes("motor_torque") ? " binding" : "";
+  const within = (value) => (value >= low && value <= high ? value : null);
+  for (const sign of [1, -1]) drawing.append(svg("path", { class: `limit${binding}`, fill: "none", d: path(x, most.map((value) => within(sign * value)), across, down) }));
+  const least = Math.min(...most);
+  const told = least > high ? `▴ ${word("motor curve")} ${withUnit(least, row.unit)}` : binding ? `${word("motor curve")} ${word("binds")}` : word("motor curve");
+  drawing.append(svg("text", { class: `limit-name${binding}`, x: right - 4, y: top - 6, "text-anchor": "end" }, told));
 }
 
 function marks(drawing, values, { x, across, down, width }) {

@@ -21,7 +21,7 @@ export function rowsOf(shown) {
     { name: "acceleration", unit: `${name}/s²`, factor, limit: "acceleration", of: scaled("acceleration", factor) },
     { name: "jerk", unit: `${name}/s³`, factor, limit: "jerk", of: scaled("jerk", factor) },
   ];
-  if (shown.samples.torque) list.push({ name: "torque", unit: "N·m", factor: 1, of: scaled("torque", 1) });
+  if (shown.samples.torque) list.push({ name: "torque", unit: "N·m", factor: 1, of: scaled("torque", 1), within: "available_torque" });
   return list.map((row) => ({ ...row, of: kept(row.of) }));
 }
 

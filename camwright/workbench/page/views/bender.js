@@ -11,11 +11,29 @@ const MOST = 60; // rows of bends that are shown
 
 export function show(panel) {
   const place = make("div");
-  let bender = null;
-  const take = async (file) => ask(place, "bend", { ...(await sent(file)), ...(bender ? { toml: await bender.text() } : {}) }, bent);
+  let [drawing, bender] = [null, null];
+  const [accept, reverse] = ["accept collisions", "reverse"].map((name) => flag(name));
+  const bend = async () => {
+    if (!drawing) return;
+    const options = { accept_collisions: accept.checked, reverse: reverse.checked, language: document.documentElement.lang };
+    ask(place, "bend", { ...(await sent(drawing)), ...(bender ? { toml: await bender.text() } : {}), ...options }, bent);
+  };
+  const take = (file) => {
+    drawing = file;
+    bend();
+  };
+  for (const box of [accept, reverse]) box.addEventListener("change", bend);
   const job = make("details");
-  job.append(make("summary", word("bender job")), dropZone(word("drop bender"), word("too large"), ".toml", (file) => { bender = file; job.firstChild.textContent = `${word("bender job")}: ${file.name}`; }));
-  panel.replaceChildren(dropZone(word("drop drawing"), word("too large"), ".dxf", take), job, place);
+  job.append(make("summary", word("bender job")), dropZone(word("drop bender"), word("too large"), ".toml", (file) => { bender = file; job.firstChild.textContent = `${word("bender job")}: ${file.name}`; bend(); }));
+  panel.replaceChildren(dropZone(word("drop drawing"), word("too large"), ".dxf", take), ...[accept, reverse].map((box) => box.parentElement), job, place);
+}
+
+/** A choice of the bender, off at first: its box, in a label that names it. */
+function flag(name) {
+  const box = Object.assign(make("input"), { type: "checkbox" });
+  const label = make("label");
+  label.append(box, ` ${word(name)}`);
+  return box;
 }
 
 function bent(data) {
