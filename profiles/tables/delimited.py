@@ -341,10 +341,7 @@ def _row(cells: list[str], width: int, number: int, place: str, named: bool) -> 
 def _columns(
     headings: Sequence[tuple[int, list[str]]], width: int, names: Callable[[str], str | None]
 ) -> tuple[tuple[Column, ...], int]:
-    """Name the columns: from a scope's key rows, or the lowest line that names two, with a row of units below it."""
-    scope = [k for k, (_, cells) in enumerate(headings) if cells and cells[0].strip() == "Name" and len(cells) >= width]
-    if scope and len(headings[scope[-1]][1]) >= width > 1:
-        return _scope_columns(headings, scope[-1], width), headings[scope[-1]][0]
+    """Name the columns: the lowest line that names two, with a row of units below it."""
     lines: list[tuple[int, list[str]]] = []
     for number, cells in headings:  # a unit may stand alone below the names
         if len(_trimmed(cells)) > 1 or (lines and is_unit_row(cells)):
@@ -380,17 +377,3 @@ def is_unit_row(cells: Sequence[str]) -> bool:
 
 def _padded(cells: Sequence[str], width: int) -> list[str]:
     return [*cells[:width], *[""] * (width - len(cells))]
-
-
-def _scope_columns(headings: Sequence[tuple[int, list[str]]], at: int, width: int) -> tuple[Column, ...]:
-    """Columns of a TwinCAT Scope export: key rows, the key standing where each channel's time column is; times in ms."""
-    keys: dict[str, list[str]] = {}
-    for _, cells in headings[at:]:
-        keys[cells[0].strip()] = _padded(cells, width)
-    titles, units = keys["Name"], keys.get("Unit", [""] * width)
-    return tuple(
-        Column("time", "ms", heading="Name")
-        if title.strip() == "Name"
-        else Column(title.strip(), bare_unit(unit), heading=title.strip())
-        for title, unit in zip(titles, units, strict=True)
-    )

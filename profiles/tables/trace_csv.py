@@ -15,6 +15,7 @@ from camwright.profiles.machines.machine import SlaveUnit
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.profiles.tables.column_words import is_measured, trace_role
 from camwright.profiles.tables.delimited import Sheet, is_stamp, read_sheet
+from camwright.profiles.tables.scope_csv import is_scope, read_scope, used_rows
 from camwright.profiles.trace import Trace
 
 MOST_ROWS = 10_000
@@ -27,6 +28,9 @@ _UNITS: dict[str, dict[str, float]] = {
     "actual": {**_LENGTHS, **_ANGLES},
     "master": {**_LENGTHS, **_ANGLES},
 }
+_CYCLES = frozenset({"cycle", "cycles", "zyklus"})
+"""What the first column of a trace of CODESYS 2.3 is called, saved as a text."""
+
 _POSITIONS = ("command", "actual")
 _HEADER = "time [ms],command [mm],actual [mm]"
 _WITH_MASTER = "time [ms],master [mm],command [mm],actual [mm]"
@@ -59,8 +63,15 @@ def read_trace_csv(text: str, place: str, *, most_rows: int = MOST_ROWS, master:
     InputError
         The header or a row is not as described, or the rows are not equally spaced in time; the message names the line.
     """
-    sheet = read_sheet(text, place, trace_role, _WITH_MASTER if master else _HEADER, "recording")
+    scope = is_scope(text)
+    sheet = (
+        read_scope(text, place)
+        if scope
+        else read_sheet(text, place, trace_role, _WITH_MASTER if master else _HEADER, "recording")
+    )
     at = _roles(sheet, master)
+    if scope:
+        sheet = used_rows(sheet, [k for found in at.values() for k in found])
     factors, unit, notes = _factors(sheet, at)
     rows = len(sheet.rows)
     if rows < 2:
@@ -71,14 +82,14 @@ def read_trace_csv(text: str, place: str, *, most_rows: int = MOST_ROWS, master:
         )
     signals = {name: sheet.numbers(found[-1], name) * factors[name] for name, found in at.items()}
     time = signals["time"]
-    _require_equal_steps(time, list(sheet.lines), place)
     step = (time[-1] - time[0]) / (rows - 1)
     for other in at["time"][:-1]:
-        if np.abs(sheet.numbers(other, "time") * factors["time"] - time).max() > _UNEQUAL * step:
+        if not np.abs(sheet.numbers(other, "time") * factors["time"] - time).max() <= _UNEQUAL * abs(step):
             raise InputError(
                 f"{place}: the channels have times of their own, which differ; record all channels at one rate, or export "
                 "them interpolated to one"
             )
+    _require_equal_steps(time, list(sheet.lines), place)
     return Trace(
         start=float(time[0]),
         step=float(step),
@@ -106,6 +117,11 @@ def _roles(sheet: Sheet, master: bool) -> dict[str, list[int]]:
     for name, found in at.items():
         if not found:
             left = [names[k] for k, column in enumerate(sheet.columns) if trace_role(column.name) is None]
+            if name == "time" and left and left[0].strip().lower() in _CYCLES:
+                raise InputError(
+                    f"{where}: column {left[0]!r} counts cycles of the PLC, and how long one lasts is not in the file; write the time in "
+                    "its place, under time [ms]"
+                )
             near = difflib.get_close_matches(
                 name, [word.lower().split("[")[0].strip() for word in left], n=1, cutoff=0.6
             )

@@ -79,6 +79,33 @@ def scope(trace: Trace) -> bytes:
     return "\n".join("\t".join(cells) for cells in head + body).encode()
 
 
+def scope_by_rates(trace: Trace) -> bytes:
+    """One column of times a rate, times of day, a slower channel repeated, a channel drawn twice, decimal commas."""
+    names = ["Name", "Axis.SetPos", "Axis.ActPos", "Axis.ActPos (1)", "Name", "Axis.Torque"]
+    units = ["Unit", "(None)", "(None)", "(None)", "Unit", "Nm"]
+    head = [
+        ["Name", "YT Scope Project"],
+        ["File", "C:\\run.svdx"],
+        ["Starttime of export", "133238090039920000"],
+        names,
+        units,
+    ]
+    body = [
+        [
+            str(133238090039920000 + round(float(t) * 1e4)),
+            c,
+            a,
+            a,
+            str(133238090039920000 + k // 4 * 40000),
+            f"{k // 4 % 7}.5",
+        ]
+        for k, (t, c, a) in enumerate(rows(trace, 1e3, 4))
+    ]
+    return (
+        "\n".join("\t".join(cells) for cells in head + body).replace(".", ",").replace("Axis,", "Axis.") + "\nEOF\n"
+    ).encode()
+
+
 def chinese(trace: Trace) -> bytes:
     return "\n".join(
         [
@@ -93,7 +120,7 @@ def drum_in_radians(trace: Trace) -> bytes:
     return "\n".join(["time (ms)\tcommand (rad)\tactual (rad)", *map("\t".join, body)]).encode()
 
 
-DIALECTS: list[Callable[[Trace], bytes]] = [plain, spreadsheet, scope, chinese, drum_in_radians]
+DIALECTS: list[Callable[[Trace], bytes]] = [plain, spreadsheet, scope, chinese, drum_in_radians, scope_by_rates]
 
 
 def modulo(trace: Trace) -> Trace:
