@@ -31,7 +31,7 @@ _ROUNDS = 60
 
 
 def aligned(
-    rebuilt: CamProfile, job: Job, *, count: float = 0.0, grain: float = 0.0
+    rebuilt: CamProfile, job: Job, *, count: float = 0.0, grain: float = 0.0, tick: float = 0.0
 ) -> tuple[CamProfile, tuple[str, ...]]:
     """Begin the cycle where it fits the job's sync zone best, and put the slave's zero where the job has it.
 
@@ -49,6 +49,8 @@ def aligned(
     grain
         What its positions are rounded to, if they are, however finely (slave unit): the last digit shakes the ratio, and
         beginnings that differ by no more are as good as each other, too.
+    tick
+        What its master positions are rounded to, likewise (m).
 
     Returns
     -------
@@ -84,7 +86,7 @@ def aligned(
         (count or grain) * lever / cut.sync_tolerance * cut.sync_zone / step
     )  # a chord, or a ratio, off by its rounding
     begins = _beginnings(rebuilt, stretch, zone, cut.sync_zone, cut.length)
-    anchored = _anchored(begins, rebuilt.breaks / stretch, (zone, zone + cut.sync_zone), cut.length)
+    anchored = _anchored(begins, rebuilt.breaks / stretch, (zone, zone + cut.sync_zone), cut.length, tick)
     begin = _best(begins, misfit, cut.length, max(_EXACT, slack), anchored)
     notes: tuple[str, ...] = ()
     here, there = misfit(np.array([0.0, begin])).tolist()
@@ -113,15 +115,17 @@ def _beginnings(rebuilt: CamProfile, stretch: float, zone: float, width: float, 
     return np.unique(np.mod(tried, length))
 
 
-def _anchored(begins: FloatArray, points: FloatArray, ends: tuple[float, float], length: float) -> NDArray[np.bool_]:
-    """Whether both ends of the zone fall on points of the cam."""
+def _anchored(
+    begins: FloatArray, points: FloatArray, ends: tuple[float, float], length: float, tick: float
+) -> NDArray[np.bool_]:
+    """Whether both ends of the zone fall on points of the cam, as well as the rounding of these lets tell."""
     ring = np.sort(np.mod(points, length))
     ring = np.concatenate([ring - length, ring, ring + length])
     both = np.ones(len(begins), dtype=bool)
     for end in ends:
         at = np.mod(begins + end, length)
         after = np.searchsorted(ring, at)
-        both &= np.minimum(ring[after] - at, at - ring[after - 1]) <= _SAME * length
+        both &= np.minimum(ring[after] - at, at - ring[after - 1]) <= _SAME * length + tick
     return both
 
 

@@ -13,7 +13,7 @@ from camwright.profiles.errors import InputError
 from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.tables.cam_table import CamTable
-from camwright.profiles.tables.count_grid import rounded_to, without_rounding
+from camwright.profiles.tables.count_grid import rounded_to, spacing_rounded_to, without_rounding
 from camwright.profiles.tables.target import Target
 from camwright.profiles.tables.targets import detect, layout_of, read_table
 from camwright.validation.rebuilt import one_cycle
@@ -71,7 +71,8 @@ def running_cam(
     one_cycle(rebuilt, job.cut)  # refuses another period
     count = 0.0 if counted is None else counted.count * whole.units.slave.size
     grain = rounded_to(whole.table.y) * whole.units.slave.size
-    rebuilt, notes = aligned(rebuilt.shift(-rebuilt.start), placed, count=count, grain=grain)
+    tick = spacing_rounded_to(whole.table.x) * whole.units.master.size
+    rebuilt, notes = aligned(rebuilt.shift(-rebuilt.start), placed, count=count, grain=grain, tick=tick)
     told = (*table.notes, *whole.notes, *((counted.note,) if counted else ()), *notes)
     return RunningCam(layout, table, told, placed, rebuilt, count, counted is not None)
 

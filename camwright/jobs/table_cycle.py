@@ -19,6 +19,8 @@ _JUMP = 0.5
 """Part of the slave's range that one step must cover to be a jump."""
 _USUAL = 5.0
 """By how many times a jump exceeds the steps beside it."""
+_MOST_OF = 0.5
+"""Part of the pitch that a slave must run backwards to be mounted so."""
 _NEAR = 0.02
 """Part of a step by which the period may miss the cut length where one row is missing, or one too many."""
 
@@ -62,10 +64,13 @@ def whole_cycle(
     notes: tuple[str, ...] = ()
     if known is not None:
         table, notes = _unwrapped(table, job, known, asked, place)
+        table, turned = _forwards(table, job, known)
         table, more = _with_end(table, job, known, asked)
-        notes += more
+        notes += (*turned, *more)
     elif job.machine.pitch > 0:
         table, notes = _unwrapped(table, job, None, None, place)
+        table, more = _forwards(table, job, None)
+        notes += more
     found, assumed = units_of(table, units, job, place)
     if asked is not None and abs(table.advance * found.slave.size - asked) > job.cut.sync_tolerance:
         raise InputError(
@@ -82,6 +87,16 @@ def _sizes(table: CamTable, job: Job, place: str, units: str | None) -> Units | 
     if table.units is not None or None not in table.words:
         return units_of(table, units, job, place)[0]
     return None
+
+
+def _forwards(table: CamTable, job: Job, units: Units | None) -> tuple[CamTable, tuple[str, ...]]:
+    """Turn the sign of a slave that runs on, but backwards: drives count as they are mounted."""
+    pitch = job.machine.pitch
+    back = table.advance < 0.0 if units is None else table.advance * units.slave.size < -_MOST_OF * pitch
+    if not (pitch > 0 and back):
+        return table, ()
+    note = f"the slave runs backwards in the file, {table.advance:.6g} a cycle: its sign was turned"
+    return replace(table, y=-table.y, ratio=-table.ratio, ratio_slope=-table.ratio_slope), (note,)
 
 
 def _unwrapped(

@@ -236,7 +236,10 @@ def _stated_derivatives(sheet: Sheet, at: dict[str, int], y_unit: str) -> dict[s
 def _in_order(
     columns: dict[str, FloatArray], lines: tuple[int, ...], place: str
 ) -> tuple[dict[str, FloatArray], tuple[str, ...]]:
-    """Put rows in the order of the master; one descent is where a modulo master turns over, a row that stands twice is dropped."""
+    """Put rows in the order of the master; one descent is where a modulo master turns over.
+
+    Rows that all descend are turned round, one that stands twice is dropped.
+    """
     notes: tuple[str, ...] = ()
     numbers = np.array(lines)
     same = np.flatnonzero((np.diff(columns["x"]) == 0.0) & (np.diff(columns["y"]) == 0.0))
@@ -245,6 +248,9 @@ def _in_order(
         columns, numbers = {name: values[keep] for name, values in columns.items()}, numbers[keep]
         notes += (f"{len(same)} rows that stand there twice are left out",)
     x = columns["x"]
+    if len(x) > 1 and (np.diff(x) < 0.0).all():
+        columns, numbers = {name: values[::-1] for name, values in columns.items()}, numbers[::-1]
+        return columns, (*notes, "the rows run backwards along the master and were turned round")
     down = np.flatnonzero(np.diff(x) < 0.0)
     if len(down) == 1 and x[-1] <= x[0]:
         turn = int(down[0]) + 1

@@ -42,6 +42,7 @@ class Counted:
     note: str
 
 
+_FINE = 1e-5
 _MOST_DIGITS = 9
 _OFF_DIGIT = 1e-15
 """What a decimal number may be off its digits, as a part of it: it is stored in binary."""
@@ -94,12 +95,23 @@ def grid_of(y: FloatArray) -> float | None:
 
 
 def rounded_to(y: FloatArray) -> float:
-    """Find what positions are rounded to: the greatest power of ten, or count, of which they are multiples; 0 for none."""
+    """Find what positions are rounded to: the greatest power of ten, or count, of which they are multiples.
+
+    0 for none, and for so few points that whole numbers may be meant.
+    """
+    if len(y) < _FEWEST:
+        return 0.0
     for digits in range(_MOST_DIGITS + 1):
         scaled = y * 10.0**digits
         if np.abs(scaled - np.rint(scaled)).max() <= _OFF_DIGIT * max(1.0, float(np.abs(scaled).max())):
             return float(10.0**-digits)
     return grid_of(y) or 0.0
+
+
+def spacing_rounded_to(x: FloatArray) -> float:
+    """Find what master positions are rounded to: no more than evenly spaced ones miss even spacing by, nor `_FINE` of the cycle."""
+    steps = np.diff(x)
+    return min(rounded_to(x), float(np.ptp(steps)), _FINE * float(x[-1] - x[0]))
 
 
 def _refined(ordered: FloatArray, rough: float) -> float | None:

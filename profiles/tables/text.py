@@ -11,7 +11,7 @@ from camwright.profiles.tables.cam_table import LARGEST_VALUE
 
 LARGEST_FILE = 4_000_000
 """Bytes; a table of 10 000 points takes less than 1 500 000."""
-LONGEST_LINE = 2000
+LONGEST_LINE = 20_000
 MOST_LINES = 40_000
 
 _CONTROL = re.compile(r"[\x00-\x08\x0b\x0e-\x1f\x7f]")

@@ -341,6 +341,25 @@ def test_the_zero_of_rounded_positions_is_found(law: str, points: int, digits: i
     assert np.abs(found.cycle(at) - profile(at)).max() < 0.02 * JOB.cut.sync_tolerance
 
 
+def test_the_zero_of_a_normalised_table_is_found() -> None:
+    """Its master positions are rounded too: no point stands on the zone's ends to more digits than the file has."""
+    x = np.linspace(0.0, PROFILE.length, 361)
+    found = running_cam("".join(f"{a / 0.6:.6f},{PROFILE(a) / 0.4:.6f}\n" for a in x.tolist()), "cam.csv", JOB)
+    assert np.abs(found.cycle(x[:-1]) - PROFILE(x[:-1])).max() < 0.02 * JOB.cut.sync_tolerance
+
+
+@pytest.mark.parametrize("unit", ["", "x [mm],y [mm]\n"])
+def test_a_slave_that_counts_backwards_is_turned(unit: str) -> None:
+    x = np.linspace(0.0, PROFILE.length, 361)
+    rows = "".join(f"{1e3 * a!r},{-1e3 * b!r}\n" for a, b in zip(x.tolist(), PROFILE(x).tolist(), strict=True))
+    found = running_cam(unit + rows, "cam.csv", JOB)
+    assert np.abs(found.cycle(x[:-1]) - PROFILE(x[:-1])).max() < 1e-6
+    assert any("the slave runs backwards in the file, -" in note for note in found.notes)
+    turned = running_cam(unit + "".join(reversed(rows.splitlines(keepends=True))), "cam.csv", JOB)
+    assert np.abs(turned.cycle(x[:-1]) - PROFILE(x[:-1])).max() < 1e-6
+    assert any("the rows run backwards along the master" in note for note in turned.notes)
+
+
 @pytest.mark.parametrize("shift", [0.0, 0.0004, 0.13733, 0.4441])
 def test_the_verdict_of_sampled_rows_does_not_depend_on_the_zero(shift: float, tmp_path: Path) -> None:
     profile = baseline("cycloid", JOB.task)

@@ -61,7 +61,8 @@ Every assumption is a note, one sentence, with the option that gives the truth.
 
 Values are taken as stored: reals stay reals, whole numbers are made only where camwright writes. What files leave out or
 have twice is put right and told: a slave that is counted modulo its pitch or its turn is unwrapped (a wrapped last row
-too), a missing last row is added and one too many left out, a master that turns over is put in order. A kernel's table
+too), one that runs backwards has its sign turned, a missing last row is added and one too many left out, a master that turns over or rows
+that run backwards along it are put in order. A kernel's table
 that leaves out where its cycle ends takes the pitch of the job if it runs on to that, else `--travel '400 mm'` says it.
 An L5X with a CAM and the CAM_PROFILE computed from it is judged by the profile; a CAM without slopes asks for
 `--slopes A,B`; a profile that was never calculated, and a tag whose two copies differ, are refused. TwinCAT sources
