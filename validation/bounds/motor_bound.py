@@ -24,6 +24,7 @@ from camwright.validation.bounds.path_dual import (
 )
 from camwright.validation.bounds.path_limits import least_square_limited
 from camwright.validation.bounds.path_task import PathTask
+from camwright.validation.bounds.path_turns import Around, turning_square_around
 from camwright.validation.motion import greatest_magnitude
 from camwright.validation.motor import motor_torque, work_drawn
 
@@ -86,9 +87,10 @@ def bent_bound(profile: CamProfile, task: Task, objective: MotionObjective) -> B
 
 def _path(task: Task, inertia: FloatArray) -> PathTask:
     """Path of the return, with an inertia at its places."""
-    v = task.cut.line_speed
-    speeds = float(task.sync(task.sync.end, 1)) * v, float(task.sync(task.sync.start, 1)) * v
-    return PathTask(inertia, task.height, speeds, task.cut.return_zone / v, task.limits.speed, task.limits.acceleration)
+    v, sync, limits = task.cut.line_speed, task.sync, task.limits
+    speeds, slopes = ((float(sync(sync.end, k)) * v**k, float(sync(sync.start, k)) * v**k) for k in (1, 2))
+    time = task.cut.return_zone / v
+    return PathTask(inertia, task.height, speeds, time, limits.speed, limits.acceleration, limits.jerk, slopes)
 
 
 def _constant(profile: CamProfile, task: Task, objective: MotorObjective, motion: Bound) -> Bound:
@@ -158,14 +160,21 @@ def _along_path(profile: CamProfile, task: Task, objective: MotorObjective) -> B
     greatest = greatest_magnitude(torque, 0).value
     if greatest <= zone * (1 + EDGE):
         return Bound(zone, ZONE)
-    turning = turning_peak(path, _around(task)) / ratio if turns else math.inf
+    turning = turning_peak(path, _everywhere(task)) / ratio if turns else math.inf
     back = min(_least_peak(path, zone * ratio, greatest * ratio) / ratio, turning)
     return Bound(zone, ZONE) if zone >= back else Bound(back, PATH)
 
 
-def _around(task: Task) -> FloatArray:
+def _everywhere(task: Task) -> FloatArray:
     """Inertia at all places of the machine, where a slave that turns may come."""
     return np.asarray(task.machine.inertia(np.linspace(0.0, task.machine.pitch, PLACES)))
+
+
+def _around(task: Task) -> Around:
+    """Give what lies ahead of the return's start, and behind its end."""
+    machine, way, start = task.machine, np.linspace(0.0, task.machine.pitch, PLACES), task.slave_at_sync_end
+    ahead, behind = (np.asarray(machine.inertia(q)) for q in (start + way, start + task.height - way))
+    return Around(ahead, behind, machine.pitch)
 
 
 def _square(path: PathTask, torque: CamProfile, task: Task) -> Bound:
@@ -175,7 +184,10 @@ def _square(path: PathTask, torque: CamProfile, task: Task) -> Bound:
     zone = _zone_square(torque, task)
     level = max(whole - zone, 1e-300) * ratio**2
     if task.reverses and path.may_rest:
-        level = min(level, turning_square(path, _around(task)))
+        turning = turning_square(path, _everywhere(task))
+        if turning < level:
+            turning = max(turning, turning_square_around(path, _around(task), level))
+        level = min(level, turning)
     found, method = _least_square(path, level)
     return Bound(math.sqrt((max(found, 0.0) / ratio**2 + zone) / cut.period), method)
 

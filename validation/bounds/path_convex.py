@@ -21,7 +21,8 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(3)
 _SHARES = 0.5 * _WEIGHTS
 
 INTERVALS = 250
-STEPS = 60
+SEARCH = 60, 1e-10
+"""Steps of Newton's method at most, and the least share of a step that is tried."""
 HALVINGS = 50
 # Powers of e of the prices looked at, times that of a typical motion; and typical motions, as multiples of the straight line.
 LEAST, GREATEST = -18.0, 14.0
@@ -33,13 +34,24 @@ FLAT = 1e-12
 
 def least_square_in_time(task: PathTask) -> float:
     """Lower bound of the integral of the squared torque over time, (N·m)² s, of every motion that takes no longer than the task's time."""
-    return _Dual(task).best()
+    return PathDual(task).best()
 
 
-class _Dual:
-    """The dual function on a grid."""
+class PathDual:
+    """The dual function on a grid.
 
-    def __init__(self, task: PathTask) -> None:
+    Parameters
+    ----------
+    task
+        The motion.
+    tail
+        Stretched length beyond its end over which it may come to rest, in no time; there ``z`` at its end is free.
+    search
+        Steps of Newton's method at most, and the least share of a step that is tried.
+    """
+
+    def __init__(self, task: PathTask, tail: float = 0.0, search: tuple[int, float] = SEARCH) -> None:
+        self._steps, self._least = search
         nodes = np.linspace(0.0, task.stretched[-1], INTERVALS + 1)
         self._time = task.time
         self._h = float(nodes[1])
@@ -47,6 +59,13 @@ class _Dual:
         self._half = 0.5 * np.interp(points, task.stretched, task.inertia)
         self._top = np.interp(points, task.stretched, task.top) ** 0.75
         self._ends = tuple(energy**0.75 for energy in task.energies)
+        # over the tail it costs 16/9 z²/tail at least
+        self._tail = 9 / 64 * tail
+        way = np.append(nodes, nodes[-1] + tail) if tail else nodes
+        under = np.concatenate(
+            [[self._ends[0]], self._top.min(axis=0)[1:], np.full(len(way) - INTERVALS, self._ends[1])]
+        )
+        self._string = 32 / 9 * _slopes_of_hull(way, under)[: INTERVALS + 1]
 
     def best(self) -> float:
         """Greatest value over the price of time."""
@@ -58,11 +77,15 @@ class _Dual:
         for _ in range(HALVINGS):
             middle = 0.5 * (low + high)
             price = unit * float(np.exp(middle))
-            starts = [p, *(self._start(line * factor, price) for factor in FACTORS)]
-            p, value, time = self._climb(max(starts, key=lambda start: self._value(start, price)), price)
+            p, value, time = self.at_price(price, p, line)
             greatest = max(greatest, value)
             low, high = (middle, high) if time > self._time else (low, middle)
         return greatest
+
+    def at_price(self, price: float, p: FloatArray, line: FloatArray) -> tuple[FloatArray, float, float]:
+        """Climb at one price of time, from ``p`` or from a motion of the kind of a line of ``z``: ``p``, the value, the motion's time."""
+        starts = [p, self._string, *(self._start(line * factor, price) for factor in FACTORS)]
+        return self._climb(max(starts, key=lambda start: self._value(start, price)), price)
 
     def _start(self, z: FloatArray, price: float) -> FloatArray:
         """``p`` whose inner minimum is at a given ``z``, its mean such that the ends balance."""
@@ -86,6 +109,7 @@ class _Dual:
         _, value, _, _ = self._parts(p, price)
         square = self._h * float((p[:-1] ** 2 + p[:-1] * p[1:] + p[1:] ** 2).sum()) / 3
         ends = float(p[0]) * self._ends[0] - float(p[-1]) * self._ends[1]
+        ends -= self._tail * float(p[-1]) ** 2
         return float(ends + self._h * float(value.sum()) - 9 / 64 * square - price * self._time)
 
     def _climb(self, p: FloatArray, price: float) -> tuple[FloatArray, float, float]:
@@ -93,7 +117,7 @@ class _Dual:
         from scipy.linalg import solveh_banded
 
         h, value = self._h, self._value(p, price)
-        for _ in range(STEPS):
+        for _ in range(self._steps):
             z, _, curve, _ = self._parts(p, price)
             rise = np.zeros(len(p))
             rise[0], rise[-1] = self._ends[0], -self._ends[1]
@@ -101,13 +125,15 @@ class _Dual:
             rise[1:] += z
             rise[:-1] -= 9 / 64 * h * (2 * p[:-1] + p[1:]) / 3
             rise[1:] -= 9 / 64 * h * (2 * p[1:] + p[:-1]) / 3
+            rise[-1] -= 2 * self._tail * p[-1]
             main, beside = np.zeros(len(p)), np.zeros(len(p))
             for part in (slice(None, -1), slice(1, None)):
                 main[part] += 9 / 64 * h * 2 / 3 - curve / h
+            main[-1] += 2 * self._tail
             beside[1:] = 9 / 64 * h / 3 + curve / h
             step = solveh_banded(np.stack([beside, main]), rise)
             gain, share = float(rise @ step), 1.0
-            while share > 1e-10:
+            while share > self._least:
                 new = self._value(p + share * step, price)
                 if new >= value + 1e-4 * share * gain:
                     break
@@ -119,3 +145,19 @@ class _Dual:
                 break
         *_, pace = self._parts(p, price)
         return p, value, h * float(pace.sum())
+
+
+def _slopes_of_hull(x: FloatArray, y: FloatArray) -> FloatArray:
+    """Fall per length, at places, of the lower convex hull over them: the string drawn taut below a limit."""
+    kept = [0]
+    for k in range(1, len(x)):
+        while len(kept) > 1:
+            i, j = kept[-2:]
+            if (y[j] - y[i]) * (x[k] - x[j]) < (y[k] - y[j]) * (x[j] - x[i]):
+                break
+            kept.pop()
+        kept.append(k)
+    fall = -np.diff(y[kept]) / np.diff(x[kept])
+    return np.asarray(
+        fall[np.minimum(np.searchsorted(np.asarray(kept)[1:], np.arange(len(x)), side="right"), len(fall) - 1)]
+    )

@@ -12,6 +12,7 @@ motions. Energy and peak have tubes and inequalities of their own.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,6 +30,10 @@ ROUNDS, MORE = 2, 300
 """How often the places where it is broken most are added, and how many of them."""
 SMALL = 1e-3
 """What broken inequalities may cost, as a share of the bound."""
+LEVELS, FINE = 5, 2e-2
+"""How many levels are tried for the greatest that is proved, and to what share of the one given."""
+HOPELESS, TOWARDS = 0.8, 0.6
+"""Share of the level tried next where little was proved; how far between what is proved and what is not the others lie."""
 REGULAR = 1e-9
 """Weight that keeps what no place asks for from running away."""
 
@@ -145,39 +150,59 @@ def peak_tube(task: PathTask, level: float) -> Tube:
 
 def least_square(task: PathTask, level: float) -> float:
     """Lower bound of the integral of the squared torque over time of every motion: at most the level, (N·m)² s."""
-    tube = square_tube(task, level)
-    return level if tube.empty else min(level, _bound(task, tube, "square", level))
+    return _proved(task, square_tube, "square", level)
 
 
 def least_drawn(task: PathTask, level: float) -> float:
     """Lower bound of the energy drawn by every motion: at most the level (J)."""
-    tube = drawn_tube(task, level)
-    return level if tube.empty else min(level, _bound(task, tube, "drawn", level))
+    return _proved(task, drawn_tube, "drawn", level)
 
 
 def no_motion_below(task: PathTask, level: float) -> bool:
     """Tell whether it is proved that every motion has a torque above a level somewhere."""
     tube = peak_tube(task, level)
-    return tube.empty or _bound(task, tube, "peak", level) > 0.0
+    return tube.empty or _bound(task, tube, "peak", level, 0.0) > 0.0
 
 
-def _bound(task: PathTask, tube: Tube, kind: str, level: float) -> float:
-    """Best bound of a spline in a tube, less what it is broken by; for a peak positive where the level is proved to be too low."""
+def _proved(task: PathTask, tube_of: Callable[[PathTask, float], Tube], kind: str, level: float) -> float:
+    """Best bound of the lesser levels and the one given.
+
+    The lower a level the narrower its tube, so the better its spline: a tube that holds motions that all but stand has time to waste in
+    it for nothing. So the level is sought that is just proved.
+    """
+    best, tried, high = 0.0, level, level
+    for _ in range(LEVELS):
+        tube = tube_of(task, tried)
+        found = tried if tube.empty else _bound(task, tube, kind, tried, max(best, HOPELESS * level))
+        best = max(best, min(found, tried))
+        if found < tried:
+            high = tried
+        if high - best < FINE * level:
+            break
+        tried = best + TOWARDS * (high - best) if best > 0.0 else HOPELESS * level
+    return best
+
+
+def _bound(task: PathTask, tube: Tube, kind: str, level: float, least: float) -> float:
+    """Best bound of a spline in a tube, less what it is broken by; for a peak positive where the level is proved to be too low.
+
+    What comes to less than ``least`` even if it were not broken is not made any better.
+    """
     spline = _Spline(task, tube)
     x, y = spline.places(*ASKED)
     far_x, far_y = spline.places(*LOOKED)
     ends = spline.ends()
-    unit = task.time if kind == "peak" else level
+    value, unit = -math.inf, task.time if kind == "peak" else level
     for _ in range(ROUNDS):
         weights = _best(spline, x, y, kind, level)
         if weights is None:
-            return -math.inf
+            break
         broken = _broken(spline, far_x, far_y, weights, kind, level)
         # a motion passes each place once, at the worst energy at most
         worst_there = np.maximum(broken.reshape(LOOKED[1], LOOKED[0]).max(axis=0), 0.0)
         cost = float(np.trapezoid(worst_there, far_x[: LOOKED[0]])) * spline.whole
-        value = float(ends @ weights) - cost
-        if cost <= SMALL * unit:
+        value = max(value, float(ends @ weights) - cost)
+        if cost <= SMALL * unit or value + cost < least or value >= (0.0 if kind == "peak" else level):
             break
         worst = np.argsort(broken)[-MORE:]
         x, y = np.append(x, far_x[worst]), np.append(y, far_y[worst])
@@ -219,6 +244,16 @@ class _Spline:
         none = np.zeros((len(x), 1))
         return np.hstack([by_s, none]), np.hstack([by_energy, none])
 
+    def values(self, x: FloatArray, energy: FloatArray, weights: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Give what the rows of places come to with weights, the linear part with that of ``λ``, without making them."""
+        bottom, top = self._range
+        y = np.clip((energy**_POWER - bottom) / (top - bottom), 0.0, 1.0)
+        dy = _POWER * energy ** (_POWER - 1) / (top - bottom)
+        sheet = weights[:-1].reshape(KNOTS[0] + 3, KNOTS[1] + 3)
+        by_s = (_values(self._knots[0], x, 1) @ sheet * _values(self._knots[1], y, 0)).sum(axis=1) / self.whole
+        by_energy = (_values(self._knots[0], x, 0) @ sheet * _values(self._knots[1], y, 1)).sum(axis=1) * dy
+        return by_s + weights[-1] * self.inertia(x) / 2 / np.sqrt(energy), by_energy
+
     def ends(self) -> FloatArray:
         """Give what the bound is made of: the spline at the start less that at the end, less ``λ`` times the time."""
         bottom, top = self._range
@@ -259,7 +294,7 @@ def _broken(
     spline: _Spline, x: FloatArray, energy: FloatArray, weights: FloatArray, kind: str, level: float
 ) -> FloatArray:
     """By how much the inequality is broken at places, per stretched length."""
-    linear, slope = (part @ weights for part in _parts(spline, x, energy))
+    linear, slope = spline.values(x, energy, weights)
     if kind == "square":  # φ_z² 9/64 with φ_z = φ_E 4/3 z^(1/3)
         return np.asarray(0.25 * slope**2 * np.sqrt(energy) - linear)
     root = np.sqrt(spline.inertia(x) / 2)

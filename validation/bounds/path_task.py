@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from camwright.profiles.polynomial.profile import FloatArray
+from camwright.validation.bounds.path_reach import fastest, slowest
 
 ROUNDING = 1e-9
 """Share of the way by which a motion may miss its end: rounding."""
@@ -30,8 +31,10 @@ class PathTask:
         Time that the motion takes (s).
     greatest
         Greatest speed allowed.
-    acceleration
-        Greatest acceleration allowed, either way.
+    acceleration, jerk
+        Greatest acceleration and jerk allowed, either way.
+    slopes
+        Accelerations at the ends; they count where the jerk is limited.
     """
 
     inertia: FloatArray
@@ -40,6 +43,8 @@ class PathTask:
     time: float
     greatest: float
     acceleration: float = math.inf
+    jerk: float = math.inf
+    slopes: tuple[float, float] = (0.0, 0.0)
 
     @cached_property
     def stretched(self) -> FloatArray:
@@ -60,14 +65,15 @@ class PathTask:
 
     @cached_property
     def reach(self) -> tuple[FloatArray, FloatArray]:
-        """Least and greatest kinetic energy at the places (J) of a motion that never turns and keeps to speed and acceleration."""
+        """Least and greatest kinetic energy at the places (J) of a motion that never turns and keeps to its limits."""
         if not math.isfinite(self.acceleration):
             return np.zeros(len(self.inertia)), self.top
         q = np.linspace(0.0, self.way, len(self.inertia))
-        gains = 2.0 * self.acceleration * q, 2.0 * self.acceleration * (self.way - q)
-        first, last = (speed**2 for speed in self.speeds)
-        low = np.maximum(np.maximum(first - gains[0], last - gains[1]), 0.0)
-        high = np.minimum(first + gains[0], last + gains[1])
+        limits = self.acceleration, self.jerk
+        # from its end backwards a motion is one from there with the opposite acceleration
+        first, last = (self.speeds[0], self.slopes[0]), (self.speeds[1], -self.slopes[1])
+        low = np.maximum(slowest(q, first, *limits), slowest(q, last, *limits)[::-1])
+        high = np.minimum(fastest(q, first, *limits, low), fastest(q, last, *limits, low[::-1])[::-1])
         return 0.5 * self.inertia * low, np.minimum(0.5 * self.inertia * high, self.top)
 
     @property

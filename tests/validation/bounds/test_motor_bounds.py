@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.integrate import cumulative_trapezoid
 
 from camwright.design.optimise import solve
 from camwright.profiles.cut import Cut
@@ -31,6 +32,7 @@ from camwright.validation.bounds.path_dual import (
 )
 from camwright.validation.bounds.path_limits import least_square_limited
 from camwright.validation.bounds.path_task import PathTask
+from camwright.validation.bounds.path_turns import Around, turning_square_around
 from camwright.validation.motor import measure_motor
 
 CRANK = CrankSlider(
@@ -112,10 +114,10 @@ def _checked(machine: Machine, cut: Cut, limits: Limits, objective: MotorObjecti
 
 
 @pytest.mark.parametrize("objective", ["rms_torque", "energy"])
-@pytest.mark.parametrize("length", [0.5, 0.9, 3.0])
+@pytest.mark.parametrize("length", [0.5, 0.9, 2.0])
 def test_the_shear_is_within_a_few_per_cent_of_its_bound(objective: MotorObjective, length: float) -> None:
     value, bound, _ = _checked(CRANK, replace(SHEAR, length=length), TURNS, objective)
-    assert bound > (0.8 if objective == "energy" else 0.94) * value
+    assert bound > 0.94 * value
 
 
 def test_a_long_cut_of_the_shear_is_bounded_by_standing() -> None:
@@ -182,9 +184,57 @@ def test_no_motion_that_turns_goes_below_its_bounds(seed: int) -> None:
         path = PathTask(_inertia(np.linspace(0.0, q[-1], 4001)), float(q[-1]), (first, last), time, float(u.max()))
         torque = _inertia(q) * np.gradient(u, t) + 1.5 * np.cos(3.0 * q) * u**2 / 2
         around = np.array([0.3, 1.3])
-        assert np.trapezoid(torque**2, t) >= turning_square(path, around)
+        square = float(np.trapezoid(torque**2, t))
+        assert square >= turning_square(path, around)
+        if turned == 1 and seed < 4:
+            pitch = np.linspace(0.0, 2 * np.pi / 3.0, 2001)
+            ways = Around(_inertia(pitch), _inertia(q[-1] - pitch), float(pitch[-1]))
+            assert square >= turning_square_around(path, ways, 2 * square)
         assert np.abs(torque).max() >= turning_peak(path, around) * (1 - 1e-6)
     assert turned > 0
+
+
+def test_a_turn_beyond_a_place_that_is_passed_slowly_only_costs_the_braking_before_it() -> None:
+    """Where the inertia falls to a hundredth the speed limit leaves little kinetic energy: to go on beyond it saves nothing."""
+    pitch = np.linspace(0.0, 2.0, 2001)
+    inertia = 1.0 - 0.99 * np.sin(np.pi * pitch / 2.0) ** 2
+    path = PathTask(inertia, 2.0, (1.0, 1.0), 400.0, 1.5)
+    found = turning_square_around(path, Around(inertia, inertia, 2.0), 10.0)
+    s = path.stretched[1000]
+    first, top = 0.5**0.75, (0.5 * 0.01 * 1.5**2) ** 0.75
+    before = 16 / 9 * (first - top) ** 2 / s  # down to what the speed limit leaves halfway, from either end
+    assert 0.9 * 2 * before <= found <= 2 * 16 / 9 * first**2 / s
+    assert turning_square(path, inertia) < 0.1 * found
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_motions_stay_within_the_reach_of_their_acceleration_and_jerk(seed: int) -> None:
+    """Random motions in time, of whose limits the reach is told no more than they use."""
+    rng = np.random.default_rng(seed)
+    t = np.linspace(0.0, 1.0, 40_001)
+    jerk = sum((rng.normal() * 8.0 * np.sin(k * np.pi * t + rng.uniform(0.0, 6.0)) for k in range(1, 5)), 0.0 * t)
+    a = rng.normal() * 2.0 + cumulative_trapezoid(jerk, t, initial=0.0)
+    u = cumulative_trapezoid(a, t, initial=0.0)
+    u += 0.2 - u.min()
+    q = cumulative_trapezoid(u, t, initial=0.0)
+    limits = float(np.abs(a).max()), float(np.abs(jerk).max())
+    places = np.linspace(0.0, q[-1], 2001)
+    path = PathTask(np.full(2001, 2.0), float(q[-1]), (u[0], u[-1]), 1.0, float(u.max()), *limits, (a[0], a[-1]))
+    low, high = path.reach
+    energy = np.interp(places, q, u) ** 2
+    assert (low <= energy * (1 + 1e-6)).all()
+    assert (energy <= high * (1 + 1e-6)).all()
+    free = replace(path, jerk=math.inf).reach
+    assert (low >= free[0] - 1e-9).all()
+    assert (high <= free[1] + 1e-9).all()
+    assert float((high - low).sum()) < float((free[1] - free[0]).sum())
+
+
+def test_a_level_is_lowered_until_it_is_proved() -> None:
+    """Where standing costs little more than the motion, its own level proves little; nine tenths of it are."""
+    slow = replace(EVEN, time=7.0)
+    standing = standing_square(slow)
+    assert 0.85 * standing < least_square(slow, 0.99 * standing) <= 0.99 * standing
 
 
 def test_the_softest_turn_of_a_constant_inertia() -> None:
@@ -205,13 +255,14 @@ def test_the_softest_turn_of_a_constant_inertia() -> None:
 
 def test_a_crank_that_may_turn_has_as_sharp_a_bound_as_one_that_may_not() -> None:
     """On a short cut turning would cost far more: the leave to turn must not blunt the bound."""
-    cut = replace(SHEAR, length=0.8)
-    found = {}
-    for reversal in (False, True):
-        task = Task(CRANK, cut, replace(TURNS, reversal=reversal))
-        profile = solve(task, "rms_torque").profile
-        found[reversal] = lower_bound(profile, task, "rms_torque").value / measure_motor(profile, task).rms_torque
-    assert found[True] >= found[False] - 1e-3
+    task = Task(CRANK, replace(SHEAR, length=0.8), TURNS)
+    profile = solve(task, "rms_torque").profile
+    found = {
+        reversal: lower_bound(profile, replace(task, limits=replace(TURNS, reversal=reversal)), "rms_torque").value
+        / measure_motor(profile, task).rms_torque
+        for reversal in (False, True)
+    }
+    assert found[True] == pytest.approx(found[False], rel=1e-9)
     assert found[True] > 0.97
 
 
