@@ -55,7 +55,7 @@ def wrong(job: Job, edge: Edge, random: np.random.Generator, *, checked: bool) -
     for _ in range(TRIED):
         at = int(random.integers(len(edge) - 1))
         (left, low), (right, high) = edge[at], edge[at + 1]
-        if math.isnan(low + high):
+        if math.isnan(low + high) or left == right:  # where there is none, and where it jumps
             continue
         part = random.random()
         length, speed = left + part * (right - left), low + part * (high - low)

@@ -103,7 +103,7 @@ class Solution:
     axis: AxisMotion | None = None
 
 
-def solve(task: Task, objective: CommandObjective, *, suggest: bool = True) -> Solution:
+def solve(task: Task, objective: CommandObjective, *, suggest: bool = True, thorough: bool = True) -> Solution:
     """Design the optimal cycle of a cutting machine.
 
     Parameters
@@ -112,6 +112,9 @@ def solve(task: Task, objective: CommandObjective, *, suggest: bool = True) -> S
         The job.
     suggest
         Whether an `InfeasibleError` says what would work; finding that takes longer than finding what binds.
+    thorough
+        Whether a second road is taken where the first ends with less than the optimum. It takes many times as long, and gains little
+        at the edge of what is possible, where motions have no room to differ.
 
     Raises
     ------
@@ -135,22 +138,22 @@ def solve(task: Task, objective: CommandObjective, *, suggest: bool = True) -> S
     """
     machine, cut = task.machine, task.cut
     if not machine.placed:
-        return _solve_free_place(task, objective, suggest)
+        return _solve_free_place(task, objective, suggest, thorough)
     machine.sync_start(cut)
     if task.limits.motor is not None:
-        return _solve_for_motor(task, objective, suggest)
+        return _solve_for_motor(task, objective, suggest, thorough)
     require_feasible(task, suggest=suggest)
     require_moving(machine, objective)
-    solution = _solve_steady(task.with_line(STEADY), objective)
+    solution = _solve_steady(task.with_line(STEADY), objective, thorough)
     return solution if keeps_ramp(solution.profile, task) else _solve_ramped(task, objective, solution, suggest)
 
 
-def _solve_steady(task: Task, objective: CommandObjective) -> Solution:
+def _solve_steady(task: Task, objective: CommandObjective, thorough: bool) -> Solution:
     """Design the cycle for a line that keeps its speed."""
     decisive = motion_objective(task.machine, objective)
     if decisive is None:
         return _solve_torque(task, objective)
-    back, status, value, iterations = _solve_motion(task, decisive)
+    back, status, value, iterations = _solve_motion(task, decisive, thorough)
     # of a slave that never leaves the line's speed it is 0, not −0
     return Solution(task.machine, assemble(back, task), back, status, objective, value + 0.0, iterations)
 
@@ -201,14 +204,14 @@ def _solve_torque_ramped(task: Task, objective: CommandObjective, start: CamProf
     )
 
 
-def _solve_motion(task: Task, objective: MotionObjective) -> tuple[CamProfile, SolveStatus, float, int]:
+def _solve_motion(task: Task, objective: MotionObjective, thorough: bool) -> tuple[CamProfile, SolveStatus, float, int]:
     """Solve an objective of the motion: the return, how the solver ended, the value over time, and the iterations.
 
     A peak is that of the cycle: where the sync zone has a higher one than the return needs, it is the zone's.
     """
     problem = return_problem(task, objective)
-    back, status, iterations = solve_return(problem)
-    if status is SolveStatus.BEST_FOUND:
+    back, status, iterations = solve_return(problem, thorough=thorough)
+    if status is SolveStatus.BEST_FOUND and thorough:
         back, more = _second_opinion(task, problem, back)
         iterations += more
     if OBJECTIVES[objective].form != "peak":
@@ -234,7 +237,7 @@ def _over_time(back: CamProfile, objective: MotionObjective, cut: Cut) -> float:
     return OBJECTIVES[objective].over_time(objective_value(back, objective), cut.line_speed)
 
 
-def _solve_for_motor(task: Task, objective: CommandObjective, suggest: bool) -> Solution:
+def _solve_for_motor(task: Task, objective: CommandObjective, suggest: bool, thorough: bool) -> Solution:
     """Solve without the motor's torque, which is the answer if it keeps to the curve; else within the curve, and take the best.
 
     Within the curve are its rectangles, of which the grid tells the best. Where they do not do, or say little, a programme knows the whole
@@ -250,7 +253,7 @@ def _solve_for_motor(task: Task, objective: CommandObjective, suggest: bool) -> 
     assert curve is not None  # noqa: S101 - that is what this function is for
     if not is_feasible(task.with_limits(plain)):
         raise infeasible(task, suggest=suggest)
-    free = solve(task.with_limits(plain), objective)
+    free = solve(task.with_limits(plain), objective, thorough=thorough)
     if keeps_curve(free.profile, task, curve):
         return free
     found: list[Solution] = []
@@ -261,7 +264,7 @@ def _solve_for_motor(task: Task, objective: CommandObjective, suggest: bool) -> 
             grid_objective(return_problem(task.with_limits(each), decisive or "rms_acceleration"))
             for each in rectangles
         ]
-        found += _within_rectangle(task.with_limits(rectangles[int(np.argmin(rough))]), objective)
+        found += _within_rectangle(task.with_limits(rectangles[int(np.argmin(rough))]), objective, thorough)
     easiest = None
     if not found or not machine.constant_inertia:  # a rectangle says little where the torque depends on the place
         easiest = least_load(task)
@@ -283,10 +286,10 @@ def _solve_for_motor(task: Task, objective: CommandObjective, suggest: bool) -> 
     return min(found, key=lambda solution: solution.minimised)
 
 
-def _within_rectangle(task: Task, objective: CommandObjective) -> list[Solution]:
+def _within_rectangle(task: Task, objective: CommandObjective, thorough: bool) -> list[Solution]:
     """Solve within one rectangle of a motor's curve; nothing where no return in it bears the line's ramps."""
     try:
-        return [solve(task, objective, suggest=False)]
+        return [solve(task, objective, suggest=False, thorough=thorough)]
     except InfeasibleError:
         if not task.line.ramps:
             raise
@@ -363,7 +366,7 @@ def _solve_torque(task: Task, objective: CommandObjective) -> Solution:
     )
 
 
-def _solve_free_place(task: Task, objective: CommandObjective, suggest: bool) -> Solution:
+def _solve_free_place(task: Task, objective: CommandObjective, suggest: bool, thorough: bool) -> Solution:
     """Choose the place of the sync zone first, by the objective of the whole cycle: a closed form's, or the programme's own."""
     placement: Placement | None = None
     if OBJECTIVES[objective].form != "peak" or OBJECTIVES[objective].of == "motor":
@@ -371,7 +374,9 @@ def _solve_free_place(task: Task, objective: CommandObjective, suggest: bool) ->
         plain = motor_speed_limits(task.machine, task.limits)
         placement = place_by_objective(task.with_limits(plain).with_line(STEADY), objective, task.limits.motor)
     placed = placement or place_for(task.with_line(STEADY), objective)
-    solution = solve(placed.task.with_limits(task.limits).with_line(task.line), objective, suggest=suggest)
+    solution = solve(
+        placed.task.with_limits(task.limits).with_line(task.line), objective, suggest=suggest, thorough=thorough
+    )
     solution = replace(solution, status=SolveStatus.BEST_FOUND)  # no bound knows all places
     if solution.agreement is None:
         return replace(solution, agreement=Agreement(1, 1, 0.0, 0.0, placed.valleys))

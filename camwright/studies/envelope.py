@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cache
 from itertools import pairwise
 from typing import Any
 
@@ -17,7 +18,7 @@ from camwright.house.provenance import provenance
 from camwright.jobs.job import Job
 from camwright.profiles.machines import Machine
 from camwright.profiles.objective import OBJECTIVES, MotionObjective, of_motion
-from camwright.studies.reach import highest_speed
+from camwright.studies.reach import ACCURACY, highest_speed
 
 SHORTEST, LONGEST = 0.5, 2.0
 """Cut lengths of the map as parts of the job's; none of them is shorter than `LEAST_ZONE` of the sync zone."""
@@ -26,12 +27,21 @@ LEAST_ZONE = 1.05
 Edge = tuple[tuple[float, float], ...]
 """Line speeds (m/s) over cut lengths (m), ascending."""
 
-STRAIGHT = 2e-3
+STRAIGHT = 4e-3
 """Share of the line speed by which the middle between two nodes of an edge may lie off the line."""
 
-FINEST, FINE, NO_FINER = 1e-4, 1e-2, math.inf
-"""Nodes of an edge are no closer, relative to the length: of a perfect axis, whose edge is a closed form; of the axis in tolerance, of
-which each node is a dozen designs; and where one of these takes a second, at the cut lengths of the map alone."""
+FINEST, FINE = 1e-4, 1e-3
+"""Nodes of an edge are no closer, relative to the length: of a perfect axis, whose edge is a closed form, and where an edge is steep; of
+the axis in tolerance, of which each node is some designs. Where one of these takes a second the nodes are the cut lengths of the map."""
+
+PROBE = 0.29
+"""Where a part whose middle lies on the line is looked at once more: the line may cross a bent edge in its middle."""
+
+BETWEEN = 1e-3
+"""Accuracy of the line speeds with the axis in tolerance between the cut lengths of the map, relative to them."""
+
+STEEP = 5e-3
+"""Share of the line speed by which an edge may change between nodes as close as `FINE`; by more at `FINEST` it jumps."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +59,7 @@ class EnvelopeAnswer:
     quintic, perfect, within
         Highest line speeds (m/s) over cut lengths (m): with the quintic return, with a perfect axis, and with the axis in
         tolerance, which is what `design` would pass, designed anew. Lines with nodes so close that what lies between is true
-        to `STRAIGHT`; NaN where no line speed works.
+        to `STRAIGHT`; NaN where no line speed works. Where an edge jumps, two nodes have one length.
     """
 
     job: Job
@@ -66,7 +76,7 @@ class EnvelopeAnswer:
 
     def in_tolerance(self, length: float) -> float | None:
         """Highest line speed with the axis in tolerance at a cut length that is a node (m/s); ``None`` where none works."""
-        speed = dict(self.within)[length]
+        speed = max(speed for node, speed in self.within if node == length)
         return None if math.isnan(speed) else speed
 
     def to_dict(self) -> dict[str, Any]:
@@ -149,8 +159,8 @@ def envelope_answer(job: Job, points: int, step: Step = ignore) -> EnvelopeAnswe
     )
     even = np.linspace(shortest, longest, points).round(6)
     lengths = np.union1d(even, [node for node in nodes if shortest < node < longest])
-    fastest = job.limits.speed / job.machine.sync_pace(job.cut)
-    speeds = np.linspace(fastest / points, fastest, points)
+    top = job.limits.speed / job.machine.sync_pace(job.cut)
+    speeds = np.linspace(top / points, top, points)
     objective = of_motion(job.objective)
     found = envelope(job.task, objective, lengths.tolist(), speeds.tolist(), step)
     step("the edges between the cut lengths")
@@ -161,45 +171,65 @@ def envelope_answer(job: Job, points: int, step: Step = ignore) -> EnvelopeAnswe
         beside = machines[int(np.abs(lengths - length).argmin())]
         return replace(job, machine=beside, cut=replace(job.cut, length=length))
 
-    perfect = true_edge(lambda length: max_line_speed(at(length).task), lengths.tolist(), FINEST)
-    within = true_edge(
-        lambda length: highest_speed(at(length), max_line_speed(at(length).task))[0],
-        lengths.tolist(),
-        NO_FINER if job.servo_aware or not job.machine.placed else FINE,
-    )
-    quintic = true_edge(lambda length: quintic_speed(at(length).task), lengths.tolist(), FINEST)
+    @cache
+    def fastest(length: float) -> float | None:
+        return max_line_speed(at(length).task)
+
+    def in_tolerance(length: float, near: float) -> float | None:
+        accuracy = ACCURACY if length in lengths else BETWEEN
+        return highest_speed(at(length), fastest(length), None if math.isnan(near) else near, accuracy)[0]
+
+    perfect = true_edge(lambda length, _: fastest(length), lengths.tolist(), FINEST)
+    within = true_edge(in_tolerance, lengths.tolist(), None if job.servo_aware or not job.machine.placed else FINE)
+    quintic = true_edge(lambda length, _: quintic_speed(at(length).task), lengths.tolist(), FINEST)
     return EnvelopeAnswer(job, objective, found, quintic, perfect, within)
 
 
-def true_edge(fastest: Callable[[float], float | None], lengths: list[float], finest: float) -> Edge:
+def true_edge(fastest: Callable[[float, float], float | None], lengths: list[float], finest: float | None) -> Edge:
     """Follow a highest line speed over the cut length: nodes are added until the line between them is true.
+
+    A part is true where two places between its ends lie on the line. What remains when nodes are as close as they may be is a jump: it is
+    drawn upright, on the side on which less is possible.
 
     Parameters
     ----------
     fastest
-        Highest line speed (m/s) at a cut length (m), ``None`` where none works.
+        Highest line speed (m/s), ``None`` where none works, of a cut length (m) and the line speed that is expected there (m/s; NaN where
+        none is).
     lengths
         First nodes, ascending.
     finest
-        Nodes are no closer than this share of the length.
+        Nodes are no closer than this share of the length, where the edge is not steep; ``None``: there are no others.
     """
 
-    def node(length: float) -> tuple[float, float]:
-        speed = fastest(length)
+    def node(length: float, expected: float) -> tuple[float, float]:
+        speed = fastest(length, expected)
         return length, math.nan if speed is None else speed
 
-    def between(left: tuple[float, float], right: tuple[float, float]) -> list[tuple[float, float]]:
-        if right[0] - left[0] <= finest * right[0] or (math.isnan(left[1]) and math.isnan(right[1])):
-            return []
-        middle = node(0.5 * (left[0] + right[0]))
-        if abs(0.5 * (left[1] + right[1]) - middle[1]) <= STRAIGHT * middle[1]:
-            return [middle]
-        return [*between(left, middle), middle, *between(middle, right)]
+    def between(left: tuple[float, float], right: tuple[float, float], finest: float) -> Edge:
+        steep = abs(right[1] - left[1]) > STEEP * max(left[1], right[1])
+        apart = (right[0] - left[0]) / right[0]
+        if apart <= FINEST or (apart <= finest and not steep) or (math.isnan(left[1]) and math.isnan(right[1])):
+            return ((max(left, right, key=lambda each: each[1])[0], min(left[1], right[1])),) if steep else ()
 
-    first = [node(length) for length in lengths]
+        def on_line(share: float) -> tuple[tuple[float, float], bool]:
+            expected = left[1] + share * (right[1] - left[1])
+            found = node(left[0] + share * (right[0] - left[0]), expected)
+            return found, abs(expected - found[1]) <= STRAIGHT * found[1]
+
+        middle, straight = on_line(0.5)
+        if straight:
+            probe, straight = on_line(PROBE)
+            if straight:
+                return probe, middle
+        return *between(left, middle, finest), middle, *between(middle, right, finest)
+
+    first: list[tuple[float, float]] = []
+    for length in lengths:
+        first.append(node(length, first[-1][1] if first else math.nan))
     found = [first[0]]
     for left, right in pairwise(first):
-        found += [*between(left, right), right]
+        found += [*(between(left, right, finest) if finest is not None else ()), right]
     return tuple(found)
 
 

@@ -24,6 +24,9 @@ ACCURACY, SERVO_AWARE_ACCURACY = 1e-4, 5e-3
 STRIDE = 0.9
 """The edge of the perfect axis is left in steps of this factor until a design passes."""
 
+BESIDE, GROWTH = 2.0, 4.0
+"""First step from where an edge is expected, in accuracies of the edge, and the factor by which each further one is longer."""
+
 SLOWEST, LONGEST = 0.02, 4.0
 """Line speeds down to this share of the perfect axis' highest, and cut lengths up to this multiple of its shortest, are looked at."""
 
@@ -74,13 +77,35 @@ def reach(job: Job, far: Extremes) -> Reach:
     return Reach(speed, too_fast or far.line_speed_binding, length, too_short or far.cut_length_binding)
 
 
-def highest_speed(job: Job, perfect: float | None) -> tuple[float | None, str]:
-    """Highest line speed at the job's cut length that passes (m/s), and what fails beyond, empty where the perfect axis ends there."""
+def highest_speed(
+    job: Job, perfect: float | None, near: float | None = None, accuracy: float = ACCURACY
+) -> tuple[float | None, str]:
+    """Find the highest line speed at the job's cut length that passes, and what fails beyond.
+
+    Parameters
+    ----------
+    job
+        The job.
+    perfect
+        Highest line speed of the perfect axis (m/s), ``None`` where none works.
+    near
+        Line speed (m/s) near which the edge is expected; without it the search comes from the perfect axis' edge.
+    accuracy
+        Of the line speed, relative to it; of a servo-aware job no finer than `SERVO_AWARE_ACCURACY`.
+
+    Returns
+    -------
+    (speed, failed)
+        The line speed (m/s), ``None`` where none works; and what fails beyond, empty where the perfect axis ends there.
+    """
     if perfect is None:
         return None, ""
     objective = stand_in(job)
     found, failed = _edge(
-        lambda share: fails(job, job.task.designed_at(perfect * share), objective), SLOWEST, _accuracy(job)
+        lambda share: fails(job, job.task.designed_at(perfect * share), objective),
+        SLOWEST,
+        max(accuracy, _accuracy(job)),
+        None if near is None else near / perfect,
     )
     return (None if found is None else perfect if not failed else perfect * found), failed
 
@@ -115,7 +140,7 @@ def fails(job: Job, task: Task, objective: MotionObjective) -> str:
     if job.servo_aware:
         return "" if _reaches(job, task) else TOLERANCE
     try:
-        solution = solve(task, objective, suggest=False)
+        solution = solve(task, objective, suggest=False, thorough=False)
     except InfeasibleError as error:
         return RAMP if error.binding.startswith("line.") else error.binding
     except (InputError, SolverError):
@@ -143,26 +168,38 @@ def _accuracy(job: Job) -> float:
     return SERVO_AWARE_ACCURACY if job.servo_aware else ACCURACY
 
 
-def _edge(failing: Callable[[float], str], least: float, accuracy: float) -> tuple[float | None, str]:
-    """Find the greatest share of the perfect axis' edge that passes, from above: in strides until one does, then bisected.
+def _edge(
+    failing: Callable[[float], str], least: float, accuracy: float, near: float | None = None
+) -> tuple[float | None, str]:
+    """Find the greatest share of the perfect axis' edge that passes: enclosed from where it is expected, or from above, then bisected.
 
     Returns
     -------
     (share, failed)
         The share, ``None`` if none passes, and what fails beyond it; nothing where the edge itself passes.
     """
-    failed = failing(1.0 - _INSIDE)
+    top = 1.0 - _INSIDE
+    low, high, failed = 0.0, top, ""
+    stride, longer = STRIDE, 1.0
+    if near is not None:
+        stride, longer = 1.0 / (1.0 + BESIDE * accuracy), GROWTH
+        if near < top * stride:
+            low, high, failed = _upwards(failing, near, top, accuracy)
     if not failed:
-        return 1.0, ""
-    low = 1.0 - _INSIDE
-    while True:
-        high, low = low, low * STRIDE
-        if low < least:
+        failed = failing(top)
+        if not failed:
+            return 1.0, ""
+        high = top
+    while not low:
+        tried = high * stride
+        stride = max(stride**longer, STRIDE)
+        if tried < least:
             return None, failed
-        found = failing(low)
-        if not found:
-            break
-        failed = found
+        found = failing(tried)
+        if found:
+            high, failed = tried, found
+        else:
+            low = tried
     while high / low - 1.0 > accuracy:
         middle = math.sqrt(high * low)
         found = failing(middle)
@@ -171,6 +208,23 @@ def _edge(failing: Callable[[float], str], least: float, accuracy: float) -> tup
         else:
             low = middle
     return low, failed
+
+
+def _upwards(failing: Callable[[float], str], near: float, top: float, accuracy: float) -> tuple[float, float, str]:
+    """Go up from a share in steps that grow until one fails.
+
+    Returns
+    -------
+    (low, high, failed)
+        The highest share that passes, 0 where the first fails; the share that fails, and what fails there, empty where all pass.
+    """
+    low, high, step = 0.0, near, BESIDE * accuracy
+    while high < top:
+        failed = failing(high)
+        if failed:
+            return low, high, failed
+        low, high, step = high, high * (1.0 + step), GROWTH * step
+    return low, top, ""
 
 
 def placed_as(job: Job, task: Task) -> Job:

@@ -21,6 +21,8 @@ from camwright.profiles.task import Task
 
 # Rounding that a baseline may exceed a limit by.
 ROUNDING = 1e-9
+# What a point lacks is found to this share, to name the limit that lacks least.
+NAMED = 1e-6
 
 
 @dataclass(frozen=True)
@@ -155,7 +157,7 @@ def _points(
         value = _objective(here, objective) if possible else None
         binding = row.binding
         if not possible and straight:
-            binding = binding_limit(here, needed_limits(here))
+            binding = binding_limit(here, needed_limits(here, NAMED))
         quintic = row.quintic is not None and v <= row.quintic
         linear = row.linear is not None and v <= row.linear
         yield EnvelopePoint(cut.length, v, value, binding, quintic, linear)
@@ -163,7 +165,7 @@ def _points(
 
 def _objective(task: Task, objective: MotionObjective) -> float | None:
     try:
-        back = solve_return(return_problem(task, objective))[0]
+        back = solve_return(return_problem(task, objective), thorough=False)[0]
     except SolverError:
         return None
     return OBJECTIVES[objective].over_time(objective_value(back, objective), task.cut.line_speed)

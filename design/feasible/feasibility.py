@@ -167,10 +167,17 @@ def least_factor(works: Callable[[float], bool], tolerance: float = EDGE) -> flo
     return math.inf if found is None else found
 
 
-def needed_limits(task: Task) -> dict[str, float]:
+def needed_limits(task: Task, tolerance: float = EDGE) -> dict[str, float]:
     """Least value of each limit that would do, the others as they are (over time, slave unit), infinite where none does.
 
     Where a guide holds the slave in also its length, the ``"stroke"`` (slave unit).
+
+    Parameters
+    ----------
+    task
+        The job.
+    tolerance
+        Share to which a limit is found.
     """
     limits = task.limits
     asked = demands(task)
@@ -181,7 +188,7 @@ def needed_limits(task: Task) -> dict[str, float]:
         return is_feasible(task.with_limits(with_limit(limits, name, float(getattr(limits, name)) * factor)))
 
     def alone(name: str) -> float:
-        return float(getattr(limits, name)) * least_factor(lambda f: f >= 1.0 and works(name, f))
+        return float(getattr(limits, name)) * least_factor(lambda f: f >= 1.0 and works(name, f), tolerance)
 
     need = {name: alone(name) for name in LIMIT_NAMES}
     if task.machine.guide is not None:

@@ -14,8 +14,8 @@ from camwright.design.returns.transcription import ScaledMotion
 from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.polynomial.profile import FloatArray
 
-# The least limit is found to this share, far below what counts as the same objective.
-NARROW = 1e-12
+# The least limit is found to this share, far below what counts as the same objective; and to this one where its arcs make a grid.
+NARROW, ROUGH = 1e-12, 1e-6
 # A first guess at a limit that is too low is this share of the given one, and lowered by it again.
 STRIDE = 0.25
 # A motion that is said to keep a limit does so but for this share of it.
@@ -23,12 +23,19 @@ KEPT = 1e-9
 MOST_STRIDES = 40
 
 
-def least_peak_motion(problem: ScaledProblem) -> ScaledMotion | None:
+def least_peak_motion(problem: ScaledProblem, narrow: float = NARROW) -> ScaledMotion | None:
     """Give the motion of least peak acceleration, or jerk, of a slave that must keep to a stroke.
 
     Whether the limits leave any motion is known in closed form (`camwright.profiles.closed_forms.overshoot`), and a higher limit
     leaves more: the least limit
     of the acceleration that leaves one, with the others as they are, is the least peak that any motion has.
+
+    Parameters
+    ----------
+    problem
+        What is asked.
+    narrow
+        Share to which the least limit is found.
 
     Returns
     -------
@@ -55,7 +62,7 @@ def least_peak_motion(problem: ScaledProblem) -> ScaledMotion | None:
         if gentler is None:
             break
         high, low, found = low, STRIDE * low, gentler
-    while high - low > NARROW * high:
+    while high - low > narrow * high:
         middle = 0.5 * (low + high)
         gentler = within(middle)
         if gentler is None:

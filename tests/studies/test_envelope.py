@@ -1,0 +1,104 @@
+"""Edges of the envelope: nodes are found until what is drawn between them is true, jumps and bends too."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from camwright.studies.envelope import FINE, FINEST, Edge, true_edge
+from camwright.studies.reach import BESIDE, _edge
+
+LENGTHS = [1.0, 2.0, 3.0, 4.0]
+
+
+def bend(length: float) -> float:
+    """Level, then falling: bent where the line from 2 to 3 has its middle on the edge."""
+    fall = 0.4 * (1.0 - math.exp(-2.0 * (length - 2.4)))
+    return 3.0 if length < 2.4 else 3.0 - fall
+
+
+def crossing_in_the_middle(length: float) -> float:
+    """Level to 2.25, then convex: the middle of the first part lies on the line between its ends, and nothing else."""
+    if length <= 2.25:
+        return 1.0
+    at = (length - 2.25) / 0.75
+    return 1.0 - 0.1 * at * (1.0 - (1.0 - 1.5) * (1.0 - at)) if length <= 3.0 else 0.9
+
+
+SHAPES: dict[str, Callable[[float], float]] = {
+    "straight": lambda length: 2.0 - 0.3 * length,
+    "bent": bend,
+    "crossing": crossing_in_the_middle,
+    "cusp": lambda length: 3.0 - 0.8 * math.sqrt(abs(length - 2.6)),
+    "jump down": lambda length: 3.0 if length < 2.347 else 2.0,
+    "jump up": lambda length: 2.0 - 0.1 * length if length < 2.347 else 3.0,
+}
+
+
+def drawn(edge: Edge, length: float) -> float:
+    """Read an edge as it is drawn; at an upright part the lower end."""
+    lengths, speeds = (np.array(each) for each in zip(*edge, strict=True))
+    return float(np.interp(length, lengths, speeds))
+
+
+@pytest.mark.parametrize("finest", [FINE, FINEST])
+@pytest.mark.parametrize("name", SHAPES)
+def test_what_is_drawn_is_true_within_a_percent(name: str, finest: float) -> None:
+    shape = SHAPES[name]
+    edge = true_edge(lambda length, _: shape(length), LENGTHS, finest)
+    assert [length for length, _ in edge] == sorted(length for length, _ in edge)
+    for length in np.random.default_rng(1).uniform(1.0, 4.0, 3000).tolist():
+        within = [shape(length * (1 + aside)) for aside in (-FINEST, 0.0, FINEST)]  # how far a jump may be off
+        assert 0.99 * min(within) <= drawn(edge, length) <= 1.01 * max(within), length
+
+
+@pytest.mark.parametrize("name", ["jump down", "jump up"])
+def test_a_jump_is_drawn_upright_with_two_nodes_of_one_length_and_nothing_impossible(name: str) -> None:
+    shape = SHAPES[name]
+    edge = true_edge(lambda length, _: shape(length), LENGTHS, FINE)
+    (upright,) = [(a, b) for a, b in itertools.pairwise(edge) if a[0] == b[0]]
+    assert abs(upright[0][0] / 2.347 - 1) <= FINEST
+    for length in np.linspace(2.346, 2.348, 2001).tolist():
+        if length != upright[0][0]:
+            assert drawn(edge, length) <= shape(length) * (1 + FINEST)
+
+
+def test_an_edge_ends_where_nothing_works() -> None:
+    edge = true_edge(lambda length, _: None if length > 2.3 else 1.0, LENGTHS, FINE)
+    last = max(length for length, speed in edge if not math.isnan(speed))
+    first = min(length for length, speed in edge if math.isnan(speed))
+    assert 0 < first - last <= FINE * first
+    assert last <= 2.3 < first
+
+
+def test_no_nodes_between_where_a_node_takes_too_long() -> None:
+    edge = true_edge(lambda length, _: bend(length), LENGTHS, None)
+    assert [length for length, _ in edge] == LENGTHS
+
+
+@pytest.mark.parametrize("share", [0.03, 0.4, 0.875, 0.9999])
+@pytest.mark.parametrize("near", [None, 0.02, 0.4, 0.4001, 0.8, 0.999, 1.2])
+def test_an_edge_is_found_from_wherever_it_is_expected(share: float, near: float | None) -> None:
+    asked = 0
+
+    def failing(at: float) -> str:
+        nonlocal asked
+        asked += 1
+        return "settling" if at > share else ""
+
+    found, failed = _edge(failing, 0.02, 1e-3, near)
+    assert failed == "settling"
+    assert found is not None
+    assert share / (1 + 1e-3) <= found <= share
+    if near is not None and near < 1 and abs(near / share - 1) < BESIDE * 1e-3:
+        assert asked <= 4
+
+
+@pytest.mark.parametrize("near", [None, 0.3, 0.9999])
+def test_the_edge_of_the_perfect_axis_is_the_end(near: float | None) -> None:
+    assert _edge(lambda _: "", 0.02, 1e-3, near) == (1.0, "")
+    assert _edge(lambda _: "settling", 0.02, 1e-3, near) == (None, "settling")
