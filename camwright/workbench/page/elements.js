@@ -22,6 +22,15 @@ export function button(text, press) {
   return made;
 }
 
+/** Let Enter and the space bar press an element of a drawing, as they press a button. */
+export function onPress(element, press) {
+  element.addEventListener("keydown", (event) => {
+    if (!["Enter", " "].includes(event.key)) return;
+    event.preventDefault();
+    press();
+  });
+}
+
 /** A choice: names as they are, or pairs of value and name. */
 export function chooser(options, label, value) {
   const select = make("select");

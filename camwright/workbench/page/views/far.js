@@ -13,14 +13,15 @@ export function show(panel) {
     const down = (value, digitsKept) => Math.floor(value * 10 ** digitsKept) / 10 ** digitsKept;
     const up = (value, digitsKept) => Math.ceil(value * 10 ** digitsKept) / 10 ** digitsKept;
     const line = (name, sense, value, unit, path, binding) => {
-      const cell = make("td");
-      if (value !== null) cell.append(button(word("use"), () => set(path, JSON.stringify(`${value} ${unit}`))));
-      return [word(name), word(sense), make("td", value === null ? "–" : `${digits(value, 6)} ${unit}`, "number"), binding ? bindingName(binding) : "–", cell];
+      const cell = make("td", value === null ? "–" : undefined, "number");
+      const told = `${digits(value, 6)} ${unit}`;
+      if (value !== null) cell.append(Object.assign(button(told, () => set(path, JSON.stringify(`${value} ${unit}`))), { title: `${word("use")}: ${told}` }));
+      return [`${word(name)}, ${word(sense)}`, cell, binding ? bindingName(binding) : "–"];
     };
     const faster = (value) => (value === null ? null : down(60 * value, 1));
     const shorter = (value) => (value === null ? null : up(value, 1));
     const [perfect, real] = [data.binding, data.axis_in_tolerance_binding];
-    const list = table(["", "", word("value"), word("what binds"), ""], [
+    const list = table(["", word("value"), word("what binds")], [
       line("highest line speed", "perfect axis", faster(speed.perfect_axis), "m/min", "cut.line_speed", perfect.line_speed),
       line("highest line speed", "axis in tolerance", faster(speed.axis_in_tolerance), "m/min", "cut.line_speed", real.line_speed),
       line("shortest cut", "perfect axis", shorter(short.perfect_axis), "mm", "cut.length", perfect.cut_length),

@@ -1,6 +1,6 @@
 // Cut length against line speed: what is possible. A click or the arrow keys set the working point.
 
-import { button, make, svg } from "../elements.js";
+import { button, make, onPress, svg } from "../elements.js";
 import { digits } from "../numbers.js";
 import { plot } from "../scale.js";
 import { commit, state } from "../state.js";
@@ -39,7 +39,7 @@ function draw(data) {
     spot.setAttribute("cy", down(here[1]));
     told.textContent = `${digits(here[0], 4)} mm, ${digits(here[1], 4)} m/min`;
   };
-  const told = make("p");
+  const told = Object.assign(make("p"), { role: "status" });
   const take = () => commit(withValue(withValue(state.text, "cut.length", JSON.stringify(`${Number(here[0].toPrecision(4))} mm`)), "cut.line_speed", JSON.stringify(`${Number(here[1].toPrecision(4))} m/min`)));
   put(here);
   drawing.append(spot);
@@ -52,10 +52,9 @@ function draw(data) {
   spot.addEventListener("keydown", (event) => {
     const step = { ArrowLeft: [0.99, 1], ArrowRight: [1.01, 1], ArrowUp: [1, 1.01], ArrowDown: [1, 0.99] }[event.key];
     if (step) put([here[0] * step[0], here[1] * step[1]]);
-    else if (event.key === "Enter") take();
-    else return;
-    event.preventDefault();
+    if (step) event.preventDefault();
   });
+  onPress(spot, take);
   return [figure(drawing, edges), told, make("p", word("click"))];
 }
 

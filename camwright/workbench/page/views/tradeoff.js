@@ -1,6 +1,6 @@
 // What each objective costs in the others: every optimum and law as a point between two measures, and as a table.
 
-import { chooser, make, row, svg, table } from "../elements.js";
+import { chooser, make, onPress, row, svg, table } from "../elements.js";
 import { digits, printed } from "../numbers.js";
 import { plot } from "../scale.js";
 import { set, state } from "../state.js";
@@ -36,6 +36,21 @@ function costs(data, names) {
   return list;
 }
 
+/** The name of a disc beside it, where no other name stands; none where there is no room: the disc tells it too. */
+function nameAt(text, x, y, { top, bottom }, named) {
+  const width = [...text].reduce((sum, sign) => sum + (sign > "\u2e80" ? 11.5 : 6.4), 0);
+  const left = x > 300;
+  const from = left ? x - 9 - width : x + 9;
+  for (const below of [-6, 14, -19, 27, -32, 40]) {
+    const box = [from, y + below - 11, from + width, y + below + 2];
+    const free = box[1] >= top - 2 && box[3] <= bottom && named.every((other) => box[0] > other[2] || box[2] < other[0] || box[1] > other[3] || box[3] < other[1]);
+    if (!free) continue;
+    named.push(box);
+    return [svg("text", { class: "mark", x: left ? x - 9 : x + 9, y: y + below, "text-anchor": left ? "end" : "start" }, text)];
+  }
+  return [];
+}
+
 /** Points between two measures; an optimum is a disc that a click makes the job's objective. */
 function scatter(data, first, second) {
   const points = data.profiles.map((each) => ({ ...each, at: [each.values[first], each.values[second]] })).filter(({ at }) => at.every((value) => value !== null));
@@ -48,6 +63,7 @@ function scatter(data, first, second) {
   const made = plot({ x: ends(0), y: ends(1), xTitle: `${word(first)} (${unit(first)})`, yTitle: `${word(second)} (${unit(second)})` });
   made.drawing.setAttribute("role", "group");
   made.drawing.setAttribute("aria-label", word("tradeoff"));
+  const named = points.map(({ at }) => [made.across(at[0]) - 6, made.down(at[1]) - 6, made.across(at[0]) + 6, made.down(at[1]) + 6]); // and discs
   for (const { name, kind, at, within_limits: within } of points) {
     const [x, y] = [made.across(at[0]), made.down(at[1])];
     const own = kind === "objective";
@@ -58,8 +74,8 @@ function scatter(data, first, second) {
     const choose = () => set("objective.minimise", JSON.stringify(name));
     for (const [attribute, value] of [["tabindex", 0], ["role", "button"], ["aria-label", `${word("minimise")}: ${word(name)}`]]) mark.setAttribute(attribute, value);
     mark.addEventListener("click", choose);
-    mark.addEventListener("keydown", (event) => event.key === "Enter" && choose());
-    made.drawing.append(svg("text", { class: "mark", x: x + (x > 300 ? -9 : 9), y: y - 6, "text-anchor": x > 300 ? "end" : "start" }, word(name)));
+    onPress(mark, choose);
+    made.drawing.append(...nameAt(word(name), x, y, made, named));
   }
   return made.drawing;
 }
