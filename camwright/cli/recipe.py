@@ -10,6 +10,7 @@ import typer
 from camwright.cli.options import Json, Quiet
 from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.house.files import read_text, require_replaceable
+from camwright.house.numbers import Units, number, with_unit
 from camwright.house.output import Voice, complain
 from camwright.house.owned import Work
 from camwright.jobs.job import parse_job
@@ -19,7 +20,7 @@ from camwright.recipes.build import STEPS, designed, make_recipe
 from camwright.recipes.compare import Change, compare_answer, compare_recipes, read_recipe
 from camwright.recipes.language import Language
 from camwright.recipes.manifest import MANIFEST_FILE, sha256
-from camwright.recipes.model import Particulars, Recipe
+from camwright.recipes.model import Particulars, Recipe, RecipeCheck
 from camwright.recipes.signature import SIGNATURE_FILE, require_private_key, signed
 from camwright.recipes.write import WRITE_STEPS, is_recipe, recipe_files, write_folder
 from camwright.stored.design_file import MOST_BYTES, parse_design
@@ -125,9 +126,22 @@ def _make(
             "recipe", job.name, made.recipe.provenance.job_sha256, file if out is None and stored is None else None
         )
         write_folder(files, folder, work, complain)
-    answer = {"files": [{"path": path, "sha256": sha256(data)} for path, data in sorted(files.items())]}
-    voice.answer(lambda: answer, lambda: _recipe_view(made.recipe, answer, folder))
+    answer = {
+        "released": made.recipe.released,
+        "failed_checks": _failed(made.recipe),
+        "files": [{"path": path, "sha256": sha256(data)} for path, data in sorted(files.items())],
+    }
+    further = "" if made.recipe.released or stored is not None else f"camwright design {file} says what makes it pass"
+    voice.answer(lambda: answer, lambda: _recipe_view(made.recipe, answer, folder, job.units, further))
     return 0 if made.recipe.released else 1
+
+
+def _failed(recipe: Recipe) -> list[str]:
+    """Name the checks that failed: of the cam, and of each table after its target."""
+    own = [check.name for check in recipe.checks if not check.passed]
+    return own + [
+        f"{table.target}: {check.name}" for table in recipe.tables for check in table.checks if not check.passed
+    ]
 
 
 def _targets(text: str) -> list[str]:
@@ -153,17 +167,32 @@ def _compare(before: Path, after: Path, voice: Voice) -> int:
     return 0
 
 
-def _recipe_view(recipe: Recipe, answer: dict[str, Any], out: Path) -> RenderableType:
+def _recipe_view(recipe: Recipe, answer: dict[str, Any], out: Path, units: Units, further: str) -> RenderableType:
+    """Show whether the cam is released and what failed, then the files."""
     table = new_table(title=f"{out}", title_justify="left")
     table.add_column("file")
     table.add_column("SHA-256")
     for file in answer["files"]:
         table.add_row(new_text(file["path"]), file["sha256"])
-    state = "released" if recipe.released else "NOT RELEASED: a check failed"
     notes = [
         new_text(f"{refusal.target} cannot take this cam: {'; '.join(refusal.reasons)}") for refusal in recipe.refused
     ]
-    return stacked(new_text(f"{recipe.name}: {state}"), table, *notes)
+    state = new_text(f"{recipe.name}: released")
+    if not recipe.released:
+        failed = [_told(check, units) for check in recipe.checks if not check.passed]
+        failed += [name for name in answer["failed_checks"] if ": " in name]
+        state = new_text(f"{recipe.name}: NOT RELEASED: {'; '.join(failed) or 'no line speed passes'}", "bold red")
+    return stacked(state, table, *notes, *([new_text(further)] if further else []))
+
+
+def _told(check: RecipeCheck, units: Units) -> str:
+    """Say what a check that failed found, and its limit."""
+    known = check.unit in units.shown
+    value, limit = (
+        "–" if each is None else with_unit(each, check.unit, units=units) if known else f"{number(each)} {check.unit}"
+        for each in (check.value, check.limit)
+    )
+    return f"{check.name} {value} (limit {limit})"
 
 
 def _compare_view(before: Path, after: Path, changes: list[Change]) -> RenderableType:

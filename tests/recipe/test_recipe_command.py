@@ -191,7 +191,12 @@ def test_a_failed_check_is_not_released_and_ends_with_1(
     job = job_with(sync_tolerance='"0.001 mm"')
     code, said, _ = say("recipe", job, "--targets", "csv", "--out", out)
     assert code == 1
-    assert "NOT RELEASED: a check failed" in said
+    assert "NOT RELEASED: settling – (limit 200 mm); shear_zone_error 0.020273 mm (limit 0.001 mm);" in said
+    assert f"camwright design {job} says what makes it pass" in " ".join(said.split())
+    _, answer, _ = say("recipe", job, "--targets", "csv", "--out", out, "--json")
+    failed = {check.name for check in read_recipe(out).checks if not check.passed}
+    assert json.loads(answer)["released"] is False
+    assert failed <= set(json.loads(answer)["failed_checks"])
     recipe = read_recipe(out)
     assert not recipe.released
     assert [table.files for table in recipe.tables] == [()]
