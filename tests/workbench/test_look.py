@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import io
 import re
 from pathlib import Path
 from typing import Any
 
+import pypdf
 import pytest
 
 PAGE = Path(__file__).parents[2] / "camwright" / "workbench" / "page"
@@ -107,4 +109,7 @@ def test_on_paper_stand_plots_readings_and_the_view(page: Any) -> None:
         assert page.locator(shown).first.is_visible(), shown
     for hidden in ("nav", "#job", "#tabs"):
         assert not page.locator(hidden).is_visible(), hidden
-    assert page.pdf(format="A4").startswith(b"%PDF")
+    sheet = pypdf.PdfReader(io.BytesIO(page.pdf(format="A4")))
+    texts = [each.extract_text() for each in sheet.pages]
+    assert "jerk binds" in texts[0]  # plots on the first page, under the name
+    assert 'sync_tolerance = "0.1 mm"' in texts[-1]  # and the job file on the last

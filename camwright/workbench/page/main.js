@@ -173,6 +173,7 @@ function wire() {
     if (event.target === $("plots") && place && readings.key($("readings"), place, state.drawn, event)) event.preventDefault();
   });
   addEventListener("keydown", keys);
+  addEventListener("beforeprint", () => { $("printed").textContent = state.text; });
   addEventListener("resize", () => state.drawn && render());
 }
 
