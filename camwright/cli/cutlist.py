@@ -176,8 +176,10 @@ def _said(study: ListStudy, changes: int) -> str:
     """Say the time, the scrap, and what the servo makes of it."""
     planned = study.planned
     units, plan = planned.job.units, planned.line
+    line = planned.job.line
+    jerk = "" if line.jerk is None else f" and {with_unit(line.jerk, 'm/s^3', 4, units)}"
     lines = [
-        f"{plan.time:.5g} s on a line that ramps with {with_unit(planned.job.line.acceleration or 0.0, 'm/s^2', 4, units)}",
+        f"{plan.time:.5g} s on a line that ramps with {with_unit(line.acceleration or 0.0, 'm/s^2', 4, units)}{jerk}",
         f"{planned.time_at_slowest:.5g} s at the slowest piece's speed",
         f"scrap {with_unit(planned.asked.scrap, 'm', 5, units)}",
     ]

@@ -28,6 +28,7 @@ _WORDS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     ),
     "kind": (("art", "typ"), ("kind", "type", "operation", "种类", "类型")),
     "time": (("t",), ("time", "zeit", "时间")),
+    "acceleration": (("a",), ("acceleration", "beschl", "加速度")),
     "speed": (("v",), ("speed", "velocity", "geschw", "速度", "车速")),
     "offset": (("c",), ("offset", "versatz", "abweichung", "偏移", "偏差")),
 }

@@ -10,12 +10,11 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from camwright.design.production.line_plan import fastest_line
-from camwright.house.numbers import with_unit
 from camwright.house.progress import Step, ignore
 from camwright.jobs.job import Job
-from camwright.production.cams import ListCam, highest_speed, list_cam, list_job, ramping_speed
+from camwright.production.cams import ListCam, highest_speed, list_cam, list_job
 from camwright.production.changes import Change, find_changes
+from camwright.production.line_speeds import given_line_tops, line_speed_tops, plan_line
 from camwright.production.list_checks import (
     require_passed,
     require_possible,
@@ -26,7 +25,7 @@ from camwright.production.list_checks import (
 )
 from camwright.production.tables import TargetSeams, list_tables
 from camwright.profiles.cut_list import CutList
-from camwright.profiles.errors import InfeasibleError, InputError
+from camwright.profiles.errors import InputError
 from camwright.profiles.line import STEADY
 from camwright.profiles.line_run import LineRun
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
@@ -40,9 +39,6 @@ _ALLOWED = 1e-3
 
 _MORE = 1.02
 """Factor on the speed of a given line for which its cams are designed: marks move the pieces along it."""
-
-_STEADY = 1e-9
-"""Share by which the line's speed may change within a piece that counts as steady."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,6 +75,11 @@ class ListPlan:
     def transitions(self) -> tuple[Change, ...]:
         """Changes of the list that go through a transition."""
         return tuple(change for change in self.changes.values() if change.transition is not None)
+
+    @property
+    def steady(self) -> NDArray[np.bool_]:
+        """Pieces whose cam bears no ramp of the line, shape ``(pieces,)``."""
+        return ~np.array([cam.bears_ramps for cam in self.cams])[self.of]
 
     @property
     def time_at_slowest(self) -> float:
@@ -195,12 +196,14 @@ def plan_list(job: Job, asked: CutList, line: LineRun | None = None, step: Step 
     perfect = np.array([highest_speed(job, length) for length in lengths.tolist()])
     require_possible(job, asked, of, perfect)
     step("finding which cams run while the line ramps")
-    acceleration, tops = job.line.acceleration, np.minimum(perfect, job.cut.line_speed)
+    tops = np.minimum(perfect, job.cut.line_speed)
     if line is not None:  # for the speeds that they will see
         fastest = np.zeros(len(lengths))
         np.maximum.at(fastest, of, line.fastest_between(np.concatenate([[0.0], np.cumsum(gaps)])))
-        tops = np.minimum(tops, np.where(fastest > 0.0, _MORE * fastest, tops))
-    tops, bears = _tops(job, gaps, lengths, of, tops, planned=line is None)
+        wanted = np.where(fastest > 0.0, fastest, tops)
+        tops, bears = given_line_tops(job, lengths, np.minimum(tops, _MORE * wanted), wanted)
+    else:
+        tops, bears = line_speed_tops(job, gaps, lengths, of, tops)
     step("designing the cams")
     cams = tuple(
         list_cam(number + 1, job, length, most, top, job.line if bears[number] else STEADY)
@@ -214,7 +217,7 @@ def plan_list(job: Job, asked: CutList, line: LineRun | None = None, step: Step 
     require_running(job, asked, of, changes, cams)
     step("planning the speed of the line")
     highest = _highest(cams, of, changes)
-    run = fastest_line(gaps, highest, acceleration or 0.0) if line is None else line
+    run = plan_line(job.line, gaps, highest, ~np.array([cam.bears_ramps for cam in cams])[of]) if line is None else line
     require_simulable(float(run.when(material)), job, runs)
     return ListPlan(job, asked, cams, of, changes, highest, run)
 
@@ -249,66 +252,6 @@ def list_shift(
     kinds = np.array([list(places).index(cam.running.zero) for cam in cams], dtype=np.intp)
     table = motion_table(parts, order, cams[0].job.machine.pitch, cams[0].job.cut.sync_zone, longer)
     return Shift(table, list(places.values()), kinds[of])
-
-
-def _tops(
-    job: Job, gaps: FloatArray, lengths: FloatArray, of: NDArray[np.intp], tops: FloatArray, *, planned: bool
-) -> tuple[FloatArray, NDArray[np.bool_]]:
-    """Find the line speed that each cam is designed for, and whether it is to bear the line's ramps there.
-
-    A cam that runs while the line ramps may run no faster than what bears it, which may make others ramp. One that runs at a steady line
-    only need not bear its ramps.
-
-    Parameters
-    ----------
-    gaps, of
-        The list, and which cam makes each piece.
-    lengths
-        Lengths of the cams (m).
-    tops
-        Their line speeds on a line that keeps its speed (m/s).
-    planned
-        Whether the line's speed is planned; where it is given every cam that can is to bear the ramps.
-
-    Returns
-    -------
-    (tops, bears)
-        Shapes ``(cams,)``.
-
-    Raises
-    ------
-    InfeasibleError
-        A cam that runs while the line ramps bears it at no line speed.
-    """
-    found = np.array(
-        [ramping_speed(job, length, top) for length, top in zip(lengths.tolist(), tops.tolist(), strict=True)]
-    )
-    bears = found == tops
-    ramp = job.line.acceleration
-    if not planned or ramp is None:
-        return tops, bears & job.line.ramps
-    ends = np.concatenate([[0.0], np.cumsum(gaps)])
-    places = np.stack([ends[:-1], 0.5 * (ends[:-1] + ends[1:]), ends[1:]])
-    slower = np.zeros(len(tops), dtype=bool)
-    while True:
-        plan = fastest_line(gaps, np.where(slower, found, tops)[of], ramp)
-        at = plan.speed(plan.when(places))
-        ramping = np.zeros(len(tops), dtype=bool)
-        ramping[np.unique(of[at.max(axis=0) > at.min(axis=0) * (1.0 + _STEADY)])] = True
-        more = ramping & ~bears & ~slower
-        if not more.any():
-            return np.where(slower, found, tops), bears | slower
-        if (found[more] <= 0.0).any():
-            length = float(lengths[more][found[more] <= 0.0][0])
-            raise InfeasibleError(
-                f"no cam of {with_unit(length, 'm', 4, job.units)} bears the line's ramp of "
-                f"{with_unit(ramp, 'm/s^2', 4, job.units)}; let it ramp more gently",
-                "line.acceleration",
-                None,
-                "m/s^2",
-                (),
-            )
-        slower |= more
 
 
 def _highest(cams: Sequence[ListCam], of: NDArray[np.intp], changes: dict[tuple[int, int], Change]) -> FloatArray:

@@ -58,6 +58,7 @@ def list_answer(study: ListStudy) -> dict[str, Any]:
         "crops": int(asked.crops.sum()),
         "material_m": float(asked.gaps.sum()),
         "line_acceleration_m_per_s2": job.line.acceleration,
+        "line_jerk_m_per_s3": job.line.jerk,
         "cam_list": [
             {
                 "cam": cam.number,
@@ -100,7 +101,10 @@ def list_files(study: ListStudy) -> dict[str, str]:
         f"# job SHA-256: {study.planned.job.sha256}",
         "# highest line speeds are rounded down; a cam begins at the end of the sync zone before it",
     ]
-    ramp = f"the line's ramp: {study.planned.job.line.acceleration:.9g} m/s^2"
+    line = study.planned.job.line
+    ramp = f"the line's ramp: {line.acceleration:.9g} m/s^2"
+    if line.jerk is not None:
+        ramp += f", its jerk: {line.jerk:.9g} m/s^3; the acceleration is straight between the rows"
     return {
         "cut-list.csv": "\n".join([*head, PLC_HEADER, *_pieces(study.planned)]) + "\n",
         "cams.csv": "\n".join([*head, CAMS_HEADER, *_cams(study.planned)]) + "\n",

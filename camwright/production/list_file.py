@@ -23,6 +23,8 @@ LIST_HEADER = "length [mm],quantity,kind"
 LINE_HEADER = "time [s],speed [m/min]"
 
 _MOST_FAULTS = 20
+_UNLIKE = 1e-6
+"""Share of the highest speed by which accelerations may miss the speeds that they add up to: decimals of a table."""
 _CELL = re.compile(r'([-+]?[0-9.,]+(?:[eE][-+]?[0-9]{1,3})?)\s*([^\W\d_°"][^;,|\t]{0,20}|[°"])?')
 
 
@@ -74,6 +76,8 @@ def parse_cut_list(text: str, place: str) -> CutList:
 def read_line_run(path: Path) -> LineRun:
     """Read the speed of the line over time: straight between the rows, kept beyond both ends.
 
+    With a column of accelerations these are straight between the rows.
+
     Raises
     ------
     InputError
@@ -85,7 +89,7 @@ def read_line_run(path: Path) -> LineRun:
 def parse_line_run(text: str, place: str) -> LineRun:
     """Read the speed of the line from its text; as `read_line_run`."""
     sheet = read_sheet(text, place, role, LINE_HEADER, "table of line speeds")
-    at = columns(sheet, ("time", "speed"), needed=2, header=LINE_HEADER)
+    at = columns(sheet, ("time", "speed", "acceleration"), needed=2, header=LINE_HEADER)
     time = measured(sheet, at["time"], "time", "time", LINE_HEADER)
     time, speed = time - time[0], measured(sheet, at["speed"], "speed", "speed", LINE_HEADER)
     if len(time) < 2:
@@ -104,7 +108,17 @@ def parse_line_run(text: str, place: str) -> LineRun:
             raise InputError(
                 f"{place}, line {line}: the time does not increase from the row before; sort the rows by time"
             )
-    return LineRun(time, speed)
+    if "acceleration" not in at:
+        return LineRun(time, speed)
+    acceleration = measured(sheet, at["acceleration"], "acceleration", "acceleration", LINE_HEADER)
+    off = np.abs(np.diff(speed) - 0.5 * np.diff(time) * (acceleration[:-1] + acceleration[1:]))
+    wrong = np.flatnonzero(off > _UNLIKE * max(float(speed.max()), 1e-9))
+    if len(wrong):
+        raise InputError(
+            f"{place}, line {sheet.lines[int(wrong[0]) + 1]}: accelerations do not add up to the speeds; leave the column out, and the "
+            "speed is straight between the rows"
+        )
+    return LineRun(time, speed, acceleration)
 
 
 def _is_list_cell(cell: str, comma: bool) -> bool:
@@ -160,9 +174,9 @@ def _kind(cell: str) -> PieceKind:
 def line_run_text(run: LineRun, comments: Sequence[str] = ()) -> str:
     """Write the speed of the line over time so that `parse_line_run` reads it back."""
     lines = ["# " + " ".join(comment.splitlines()) for comment in comments]
-    lines.append(LINE_HEADER)
-    lines += [
-        f"{time!r},{speed!r}"
-        for time, speed in zip(run.times.tolist(), (np.asarray(run.speeds) * 60).tolist(), strict=True)
-    ]
+    values = [run.times, np.asarray(run.speeds) * 60]
+    if run.accelerations is not None:
+        values.append(run.accelerations)
+    lines.append(LINE_HEADER + (",acceleration [m/s^2]" if run.accelerations is not None else ""))
+    lines += [",".join(map(repr, row)) for row in zip(*(column.tolist() for column in values), strict=True)]
     return "\n".join(lines) + "\n"

@@ -7,11 +7,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from camwright.design.production.line_plan import HARDEST, fastest_line
+from camwright.design.production.line_plan import HARDEST
 from camwright.house.numbers import with_unit
 from camwright.house.progress import Step, ignore
 from camwright.jobs.job import Job
 from camwright.production.cut_list import ListPlan, list_shift, plan_list
+from camwright.production.line_speeds import plan_line
 from camwright.production.list_checks import require_passed
 from camwright.profiles.cut_list import CutList
 from camwright.profiles.errors import InputError
@@ -168,8 +169,7 @@ def simulate_shift(
     lengths = asked.gaps if longer is None else asked.gaps + longer
     _require_long(lengths, job)
     if line is None and longer is not None:  # the line follows the pieces as they come
-        ramp = job.line.acceleration or 0.0
-        planned = replace(planned, line=fastest_line(lengths, planned.highest, ramp))
+        planned = replace(planned, line=plan_line(job.line, lengths, planned.highest, planned.steady))
     slip = _normal(draw, pieces) * disturbances.slip if disturbances.slip else np.zeros(0)
     noise = _normal(draw, _NOISES) * disturbances.noise if disturbances.noise else np.zeros(0)
     wrong = Disturbance(noise, slip)

@@ -5,10 +5,12 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from camwright.cli.main import main
 from camwright.jobs.job import BUNDLED_JOB
+from camwright.production.list_file import read_line_run
 
 JOB = str(BUNDLED_JOB)
 RAMP = ("--line-acceleration", "1 m/s^2")
@@ -71,6 +73,28 @@ def test_the_plan_runs_in_the_simulation(order: str, capsys: pytest.CaptureFixtu
     again = said(capsys)
     assert again["line"] == "planned"
     assert again["time_s"] == pytest.approx(answer["time_s"], rel=1e-9)
+
+
+def test_a_line_of_limited_jerk_is_planned_and_run_within_it(
+    order: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = Path(JOB).read_text(encoding="utf-8") + '\n[line]\nacceleration = "1 m/s^2"\njerk = "5 m/s^3"\n'
+    (tmp_path / "smooth.toml").write_text(text)
+    assert main(["cutlist", "smooth.toml", order, "--out", "made", "--no-figures", "--json"]) == 0
+    answer = said(capsys)
+    assert answer["line_jerk_m_per_s3"] == 5.0
+    assert 4.051 < float(str(answer["time_s"])) < 4.133  # without a limit of the jerk, and with the slow pieces steady
+    run = read_line_run(tmp_path / "made" / "line-speed.csv")
+    assert run.accelerations is not None
+    assert run.hardest <= 1.0 + 1e-9
+    assert (abs(np.diff(run.accelerations)) <= 5.0 * (1 + 1e-6) * np.diff(run.times) + 1e-12).all()
+    call = ["simulate", "smooth.toml", "--list", order, "--no-figures", "--json"]
+    assert main([*call, "--line", "made/line-speed.csv", "--out", "given"]) == 0
+    given = said(capsys)
+    assert (given["pieces_too_fast"], given["pieces_ramped_too_hard"]) == (0, 0)
+    assert main([*call, "--out", "planned"]) == 0
+    planned = said(capsys)
+    assert (planned["line"], planned["time_s"]) == ("planned", pytest.approx(given["time_s"], rel=1e-6))
 
 
 def test_servos_are_drawn_where_the_job_gives_ranges(

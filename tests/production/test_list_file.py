@@ -149,6 +149,10 @@ def test_a_plan_that_is_written_is_read_back() -> None:
     again = parse_line_run(line_run_text(run, ["a plan"]), "P")
     assert again.times.tolist() == run.times.tolist()
     assert again.speeds == pytest.approx(run.speeds, rel=1e-15)
+    smooth = LineRun(np.array([0.0, 1.0, 2.0]), np.array([1.0, 1.5, 2.0]), np.array([0.0, 1.0, 0.0]))
+    again = parse_line_run(line_run_text(smooth), "P")
+    assert again.accelerations == pytest.approx(smooth.accelerations)
+    assert again.passed(0.5) == pytest.approx(0.5 + 0.5**3 / 6)
 
 
 @pytest.mark.parametrize(
@@ -165,6 +169,10 @@ def test_a_plan_that_is_written_is_read_back() -> None:
         (
             "time [s],speed [m/s]\n0,1\n1,1e7\n",
             "P, line 3: 1e+07 m/s after 1 s; at most 1e+06 m/s and 1e+06 s are read",
+        ),
+        (
+            "time [s],speed [m/s],acceleration [m/s^2]\n0,1,0\n1,1.5,1\n2,2.5,0\n",
+            "P, line 4: accelerations do not add up to the speeds; leave the column out",
         ),
         ("time [s],position [m]\n0,1\n1,2\n", "P, line 1: there is no column speed; write a header like"),
     ],

@@ -64,6 +64,22 @@ def test_when_is_the_inverse_of_passed(steps: list[tuple[float, float]], share: 
     assert float(run.passed(run.when(x))) == pytest.approx(x, abs=1e-9)
 
 
+def test_a_line_whose_acceleration_changes_evenly() -> None:
+    """From 1 m/s over a peak of 1.5 m/s and back: cubics over the time, and their inverse."""
+    run = LineRun(np.array([0.0, 1.0, 3.0, 4.0]), np.array([1.0, 1.5, 1.5, 1.0]), np.array([0.0, 1.0, -1.0, 0.0]))
+    t = np.linspace(0.0, 4.0, 4001)
+    v = run.speed(t)
+    assert run.passed(t) == pytest.approx(
+        np.concatenate([[0.0], np.cumsum(0.5 * np.diff(t) * (v[1:] + v[:-1]))]), abs=1e-6
+    )
+    assert run.when(run.passed(t)) == pytest.approx(t, abs=1e-12)
+    assert run.when([-1.0, run.length + 2.0]).tolist() == [-1.0, 6.0]
+    places = np.array([0.0, float(run.passed(1.5)), run.length])
+    assert run.fastest_between(places).tolist() == pytest.approx([float(run.speed(1.5)), 2.0])
+    assert run.hardest_between(places).tolist() == [1.0, 1.0]
+    assert run.hardest == 1.0
+
+
 def test_a_line_run_adds_up_like_a_sum_of_small_steps() -> None:
     run = LineRun(np.array([0.0, 1.0, 2.0, 5.0]), np.array([0.0, 2.0, 2.0, 0.5]))
     t = np.linspace(0.0, 6.0, 600_001)
