@@ -19,12 +19,11 @@ from multiprocessing.synchronize import Event
 from camwright.book.entry import Entry
 from camwright.book.making import Made, make_chunk
 from camwright.book.plan import Book
+from camwright.house.threads import VARIABLES
 from camwright.profiles.errors import InputError
 
 _AHEAD = 2
 """Chunks that lie ready for each worker."""
-
-_ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 
 
 Work = Callable[[Book, Sequence[int]], list[Made]]
@@ -78,7 +77,7 @@ def local_crew(jobs: int, work: Work = make_chunk) -> Crew:
     def start() -> Iterator[Executor]:
         context = multiprocessing.get_context("spawn")
         stop = context.Event()
-        with _environment(dict.fromkeys(_ONE_THREAD, "1")):
+        with _environment(dict.fromkeys(VARIABLES, "1")):
             executor = ProcessPoolExecutor(jobs, context, _settle, (stop,))
             try:
                 with _interrupts_held():

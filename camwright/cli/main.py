@@ -18,6 +18,7 @@ from camwright.cli.commands import COMMANDS
 from camwright.house.json_text import to_json
 from camwright.house.output import BROKEN_PIPE, complain, prepare_streams, silence_stdout
 from camwright.house.provenance import camwright_version
+from camwright.house.threads import ask_for_one_thread
 from camwright.jobs.wording import error_words, unforeseen
 from camwright.profiles.errors import CamwrightError, InputError, SolverError
 
@@ -91,6 +92,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         interrupted; 141 the reader of standard output is gone.
     """
     prepare_streams()
+    ask_for_one_thread()
     try:
         return _run(list(sys.argv[1:] if arguments is None else arguments))
     except (KeyboardInterrupt, typer.Abort):

@@ -9,6 +9,7 @@ import numpy as np
 
 from camwright.design.optimise import Solution, solve
 from camwright.design.optimise_axis import solve_axis
+from camwright.house.threads import one_thread
 from camwright.jobs.job import Job
 from camwright.jobs.servos import between_of, servos_of
 from camwright.jobs.wording import in_job_words
@@ -16,8 +17,8 @@ from camwright.profiles.errors import InfeasibleError, InputError, SolverError
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
-from camwright.validation.servo.line_speeds import line_speed_errors
-from camwright.validation.servo.monte_carlo import shear_zone_errors
+from camwright.validation.servo.line_speeds import line_speed_errors, worst_line_speed_error
+from camwright.validation.servo.monte_carlo import worst_shear_zone_error
 from camwright.validation.servo.response import shear_zone_error
 from camwright.validation.servo.simulation import simulate
 
@@ -114,7 +115,7 @@ def solve_job(job: Job, *, suggest: bool = True) -> Solution:
     SolverError
         The solver failed.
     """
-    with in_job_words(job.units):
+    with in_job_words(job.units), one_thread():
         if job.servo_aware:
             servos, between, shares = servos_of(job), between_of(job), shares_of(job.slowest)
             return solve_axis(job.task, job.objective, job.command, servos, between, shares, suggest=suggest)
@@ -143,7 +144,7 @@ def sync_error(profile: CamProfile, job: Job) -> float | None:
     A servo-aware job's line speeds count too.
     """
     speeds = np.array(shares_of(job.slowest)) * job.cut.line_speed
-    worst = float(line_speed_errors(profile, job.task, servos_of(job), speeds).max())
+    worst = worst_line_speed_error(profile, job.task, servos_of(job), speeds)
     return worst if math.isfinite(worst) else None
 
 
@@ -168,7 +169,7 @@ def robustness(job: Job, profile: CamProfile, solution: Solution | None = None) 
     if job.slowest < 1.0:  # each at a line speed of its own
         shares = np.random.default_rng(SEED).uniform(job.slowest, 1.0, DRAWS).tolist()
         drawn = tuple(servo.at_speed(share) for servo, share in zip(drawn, shares, strict=True))
-    worst = float(shear_zone_errors(profile, job.task, drawn).max())
+    worst = worst_shear_zone_error(profile, job.task, drawn)
     designed = solution.axis.error if solution is not None and solution.axis is not None else None
     return Robustness(len(ranges.vertices(job.servo)), designed, worst, DRAWS)
 

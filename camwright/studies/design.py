@@ -9,6 +9,7 @@ from functools import cached_property
 from camwright.design.optimise import Solution
 from camwright.design.returns.ipopt import SolveStatus
 from camwright.house.progress import Step, ignore
+from camwright.house.threads import one_thread
 from camwright.jobs.job import Job
 from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.polynomial.profile import CamProfile
@@ -125,6 +126,12 @@ def optimise(job: Job, step: Step = ignore) -> Design:
     >>> result.passed, round(result.objective, 2)
     (True, 9.07)
     """
+    with one_thread():
+        return _optimised(job, step)
+
+
+def _optimised(job: Job, step: Step) -> Design:
+    """Find, prove and compare, as `optimise` says."""
     step("solving")
     solution = solve_or_advise(job)
     placed = replace(job, machine=solution.machine)

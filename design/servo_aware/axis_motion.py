@@ -23,6 +23,8 @@ BETWEEN = 1.1
 # By this share a sync error may be above the least, and by this share a peak, for the sake of what comes after them.
 KEPT_ERROR = 1e-3
 KEPT_PEAK = 1e-5
+# Share of its limit of which it is not worth while to look for a lower peak.
+WORTH = 0.98
 # Most rounds that a command of the least peak is smoothed in, and most times that this is begun; it will do as it is.
 SMOOTHING, AGAIN = 8, 4
 
@@ -71,8 +73,9 @@ def design_axis(problem: AxisProblem, objective: ObjectiveName) -> AxisMotion | 
     """Design a command whose axis keeps to the material in the shear zone.
 
     With ``"sync_error"`` the largest sync error is made least, down to 0.5 % of the tolerance, then, within a thousandth of it, the peak
-    acceleration; with an objective of the motion the sync tolerance is a limit. Of all commands with the least peak that of least RMS
-    jerk is taken. The limits are kept by the command, and by the axis as `AxisProblem.axis_limits` says.
+    acceleration, where that can be below 98 % of its limit; with an objective of the motion the sync tolerance is a limit. Of all commands
+    with the least peak that of least RMS jerk is taken. The limits are kept by the command, and by the axis as `AxisProblem.axis_limits`
+    says.
 
     Returns
     -------
@@ -106,7 +109,9 @@ def design_axis(problem: AxisProblem, objective: ObjectiveName) -> AxisMotion | 
     if found is None:
         return None
     band = found[1] * (1.0 + KEPT_ERROR) / (1.0 - programme.margin)
-    softer = _softest(programme, band)
+    # where the prices tell that a softer command is hardly softer the limit itself will do
+    hard = programme.least_share_of_limit(2, KEPT_ERROR) > WORTH
+    softer = (found[0], problem.limits[2][1]) if hard else _softest(programme, band)
     if softer is not None:
         found = _smoothest(programme, softer, band, "peak_acceleration")
     return _motion(programme, found[0])

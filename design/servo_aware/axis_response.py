@@ -233,7 +233,7 @@ class _Zone:
 def _grid_states(axis: Axis, profile: CamProfile, first: int, count: int) -> tuple[FloatArray, FloatArray]:
     """States of the plant and held references as if each step of the common grid were a sampling instant."""
     past = memory(axis.servo.loop)
-    ahead = _shared(past)
+    ahead = shared(past)
     delay = axis.task.cut.line_speed * axis.servo.delay
     command = _on_steps(profile, axis.sample / PHASES, delay, first - ahead * PHASES, first + count)
     command = command[(ahead - past) * PHASES :]
@@ -252,11 +252,11 @@ def _edge_states(axis: Axis, profile: CamProfile) -> tuple[FloatArray, FloatArra
     zone = axis._zone
     past = memory(axis.servo.loop)
     newest = zone.edges - axis.task.cut.line_speed * (zone.edge_times + axis.servo.delay)
-    commands = _before(profile, tuple(newest.tolist()), axis.sample, _shared(past) + 1)
+    commands = _before(profile, tuple(newest.tolist()), axis.sample, shared(past) + 1)
     return sampled_states(axis.servo, commands[:, : past + 1])
 
 
-def _shared(past: int) -> int:
+def shared(past: int) -> int:
     """Round a number of samples up: servos that forget nearly alike then ask for the same part of a command."""
     return -(-past // _SHARED) * _SHARED
 

@@ -124,8 +124,9 @@ class CommandBasis:
             constant += np.einsum("rs,rs->r", np.where(free, 0.0, weights), known)
         count = len(self.constant)
         flat = (np.arange(len(places))[:, None, None] * count + index[..., None] + np.arange(4)).ravel()
-        table = np.bincount(flat, values.ravel(), minlength=len(places) * count).reshape(len(places), count)
-        return table @ self.matrix, constant + table @ self.constant
+        found = np.bincount(flat, values.ravel(), minlength=len(places) * count)
+        table = np.asarray(found.reshape(len(places), count), dtype=np.float64)
+        return self._of_unknowns(table), constant + table @ self.constant
 
     def sums(self, places: FloatArray, weights: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Several weighted sums of the command at the same places.
@@ -168,7 +169,16 @@ class CommandBasis:
         table = np.zeros((rows, kinds, len(self.constant)))
         for spline in range(_DEGREE + 1):
             table[:, :, spline : spline + intervals] += np.einsum("kpri,ip->rki", moments, self.pieces[:, :, spline])
-        return table @ self.matrix, constant + table @ self.constant
+        return self._of_unknowns(table), constant + table @ self.constant
+
+    def _of_unknowns(self, table: FloatArray) -> FloatArray:
+        """Turn rows over the coefficients into rows over the unknowns: ``table @ matrix``, whose columns hold a single 1 each, or two."""
+        count = self.matrix.shape[1]
+        if self.sync is not None:
+            return np.ascontiguousarray(table[..., _DEGREE:-_DEGREE])
+        found = table[..., :count].copy()
+        found[..., :_DEGREE] += table[..., count:]  # the coefficients behind the end are those of the beginning
+        return found
 
     def profile(self, unknowns: FloatArray) -> CamProfile:
         """Return the command as a profile over ``[0, length]``, its slave counted as in the basis."""

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from camwright.design.servo_aware.axis_problem import AxisProblem, thinned
 from camwright.design.servo_aware.axis_response import PHASES, SUBSTEPS, Axis
@@ -18,9 +17,10 @@ from camwright.design.servo_aware.rows import (
     MOST_ROWS,
     RATIO,
     AxisRows,
+    merged,
     worst_places,
 )
-from camwright.design.servo_aware.zone_table import ZoneTable
+from camwright.design.servo_aware.zone_table import Tried, ZoneTable
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 
 # Limits of the axis' own speed and acceleration are drawn in by this share, for the same reason.
@@ -28,15 +28,19 @@ AXIS_MARGIN = 1e-3
 # Places in the shear zone that have rows from the start, one for each sample in it, at least so many, and times after a sample: few where
 # rounds are cheap, more for the linear programmes of a single servo.
 FEW, MORE = (6, 2), (12, 4)
-# Of several line speeds about so many have rows from the start, and each so many-th has the axis' own motion looked at.
-BEGUN, OWN = 11, 4
-# Line speeds without rows are looked at where those with rows exceed their limit by less than this share of it.
-ASIDE = 0.05
-# Most line speeds of a servo that get rows in a round: those where it is worst, far from each other.
-MOST_SPEEDS = 16
+# Of several line speeds about so many have rows from the start, of those of a servo at a corner so many, and each so many-th has the axis'
+# own motion looked at.
+BEGUN, CORNERS_BEGUN, OWN = 11, 3, 4
+# Line speeds without rows are looked at where those with rows exceed their limit by less than this share of it, as are those that stayed
+# below that share of it when they were looked at last. Where one exceeds it, places above that share of it get rows.
+ASIDE, FAR, BESIDE = 0.05, 0.7, 0.9
+# Most line speeds of a servo that get rows in a round, and the share of the greatest excess that theirs has at least.
+MOST_SPEEDS, ALIKE = 16, 0.0
 # Between line speeds where a servo comes so near to its limit (share of it) the one in the middle is looked at, down to this step (share of
 # the band of line speeds).
 NEAR, FINEST = 0.05, 1 / 240
+# Share of the largest error of a servo from which on its line speeds are looked at in the end.
+NEAR_WORST = 0.95
 # Most rows of the axis' own motion added in a round: it runs along its limits where the tool only touches its band.
 MOST_OWN = 24
 # Most servos between the corners that get rows in a round.
@@ -58,6 +62,7 @@ class GatheredRows:
         self.bands: list[AxisRows] = []
         self.ratios: list[AxisRows] = []
         self.own = OwnRows(problem)
+        self._own_due = True
         self._between = BetweenServos(problem)
         self._tables = [[ZoneTable(axis, problem.basis) for axis in axes] for axes in problem.axes]
 
@@ -68,19 +73,19 @@ class GatheredRows:
             return
         first = FEW if in_sync or mean or self.problem.several else MORE
         if not any(table.begun for table in self._tables[0]):
-            for tables in self._tables:
-                for table in thinned(tables, max(1, len(tables) // BEGUN)):
+            for number, tables in enumerate(self._tables):
+                for table in thinned(tables, max(1, len(tables) // (CORNERS_BEGUN if number else BEGUN))):
                     self.bands.append(table.band_rows(table.spread(*first)))
         if ratio and not self.ratios and self.problem.task.cut.shear_zone:
             table = self._tables[0][0]
             self.ratios.append(table.ratio_rows(table.spread(*first)))
 
-    def add_worst(self, profile: CamProfile, band: float, *, ratio: bool) -> bool:
+    def add_worst(self, command: Tried, band: float, *, ratio: bool) -> bool:
         """Add rows where a command leaves its band, or the nominal axis breaks a limit; whether there were any.
 
         Parameters
         ----------
-        profile
+        command
             The command.
         band
             Its band, as a share of the tolerance.
@@ -89,40 +94,54 @@ class GatheredRows:
         """
         nearly = 1.0 if band == 1.0 else 1.0 + (NEARLY if len(self.problem.shares) == 1 else NEARLY_EACH)
         limit = max(band, LEAST_ERROR) * self.problem.task.cut.sync_tolerance * nearly
-        added = False
-        for tables in self._tables:
-            worst = self._over(tables, profile, limit)
-            self.bands += [table.band_rows(worst_places(excess, _most(self.problem))) for table, excess in worst]
-            added |= bool(worst)
+        added = self._add_band(command, limit)
         if ratio and self.problem.task.cut.shear_zone:
-            added |= self._add_ratio(profile, max(1.0, band))
-        if self.problem.axis_limits:
-            added |= self.own.add_worst(profile)
-        between = self._between.rows(profile, self.problem.wider * limit, unseen=not added)
+            added |= self._add_ratio(command, max(1.0, band))
+        between = self._between.rows(command, self.problem.wider * limit, unseen=not added)
         self.bands += between
-        return bool(between) or added
+        added |= bool(between)
+        # limits of the axis bind in the first rounds or never: after one without any they are looked at in the end again
+        if self.problem.axis_limits and (self._own_due or not added):
+            self._own_due = self.own.add_worst(command.profile)
+            added |= self._own_due
+        self.bands = merged(self.bands)  # a programme takes one block quicker than many
+        return added
 
-    def _over(self, tables: list[ZoneTable], profile: CamProfile, limit: float) -> list[tuple[ZoneTable, FloatArray]]:
-        """Give the line speeds at which a servo exceeds a limit, and by how much at their points.
+    def _add_band(self, command: Tried, limit: float) -> bool:
+        """Add rows where a servo exceeds a limit at its line speeds; whether there were any.
 
-        Those with rows are looked at first; the others where these nearly keep it, those between where all do.
+        Those that were not far from the limit when they were looked at last come first, and of them those with rows; all others where these
+        nearly keep it, and line speeds between where all do.
         """
-        begun = [table for table in tables if table.begun]
-        excesses = [np.abs(table.errors(profile)) - limit for table in begun]
-        if any(excess.max() > ASIDE * limit for excess in excesses):
-            return _worst(begun, excesses)
-        known = dict(zip(begun, excesses, strict=True))
-        excesses = [known[table] if table in known else np.abs(table.errors(profile)) - limit for table in tables]
-        return _worst(tables, excesses) or self._finer(tables, excesses, profile, limit)
+        near = [[table for table in tables if table.last > FAR * limit] for tables in self._tables]
+        begun = [[table for table in tables if table.begun] for tables in near]
+        if self._add_over(begun, command, limit, ASIDE):
+            return True
+        if self._add_over(near, command, limit, 0.0) or self._add_over(self._tables, command, limit, 0.0):
+            return True
+        return self._add_over([self._finer(tables, limit) for tables in self._tables], command, limit, 0.0)
 
-    def _finer(
-        self, tables: list[ZoneTable], excesses: list[FloatArray], profile: CamProfile, limit: float
-    ) -> list[tuple[ZoneTable, FloatArray]]:
-        """Look at line speeds beside those where a servo comes near to its limit, and from then on; give those where it exceeds it."""
+    def _add_over(self, every: list[list[ZoneTable]], command: Tried, limit: float, share: float) -> bool:
+        """Add rows where line speeds exceed a limit, if one of them does by a share of it; whether one does."""
+        peaks = [np.array([table.peak(command) for table in tables]) for tables in every]
+        if max(float(each.max(initial=0.0)) for each in peaks) <= limit * (1.0 + share):
+            return False
+        for tables, each in zip(every, peaks, strict=True):
+            over = each - limit
+            for number in np.argsort(-over, kind="stable")[:MOST_SPEEDS].tolist():
+                if over[number] <= max(0.0, ALIKE * over.max()):
+                    break
+                table = tables[number]
+                places = worst_places(np.abs(table.errors(command)) - BESIDE * limit, _most(self.problem))
+                self.bands.append(table.band_rows(places))
+        return True
+
+    def _finer(self, tables: list[ZoneTable], limit: float) -> list[ZoneTable]:
+        """Take in line speeds beside those where a servo comes near to its limit, and give them."""
         least = FINEST * (self.problem.shares[0] - self.problem.shares[-1])
         shares = [table.axis.share for table in tables]
-        peaks = np.array([float(excess.max()) for excess in excesses])
-        near = set(worst_places(peaks + NEAR * limit, MOST_SPEEDS).tolist())
+        peaks = np.array([table.last for table in tables])
+        near = set(worst_places(peaks - (1.0 - NEAR) * limit, MOST_SPEEDS).tolist())
         new = []
         for number in range(len(tables) - 1):
             wide = shares[number] - shares[number + 1] > least
@@ -132,15 +151,22 @@ class GatheredRows:
                 new.append(ZoneTable(Axis(axis.task, servo, share), self.problem.basis))
         tables += new
         tables.sort(key=lambda table: -table.axis.share)
-        found = [(table, np.abs(table.errors(profile)) - limit) for table in new]
-        return [(table, excess) for table, excess in found if excess.max() > 0.0]
+        return new
 
     def errors(self, profile: CamProfile) -> tuple[dict[float, float], ...]:
-        """Largest sync error of the tool in the shear zone (m), by servo and there by line speed, as a share of the cut's."""
-        return tuple(
-            {table.axis.share: float(np.abs(table.axis.zone_errors(profile)[2]).max()) for table in tables}
-            for tables in self._tables
-        )
+        """Largest sync error of the tool in the shear zone (m), by servo and there by line speed, as a share of the cut's.
+
+        Of the nominal servo at the problem's line speeds and those that have rows, of the others where their errors are about the largest.
+        """
+        found = []
+        for number, tables in enumerate(self._tables):
+            asked = [table for table in tables if table.begun or table.axis.share in self.problem.shares]
+            if number:
+                command = Tried(profile)
+                least = NEAR_WORST * max(table.peak(command) for table in asked)
+                asked = [table for table in asked if table.last >= least]
+            found.append({table.axis.share: float(np.abs(table.axis.zone_errors(profile)[2]).max()) for table in asked})
+        return tuple(found)
 
     @property
     def shares(self) -> tuple[float, ...]:
@@ -148,10 +174,10 @@ class GatheredRows:
         begun = {table.axis.share for tables in self._tables for table in tables if table.begun}
         return tuple(sorted(begun | self._between.shares, reverse=True)) or (1.0,)
 
-    def _add_ratio(self, profile: CamProfile, band: float) -> bool:
+    def _add_ratio(self, command: Tried, band: float) -> bool:
         """Add rows where the ratio of the nominal axis at full line speed leaves its band, widened to a share of itself."""
         cut, table = self.problem.task.cut, self._tables[0][0]
-        worst = worst_places(np.abs(table.ratios(profile)) - band * RATIO * cut.sync_tolerance / cut.shear_zone)
+        worst = worst_places(np.abs(table.ratios(command)) - band * RATIO * cut.sync_tolerance / cut.shear_zone)
         if len(worst):
             self.ratios.append(table.ratio_rows(worst))
         return bool(len(worst))
@@ -221,11 +247,11 @@ class BetweenServos:
         """Line speeds of those that have rows, as shares of the cut's."""
         return {table.axis.share for table in self._seen}
 
-    def rows(self, profile: CamProfile, limit: float, *, unseen: bool) -> list[AxisRows]:
+    def rows(self, command: Tried, limit: float, *, unseen: bool) -> list[AxisRows]:
         """Make rows where a servo between the corners is worse than its limit; those without rows are looked at last."""
         over = []
         for table in self._seen + (self._unseen if unseen else []):
-            excess = np.abs(table.errors(profile)) - limit
+            excess = np.abs(table.errors(command)) - limit
             if excess.max() > 0.0:
                 over.append((float(excess.max()), table, worst_places(excess, _most(self._problem))))
         over.sort(key=lambda each: -each[0])
@@ -236,12 +262,6 @@ class BetweenServos:
                 self._unseen.remove(table)
                 self._seen.append(table)
         return found
-
-
-def _worst(tables: list[ZoneTable], excesses: list[FloatArray]) -> list[tuple[ZoneTable, FloatArray]]:
-    """Find, of a servo's tables by line speed, those that exceed a limit the most, and by how much at their points."""
-    worst: NDArray[np.intp] = worst_places(np.array([float(excess.max()) for excess in excesses]), MOST_SPEEDS)
-    return [(tables[number], excesses[number]) for number in worst.tolist()]
 
 
 def _most(problem: AxisProblem) -> int:

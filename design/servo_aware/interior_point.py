@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from camwright.profiles.polynomial.profile import FloatArray
 
@@ -31,9 +32,11 @@ _STEADY = 1e-14
 
 @dataclass(frozen=True, eq=False)
 class _Sides:
-    """Rows with one side each, ``matrix @ x <= bound``, padded to whole blocks."""
+    """Sides of rows: ``matrix[above] @ x <= bound``, then ``-matrix[below] @ x <= bound``; the matrix is padded to whole blocks."""
 
     matrix: FloatArray
+    above: NDArray[np.intp]
+    below: NDArray[np.intp]
     bound: FloatArray
 
     @cached_property
@@ -42,19 +45,26 @@ class _Sides:
         return self.matrix.reshape(-1, _BLOCK, self.matrix.shape[1])
 
     def of(self, x: FloatArray) -> FloatArray:
-        """Values of the rows."""
+        """Values of the sides."""
         found: FloatArray = np.matmul(self.blocks, x).ravel()
-        return found
+        return np.concatenate([found[self.above], -found[self.below]])
 
     def pull(self, prices: FloatArray) -> FloatArray:
-        """Sum the rows by their prices."""
-        found: FloatArray = np.matmul(prices.reshape(-1, 1, _BLOCK), self.blocks).sum(axis=0)[0]
+        """Sum the sides by their prices."""
+        found: FloatArray = np.matmul(self._both(prices, -1.0).reshape(-1, 1, _BLOCK), self.blocks).sum(axis=0)[0]
         return found
 
     def gram(self, weights: FloatArray) -> FloatArray:
-        """Sum the squares of the rows by weights."""
-        turned = self.blocks.transpose(0, 2, 1) * weights.reshape(-1, 1, _BLOCK)
+        """Sum the squares of the sides by weights: both sides of a row at once."""
+        turned = self.blocks.transpose(0, 2, 1) * self._both(weights, 1.0).reshape(-1, 1, _BLOCK)
         found: FloatArray = np.matmul(turned, self.blocks).sum(axis=0)
+        return found
+
+    def _both(self, values: FloatArray, sign: float) -> FloatArray:
+        """Put what the sides have together by row, those below times a sign."""
+        found = np.zeros(len(self.matrix))
+        found[self.above] = values[: len(self.above)]
+        found[self.below] += sign * values[len(self.above) :]
         return found
 
 
@@ -111,14 +121,11 @@ def interior_point(
 
 
 def _sides(matrix: FloatArray, low: FloatArray, high: FloatArray) -> _Sides:
-    """Give every finite side a row of its own; rows that ask for nothing fill up the last block."""
-    above, below = np.isfinite(high), np.isfinite(low)
-    count = int(above.sum() + below.sum())
-    rows = np.zeros((-(-count // _BLOCK) * _BLOCK, matrix.shape[1]))
-    bound = np.ones(len(rows))
-    rows[: above.sum()], bound[: above.sum()] = matrix[above], high[above]
-    rows[above.sum() : count], bound[above.sum() : count] = -matrix[below], -low[below]
-    return _Sides(rows, bound)
+    """Find the finite sides of rows; rows of zeros fill up the last block."""
+    rows = np.zeros((-(-len(matrix) // _BLOCK) * _BLOCK, matrix.shape[1]))
+    rows[: len(matrix)] = matrix
+    above, below = np.nonzero(np.isfinite(high))[0], np.nonzero(np.isfinite(low))[0]
+    return _Sides(rows, above, below, np.concatenate([high[above], -low[below]]))
 
 
 def _moved(

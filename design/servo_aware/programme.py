@@ -14,6 +14,7 @@ from camwright.design.servo_aware.convex import ACCEPTED, ConvexProgramme
 from camwright.design.servo_aware.gathered_rows import GatheredRows
 from camwright.design.servo_aware.ramp_rows import RampRows
 from camwright.design.servo_aware.simplex import Vertex
+from camwright.design.servo_aware.zone_table import Tried
 from camwright.profiles.errors import SolverError
 from camwright.profiles.objective import OBJECTIVES, MotorObjective, ObjectiveName
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
@@ -31,6 +32,10 @@ ROUNDS = 30
 STILL = 1e-7
 # A peak that later programmes keep is taken as this share of its limit at least: the peak of a steady motion is rounding.
 LEAST_PEAK = 1e-6
+
+
+# What the programme of the least sync error is filed under.
+_LEAST_ERROR: tuple[object, ...] = ("sync_error", None, (), False)
 
 
 @dataclass
@@ -139,7 +144,7 @@ class AxisProgramme:
             room = LIMIT_MARGIN * max(abs(low), abs(high))
             if least < low - room or greatest > high + room:
                 return False
-        return keeps_ramp(profile, self.problem.task) and not self.rows.add_worst(profile, 1.0, ratio=True)
+        return keeps_ramp(profile, self.problem.task) and not self.rows.add_worst(Tried(profile), 1.0, ratio=True)
 
     def least_share(self) -> float | None:
         """Least share of the tolerance that a command keeps with every axis, in position and ratio; ``None`` if none keeps the limits."""
@@ -166,7 +171,23 @@ class AxisProgramme:
 
     def _add_worst(self, unknowns: FloatArray, band: float, *, ratio: bool) -> bool:
         """Add rows where an answer leaves its band; as `GatheredRows.add_worst`."""
-        return self.rows.add_worst(self.profile(unknowns), band, ratio=ratio)
+        return self.rows.add_worst(Tried(self.profile(unknowns), unknowns * self.problem.scale), band, ratio=ratio)
+
+    def least_share_of_limit(self, order: int, kept: float) -> float:
+        """Bound from below the peak of a derivative, as a share of its limit, of commands whose sync error is within a share of the least.
+
+        By the prices of the last programme of least sync error: a limit that is drawn in by a share of itself makes the error greater by
+        at least that share of the prices of its rows. 0 where no prices are known.
+        """
+        vertex = self._before.vertices.get(_LEAST_ERROR)
+        if vertex is None:
+            return 0.0
+        cost = np.append(np.zeros(len(vertex.x) - 1), 1.0)
+        prices = -np.linalg.solve(vertex.matrix.T, cost)
+        matrix = self._limit_rows(order, math.inf)[0]
+        rows = {row.tobytes() for row in (*matrix, *(-matrix))}
+        price = sum(float(prices[number]) for number, row in enumerate(vertex.matrix[:, :-1]) if row.tobytes() in rows)
+        return (1.0 - LIMIT_MARGIN) * (1.0 - kept * float(vertex.x[-1]) / price) if price > 0.0 else 0.0
 
     def profile(self, unknowns: FloatArray) -> CamProfile:
         """Return the command of an answer, from the start of the return; asked again, the same one."""
@@ -215,15 +236,9 @@ class AxisProgramme:
         kind = (cost, band, tuple(caps.items()), elastic)
         programme = ConvexProgramme(count + peak, self._before.vertices.get(kind))
         bounds = self.problem.limits
-        for order, (low, high) in bounds.items():
-            if order not in self._before.tight and order not in caps:
-                continue
-            peak_allowed = max(caps.get(order, math.inf), LEAST_PEAK * high)
-            size = min(max(abs(low), abs(high)), peak_allowed)
-            room = LIMIT_MARGIN * size if order else 0.0
-            least, most = max(low, -peak_allowed) + room, min(high, peak_allowed) - room
-            matrix, constant = self.problem.basis.differences[order]
-            programme.add(matrix * (self.problem.scale / size), (least - constant) / size, (most - constant) / size)
+        for order in bounds:
+            if order in self._before.tight or order in caps:
+                programme.add(*self._limit_rows(order, caps.get(order, math.inf)))
         matrix, constant = self.ramps.rows()
         if len(matrix):
             programme.add(matrix, -np.inf, 1.0 - LIMIT_MARGIN - constant)
@@ -250,6 +265,16 @@ class AxisProgramme:
         answer = programme.solve(np.append(np.zeros(count), 1.0))
         self._before.vertices[kind] = programme.vertex
         return None if answer is None else (answer[:-1], max(0.0, float(answer[-1])) * unit)
+
+    def _limit_rows(self, order: int, cap: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Rows of a limit, or of a peak that must be kept beside it, as ``(matrix, low, high)``."""
+        low, high = self.problem.limits[order]
+        peak_allowed = max(cap, LEAST_PEAK * high)
+        size = min(max(abs(low), abs(high)), peak_allowed)
+        room = LIMIT_MARGIN * size if order else 0.0
+        least, most = max(low, -peak_allowed) + room, min(high, peak_allowed) - room
+        matrix, constant = self.problem.basis.differences[order]
+        return matrix * (self.problem.scale / size), (least - constant) / size, (most - constant) / size
 
     def _least_torque(self, programme: ConvexProgramme, cost: MotorObjective) -> tuple[FloatArray, float] | None:
         """Least torque or energy, from the command of least mean square acceleration, and from the answer with fewer rows before."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,6 +32,18 @@ class AxisRows:
     def size(self) -> FloatArray:
         """What rows are divided by, so that their bounds are about one."""
         return np.maximum(np.abs(self.low), np.abs(self.high))
+
+
+def merged(blocks: Sequence[AxisRows]) -> list[AxisRows]:
+    """Put blocks of rows together to one, if there are any."""
+    if len(blocks) < 2:
+        return list(blocks)
+    return [
+        AxisRows(
+            np.vstack([block.matrix for block in blocks]),
+            *(np.concatenate([getattr(block, name) for block in blocks]) for name in ("constant", "low", "high")),
+        )
+    ]
 
 
 def worst_places(excess: FloatArray, most: int = MOST_ROWS) -> NDArray[np.intp]:

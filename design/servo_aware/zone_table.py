@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from camwright.design.servo_aware.axis_response import PHASES, SUBSTEPS, Axis, sampled_plants
+from camwright.design.servo_aware.axis_response import PHASES, SUBSTEPS, Axis, sampled_plants, shared
 from camwright.design.servo_aware.command_basis import CommandBasis
 from camwright.design.servo_aware.rows import RATIO, AxisRows
 from camwright.design.servo_aware.servo_weights import memory, state_weights
@@ -22,6 +22,8 @@ from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 # Sampling instants in the shear zone at most, of a servo that samples often: what the axis does there has no finer waves. At line speeds
 # below the full one fewer will do, and fewer sampling phases at the ends of the zone, as there are several of them.
 MOST_INSTANTS, SLOWER_INSTANTS, SLOWER_PHASES = 128, 96, 8
+# Most samples that are summed for a table as a whole.
+MOST_SAMPLES = 50_000
 # Most places in the shear zone that have rows from the start.
 MOST_PLACES = 24
 
@@ -69,6 +71,14 @@ def _points(axis: Axis) -> _Points:
     )
 
 
+@dataclass(frozen=True, eq=False)
+class Tried:
+    """A command that is looked at, and its unknowns in the slave's unit; ``None`` where it is not of the basis."""
+
+    profile: CamProfile
+    coefficients: FloatArray | None = None
+
+
 class ZoneTable:
     """Where one servo's axis is looked at in the shear zone: at points ``(place, time after a sampling instant)``.
 
@@ -86,6 +96,8 @@ class ZoneTable:
     def __init__(self, axis: Axis, basis: CommandBasis) -> None:
         self.axis, self._basis = axis, basis
         self.begun = False
+        self.last = math.inf
+        self._judged: tuple[Tried, FloatArray] | None = None
         self._points = _points(axis)
         self._ideal = axis.ideal(self._points.places)
 
@@ -121,29 +133,55 @@ class ZoneTable:
             for order in (0, 1)
         )
 
-    def _motion(self, command: CamProfile, order: int) -> FloatArray:
+    def _motion(self, command: Tried, order: int) -> FloatArray:
         """Axis (0) or its ratio (1) at the points."""
         found: FloatArray = np.einsum("pa,pa->p", self._combined[order], self._states(command)[self._points.of])
         return found
 
-    def _states(self, command: CamProfile) -> FloatArray:
-        """State and reference at the instants: on the grid many of them share samples of the command."""
+    @property
+    def _short(self) -> bool:
+        """Whether the memory is so short that rows are made of all instants at once, and serve to judge commands as well."""
+        return memory(self.axis.servo.loop) * len(self._points.instants) <= MOST_SAMPLES
+
+    @cached_property
+    def _sums(self) -> tuple[FloatArray, FloatArray]:
+        """State and reference at the instants as rows over the unknowns, shapes ``(instants, 4, n)`` and ``(instants, 4)``."""
+        return self._basis.sums(self._samples(slice(None)), self._weights)
+
+    def _states(self, command: Tried) -> FloatArray:
+        """State and reference at the instants: by rows once there are any, or of the command, whose samples many of them share."""
+        if self.begun and self._short and command.coefficients is not None:
+            matrix, constant = self._sums
+            return np.asarray(matrix @ command.coefficients + constant)
         points, axis = self._points, self.axis
         past, step = memory(axis.servo.loop), axis.sample / PHASES
-        width = past * PHASES + points.stride * (points.count - 1) + 1
-        places = step * (points.first - past * PHASES + np.arange(width)) - axis.task.cut.line_speed * axis.servo.delay
-        values = command(places, outside="repeat")
+        ahead = shared(past)
+        values = _on_grid(
+            command.profile,
+            step,
+            axis.task.cut.line_speed * axis.servo.delay,
+            points.first - ahead * PHASES,
+            ahead * PHASES + points.stride * (points.count - 1) + 1,
+        )[(ahead - past) * PHASES :]
         windows = np.lib.stride_tricks.sliding_window_view(values, past * PHASES + 1)[:: points.stride, ::-PHASES]
-        ends = command(self._samples(slice(points.count, None)), outside="repeat")
+        ends = command.profile(self._samples(slice(points.count, None)), outside="repeat")
         return np.concatenate([windows @ self._weights, ends @ self._weights])
 
-    def errors(self, command: CamProfile) -> FloatArray:
-        """Sync error of the tool at the points (m)."""
-        travel, _, coordinate = self._ideal
-        tool = self.axis.task.machine.tool
-        return np.asarray(tool(coordinate + (self._motion(command, 0) - travel)) - tool(coordinate))
+    def errors(self, command: Tried) -> FloatArray:
+        """Sync error of the tool at the points (m); of the command that was asked for last it is kept."""
+        if self._judged is None or self._judged[0] is not command:
+            travel, _, coordinate = self._ideal
+            tool = self.axis.task.machine.tool
+            found = np.asarray(tool(coordinate + (self._motion(command, 0) - travel)) - tool(coordinate))
+            self._judged, self.last = (command, found), float(np.abs(found).max())
+        return self._judged[1]
 
-    def ratios(self, command: CamProfile) -> FloatArray:
+    def peak(self, command: Tried) -> float:
+        """Greatest sync error of the tool at the points (m), without sign; it is `last` from then on."""
+        self.errors(command)
+        return self.last
+
+    def ratios(self, command: Tried) -> FloatArray:
         """Error of the tool's ratio at the points."""
         _, ratio, coordinate = self._ideal
         return np.asarray((self._motion(command, 1) - ratio) * self.axis.task.machine.tool_ratio(coordinate))
@@ -166,7 +204,10 @@ class ZoneTable:
     def _at(self, points: NDArray[np.intp], order: int) -> tuple[FloatArray, FloatArray]:
         """Axis or its ratio at some of the points, as rows over the unknowns."""
         instants, of = np.unique(self._points.of[points], return_inverse=True)
-        matrix, constant = self._basis.sums(self._samples(instants), self._weights)
+        if self._short:
+            matrix, constant = (part[instants] for part in self._sums)
+        else:
+            matrix, constant = self._basis.sums(self._samples(instants), self._weights)
         weights = self._combined[order][points]
         return np.einsum("pa,pan->pn", weights, matrix[of]), np.einsum("pa,pa->p", weights, constant[of])
 
@@ -187,3 +228,9 @@ class ZoneTable:
         near = np.abs(self.places[:, None] - np.tile(wanted, instants)) / self.axis.sample
         near = near + np.abs(self.times[:, None] - np.repeat(times, count)) / self.axis.servo.sample_time
         return np.unique(near.argmin(axis=0))
+
+
+@lru_cache(maxsize=64)  # servos at one line speed ask for the same
+def _on_grid(command: CamProfile, step: float, delay: float, first: int, count: int) -> FloatArray:
+    """Give the command on steps of a grid, so much behind."""
+    return command(step * np.arange(first, first + count) - delay, outside="repeat")

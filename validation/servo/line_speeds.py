@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -11,12 +12,15 @@ from camwright.profiles.servo import Servo, spectral_radius
 from camwright.profiles.task import Task
 from camwright.validation.motion import require_period
 from camwright.validation.servo.lifting import BLOCK, lift, lift_side_by_side, loops_of
-from camwright.validation.servo.monte_carlo import shear_zone_errors
+from camwright.validation.servo.monte_carlo import FEW_PHASES, shear_zone_errors
 from camwright.validation.servo.response import shear_zone_peaks
 from camwright.validation.servo.simulation import PHASES, WHOLE_PART, memory, shear_zone_run
 
 _SIDE_BY_SIDE = 8
 """Servos that are run side by side; more of them save nothing."""
+
+_NEAR = 0.75
+"""Share of the greatest sync error at few sampling phases from which on all are looked at."""
 
 
 def line_speed_errors(
@@ -58,6 +62,23 @@ def line_speed_errors(
         rows = stable[first : first + _SIDE_BY_SIDE]
         found[rows] = _side_by_side(profile, task, [servos[row] for row in rows], speeds, phases)
     return found
+
+
+def worst_line_speed_error(profile: CamProfile, task: Task, servos: Sequence[Servo], line_speeds: FloatArray) -> float:
+    """Greatest sync error over servos and line speeds (m): the greatest of `line_speed_errors`, whose arguments these are.
+
+    At all line speeds a few sampling phases are looked at, all phases where that comes near the greatest.
+    """
+    few = line_speed_errors(profile, task, servos, line_speeds, FEW_PHASES)
+    if not np.isfinite(few).all():
+        return math.inf
+    near = few >= _NEAR * few.max()
+    speeds = np.asarray(line_speeds, dtype=np.float64)
+    return max(
+        float(line_speed_errors(profile, task, [servo], speeds[columns]).max())
+        for servo, columns in zip(servos, near, strict=True)
+        if columns.any()
+    )
 
 
 def _side_by_side(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -17,6 +18,13 @@ from camwright.validation.servo.simulation import PHASES, WHOLE_PART, memory_at,
 
 _VALUES = 2**17
 """Command values that are held at a time."""
+
+
+FEW_PHASES = 4
+"""Sampling phases at which much is looked at first; some of all that count."""
+
+_LOOKED = 256
+"""Servos that are run at all phases at a time."""
 
 
 def shear_zone_errors(profile: CamProfile, task: Task, servos: Sequence[Servo], phases: int = PHASES) -> FloatArray:
@@ -66,6 +74,26 @@ def shear_zone_errors(profile: CamProfile, task: Task, servos: Sequence[Servo], 
         error = shear_zone_error(run, profile, task)[1]
         found[group] = np.abs(error).reshape(len(group), -1).max(axis=1)
     return found
+
+
+def worst_shear_zone_error(profile: CamProfile, task: Task, servos: Sequence[Servo]) -> float:
+    """Greatest sync error in the shear zone over many servos and all sampling phases (m): the greatest of `shear_zone_errors`.
+
+    All servos are run at a few phases, then the worst at all: until the next one, and twice what more phases have added to any, stay below
+    the greatest. A third of the time. Arguments as in `shear_zone_errors`.
+    """
+    few = shear_zone_errors(profile, task, servos, FEW_PHASES)
+    order = np.argsort(-few, kind="stable")
+    worst = added = 0.0
+    for first in range(0, len(order), _LOOKED):
+        looked = order[first : first + _LOOKED]
+        if not np.isfinite(few[looked[0]]):
+            return math.inf
+        if first and few[looked[0]] + 2.0 * added <= worst:
+            break
+        found = shear_zone_errors(profile, task, [servos[row] for row in looked.tolist()])
+        worst, added = max(worst, float(found.max())), max(added, float((found - few[looked]).max()))
+    return worst
 
 
 def _groups(past: NDArray[np.intp], within: NDArray[np.intp], phases: int) -> Iterator[NDArray[np.intp]]:

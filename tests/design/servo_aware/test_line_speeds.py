@@ -9,7 +9,9 @@ import pytest
 
 from camwright.design.optimise import Solution
 from camwright.design.optimise_axis import solve_axis
+from camwright.design.servo_aware.axis_problem import AxisProblem
 from camwright.design.servo_aware.command_basis import Command
+from camwright.design.servo_aware.programme import AxisProgramme
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InfeasibleError
 from camwright.profiles.limits import Limits
@@ -149,3 +151,20 @@ def test_a_refusal_says_for_which_part_of_the_band_there_is_a_cam() -> None:
     solution = solve_axis(task, "rms_acceleration", "shaped", (PAPER,), shares=narrow, suggest=False)
     speeds = np.linspace(slowest, 1.0, 80) * CUT.line_speed
     assert line_speed_errors(solution.profile, task, [PAPER], speeds).max() <= task.cut.sync_tolerance * (1 + 1e-3)
+
+
+@pytest.mark.parametrize("acceleration", [100.0, 300.0])
+def test_prices_of_the_least_error_bound_the_peak_that_goes_with_it(acceleration: float) -> None:
+    """No command within a thousandth of the least error has a lower peak than the prices say: that one is designed here."""
+    task = Task(KNIFE, replace(CUT, length=0.272), replace(LIMITS, acceleration=acceleration))
+    problem = AxisProblem(task, "shaped", (PAPER,), False, shares=(1.0, 0.8, 0.5, 0.2))
+    programme = AxisProgramme(problem)
+    assert programme.least_share_of_limit(2, 1e-3) == 0.0  # nothing is known yet
+    found = programme.solve("sync_error", None)
+    assert found is not None
+    bound = programme.least_share_of_limit(2, 1e-3)
+    softer = programme.solve("peak_acceleration", found[1] * (1.0 + 1e-3) / (1.0 - programme.margin))
+    assert softer is not None
+    share = softer[1] / problem.limits[2][1]
+    assert bound <= share + 1e-6
+    assert (bound > 0.95) == (acceleration == 100.0)

@@ -9,7 +9,7 @@ import pytest
 
 from camwright.design.servo_aware.axis_response import Axis
 from camwright.design.servo_aware.command_basis import Command, command_basis
-from camwright.design.servo_aware.zone_table import ZoneTable
+from camwright.design.servo_aware.zone_table import Tried, ZoneTable
 from camwright.profiles.cut import Cut
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import CrankSlider, LinearCarriage, Machine, RotaryKnife
@@ -49,7 +49,9 @@ def test_rows_and_profile_are_judged_alike(name: str, command: Command, share: f
     slave = found.axis.ideal(found.places[points])[2]
     tool = found.axis.task.machine.tool
     errors = tool(slave + rows.matrix @ unknowns + rows.constant) - tool(slave)
-    assert np.abs(errors - found.errors(profile)[points]).max() <= 1e-11
+    for tried in (Tried(profile), Tried(profile, unknowns)):  # of the profile, and of the rows
+        assert np.abs(errors - found.errors(tried)[points]).max() <= 1e-11
+        assert found.peak(tried) == found.last == np.abs(found.errors(tried)).max()
 
 
 @pytest.mark.parametrize("name", MACHINES)
@@ -58,7 +60,7 @@ def test_at_full_speed_its_points_are_those_of_all_phases(name: str, command: Co
     found, unknowns = table(name, command, 1.0)
     profile = found._basis.profile(unknowns)
     places, times, errors = found.axis.zone_errors(profile)
-    assert float(np.abs(found.errors(profile)).max()) == pytest.approx(float(np.abs(errors).max()), abs=1e-12)
+    assert float(np.abs(found.errors(Tried(profile))).max()) == pytest.approx(float(np.abs(errors).max()), abs=1e-12)
     theirs = {(round(x, 9), round(t, 9)) for x, t in zip(places, times, strict=True)}
     assert {(round(x, 9), round(t, 9)) for x, t in zip(found.places, found.times, strict=True)} == theirs
 
@@ -68,7 +70,7 @@ def test_a_slow_line_is_looked_at_where_it_matters(command: Command) -> None:
     found, unknowns = table("tangential", command, 0.1)
     profile = found._basis.profile(unknowns)
     every = float(np.abs(found.axis.zone_errors(profile)[2]).max())
-    seen = float(np.abs(found.errors(profile)).max())
+    seen = float(np.abs(found.errors(Tried(profile))).max())
     assert len(found.places) < 0.2 * len(found.axis.zone_errors(profile)[0])
     assert 0.99 * every <= seen <= every * (1 + 1e-9)
 

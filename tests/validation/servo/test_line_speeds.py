@@ -15,7 +15,7 @@ from camwright.profiles.machines import CrankSlider, LinearCarriage, Machine, Ro
 from camwright.profiles.returns import baseline
 from camwright.profiles.servo import Servo, spectral_radius
 from camwright.profiles.task import Task
-from camwright.validation.servo.line_speeds import line_speed_errors
+from camwright.validation.servo.line_speeds import line_speed_errors, worst_line_speed_error
 from camwright.validation.servo.response import servo_response
 from camwright.validation.servo.simulation import simulate
 
@@ -94,3 +94,12 @@ def test_a_servo_that_is_unstable_is_infinitely_far_off_at_every_speed() -> None
 def test_a_line_that_hardly_moves_is_followed() -> None:
     found = line_speed_errors(baseline("cycloid", Task(KNIFE, CUT, FREE)), TASK, [PAPER], np.array([1e-6, 1e-3]))
     assert (found < 1e-9).all()
+
+
+@pytest.mark.parametrize("name", ["linear_return", "poly_3_4_5"])
+def test_the_worst_line_speed_is_that_of_all_phases(name: str) -> None:
+    servos = [PAPER, replace(PAPER, bandwidth=108.0), replace(PAPER, damping=0.77, position_gain=36.75)]
+    profile, speeds = baseline(name, TASK), np.linspace(8.0, 80.0, 30) / 60
+    every = line_speed_errors(profile, TASK, servos, speeds)
+    assert worst_line_speed_error(profile, TASK, servos, speeds) == pytest.approx(every.max(), rel=1e-12)
+    assert worst_line_speed_error(profile, TASK, [replace(PAPER, position_gain=1e4)], speeds) == np.inf

@@ -22,7 +22,7 @@ from camwright.profiles.servo import PAPER_RANGES, Servo
 from camwright.profiles.servo_tolerance import ServoTolerance
 from camwright.profiles.task import Task
 from camwright.validation.servo import monte_carlo
-from camwright.validation.servo.monte_carlo import shear_zone_errors
+from camwright.validation.servo.monte_carlo import shear_zone_errors, worst_shear_zone_error
 from camwright.validation.servo.response import servo_response
 
 FREE = Limits(math.inf, math.inf, math.inf)
@@ -109,3 +109,13 @@ def test_a_profile_of_another_cut_is_refused() -> None:
         shear_zone_errors(
             baseline("cycloid", Task(KNIFE, CUT, FREE)), Task(KNIFE, replace(CUT, length=0.5), FREE), [PAPER]
         )
+
+
+def test_the_worst_servo_is_that_of_all_phases(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(monte_carlo, "_LOOKED", 8)
+    task = Task(KNIFE, CUT, FREE)
+    for law in ("linear_return", "poly_3_4_5"):
+        profile, drawn = baseline(law, task), RANGES.draw(PAPER, 300, 4)
+        every = shear_zone_errors(profile, task, drawn)
+        assert worst_shear_zone_error(profile, task, drawn) == pytest.approx(every.max(), rel=1e-12)
+    assert worst_shear_zone_error(profile, task, (replace(PAPER, position_gain=1e4), *drawn)) == math.inf
