@@ -72,7 +72,7 @@ def test_an_impossible_job_keeps_the_last_cam_and_offers_ways_out(page: Any, put
     page.locator("#refusal button").first.wait_for()
     assert page.locator("#plots.infeasible path.curve").count() > 0
     assert "no motion returns the slave in time" in page.inner_text("#refusal")
-    page.locator("#refusal button", has_text="length = 337 mm").click()
+    page.locator("#refusal button", has_text="Cut length = 337 mm").click()
     page.locator("#badge.proved, #badge.failed").wait_for()
     assert value(page, "cut.length") == 337
 
@@ -83,7 +83,10 @@ def test_a_failed_check_is_named_with_what_works(page: Any, put: Put) -> None:
     assert "failed: " in page.inner_text("#badge")
     assert "Sync error in the shear zone" in page.inner_text("#badge")
     page.locator("#panel td.failed").first.wait_for()
-    page.locator("#panel button", has_text="sync tolerance = 0.02068 mm").wait_for()  # told after the proof
+    page.locator("#panel button", has_text="Command = shaped").wait_for()  # told after the proof
+    page.locator("#panel button", has_text="Sync tolerance = 0.02068 mm").click()
+    page.locator("#badge.proved").wait_for()
+    assert page.input_value('[id="field-cut.sync_tolerance"]') == "0.02068 mm"
 
 
 def test_a_fault_stands_at_its_field(page: Any, put: Put) -> None:

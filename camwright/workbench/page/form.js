@@ -7,6 +7,8 @@ import { word } from "./words.js";
 
 const OPEN = new Set(["", "machine", "cut", "limits"]); // tables that stand open: the others are looked at less
 
+const NARROW = 700; // px up to which all tables are closed: the views stand below them
+
 const kindOf = (known) => plain(known["machine.kind"]);
 const ofMachine = (kind) => state.keys.filter((key) => key.machine === "" || key.machine === kind);
 
@@ -18,7 +20,7 @@ export function build(form) {
   form.replaceChildren();
   for (const [table, keys] of Map.groupBy(ofMachine(kind), (key) => key.table)) {
     const box = make("details");
-    box.open = OPEN.has(table);
+    box.open = OPEN.has(table) && innerWidth > NARROW;
     box.append(make("summary", table ? word(`table.${table}`) : word("job")), ...keys.map((key) => field(key, known[key.path])));
     form.append(box);
   }

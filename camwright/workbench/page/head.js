@@ -2,10 +2,12 @@
 
 import { button, make } from "./elements.js";
 import { withUnit } from "./numbers.js";
-import { set, state } from "./state.js";
+import { commit, state } from "./state.js";
+import { plain, withValue } from "./toml.js";
 import { checkName, word } from "./words.js";
 
-const PLACE = { line_speed: "cut.line_speed", length: "cut.length", sync_zone: "cut.sync_zone", stroke: "machine.stroke" };
+const TABLES = { cut: ["line_speed", "length", "sync_zone", "sync_tolerance"], machine: ["stroke"], objective: ["servo_aware", "command", "minimise", "line_speeds"] };
+const TRUTHS = ["servo_aware", "reversal"];
 const KIND = { proved: "proved", failed: "failed", infeasible: "failed", faulty: "failed", gone: "failed" };
 
 export function badge(shown) {
@@ -26,9 +28,20 @@ export function refusal(box) {
   if (data.suggestions?.length) box.append(make("span", `${word("what works")} `), ...data.suggestions.map(wayOut));
 }
 
-/** A change of the job that works, as a button. */
+/** What a change writes into the job: values by their places. */
+function edits(change, value, unit) {
+  const table = Object.keys(TABLES).find((name) => TABLES[name].includes(change)) ?? "limits";
+  const path = change.includes(".") ? change : `${table}.${change}`;
+  if (change === "command") return { "objective.servo_aware": "true", [path]: '"shaped"' };
+  if (change === "line_speeds") return { [path]: `["${value} ${unit}", "100 %"]` };
+  if (TRUTHS.includes(change)) return { [path]: "true" };
+  return { [path]: JSON.stringify(unit ? `${value} ${unit}` : value) };
+}
+
+/** A change of the job that works, as a button: the change is the text's, the name the language's. */
 export function wayOut({ change, value, unit }) {
-  const path = PLACE[change] ?? `limits.${change}`;
-  const text = change === "reversal" ? "true" : JSON.stringify(`${value} ${unit}`);
-  return button(`${path.split(".")[1].replaceAll("_", " ")} = ${change === "reversal" ? word("yes") : withUnit(value, unit)}`, () => set(path, text));
+  const all = Object.entries(edits(change, value, unit));
+  const [path, text] = all[all.length - 1];
+  const told = TRUTHS.includes(change) ? word("yes") : change === "line_speeds" ? `${withUnit(value, unit)} …` : unit ? withUnit(value, unit) : word(plain(text));
+  return button(`${word(`field.${path}`)} = ${told}`, () => commit(all.reduce((made, [place, written]) => withValue(made, place, written), state.text), "release"));
 }

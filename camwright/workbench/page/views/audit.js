@@ -36,7 +36,7 @@ export function show(panel) {
 function judged(data) {
   const save = (value) => (value === null ? "–" : `${digits(100 * value, 3)} %`);
   const measures = [["peak_acceleration", "peak_acceleration_m_per_s2"], ["rms_acceleration", "rms_acceleration_m_per_s2"]];
-  const beside = table(["", word("this cam"), word("optimised"), word("saving")], measures.map(([name, key]) => [word(name), data.profile[key], data.optimum[key], save(data.saving[`${name}_rel`])]));
+  const beside = table(["", word("this cam"), word("optimised"), word("saving")], measures.map(([name, key]) => [`${word(name)} (m/s²)`, data.profile[key], data.optimum[key], save(data.saving[`${name}_rel`])]));
   const checks = table([word("check"), "", word("value"), word("limit"), ""], data.checks.map((check) => {
     const [value, limit] = [shownSi(check.value, check.unit), shownSi(check.limit, check.unit)];
     return [checkName(check.name), make("td", word(check.passed ? "passed" : "failed"), check.passed ? "passed" : "failed"), value.value, limit.value, value.unit];
@@ -58,7 +58,7 @@ function servo(data) {
   const lines = Object.entries(SERVO).filter(([key]) => data[key] !== undefined);
   const list = table([word("servo"), word("value"), "", "95 %"], lines.map(([key, [name, unit]]) => {
     const bounds = data.confidence[key];
-    return [name.replaceAll("_", " "), data[key], printed(unit), bounds ? bounds.map((value) => digits(value, 4)).join(" … ") : "–"];
+    return [word(`field.servo.${name}`), data[key], printed(unit), bounds ? bounds.map((value) => digits(value, 4)).join(" … ") : "–"];
   }));
   const use = () => commit(lines.reduce((text, [key, [name, unit]]) => {
     const value = Number(data[key].toPrecision(6));
