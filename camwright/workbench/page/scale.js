@@ -30,7 +30,7 @@ export function path(x, y, across, down) {
 
 /** A plot of its own: frame, ticks and titles; gives the drawing, its two maps and their inverse (of a plot that is not logarithmic). */
 export function plot({ width = 460, height = 240, x, y, xTitle, yTitle, logarithmic = false }) {
-  const [left, right, top, bottom] = [56, 12, 22, 38];
+  const [left, right, top, bottom] = [56, 18, 22, 38];
   const drawing = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "plot" });
   const across = (value) => left + ((value - x[0]) / (x[1] - x[0])) * (width - left - right);
   const high = (value) => (logarithmic ? Math.log10(Math.max(value, y[0])) : value);
