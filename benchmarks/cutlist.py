@@ -134,7 +134,7 @@ def meetings(draw: np.random.Generator, count: int) -> tuple[int, bool]:
             list_cam(number, job, length, top, min(top, job.cut.line_speed), STEADY)
             for number, (length, top) in enumerate(((each, highest_speed(job, each)) for each in lengths), start=1)
         ]
-        for (one, other), change in find_changes(cams, {}, stand_in(job)).items():
+        for (one, other), change in find_changes(cams, np.zeros(1, dtype=np.intp), stand_in(job)).items():
             before, after = cams[one - 1].running, cams[other - 1].running
             end = before.profile.end - 1e-6 * np.arange(3)  # m of material
             left, right = before.profile(end), after.profile(1e-6 * np.arange(3))

@@ -42,6 +42,7 @@ _HOW = {
     "direct": "directly",
     "slow_down": "directly, but first slow down",
     "transition": "through a transition of one piece",
+    "sync_cycle": "through a cycle in sync, two pieces",
     "stop": "only at a standstill",
 }
 

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import collections
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -74,7 +72,7 @@ class ListPlan:
     @property
     def transitions(self) -> tuple[Change, ...]:
         """Changes of the list that go through a transition."""
-        return tuple(change for change in self.changes.values() if change.transition is not None)
+        return tuple(change for change in self.changes.values() if change.transitions)
 
     @property
     def steady(self) -> NDArray[np.bool_]:
@@ -212,8 +210,7 @@ def plan_list(job: Job, asked: CutList, line: LineRun | None = None, step: Step 
         )
     )
     step("looking at the changes")
-    pairs = collections.Counter((a + 1, b + 1) for a, b in pairwise(of.tolist()) if a != b)
-    changes = find_changes(cams, pairs, stand_in(job))
+    changes = find_changes(cams, of, stand_in(job))
     require_running(job, asked, of, changes, cams)
     step("planning the speed of the line")
     highest = _highest(cams, of, changes)
@@ -240,13 +237,14 @@ def list_shift(
     longer
         By how much each piece is longer than its cam (m), shape ``(pieces,)``; nothing of it if not given.
     """
-    through = [change for change in changes.values() if change.transition is not None]
     own = [cam.solution.profile for cam in cams]
-    own += [change.transition.profile for change in through if change.transition is not None]
-    zeros = [cam.running.zero for cam in cams] + [cams[change.after - 1].running.zero for change in through]
+    zeros = [cam.running.zero for cam in cams]
     order = of.copy()
-    for number, change in enumerate(through):
-        order[change.first_pieces(of)] = len(cams) + number
+    for change in changes.values():
+        for number, transition in enumerate(change.transitions):
+            order[change.first_pieces(of) + number] = len(own)
+            own.append(transition.profile)
+            zeros.append(cams[change.after - 1].running.zero)
     parts = [ShiftCam(profile, zero) for profile, zero in zip(profiles or own, zeros, strict=True)]
     places = {cam.running.zero: cam.job.task for cam in cams}
     kinds = np.array([list(places).index(cam.running.zero) for cam in cams], dtype=np.intp)
@@ -258,7 +256,7 @@ def _highest(cams: Sequence[ListCam], of: NDArray[np.intp], changes: dict[tuple[
     """Give the highest line speed of each piece: its cam's, or that of the transition which begins it."""
     highest = np.array([cam.line_speed for cam in cams])[of]
     for change in changes.values():
-        if change.transition is not None:
-            here = change.first_pieces(of)
+        for number in range(len(change.transitions)):
+            here = change.first_pieces(of) + number
             highest[here] = np.minimum(highest[here], change.line_speed)
     return highest

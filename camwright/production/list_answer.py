@@ -120,14 +120,17 @@ def _speed(value: float) -> str:
 
 def _pieces(planned: ListPlan) -> list[str]:
     """Rows of the table of pieces."""
-    first = {(change.before, change.after): transition_name(change) for change in planned.transitions}
-    rows, before = [], 0
+    first: dict[int, str] = {}
+    for change in planned.transitions:
+        for number in range(len(change.transitions)):
+            name = transition_name(change, number)
+            first |= dict.fromkeys((change.first_pieces(planned.of) + number).tolist(), name)
+    rows = []
     crops = planned.asked.crops.tolist()
     numbers = zip((planned.of + 1).tolist(), planned.asked.gaps.tolist(), planned.highest.tolist(), strict=True)
     for piece, (cam, length, highest) in enumerate(numbers):
         kind = "crop" if crops[piece] else "cut"
-        rows.append(f"{piece + 1},{length * 1e3:.10g},{kind},{cam},{first.get((before, cam), '')},{_speed(highest)}")
-        before = cam
+        rows.append(f"{piece + 1},{length * 1e3:.10g},{kind},{cam},{first.get(piece, '')},{_speed(highest)}")
     return rows
 
 

@@ -126,7 +126,7 @@ def require_running(
             way = (
                 f"place the sync zone at one place for all: --common-place, or {{@machine}}.{job.machine.place_name}"
                 if job.machine.place_name
-                else 'let the command be in sync: [objective] command = "in_sync"'
+                else 'let two pieces at least follow, let the command be in sync ([objective] command = "in_sync")'
                 if job.cut.shaped
                 else "put a length between them"
             )

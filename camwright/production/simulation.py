@@ -231,9 +231,9 @@ def _profiles(planned: ListPlan, motion: str) -> list[CamProfile]:
     """Cycles of the cams and the transitions: as designed, or with straight returns between the same states."""
     own = [(cam.solution.profile, cam.running.zone_start) for cam in planned.cams]
     own += [
-        (change.transition.profile, planned.cams[change.after - 1].running.zone_start)
-        for change in planned.transitions
-        if change.transition is not None
+        (transition.profile, planned.cams[change.after - 1].running.zone_start)
+        for change in planned.changes.values()
+        for transition in change.transitions
     ]
     return [profile if motion == "optimised" else _straight_return(profile, zone) for profile, zone in own]
 

@@ -58,9 +58,10 @@ class TargetSeams:
         return self.within and not self.withheld and not self.refused
 
 
-def transition_name(change: Change) -> str:
-    """Name a transition in the tables."""
-    return f"T{change.before:03d} to {change.after:03d}"
+def transition_name(change: Change, number: int = 0) -> str:
+    """Name a transition of a change, counted from 0, in the tables: with a letter where there are several."""
+    letter = chr(ord("a") + number) if len(change.transitions) > 1 else ""
+    return f"T{change.before:03d} to {change.after:03d}{letter}"
 
 
 def list_tables(
@@ -97,41 +98,43 @@ def _target_seams(cams: Sequence[ListCam], changes: Mapping[tuple[int, int], Cha
         one, other = by_number[change.before], by_number[change.after]
         if not change.times or change.how == "stop" or not {one.number, other.number} <= rebuilt.keys():
             continue
-        between = None
-        if change.transition is not None:
+        between: list[CamProfile] = []
+        for number, transition in enumerate(change.transitions):
             try:
-                text, between = _transition_table(change, change.transition, other, name)
+                text, run = _transition_table(change, number, other, name)
             except InputError as error:
-                refused += [f"{transition_name(change)}: {fault}" for fault in error.faults]
-                continue
-            refused += _beyond(between, change, change.transition, other)
+                refused += [f"{transition_name(change, number)}: {fault}" for fault in error.faults]
+                break
+            refused += _beyond(run, transition_name(change, number), transition, other)
             files |= text
+            between.append(run)
+        if len(between) < len(change.transitions):
+            continue
         worst = _through(one, other, rebuilt, between, change.line_speed)
         within = within and _allowed(worst, other, change.line_speed)
         jump = jump.worst(worst)
     for cam in cams:  # a cam runs into itself, too
         if cam.number in rebuilt:
-            jump = jump.worst(_through(cam, cam, rebuilt, None, cam.line_speed))
+            jump = jump.worst(_through(cam, cam, rebuilt, (), cam.line_speed))
     return TargetSeams(name, target.number_format, files, jump, withheld, tuple(refused), within)
 
 
-def _beyond(rebuilt: CamProfile, change: Change, transition: Transition, after: ListCam) -> list[str]:
+def _beyond(rebuilt: CamProfile, name: str, transition: Transition, after: ListCam) -> list[str]:
     """Say where the motion that a drive makes of a transition's table exceeds speed or acceleration, beyond what any table may."""
     checks = judge_transition(rebuilt, after.running.zero, after.job.task.at_speed(transition.line_speed))
     return [
-        f"{transition_name(change)}: {check.name} {check.value:.6g} {check.unit}, the limit is {check.limit:.6g}"
+        f"{name}: {check.name} {check.value:.6g} {check.unit}, the limit is {check.limit:.6g}"
         for check in checks
         if check.name in ("speed", "acceleration") and (check.value or 0.0) > (check.limit or 0.0) * (1.0 + ALLOWANCE)
     ]
 
 
 def _through(
-    one: ListCam, other: ListCam, rebuilt: Mapping[int, CamProfile], between: CamProfile | None, line_speed: float
+    one: ListCam, other: ListCam, rebuilt: Mapping[int, CamProfile], between: Sequence[CamProfile], line_speed: float
 ) -> SeamJump:
-    """Run from one table into another, through a transition's if there is one."""
+    """Run from one table into another, through those of the transitions between."""
     chain = [(rebuilt[one.number], one.running.zero)]
-    if between is not None:
-        chain.append((between, other.running.zero))
+    chain += [(run, other.running.zero) for run in between]
     chain.append((rebuilt[other.number], other.running.zero))
     found = NO_JUMP
     for (before, zero), (after, next_zero) in pairwise(chain):
@@ -151,11 +154,9 @@ def _allowed(jump: SeamJump, cam: ListCam, line_speed: float) -> bool:
     )
 
 
-def _transition_table(
-    change: Change, transition: Transition, after: ListCam, name: str
-) -> tuple[dict[str, str], CamProfile]:
+def _transition_table(change: Change, number: int, after: ListCam, name: str) -> tuple[dict[str, str], CamProfile]:
     """Write a transition's table, which runs once; its texts, and the motion that the drive makes of it."""
-    target, job = target_of(name), after.job
+    target, job, transition = target_of(name), after.job, change.transitions[number]
     units = table_units(target, transition.profile, default_units(job.machine), travel=job.machine.pitch)
     choice = choose(transition.profile, target, units, Accuracy(), None, (job.cut.return_zone,))
     facts = (
@@ -163,7 +164,7 @@ def _transition_table(
         ("into cam", str(change.after)),
         ("line speed at most", f"{transition.line_speed:.9g} m/s"),
     )
-    head = Header(f"{transition_name(change)} {job.name}"[:60], camwright_version(), job.sha256, facts)
+    head = Header(f"{transition_name(change, number)} {job.name}"[:60], camwright_version(), job.sha256, facts)
     files = target.write(choice.table, head)
     _, rebuilt = read_back(target, files, choice.table.units or units)
     return files, rebuilt

@@ -18,6 +18,7 @@ from camwright.design.returns.scaling import resolved
 from camwright.design.returns.solver import solve_return
 from camwright.profiles.objective import MotionObjective
 from camwright.profiles.polynomial.profile import CamProfile, join
+from camwright.profiles.returns import baseline
 from camwright.profiles.task import Task
 
 _SLOWEST = 1e-3
@@ -62,6 +63,15 @@ class RunningCam:
         end, profile = self.profile.end, self.profile
         position = self.zero + float(profile(end)) - self.task.machine.pitch
         return position, float(profile(end, 1)), float(profile(end, 2))
+
+
+def in_sync(cam: RunningCam) -> RunningCam:
+    """Give a cam of the same cut whose command is in sync throughout its zone; of its return only the ends count.
+
+    Every cam in sync ends in that state. A change between shaped commands that no motion makes at once may be made through it.
+    """
+    task = cam.task.with_cut(replace(cam.task.cut, shaped=False))
+    return RunningCam(task, baseline("poly_3_4_5", task))
 
 
 def transition_problem(

@@ -9,10 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from camwright.design.production.transition import RunningCam, transition_speed
 from camwright.jobs.job import Job, load_job
+from camwright.production.changes import find_changes
 from camwright.production.common_place import placed_alike
 from camwright.production.cut_list import ListStudy, line_of, plan_list, study_list
 from camwright.production.list_answer import list_answer, list_files
+from camwright.production.list_checks import require_running
 from camwright.production.list_file import parse_cut_list, parse_line_run
 from camwright.profiles.cut_list import CutList, ListRow
 from camwright.profiles.errors import InfeasibleError, InputError
@@ -136,7 +139,7 @@ def test_cranks_that_lie_elsewhere_go_through_transitions_or_share_a_place() -> 
     assert len(places) == 2
     assert [change.how for change in changes.values()] == ["transition", "transition"]
     assert all(change.jump.position > 1e-5 for change in changes.values())
-    assert all(change.transition is not None and change.transition.passed for change in changes.values())
+    assert all(all(each.passed for each in change.transitions) for change in changes.values())
     assert own.tables[0].jump.position < 1e-9  # through the transitions' tables nothing steps
     assert own.tables[0].jump.velocity < 1e-9
     assert own.off == 0
@@ -182,6 +185,40 @@ def test_shaped_commands_do_not_meet_and_go_through_transitions_on_a_slower_line
     assert change.how == "transition"
     assert change.line_speed < job.cut.line_speed
     assert found.tables[0].jump.velocity < 1e-6
+
+
+def test_shaped_commands_without_a_transition_change_through_a_cycle_in_sync(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing leads from shaped to shaped at once here: a cycle that ends in sync comes between, and two pieces are needed."""
+
+    def none_between_shaped(before: RunningCam, after: RunningCam) -> float | None:
+        return None if before.task.cut.shaped and after.task.cut.shaped else transition_speed(before, after)
+
+    monkeypatch.setattr("camwright.production.changes.transition_speed", none_between_shaped)
+    job = replace(load_job(EXAMPLES / "short-cut.toml"), slowest=1.0)
+    found = study(job, CutList((ListRow(0.3, 2), ListRow(0.29, 3))), ramp=0.2)
+    change = found.planned.changes[1, 2]
+    assert (change.how, len(change.transitions), change.jump.velocity > 0.05) == ("sync_cycle", 2, True)
+    assert found.planned.changes[2, 1].how == "sync_cycle"  # not made by the list
+    into, out = (each.profile for each in change.transitions)
+    task = found.planned.cams[1].job.task
+    assert float(into(into.end, 1)) == pytest.approx(task.cut.sync_ratio, abs=1e-12)
+    assert float(into(into.end, 2)) == pytest.approx(0.0, abs=1e-12)
+    assert float(out(out.start, 1)) == pytest.approx(task.cut.sync_ratio, abs=1e-12)
+    assert found.tables[0].passed
+    assert found.tables[0].jump.velocity < 1e-6
+    assert (found.planned.highest[2:4] == change.line_speed).all()
+    rows = [line.split(",") for line in list_files(found)["cut-list.csv"].splitlines() if line[:1].isdigit()]
+    assert [row[4] for row in rows] == ["", "", "T001 to 002a", "T001 to 002b", ""]
+    assert {"T001 to 002a", "T001 to 002b"} <= {
+        name.partition("_K")[0].replace("_", " ")[:12] for name in found.tables[0].files
+    }
+    cams, alone = found.planned.cams, np.array([0, 0, 1])
+    changes = find_changes(cams, alone, "rms_acceleration")
+    assert changes[1, 2].how == "stop"
+    with pytest.raises(
+        InfeasibleError, match=r"line 8: from 300 mm to 290 mm .* let two pieces at least follow, let the"
+    ):
+        require_running(job, CutList((ListRow(0.3, 2, line=7), ListRow(0.29, 1, line=8))), alone, changes, cams)
 
 
 def test_a_change_that_needs_a_stop_is_refused_with_a_way_out(monkeypatch: pytest.MonkeyPatch) -> None:
