@@ -29,6 +29,8 @@ MARGIN = 0.01
 """Share of that range kept free at both ends: at a dead centre the crank would need infinite speed."""
 COARSE, FINE = 40, 120
 """Intervals of the scan, and of the search about its best places."""
+SCANNED = 1e-3
+"""Accuracy of the solver on the scan, scaled: it tells valleys, whose floors are then looked for."""
 APART = 0.02
 """Places that differ by less are one (rad)."""
 NEAR = 0.05
@@ -67,7 +69,7 @@ def place_by_objective(task: Task, aim: Aim, curve: MotorCurve | None = None) ->
     middle = TorqueTask(tasks[len(tasks) // 2], return_problem(tasks[len(tasks) // 2], "peak_acceleration"), aim, curve)
     zone = Zone((np.array([starts[0], ends[0]]), np.array([starts[-1], ends[-1]])))
     able = _able(zone, middle, starts, ends)
-    programme = TorqueProgramme(middle, ANYHOW, (COARSE,), zone)
+    programme = TorqueProgramme(middle, ANYHOW, (COARSE,), zone, SCANNED)
     answers: dict[int, TorqueAnswer] = {}
     for k in np.nonzero(able)[0].tolist():
         before = answers.get(k - 1)

@@ -40,6 +40,9 @@ CURVE_DRAWN_IN = 2e-3
 SHORTEST_PHASE = 1e-5
 """Least length of a phase with motion, as a share of the return."""
 
+ACCURACY, MOST_ITERATIONS = 1e-8, 300
+"""Accuracy of the solver, scaled, and its most iterations."""
+
 PARAMETERS = 4
 """Parameters besides the mesh: units of torque and power, what a peak pays, and what the mean square."""
 
@@ -50,8 +53,6 @@ LOBATTO = (
 """Gauss-Lobatto points on the unit interval, and their weights: exact to degree 5, and at the nodes, where a peak may stand."""
 
 _OPTIONS: dict[str, Any] = QUIET | {
-    "ipopt.tol": 1e-8,
-    "ipopt.max_iter": 300,
     "ipopt.mu_strategy": "adaptive",
     "ipopt.bound_relax_factor": 1e-10,
 }
@@ -124,7 +125,15 @@ class _Layout:
 class TorqueProgramme:
     """The programme of one task and pattern on a mesh of a size: accelerations at nodes, linear between, and the node states."""
 
-    def __init__(self, task: TorqueTask, pattern: Pattern, counts: tuple[int, ...], zone: Zone | None = None) -> None:
+    def __init__(
+        self,
+        task: TorqueTask,
+        pattern: Pattern,
+        counts: tuple[int, ...],
+        zone: Zone | None = None,
+        accuracy: float = ACCURACY,
+        iterations: int = MOST_ITERATIONS,
+    ) -> None:
         """Build the programme.
 
         Parameters
@@ -137,6 +146,8 @@ class TorqueProgramme:
             Numbers of intervals of the phases with motion.
         zone
             The sync zone, if the programme is to place it.
+        accuracy, iterations
+            Of the solver: how well it must end (scaled), and how long it may take.
         """
         self._task = task
         n = sum(counts)
@@ -228,7 +239,9 @@ class TorqueProgramme:
             )
         self._rows = (sum(part.numel() for part in equations), sum(part.numel() for part in (*peaks, *jerk)))
         nlp = {"x": unknowns, "p": p, "f": cost, "g": ca.vertcat(*equations, *peaks, *jerk, between)}
-        self._solver = ca.nlpsol("camwright_torque", "ipopt", nlp, _OPTIONS)
+        self._solver = ca.nlpsol(
+            "camwright_torque", "ipopt", nlp, _OPTIONS | {"ipopt.tol": accuracy, "ipopt.max_iter": iterations}
+        )
 
     def _ramps(self, a: Any, v: Any, h: Any, mesh: Any) -> list[Any]:
         """Make what the line's ramps leave (`camwright.design.line.forms`) by Bernstein coefficients, times the lengths of the phases."""

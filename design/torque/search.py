@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from camwright.design.returns.problem import ReturnProblem
 from camwright.design.returns.scaling import scale_problem
 from camwright.design.returns.solver import ALLOWED_EXCESS, excess, solve_return
 from camwright.design.torque.finish import finish
@@ -22,7 +23,7 @@ from camwright.design.torque.guesses import (
     turning_from,
 )
 from camwright.design.torque.mesh import remesh
-from camwright.design.torque.programme import Guess, TorqueAnswer, TorqueProgramme
+from camwright.design.torque.programme import MOST_ITERATIONS, Guess, TorqueAnswer, TorqueProgramme
 from camwright.design.torque.task import Pattern, TorqueTask
 from camwright.profiles.errors import SolverError
 from camwright.profiles.polynomial.profile import CamProfile
@@ -45,6 +46,10 @@ MOST_PATHS = 4
 """Returns along the path that are started from."""
 MOST_TAKEN = 3
 """Answers that are taken further."""
+PATIENCE = 100
+"""Most iterations of a first look."""
+TURNING_SHARE = 0.5
+"""Share of its ratio in sync at which a return that is started from may run backwards where the slave may not."""
 AT_FLOOR = 1e-2
 """A peak within this share of its floor on a mesh is held to be the floor on a finer one."""
 ZONE_PLACES = 1001
@@ -155,8 +160,9 @@ def _first_look(
     task: TorqueTask, profiles: Sequence[CamProfile], count: int, floor: float
 ) -> tuple[list[tuple[TorqueAnswer, Pattern]], int]:
     """Answers of the guesses of every kind on a mesh of a number of intervals, the best first, and the iterations of all."""
+    # a start that takes long has none of the best ends, and its iterations are slow ones: a Hessian that must be corrected each time
     answers = [
-        (_programme(task, pattern, guess).solve(guess, rough=True, floor=floor), pattern)
+        (_programme(task, pattern, guess, PATIENCE).solve(guess, rough=True, floor=floor), pattern)
         for pattern, guess in _guesses(task, profiles, count)
     ]
     good = sorted((entry for entry in answers if entry[0].success), key=lambda entry: entry[0].value)
@@ -183,8 +189,8 @@ def _finer(task: TorqueTask, pattern: Pattern, answer: TorqueAnswer, count: int,
     return programme.solve(guess, floor=floor)
 
 
-def _programme(task: TorqueTask, pattern: Pattern, guess: Guess) -> TorqueProgramme:
-    return TorqueProgramme(task, pattern, tuple(len(mesh) for mesh in guess.mesh))
+def _programme(task: TorqueTask, pattern: Pattern, guess: Guess, iterations: int = MOST_ITERATIONS) -> TorqueProgramme:
+    return TorqueProgramme(task, pattern, tuple(len(mesh) for mesh in guess.mesh), iterations=iterations)
 
 
 def _distinct(answers: list[tuple[TorqueAnswer, Pattern]]) -> list[tuple[TorqueAnswer, Pattern]]:
@@ -217,10 +223,17 @@ def _keeps_limits(back: CamProfile, task: TorqueTask) -> bool:
     return excess(unit, scale_problem(problem, scale)) <= ALLOWED_EXCESS
 
 
+def _turns(back: CamProfile, problem: ReturnProblem) -> bool:
+    """Tell whether a return turns although it may not, by more than a good start may miss."""
+    return problem.least_ratio >= 0.0 and back.extrema(1)[0].value < -TURNING_SHARE * problem.start_ratio
+
+
 def _guesses(task: TorqueTask, given: Sequence[CamProfile], count: int) -> Iterator[tuple[Pattern, Guess]]:
     """Guesses of every kind that the task has, and from the returns given, on a mesh of a number of intervals."""
     problem = task.problem
-    profiles = [quintic_between(task.task.sync, problem.length, problem.height), *given]
+    quintic = quintic_between(task.task.sync, problem.length, problem.height)
+    # where the slave may not turn, one that would is no start: the solver wanders from it
+    profiles = [*([] if _turns(quintic, problem) else [quintic]), *given]
     rubs = task.machine.friction > 0
     one_way = FORWARDS if rubs and task.may_turn else ANYHOW  # where friction counts its sign must be known
     for profile in profiles:
