@@ -95,6 +95,9 @@ function zones(drawing, shown, place, top) {
   }
 }
 
+/** What a handle tells who does not see it: its value, in words too, between nothing and as far as a slider goes. */
+const valueOf = (value, told) => ({ "aria-valuemin": 0, "aria-valuenow": value, "aria-valuemax": 4 * value, "aria-valuetext": told });
+
 /** Limits as lines with a handle; one that is far beyond the curve stands as a handle on the upper edge. */
 function limitLines(drawing, row, shown, { low, high, top, down, left, right, onGrip }) {
   const limit = shown.limits[row.limit] * row.factor;
@@ -107,7 +110,7 @@ function limitLines(drawing, row, shown, { low, high, top, down, left, right, on
     if (value < low) continue;
     const at = { x1: left, x2: right, y1: down(value), y2: down(value) };
     if (!beyond) drawing.append(svg("line", { class: `limit${kind}`, ...at }));
-    const handle = svg("rect", { class: "handle vertical", x: left, y: down(value) - 7, width: right - left, height: 14, tabindex: 0, role: "slider", "aria-label": `${word("limit")} ${word(row.name)}`, "aria-valuenow": limit, "aria-valuetext": told, "data-path": `limits.${row.limit}` });
+    const handle = svg("rect", { class: "handle vertical", x: left, y: down(value) - 7, width: right - left, height: 14, tabindex: 0, role: "slider", "aria-label": `${word("limit")} ${word(row.name)}`, ...valueOf(limit, told), "data-path": `limits.${row.limit}` });
     onGrip(handle, { path: `limits.${row.limit}`, vertical: true, share: beyond ? 1 / ROW : ((high - low) / ROW / limit) * Math.sign(value) });
     drawing.append(handle);
   }
@@ -148,7 +151,7 @@ function grips(drawing, shown, place, onGrip) {
     const room = here - Math.max(0, ...places.filter((other) => other < here));
     const told = withUnit(metres * lengthUnit().factor, lengthUnit().name);
     const whole = `${word(name)} ${told}`;
-    const group = svg("g", { tabindex: 0, role: "slider", "aria-label": word(name), "aria-valuenow": metres, "aria-valuetext": told, "data-path": key });
+    const group = svg("g", { tabindex: 0, role: "slider", "aria-label": word(name), ...valueOf(metres, told), "data-path": key });
     group.append(svg("rect", { class: "handle", x: here - 7, y: TOP, width: 14, height: place.bottom - TOP }), svg("path", { class: "grip", d: `M${here - 9} 2h18l-9 15z` }));
     group.append(svg("text", { class: "mark", x: here - 13, y: 13, "text-anchor": "end" }, room > 6.4 * whole.length + 26 ? whole : room > 6.4 * told.length + 26 ? told : ""));
     onGrip(group, { path: key, vertical: false, share: (way * length) / metres / (place.right - place.left) });
