@@ -176,14 +176,16 @@ class CamProfile:
             worst = position.min() if position.min() < start else position.max()
             raise InputError(f"master position {worst!r} m lies outside the profile, {start!r} to {end!r} m")
         table = self._derived(order)
-        index = self.breaks[1:-1].searchsorted(position, side=side)
         if position.ndim == 0 or len(table) == 1:  # one piece for all positions
-            piece = int(index) if position.ndim == 0 else 0
+            piece = int(self.breaks[1:-1].searchsorted(position, side=side)) if position.ndim == 0 else 0
             local = position - self.breaks[piece]
-            value = np.zeros(local.shape)
-            for number in table[piece, ::-1].tolist():  # Horner
-                value = value * local + number
+            *others, most = table[piece].tolist()
+            value = np.full(local.shape, most + 0.0)
+            for number in reversed(others):  # Horner
+                value *= local
+                value += number
         else:
+            index = self.breaks[1:-1].searchsorted(position, side=side)
             local = position - self.breaks.take(index, mode="clip")
             value = np.zeros(local.shape)
             for coefficient in table.T[::-1]:  # Horner

@@ -13,7 +13,7 @@ from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
 from camwright.validation.motion import require_period
 from camwright.validation.servo.lifting import lift_side_by_side, loops_of
-from camwright.validation.servo.response import shear_zone_error, shear_zone_of, slow_sync_error
+from camwright.validation.servo.response import shear_zone_of, shear_zone_peaks, slow_sync_error
 from camwright.validation.servo.simulation import PHASES, WHOLE_PART, memory_at, shear_zone_run
 
 _VALUES = 2**17
@@ -71,8 +71,7 @@ def shear_zone_errors(profile: CamProfile, task: Task, servos: Sequence[Servo], 
     for group in _groups(past, within, phases):
         lifted = lift_side_by_side(loops.take(group), int(past[group].max()), (1, 0))
         run = shear_zone_run(profile, task.cut, [servos[i] for i in group.tolist()], lifted, phases)
-        error = shear_zone_error(run, profile, task)[1]
-        found[group] = np.abs(error).reshape(len(group), -1).max(axis=1)
+        found[group] = shear_zone_peaks(run, profile, task, len(group))
     return found
 
 
