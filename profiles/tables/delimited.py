@@ -23,7 +23,7 @@ LONGEST_LINE = 20_000
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,4})?")
 _COMMA = re.compile(r"[+-]?(?:[0-9]+,[0-9]*|,[0-9]+)(?:[eE][+-]?[0-9]{1,4})?")
 _STAMP = re.compile(
-    r"[0-9]{1,4}[-./:][0-9]{1,2}[-./:][0-9]{1,4}(?:[ T][0-9:.,]{1,20})?(?: ?[AP]M)?(?:Z| ?[+-][0-9]{2}:?[0-9]{2})?"
+    r"[0-9]{1,4}[-./:][0-9]{1,2}[-./:][0-9]{1,4}(?:[.,][0-9]{1,9}|[ T][0-9:.,]{1,20})?(?: ?[AP]M)?(?:Z| ?[+-][0-9]{2}:?[0-9]{2})?"
 )
 _FAULT_CELL = re.compile(r"#(?:[A-Z/0]{3,12}[!?]|N/A|NV)[\s,;|]")
 """What a spreadsheet writes for a cell that it cannot compute: the row that begins with one is no comment."""

@@ -33,6 +33,8 @@ def with_colour(fit: TraceFit, found: Minimum) -> Minimum:
     rows = len(fit.times)
     residual = fit.residual(found.values, found.clock)
     slopes = fit.slopes(found.values, found.names, None)
+    if not slopes.any():  # at the end of their ranges parameters may move nothing
+        return found
     weight = _shares(slopes)
     taken = _shares(np.concatenate([slopes, fit.free(Servo(**found.values)).T], axis=1))
     spread = np.ones(2 * _AROUND + 1) / (2 * _AROUND + 1)

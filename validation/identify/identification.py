@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -42,6 +42,8 @@ _ROUNDED = 1e-5
 """Dead time below which a negative one is the fit's own error (s)."""
 _AHEAD = 2e-4
 """Time by which the axis cannot run ahead of its command (s): noise may make it seem a little."""
+_FAR_AHEAD = 1e-3
+"""The same where nothing is known of the zeros yet: such a trace is not worth a search."""
 _LIVELIER = "record a livelier motion, e.g. a sweep up to the bandwidth of the axis, or a longer one"
 
 
@@ -104,7 +106,13 @@ def identify(trace: Trace, place: str, velocity_feedforward: float | None = None
     trace = unwrapped(trace, place)
     require_usable(trace, place)
     counts = count_of(trace.command), count_of(trace.actual)
-    fit = with_level(TraceFit.of(trace, counts[0]), velocity_feedforward)
+    fit = TraceFit.of(trace, counts[0])
+    early = replace(fit, level=True).lag  # whatever the zeros are
+    if early < -_FAR_AHEAD:
+        raise InputError(f"{place}: {_ahead(early)}")
+    fit = with_level(fit, velocity_feedforward)
+    if fit.lag < -_AHEAD:
+        raise InputError(f"{place}: {_ahead(fit.lag)}")
     origin: Origin = "given"
     if velocity_feedforward is None:
         solution, origin = _choose(fit, counts)
@@ -112,7 +120,7 @@ def identify(trace: Trace, place: str, velocity_feedforward: float | None = None
         solution = with_clock(fit, fit.solve(velocity_feedforward))
     solution = _widened(fit, solution, counts)
     share = 1.0 - math.sqrt(solution.cost / float(np.sum((fit.actual - fit.actual.mean()) ** 2)))
-    faults = list(_faults(solution, share, fit.lag))
+    faults = list(_faults(solution, share))
     if faults:
         raise InputError(*(f"{place}: {fault}" for fault in faults))
     values = solution.values
@@ -124,7 +132,7 @@ def identify(trace: Trace, place: str, velocity_feedforward: float | None = None
                 "velocity_feedforward": min(max(0.0, values["velocity_feedforward"]), 1.0),
             }
         ),
-        confidence={name: solution.bounds[name] for name in solution.names},
+        confidence={name: _holding(name, solution.bounds[name]) for name in solution.names},
         feedforward_from=origin,
         fit=share,
         residual=math.sqrt(solution.cost / len(fit.times)),
@@ -186,18 +194,25 @@ def _about_as_good(fit: TraceFit, simple: Minimum, free: Minimum) -> bool:
     return simple.cost - free.cost <= CONFIDENCE**2 * (noise + fit.doubt(free))
 
 
-def _faults(solution: Minimum, fit: float, lag: float) -> Iterator[str]:
+def _holding(name: str, bounds: tuple[float, float]) -> tuple[float, float]:
+    """Make an interval hold what is told: a dead time is none where the fit has it a little below 0."""
+    low, high = bounds
+    return (low, max(high, 0.0)) if name == "dead_time" else bounds
+
+
+def _ahead(lag: float) -> str:
+    return (
+        f"the actual position runs ahead of the command by {-1e3 * lag:.3g} ms on average: command and actual are swapped, or the "
+        "controller leads; give them in their own columns, and switch a lead off for the recording"
+    )
+
+
+def _faults(solution: Minimum, fit: float) -> Iterator[str]:
     """Say what the trace does not tell, or tells of no servo of this kind."""
     if not fit > _WORST_FIT:
         yield (
             f"no servo of this kind does what the trace shows: the best leaves {100 * (1 - fit):.3g} % of the motion over; check the "
             "units and the columns, and that it is one axis in position control"
-        )
-        return
-    if lag < -_AHEAD:
-        yield (
-            f"the actual position runs ahead of the command by {-1e3 * lag:.3g} ms on average: command and actual are swapped, or the "
-            "controller leads; give them in their own columns, and switch a lead off for the recording"
         )
         return
     values = solution.values

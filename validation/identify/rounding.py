@@ -66,7 +66,8 @@ def with_rounding(fit: TraceFit, found: Minimum, command: float, actual: float) 
         return found
     servo, random = Servo(**found.values), np.random.default_rng(_SEED)
     slopes = fit.slopes(found.values, found.names, None)
-    scale = np.sqrt((slopes**2).sum(axis=0))
+    size = np.sqrt((slopes**2).sum(axis=0))
+    scale = np.where(size > 0.0, size, 1.0)  # at the end of its range a parameter may move nothing
     back = np.linalg.pinv(slopes / scale) / scale[:, None]
     axis, asked = fit.mean(servo), fit.command(fit.times)
     variance = found.cost / (len(fit.times) - len(found.names) - 3)
@@ -82,5 +83,5 @@ def with_rounding(fit: TraceFit, found: Minimum, command: float, actual: float) 
             error = error - fit.filtered(servo, command * np.round(place / command) - place)
         moved += (back @ error) ** 2
     errors = np.sqrt(np.diag(back @ back.T) * variance)
-    factors = np.maximum(np.sqrt(moved / _DRAWS) / errors, 1.0)
+    factors = np.maximum(np.sqrt(moved / _DRAWS) / np.where(errors > 0.0, errors, np.inf), 1.0)
     return found.widened(dict(zip(found.names, factors.tolist(), strict=True)))

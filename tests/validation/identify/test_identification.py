@@ -310,6 +310,8 @@ def test_zeros_that_differ_are_taken_off(offset: float) -> None:
     found = identify(replace(CUT_TRACE, actual=CUT_TRACE.actual + offset), "t", 1.0)
     assert_found(found.servo, PAPER)
     assert float(found.notes[0].split(": ")[1].split(" mm")[0]) == pytest.approx(offset * 1e3, abs=0.05)
+    for name, (low, high) in found.confidence.items():
+        assert low <= getattr(found.servo, name) <= high, name
 
 
 def test_equal_zeros_are_not_told() -> None:

@@ -6,11 +6,13 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from camwright.profiles.cut import Cut
+from camwright.profiles.errors import InputError
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import RotaryKnife
 from camwright.profiles.returns import baseline
@@ -19,7 +21,10 @@ from camwright.profiles.tables.text import decode
 from camwright.profiles.tables.trace_csv import read_trace_csv
 from camwright.profiles.task import Task
 from camwright.profiles.trace import Trace
+from camwright.validation.identify.colour import with_colour
+from camwright.validation.identify.fit import Minimum
 from camwright.validation.identify.identification import Identified, identify
+from camwright.validation.identify.rounding import with_rounding
 
 KNIFE = RotaryKnife(0.4173519)
 CUT = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4)
@@ -164,3 +169,38 @@ def test_the_clean_trace_of_one_servo_gives_its_truth() -> None:
     for name, (low, high) in by_clean(3).confidence.items():
         half = 0.5 * (high - low)
         assert low - half <= getattr(servo(3), name) <= high + half, name
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", range(10))
+def test_swapped_columns_are_refused_whatever_the_servo(number: int) -> None:
+    trace = clean(number)
+    with pytest.raises(
+        InputError, match=r"runs ahead of the command by .* ms on average: command and actual are swapped"
+    ):
+        identify(replace(trace, command=trace.actual, actual=trace.command), "t")
+
+
+def test_a_parameter_that_moves_nothing_does_no_harm() -> None:
+    """At the end of a range slopes may vanish; the confidence of such a fit was a traceback."""
+    trace = clean(3)
+    found = by_clean_fit(3)
+    still = SimpleNamespace(
+        times=trace.times,
+        slopes=lambda *_: np.zeros((len(trace.times), len(found.names))),
+        residual=lambda *_: np.zeros(len(trace.times)),
+        mean=lambda _: trace.actual,
+        command=lambda _: trace.command,
+        filtered=lambda _, error: error,
+    )
+    assert with_rounding(still, found, 0.0, 1e-6).errors == pytest.approx(found.errors)
+    assert with_colour(still, found).errors == found.errors
+
+
+def by_clean_fit(number: int) -> Minimum:
+    """Give a minimum with the values of a servo and errors of a part in a thousand."""
+    values = {name: getattr(servo(number), name) for name in (*NAMES, "velocity_feedforward")}
+    errors = dict.fromkeys(NAMES, 0.001)
+    return Minimum(
+        values, NAMES, None, 1e-6, errors, {name: (0.99 * values[name], 1.01 * values[name]) for name in NAMES}
+    )
