@@ -29,7 +29,7 @@ from camwright.profiles.returns import baseline
 from camwright.profiles.tables.cam_table import Unit, Units
 from camwright.profiles.tables.knots import Accuracy, choose
 from camwright.profiles.tables.targets import TARGETS, read_table
-from camwright.stored.design_file import design_text
+from camwright.stored.design_text import design_text
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from camwright.jobs.job import Job
 from camwright.profiles.servo import mean_lag
-
-if TYPE_CHECKING:
-    from camwright.studies.axis_study import AxisStudy, Robustness
-    from camwright.validation.servo.lead import LengthError
+from camwright.studies.axis_study import AxisStudy, Robustness
+from camwright.validation.servo.lead import LengthError
 
 
 def axis_answer(axis: AxisStudy | None) -> dict[str, Any] | None:

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from camwright.jobs.job import Job
 from camwright.profiles.objective import OBJECTIVES
-
-if TYPE_CHECKING:
-    from camwright.studies.design import Design
+from camwright.studies.design import Design
 
 
 def objective_unit(job: Job) -> str:

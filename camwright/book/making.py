@@ -23,7 +23,7 @@ from camwright.jobs.wording import error_words, unforeseen
 from camwright.production.marks import next_lengths
 from camwright.profiles.errors import InfeasibleError, InputError, SolverError
 from camwright.profiles.mark_range import MarkRange
-from camwright.stored.design_file import design_text
+from camwright.stored.design_text import design_text
 from camwright.studies.axis_study import axis_study, solve_job
 from camwright.studies.design import Design
 from camwright.studies.reach import highest_speed

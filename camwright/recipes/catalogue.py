@@ -7,13 +7,9 @@ import tomllib
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from camwright.house.numbers import METRIC, Units, in_print, number, unit_shown, units_of
 from camwright.recipes.language import LANGUAGES, Language
-
-if TYPE_CHECKING:
-    from camwright.recipes.model import Recipe
 
 DECIMAL: dict[Language, str] = {"en": ".", "de": ",", "zh": "."}
 """What stands before decimals."""
@@ -78,9 +74,9 @@ def _kept(language: Language, units: Units) -> Catalogue:
     return Catalogue(language, messages, _read(phrases) if language != "en" else {}, units)
 
 
-def catalogue_of(recipe: Recipe) -> Catalogue:
-    """Read the messages that a recipe is written with: its language, and the units of its job file."""
-    return catalogue(recipe.language, units_of(tomllib.loads(recipe.job.toml.removeprefix("\ufeff"))))
+def catalogue_of(language: Language, job: str) -> Catalogue:
+    """Read the messages that a recipe is written with: its language, and the units of its job file's text."""
+    return catalogue(language, units_of(tomllib.loads(job.removeprefix("\ufeff"))))
 
 
 def _in_units(text: str, units: Units) -> str:

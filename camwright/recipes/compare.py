@@ -84,7 +84,7 @@ def _same(change: Change) -> bool:
 
 def _pairs(before: Recipe, after: Recipe) -> Iterator[Change]:
     """Set side by side everything that can differ, in the units of the newer recipe."""
-    shown = catalogue_of(after).units
+    shown = catalogue_of(after.language, after.job.toml).units
     yield Change("recipe", "name", "", before.name, after.name)
     yield Change("recipe", "note", "", before.note, after.note)
     after_given = asdict(after.particulars)

@@ -16,7 +16,7 @@ def recipe_html(recipe: Recipe) -> str:
     """Write a recipe as a page; every text is escaped, and the page may load nothing."""
     import jinja2
 
-    words = catalogue_of(recipe)
+    words = catalogue_of(recipe.language, recipe.job.toml)
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(_TEMPLATES), autoescape=True, undefined=jinja2.StrictUndefined
     )

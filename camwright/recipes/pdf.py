@@ -22,7 +22,7 @@ def recipe_pdf(recipe: Recipe) -> bytes:
     """Typeset a recipe; the same recipe gives the same bytes."""
     import typst
 
-    words = catalogue_of(recipe)
+    words = catalogue_of(recipe.language, recipe.job.toml)
     data = _printable({**sheet(recipe, words), "version": recipe.provenance.camwright})
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder)

@@ -41,7 +41,7 @@ def recipe_xlsx(recipe: Recipe) -> bytes:
     """
     import xlsxwriter
 
-    words, file = catalogue_of(recipe), io.BytesIO()
+    words, file = catalogue_of(recipe.language, recipe.job.toml), io.BytesIO()
     book = xlsxwriter.Workbook(file, _TEXT_ONLY)
     book.set_properties({"title": f"{words('recipe')} {visible(recipe.name)}", "created": _EPOCH})
     _parameters(_Page(book, words("sheet.parameters"), (44, 24, 10)), recipe, words)

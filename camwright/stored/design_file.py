@@ -6,23 +6,17 @@ import hashlib
 import json
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from camwright.answers.axis import axis_answer, robust_answer
-from camwright.answers.objective import agreement_answer, objective_answer
 from camwright.house.files import read_text
-from camwright.house.provenance import SCHEMA_VERSION, provenance
+from camwright.house.provenance import SCHEMA_VERSION
 from camwright.jobs.job import Job, parse_job
-from camwright.jobs.numbers import job_numbers
 from camwright.profiles.errors import InputError
 from camwright.profiles.machines import MACHINES, Machine
 from camwright.profiles.machines.fields import Choice, MachineField, Whole, fields_of
 from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.servo_tolerance import ServoTolerance
-
-if TYPE_CHECKING:  # who reads a design needs nothing of what makes one
-    from camwright.studies.design import Design
 
 MOST_BYTES = 1 << 26
 """The most bytes that a design or table file may have."""
@@ -45,23 +39,6 @@ class StoredDesign:
 
     profile: CamProfile
     job: Job
-
-
-def design_text(design: Design) -> str:
-    """Write a design as the text of a design.json."""
-    data = {
-        "schema_version": SCHEMA_VERSION,
-        "status": design.solution.status.value,
-        "objective": objective_answer(design),
-        "lower_bound_method": design.bound.method,
-        "starts": agreement_answer(design),
-        "servo_aware": axis_answer(design.axis),
-        "robust": robust_answer(design.robust),
-        "profile": design.profile.to_dict(),
-        "job": {"toml": design.job.text, "si": job_numbers(design.job)},
-        "provenance": provenance(design.job.sha256),
-    }
-    return json.dumps(data, indent=1, allow_nan=False) + "\n"
 
 
 def read_design(path: str | Path) -> StoredDesign:

@@ -6,7 +6,7 @@ import warnings
 from pathlib import Path
 
 from camwright.house.owned import Work, owned
-from camwright.stored.design_file import design_text
+from camwright.stored.design_text import design_text
 from camwright.stored.profile_files import cam_text
 from camwright.studies.design import Design
 

@@ -73,8 +73,7 @@ class Runner:
 
     def __init__(self, command_line: CommandLine) -> None:
         self._command_line = command_line
-        self._child = self._spawn()
-        self._spare: _Child | None = None
+        self._children = [self._spawn()]  # the one that runs commands, and behind it the one that stands by
         self._newest: dict[str, int] = {}
         self._running: str | None = None
         self._closed = False
@@ -110,13 +109,13 @@ class Runner:
         async with self._free:
             if self._closed or call != self._newest[kind]:
                 raise StaleError
-            self._running, child = kind, self._child
+            self._running, child = kind, self._children[0]
             child.line.send((tuple(tuple(command) for command in commands), inputs))
             ran = await asyncio.get_running_loop().run_in_executor(None, _received, child.line)
-            if child is self._child:
+            if child is self._children[0]:
                 self._running = None
-            if self._spare is None and not self._closed:
-                self._spare = self._spawn(rehearse=True)
+            if len(self._children) == 1 and not self._closed:
+                self._children.append(self._spawn(rehearse=True))
         if ran is None or call != self._newest[kind]:
             raise StaleError
         return ran
@@ -129,15 +128,16 @@ class Runner:
     def _end(self, kind: str) -> None:
         """End a call of a kind if it runs; the spare process takes its place."""
         if self._running == kind and not self._closed:
-            _stop(self._child)
-            self._running, self._child, self._spare = None, self._spare or self._spawn(), None
+            _stop(self._children.pop(0))
+            self._running = None
+            if not self._children:
+                self._children.append(self._spawn())
 
     def close(self) -> None:
         """End the processes; calls that wait for them are told that they are stale, and so are all that come later."""
         self._closed = True
-        for child in (self._child, self._spare):
-            if child is not None:
-                _stop(child)
+        for child in self._children:
+            _stop(child)
 
 
 def _stop(child: _Child) -> None:

@@ -29,7 +29,7 @@ from camwright.profiles.returns import baseline
 from camwright.profiles.tables.cam_table import Unit
 from camwright.profiles.tables.knots import Accuracy
 from camwright.profiles.tables.targets import TARGETS
-from camwright.stored.design_file import design_text
+from camwright.stored.design_text import design_text
 from camwright.studies.design import optimise
 
 JOB = load_job()
@@ -149,7 +149,7 @@ def test_the_commands(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Make a folder with a design, and the design of the same cycle for a job that it breaks."""
-    from camwright.stored.design_file import design_text
+    from camwright.stored.design_text import design_text
     from camwright.studies.design import optimise
 
     place = tmp_path_factory.mktemp("designs")

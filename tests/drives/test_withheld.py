@@ -23,7 +23,7 @@ from camwright.house.owned import LIST
 from camwright.profiles.errors import InputError
 from camwright.profiles.tables.target import Header
 from camwright.profiles.tables.targets import TARGETS
-from camwright.stored.design_file import design_text
+from camwright.stored.design_text import design_text
 from camwright.studies.design import optimise
 
 JOB = load_job()

@@ -23,7 +23,8 @@ from camwright.profiles.line import Line
 from camwright.profiles.machines import CrankSlider, LinearCarriage, RotaryKnife
 from camwright.profiles.motor import MotorCurve
 from camwright.profiles.servo import Servo
-from camwright.stored.design_file import design_text, parse_design
+from camwright.stored.design_file import parse_design
+from camwright.stored.design_text import design_text
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
 PAPER = BUNDLED_JOB.read_text(encoding="utf-8")

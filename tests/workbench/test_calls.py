@@ -14,7 +14,7 @@ from starlette.testclient import TestClient
 from camwright.cli.main import main
 from camwright.jobs.job import BUNDLED_JOB, parse_job
 from camwright.profiles.errors import InputError
-from camwright.stored.design_file import design_text
+from camwright.stored.design_text import design_text
 from camwright.studies.design import optimise
 from camwright.workbench.preview import preview
 from camwright.workbench.saving import Saved

@@ -14,7 +14,7 @@ from camwright.jobs.job import Job, load_job
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import baseline
-from camwright.stored.design_file import design_text
+from camwright.stored.design_text import design_text
 from camwright.studies.design import optimise
 from camwright.validation.motor import motor_torque
 from camwright.validation.servo.response import servo_response
