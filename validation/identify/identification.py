@@ -108,8 +108,8 @@ def identify(trace: Trace, place: str, velocity_feedforward: float | None = None
     counts = count_of(trace.command), count_of(trace.actual)
     fit = TraceFit.of(trace, counts[0])
     early = replace(fit, level=True).lag  # whatever the zeros are
-    if early < -_FAR_AHEAD:
-        raise InputError(f"{place}: {_ahead(early)}")
+    if early < -_FAR_AHEAD:  # what the zeros may have added is told only where it agrees
+        raise InputError(f"{place}: {_ahead(fit.lag if 3.0 * early < fit.lag < 0.3 * early else early)}")
     fit = with_level(fit, velocity_feedforward)
     if fit.lag < -_AHEAD:
         raise InputError(f"{place}: {_ahead(fit.lag)}")
