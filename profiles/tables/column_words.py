@@ -86,7 +86,7 @@ _TRACED: tuple[tuple[str, tuple[str, ...], tuple[str, ...]], ...] = (
     ("time", ("t",), ("time", "zeit", "timestamp", "时间", "temps", "tempo")),
     ("master", (), ("master", "leit", "leading", "web", "material", "conveyor", "主轴", "物料")),
     ("command", (), ("command", "cmd", "set", "soll", "demand", "reference", "ref", "target", "指令", "设定", "目标", "给定",
-                     "comand", "consign")),
+                     "comando", "consign")),
     ("actual", (), ("actual", "act", "ist", "feedback", "fbk", "fb", "measured", "encoder", "实际", "反馈",
                     "attual", "mesur", "réel", "reel")),
 )  # fmt: skip

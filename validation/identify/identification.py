@@ -108,7 +108,7 @@ def identify(trace: Trace, place: str, velocity_feedforward: float | None = None
     counts = count_of(trace.command), count_of(trace.actual)
     fit = TraceFit.of(trace, counts[0])
     early = replace(fit, level=True).lag  # whatever the zeros are
-    if early < -_FAR_AHEAD:  # what the zeros may have added is told only where it agrees
+    if early < -_FAR_AHEAD and _alike(fit, early):  # what the zeros may have added is told only where it agrees
         raise InputError(f"{place}: {_ahead(fit.lag if 3.0 * early < fit.lag < 0.3 * early else early)}")
     fit = with_level(fit, velocity_feedforward)
     if fit.lag < -_AHEAD:
@@ -192,6 +192,12 @@ def _about_as_good(fit: TraceFit, simple: Minimum, free: Minimum) -> bool:
     """Whether a fit of one parameter less is not significantly worse."""
     noise = free.cost / len(fit.times)
     return simple.cost - free.cost <= CONFIDENCE**2 * (noise + fit.doubt(free))
+
+
+def _alike(fit: TraceFit, lag: float) -> bool:
+    """Whether the actual position is the command at another time, whatever the zeros are."""
+    off = fit.actual - fit.command(fit.times - lag)
+    return bool(np.std(off) < (1.0 - _WORST_FIT) * np.std(fit.actual))
 
 
 def _holding(name: str, bounds: tuple[float, float]) -> tuple[float, float]:

@@ -23,6 +23,8 @@ _MOVED = 0.05
 _STRAIGHT = 5.0
 """Deviation of the command from a straight line that counts as excitation, as a multiple of the noise of the actual position."""
 
+_AGAINST = 0.8
+"""Correlation from which on two signals run against each other."""
 _SCALE = 8.0
 """How much further one of the two signals may move than the other: inches taken for millimetres are more."""
 
@@ -151,7 +153,10 @@ def _bend(trace: Trace) -> float:
 
 
 def _scale(trace: Trace) -> Iterator[str]:
-    """Check that the actual position moves about as far as the command; an axis does not follow fast motion fully."""
+    """Check that the actual position moves about as far as the command, and its way; an axis does not follow fast motion fully."""
+    if float(np.corrcoef(trace.command, trace.actual)[0, 1]) < -_AGAINST:
+        yield "the actual position runs against the command: one of them counts the other way; turn the sign of one column"
+        return
     share = float(np.std(trace.actual) / np.std(trace.command))
     if not 1.0 / _SCALE < share < _SCALE:
         yield (

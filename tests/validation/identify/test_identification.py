@@ -179,6 +179,13 @@ def test_an_axis_that_is_no_such_servo_is_refused() -> None:
         identify(wrong, "t", 1.0)
 
 
+def test_an_axis_that_counts_the_other_way_is_told() -> None:
+    with pytest.raises(
+        InputError, match="t: the actual position runs against the command: one of them counts the other way"
+    ):
+        identify(replace(CUT_TRACE, actual=-CUT_TRACE.actual), "t", 1.0)
+
+
 def test_rest_before_and_after_a_motion_is_not_clipping() -> None:
     def move(time: float) -> float:
         part = min(max((time - 0.5) / 0.4, 0.0), 1.0)
