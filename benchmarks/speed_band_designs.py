@@ -159,10 +159,10 @@ def random_jobs(jobs: int, seed: int, out: Path) -> int:
         row |= {"median_s": f"{np.median(seconds):.2f}", "longest_s": f"{max(seconds):.2f}"}
         rows.append(row)
         print(", ".join(f"{name} {value}" for name, value in row.items()), flush=True)
-    with out.open("w", newline="", encoding="utf-8") as file:
-        table = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
-        table.writeheader()
-        table.writerows(rows)
+        with out.open("w", newline="", encoding="utf-8") as file:  # what is done so far
+            table = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
+            table.writeheader()
+            table.writerows(rows)
     return 1 if bad else 0
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from camwright.cli.options import Json, Quiet
+from camwright.cli.options import Json, Quiet, option_quantity
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.house.files import read_bytes, require_plain, write_files
@@ -17,12 +17,13 @@ from camwright.house.output import Voice
 from camwright.profiles.errors import InputError
 from camwright.profiles.trace import Trace
 from camwright.studies.identification import (
-    ORIGINS,
-    PARAMETERS,
+    FIT,
     identify_answer,
     identify_file,
     is_servo_text,
     one_line,
+    origin_of,
+    parameters_of,
     range_text,
     residual_unit,
     rounded,
@@ -56,6 +57,22 @@ def run(
             help="Velocity feed-forward set in the drive; fitted if left out.",
         ),
     ] = None,
+    acceleration_feedforward: Annotated[
+        str | None,
+        typer.Option(
+            "--acceleration-feedforward",
+            metavar="VALUE",
+            help="Acceleration feed-forward set in the drive, e.g. 330 ms^2, or fit; 0 if left out.",
+        ),
+    ] = None,
+    jerk_feedforward: Annotated[
+        str | None,
+        typer.Option(
+            "--jerk-feedforward",
+            metavar="VALUE",
+            help="Jerk feed-forward set in the drive, e.g. 2000 ms^3, or fit; 0 if left out.",
+        ),
+    ] = None,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> int:
@@ -64,16 +81,29 @@ def run(
         raise InputError(f"{out}: a directory; --out names the file to write, e.g. servo.toml")
     if out is not None:
         _require_ours(out)
+    beyond = {
+        **_fed("acceleration_feedforward", acceleration_feedforward, "time squared", "330 ms^2"),
+        **_fed("jerk_feedforward", jerk_feedforward, "time cubed", "2000 ms^3"),
+    }
     voice = Voice(as_json, quiet)
     with voice.progress(1) as step:
         step("fitting the servo")
-        recorded, found = identify_file(trace, velocity_feedforward)
+        recorded, found = identify_file(trace, velocity_feedforward, beyond)
     files: list[Path] = []
     if out is not None:
         files = write_files(out.parent, {out.name: servo_text(trace, recorded, found)})
 
     voice.answer(lambda: identify_answer(trace, recorded, found, files), lambda: _view(trace, recorded, found, files))
     return 0
+
+
+def _fed(name: str, text: str | None, kind: str, example: str) -> dict[str, float | None]:
+    """Read an option of feed-forward: what is set, nothing known where it is to be fitted, or no entry where it is left out."""
+    if text is None:
+        return {}
+    if text.strip() == FIT:
+        return {name: None}
+    return {name: option_quantity(f"--{name.replace('_', '-')}", text, kind, zero=True, example=example)}
 
 
 def _require_ours(out: Path) -> None:
@@ -97,10 +127,10 @@ def _view(path: Path, trace: Trace, found: Identified, files: Sequence[Path]) ->
     table = new_table(title=f"Servo of {one_line(path.name)}", title_justify="left")
     for heading in ("parameter", "value", "unit", "95 % confidence"):
         table.add_column(heading, justify="right" if heading == "value" else "left")
-    for name, (_, symbol, factor, written) in PARAMETERS.items():
+    for name, (_, symbol, factor, written) in parameters_of(found).items():
         value, bounds = getattr(found.servo, name) * factor, found.confidence.get(name)
         spread = 0.0 if bounds is None else 0.5 * factor * (bounds[1] - bounds[0])
-        note = ORIGINS[found.feedforward_from] if bounds is None else range_text(bounds, factor, "")
+        note = origin_of(found, name) if bounds is None else range_text(bounds, factor, "")
         words = name.replace("_", " ")
         table.add_row(words if symbol == words else f"{words} {symbol}", rounded(value, spread), written, note)
     ending = f"fit {found.fit:.6f}, residual {found.residual * scale:.3g} {unit} rms over {found.rows} rows"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +28,15 @@ PARAMETERS = {
 }
 """JSON key, symbol, factor and unit of each parameter, by its name in `camwright.profiles.servo.Servo`."""
 
+BEYOND = {
+    "acceleration_feedforward": ("acceleration_feedforward_ms2", "β", 1e6, "ms^2"),
+    "jerk_feedforward": ("jerk_feedforward_ms3", "γ", 1e9, "ms^3"),
+}
+"""As `PARAMETERS`: feed-forward that is told only where it is set or fitted."""
+
+FIT = "fit"
+"""What an option says whose value is to be found."""
+
 ORIGINS = {
     "trace": "fitted to the trace",
     "assumed": "assumed: the trace allows it; if the drive is set otherwise, give --velocity-feedforward",
@@ -49,7 +58,9 @@ def read_trace(path: Path) -> Trace:
 _SUM = "# camwright identify, SHA-256 of the lines above: "
 
 
-def identify_file(path: Path, velocity_feedforward: float | None) -> tuple[Trace, Identified]:
+def identify_file(
+    path: Path, velocity_feedforward: float | None, beyond: Mapping[str, float | None] | None = None
+) -> tuple[Trace, Identified]:
     """Find the servo of a recorded trace.
 
     Parameters
@@ -58,6 +69,8 @@ def identify_file(path: Path, velocity_feedforward: float | None) -> tuple[Trace
         The trace.
     velocity_feedforward
         Share of the command's velocity that is fed forward, if known.
+    beyond
+        As of `camwright.validation.identify.identification.identify`.
 
     Raises
     ------
@@ -67,13 +80,25 @@ def identify_file(path: Path, velocity_feedforward: float | None) -> tuple[Trace
     if velocity_feedforward is not None and not 0.0 <= velocity_feedforward <= 1.0:
         raise InputError(f"--velocity-feedforward {velocity_feedforward:g}: it is a share from 0 to 1, usually 1")
     trace = read_trace(path)
-    return trace, identify(trace, str(path), velocity_feedforward)
+    return trace, identify(trace, str(path), velocity_feedforward, beyond)
+
+
+def parameters_of(found: Identified) -> dict[str, tuple[str, str, float, str]]:
+    """Parameters that are told of a servo: `PARAMETERS`, and what is fed forward beyond the velocity where it is set or fitted."""
+    told = {name: each for name, each in BEYOND.items() if getattr(found.servo, name) or name in found.confidence}
+    return {**PARAMETERS, **told}
+
+
+def origin_of(found: Identified, name: str) -> str:
+    """Say where a value comes from that was not fitted."""
+    return ORIGINS["given" if name in BEYOND else found.feedforward_from]
 
 
 def identify_answer(path: Path, trace: Trace, found: Identified, files: Sequence[Path]) -> dict[str, Any]:
     """Answer of ``camwright identify``."""
     scale, unit = residual_unit(trace)
-    values = {key: getattr(found.servo, name) * factor for name, (key, _, factor, _) in PARAMETERS.items()}
+    parameters = parameters_of(found)
+    values = {key: getattr(found.servo, name) * factor for name, (key, _, factor, _) in parameters.items()}
     return {
         "file": str(path),
         **values,
@@ -81,7 +106,7 @@ def identify_answer(path: Path, trace: Trace, found: Identified, files: Sequence
         "fit": found.fit,
         "residual_rms": {"value": found.residual * scale, "unit": unit},
         "confidence": {
-            PARAMETERS[name][0]: [bound * PARAMETERS[name][2] for bound in bounds]
+            parameters[name][0]: [bound * parameters[name][2] for bound in bounds]
             for name, bounds in found.confidence.items()
         },
         "rows": found.rows,
@@ -99,12 +124,12 @@ def servo_text(path: Path, trace: Trace, found: Identified) -> str:
         "# Beside each value its range of 95 % confidence.",
         "[servo]",
     ]
-    for name, (_, _, factor, written) in PARAMETERS.items():
+    for name, (_, _, factor, written) in parameters_of(found).items():
         value, bounds = getattr(found.servo, name) * factor, found.confidence.get(name)
         spread = 0.0 if bounds is None else 0.5 * factor * (bounds[1] - bounds[0])
         number = rounded(value, spread)
         text = f'{name} = "{number} {written}"' if written else f"{name} = {number}"
-        note = ORIGINS[found.feedforward_from] if bounds is None else range_text(bounds, factor, written)
+        note = origin_of(found, name) if bounds is None else range_text(bounds, factor, written)
         lines.append(f"{text:40}# {note}")
     text = "\n".join(lines) + "\n"
     return f"{text}{_SUM}{hashlib.sha256(text.encode()).hexdigest()}\n"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,8 +27,13 @@ RANGES: dict[str, tuple[float, float]] = {
     "sample_time": (1e-4, 2e-2),
     "dead_time": (-0.02, 0.05),
     "velocity_feedforward": (-0.1, 1.2),
+    "acceleration_feedforward": (-2e-3, 1e-2),
+    "jerk_feedforward": (-5e-5, 2e-4),
 }
 """Ranges that are searched, in SI units. A negative dead time is found where the controller leads."""
+
+BEYOND = ("acceleration_feedforward", "jerk_feedforward")
+"""Feed-forward beyond that of the velocity: fitted only where that is asked for."""
 
 CONFIDENCE = 1.96
 """Standard deviations to both sides that hold 95 %."""
@@ -47,6 +52,9 @@ _RUN_IN = 0.06
 _START_TIMES = (0.0015, 0.005)
 _START_GAINS = (12.0, 35.0)
 """Sample times (s) and position gains (1/s) from which the search starts, each with each."""
+
+_START_SHARES = (0.0, 0.7)
+"""Shares of what makes up for the velocity loop from which feed-forward beyond that of the velocity is searched."""
 
 _COARSE_ROUNDS = 10
 _BINS = 15
@@ -118,6 +126,10 @@ class TraceFit:
         Noise of the actual position (rms).
     level
         Whether a constant between command and actual position is fitted too: zeros that differ.
+    told
+        Feed-forward beyond that of the velocity by name, where it is known to be set.
+    sought
+        Names of that which is fitted.
     """
 
     times: FloatArray
@@ -130,6 +142,8 @@ class TraceFit:
     step: float
     noise: float
     level: bool = False
+    told: dict[str, float] = field(default_factory=dict)
+    sought: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, trace: Trace, count: float = 0.0) -> TraceFit:
@@ -230,20 +244,27 @@ class TraceFit:
         return float(np.sum((self.filtered(Servo(**found.values), missed) / 4.0) ** 2))
 
     def solve(self, alpha: float) -> Minimum:
-        """Fit all parameters but the velocity feed-forward and the clock, from many starts."""
-        names = tuple(name for name in RANGES if name != "velocity_feedforward")
+        """Fit all parameters but the velocity feed-forward and the clock, from many starts; feed-forward beyond it where it is sought."""
+        names = tuple(name for name in RANGES if name != "velocity_feedforward" and name not in BEYOND) + self.sought
         lag, found = self.lag, []
         for step in _START_TIMES:
             for gain in _START_GAINS:
-                start = {
-                    "bandwidth": 110.0,
-                    "damping": 0.8,
-                    "position_gain": gain,
-                    "sample_time": step,
-                    "dead_time": min(max(lag - step - (1.0 - alpha) / gain, 0.0), 0.04),
-                    "velocity_feedforward": alpha,
-                }
-                found.append(self.minimum(start, names, None, _COARSE_ROUNDS))
+                for share in _START_SHARES if self.sought else (0.0,):
+                    full = {
+                        "acceleration_feedforward": 1.6 / (110.0 * gain),
+                        "jerk_feedforward": 1.0 / (110.0**2 * gain),
+                    }
+                    start = {
+                        "bandwidth": 110.0,
+                        "damping": 0.8,
+                        "position_gain": gain,
+                        "sample_time": step,
+                        "dead_time": min(max(lag - step - (1.0 - alpha) / gain, 0.0), 0.04),
+                        "velocity_feedforward": alpha,
+                        **self.told,
+                        **{name: share * full[name] for name in self.sought},
+                    }
+                    found.append(self.minimum(start, names, None, _COARSE_ROUNDS))
         found.sort(key=lambda each: each.cost)
         return min((self.minimum(each.values, names, None, ROUNDS) for each in found[:2]), key=lambda each: each.cost)
 
@@ -358,5 +379,6 @@ def moved(name: str, value: float, by: float) -> float:
 
 
 def _difference(name: str) -> float:
-    """Step of a difference: of a logarithm, of the dead time (s), of a part."""
-    return {"dead_time": 1e-6, "clock": 1e-2}.get(name, 1e-4)
+    """Step of a difference: of a logarithm, of the dead time (s), of feed-forward (s², s³), of a part."""
+    steps = {"dead_time": 1e-6, "clock": 1e-2, "acceleration_feedforward": 1e-7, "jerk_feedforward": 1e-9}
+    return steps.get(name, 1e-4)

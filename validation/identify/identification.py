@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -15,6 +15,7 @@ from camwright.profiles.trace import Trace
 from camwright.validation.identify.clock import with_clock
 from camwright.validation.identify.colour import with_colour
 from camwright.validation.identify.fit import (
+    BEYOND,
     CONFIDENCE,
     RANGES,
     ROUNDS,
@@ -36,6 +37,8 @@ _UNITS = {
     "sample_time": (1e3, " ms"),
     "dead_time": (1e3, " ms"),
     "velocity_feedforward": (1.0, ""),
+    "acceleration_feedforward": (1e6, " ms^2"),
+    "jerk_feedforward": (1e9, " ms^3"),
 }
 _WORST_FIT = 0.5
 _ROUNDED = 1e-5
@@ -78,7 +81,12 @@ class Identified:
     notes: tuple[str, ...] = ()
 
 
-def identify(trace: Trace, place: str, velocity_feedforward: float | None = None) -> Identified:
+def identify(
+    trace: Trace,
+    place: str,
+    velocity_feedforward: float | None = None,
+    beyond: Mapping[str, float | None] | None = None,
+) -> Identified:
     """Find the servo that makes of the recorded command what was recorded of the axis.
 
     The axis' state at the beginning is not known and fitted too (three numbers, linear). The sampling clock's phase is not known either:
@@ -95,6 +103,9 @@ def identify(trace: Trace, place: str, velocity_feedforward: float | None = None
         What messages begin with.
     velocity_feedforward
         Share of the command's velocity that is fed forward, if known.
+    beyond
+        Feed-forward of acceleration and jerk by name, in SI units: as it is set, or ``None`` where it is to be fitted; 0 where it is not
+        named.
 
     Raises
     ------
@@ -106,7 +117,12 @@ def identify(trace: Trace, place: str, velocity_feedforward: float | None = None
     trace = unwrapped(trace, place)
     require_usable(trace, place)
     counts = count_of(trace.command), count_of(trace.actual)
-    fit = TraceFit.of(trace, counts[0])
+    asked = beyond or {}
+    fit = replace(
+        TraceFit.of(trace, counts[0]),
+        told={name: value for name, value in asked.items() if value is not None},
+        sought=tuple(name for name in BEYOND if name in asked and asked[name] is None),
+    )
     early = replace(fit, level=True).lag  # whatever the zeros are
     if early < -_FAR_AHEAD and _alike(fit, early):  # what the zeros may have added is told only where it agrees
         raise InputError(f"{place}: {_ahead(fit.lag if 3.0 * early < fit.lag < 0.3 * early else early)}")
@@ -130,6 +146,7 @@ def identify(trace: Trace, place: str, velocity_feedforward: float | None = None
                 **values,
                 "dead_time": max(0.0, values["dead_time"]),
                 "velocity_feedforward": min(max(0.0, values["velocity_feedforward"]), 1.0),
+                **{name: max(0.0, values[name]) for name in BEYOND if name in values},
             }
         ),
         confidence={name: _holding(name, solution.bounds[name]) for name in solution.names},
@@ -238,8 +255,9 @@ def _faults(solution: Minimum, fit: float) -> Iterator[str]:
             yield f"{words} {about}: above 1, the axis would run ahead; give the share that is set in the drive, --velocity-feedforward"
         elif not low + 1e-6 * abs(low) < value < high - 1e-6 * abs(high):
             yield f"{words} {value * factor:.4g}{unit}: the end of the range that is searched; {_LIVELIER}"
-        elif 2 * spread > known and name != "velocity_feedforward":
+        elif 2 * spread > known and name != "velocity_feedforward" and name not in BEYOND:
             yield (
                 f"the trace does not tell the {words}: {about}; {_LIVELIER}"
+                + "".join(f", or give --{each.replace('_', '-')}" for each in BEYOND if each in solution.names)
                 + (", or give --velocity-feedforward" if "velocity_feedforward" in solution.names else "")
             )

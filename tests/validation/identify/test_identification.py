@@ -54,17 +54,20 @@ def recorded(servo: Servo, command: Command, seed: int, *, noise: float = NOISE,
     times = STEP * np.arange(rows)
     actual = np.empty(rows)
     before = command(clock - servo.delay)
-    state = np.array([0.0, 0.0, before])
+    state, past, earliest = np.array([0.0, 0.0, before]), (before, before), before
     row = 0
     for k in range(math.ceil((times[-1] - clock) / servo.sample_time) + 1):
         start = clock + k * servo.sample_time
         now = command(start - servo.delay)
-        held = servo.position_gain * (now - state[2]) + servo.velocity_feedforward * (now - before) / servo.sample_time
+        step, before = servo.sample_time, past[0]
+        asked = now + servo.acceleration_feedforward * (now - 2 * before + past[1]) / step**2
+        asked += servo.jerk_feedforward * (now - 3 * before + 3 * past[1] - earliest) / step**3
+        held = servo.position_gain * (asked - state[2]) + servo.velocity_feedforward * (now - before) / step
         while row < rows and times[row] < start + servo.sample_time:
             plant = sample_plant(servo, times[row] - start)
             actual[row] = plant.transition[2] @ state + plant.input[2] * held
             row += 1
-        state, before = whole.transition @ state + whole.input * held, now
+        state, past, earliest = whole.transition @ state + whole.input * held, (now, before), past[1]
     return Trace(0.0, STEP, np.array([command(t) for t in times]), actual + random.normal(0.0, noise, rows), "m")
 
 
@@ -121,6 +124,50 @@ def test_another_feedforward_is_fitted() -> None:
     assert_found(found.servo, servo)
     low, high = found.confidence["velocity_feedforward"]
     assert low < found.servo.velocity_feedforward < high < 1.0
+
+
+@pytest.mark.parametrize(
+    "command",
+    [cam("poly_3_4_5"), pytest.param(sweep(0.02, 30.0), marks=pytest.mark.slow)],
+    ids=["cam", "sweep"],
+)
+def test_feedforward_of_acceleration_and_jerk_is_found_or_told(command: Command) -> None:
+    """A trace that was simulated with them gives them back, within its own 95 % widened to three standard deviations and more."""
+    servo = replace(PAPER, acceleration_feedforward=2.5e-4, jerk_feedforward=1.5e-6)
+    names = ("acceleration_feedforward", "jerk_feedforward")
+    trace = recorded(servo, command, 3)
+    found = identify(trace, "t", 1.0, dict.fromkeys(names))
+    assert set(names) < set(found.confidence)
+    for name, (low, high) in found.confidence.items():
+        half = 0.5 * (high - low)
+        assert low - half <= getattr(servo, name) <= high + half, name
+    told = identify(trace, "t", 1.0, {name: getattr(servo, name) for name in names})
+    assert_found(told.servo, servo)
+    assert [getattr(told.servo, name) for name in names] == [2.5e-4, 1.5e-6]
+    assert not set(names) & set(told.confidence)
+    assert told.residual == pytest.approx(NOISE, rel=0.05)
+
+
+def test_feedforward_beyond_the_velocity_goes_into_the_servo_table(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    servo = replace(PAPER, acceleration_feedforward=2.5e-4)
+    (tmp_path / "t.csv").write_text(csv(recorded(servo, cam("poly_3_4_5"), 3)), encoding="utf-8")
+    call = ["identify", str(tmp_path / "t.csv"), "--velocity-feedforward", "1", "--acceleration-feedforward"]
+    assert main([*call, "250 ms^2", "--out", str(tmp_path / "servo.toml"), "--quiet"]) == 0
+    text = (tmp_path / "servo.toml").read_text(encoding="utf-8")
+    line = next(line for line in text.splitlines() if line.startswith("acceleration"))
+    assert line.split("#")[1].strip() == "given"
+    assert tomllib.loads(text)["servo"]["acceleration_feedforward"] == "250.0 ms^2"
+    assert "jerk" not in text
+    capsys.readouterr()
+    assert main([*call, "fit", "--json"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    low, high = answer["confidence"]["acceleration_feedforward_ms2"]
+    assert low <= 250.0 <= high
+    assert main([*call, "250"]) == 2
+    said = "--acceleration-feedforward: '250': a number without a unit; write e.g. \"250 ms^2\""
+    assert said in capsys.readouterr().err
 
 
 def test_the_confidence_holds_the_truth_and_follows_the_noise() -> None:
