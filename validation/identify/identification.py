@@ -127,8 +127,6 @@ def identify(
     if early < -_FAR_AHEAD and _alike(fit, early):  # what the zeros may have added is told only where it agrees
         raise InputError(f"{place}: {_ahead(fit.lag if 3.0 * early < fit.lag < 0.3 * early else early)}")
     fit = with_level(fit, velocity_feedforward)
-    if fit.lag < -_AHEAD:
-        raise InputError(f"{place}: {_ahead(fit.lag)}")
     origin: Origin = "given"
     if velocity_feedforward is None:
         solution, origin = _choose(fit, counts)
@@ -136,7 +134,7 @@ def identify(
         solution = with_clock(fit, fit.solve(velocity_feedforward))
     solution = _widened(fit, solution, counts)
     share = 1.0 - math.sqrt(solution.cost / float(np.sum((fit.actual - fit.actual.mean()) ** 2)))
-    faults = list(_faults(solution, share))
+    faults = list(_faults(solution, share, fit.lag))
     if faults:
         raise InputError(*(f"{place}: {fault}" for fault in faults))
     values = solution.values
@@ -230,13 +228,16 @@ def _ahead(lag: float) -> str:
     )
 
 
-def _faults(solution: Minimum, fit: float) -> Iterator[str]:
+def _faults(solution: Minimum, fit: float, lag: float) -> Iterator[str]:
     """Say what the trace does not tell, or tells of no servo of this kind."""
     if not fit > _WORST_FIT:
         yield (
             f"no servo of this kind does what the trace shows: the best leaves {100 * (1 - fit):.3g} % of the motion over; check the "
             "units and the columns, and that it is one axis in position control"
         )
+        return
+    if lag < -_AHEAD:
+        yield _ahead(lag)
         return
     values = solution.values
     for name in solution.names:
