@@ -108,6 +108,11 @@ COMMANDS: dict[str, Command] = {
         PRODUCTION,
         "camwright simulate board.toml --list order.csv --line-acceleration '1 m/s^2' --slip 0.0002",
     ),
+    "family": Command(
+        "Cover a job's line speeds with the fewest cams where one will not do, and lead from each to the next in the sync zone.",
+        PRODUCTION,
+        "camwright family short-cut.toml --overlap 5%",
+    ),
     "export": Command(
         "Write a design for drives; every file is read back and judged as the drive will run it.",
         DRIVE,

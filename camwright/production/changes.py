@@ -151,7 +151,7 @@ def _change(before: ListCam, after: ListCam, times: int, follow: int, objective:
     speed = min(before.line_speed, after.line_speed)
     jump = seam_jump(one.profile, one.zero, other.profile, other.zero, after.job.task, speed)
     pair = before.number, after.number
-    if _meets(jump, after, speed):
+    if meets(jump, after, speed):
         slower = after.line_speed < before.line_speed
         return Change(*pair, "slow_down" if slower else "direct", after.line_speed, jump, times)
     ways: tuple[tuple[How, tuple[RunningCam, ...]], ...] = (("transition", (other,)),)
@@ -208,7 +208,7 @@ def _sync_check(before: ListCam, profiles: Sequence[CamProfile], after: ListCam,
     return Check("sync", worst <= allowed, worst, allowed, "m", None, "simulation of the servo through the change")
 
 
-def _meets(jump: SeamJump, cam: ListCam, line_speed: float) -> bool:
+def meets(jump: SeamJump, cam: ListCam, line_speed: float) -> bool:
     """Whether the steps at a seam are none."""
     task = cam.job.task
     lever = abs(float(task.machine.tool_ratio(task.slave_at_sync_end)))

@@ -96,7 +96,7 @@ def transition_problem(
     """
     place, ratio, slope = before.last
     end_slope = float(after.profile(after.zone_start, 2))
-    task = _drawn_in(after.task.at_speed(line_speed), max(abs(slope), abs(end_slope)) * line_speed**2)
+    task = within_ramps(after.task.at_speed(line_speed), max(abs(slope), abs(end_slope)) * line_speed**2)
     start, zone = place - after.zero, after.zone_start
     least, greatest = float("-inf"), float("inf")
     if task.machine.guide is not None:
@@ -118,7 +118,7 @@ def transition_problem(
     )
 
 
-def _drawn_in(task: Task, needed: float) -> Task:
+def within_ramps(task: Task, needed: float) -> Task:
     """Take from the limits what the line's ramps can add; what the ends need is left, and of the jerk a trifle, which allows nothing.
 
     Parameters

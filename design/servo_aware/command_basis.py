@@ -258,30 +258,46 @@ def command_basis(
     sync = task.sync
     nodes = _nodes(cut.return_zone, count, structure)
     placed = sync.shift(nodes[-1] - sync.start, task.height - float(sync(sync.start)))
+    start = np.array([0.0, float(sync(sync.end, 1)), float(sync(sync.end, 2, side="left")) / 2])
+    end = np.array([float(placed(placed.start)), float(sync(sync.start, 1)), float(sync(sync.start, 2)) / 2])
+    return CommandBasis(cut.length, machine.pitch, *clamped(nodes, start, end), placed)
+
+
+def clamped(nodes: FloatArray, start: FloatArray, end: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Cubic splines that begin and end in given states: their knots, and their coefficients as ``matrix @ z + constant``.
+
+    Parameters
+    ----------
+    nodes
+        Where the pieces meet (m), shape ``(N + 1,)``.
+    start, end
+        Position, ratio and half the ratio slope at both ends.
+
+    Returns
+    -------
+    (knots, matrix, constant)
+        As in `CommandBasis`, with ``N - 3`` unknowns.
+    """
     count = len(nodes) - 1
     before = nodes[0] - (nodes[1] - nodes[0]) * np.arange(_DEGREE, 0, -1)
     behind = nodes[-1] + (nodes[-1] - nodes[-2]) * np.arange(1, _DEGREE + 1)
     spread = np.asarray(np.concatenate([before, nodes, behind]), dtype=np.float64)
     pieces = spline_pieces(spread)
-    ends = (
-        np.array([0.0, float(sync(sync.end, 1)), float(sync(sync.end, 2, side="left")) / 2]),
-        np.array([float(placed(placed.start)), float(sync(sync.start, 1)), float(sync(sync.start, 2)) / 2]),
-    )
     last = np.zeros((4, 4))  # the last interval's splines about its end
     width = nodes[-1] - nodes[-2]
     for power in range(4):
         for k in range(power + 1):
             last[k] += pieces[-1, power] * (_BINOMIAL[power][k] * width ** (power - k))
     constant = np.zeros(count + 3)
-    constant[:3] = np.linalg.solve(pieces[0, :3, :3], ends[0])  # the fourth spline of the first interval is flat there
-    constant[count:] = np.linalg.solve(last[:3, 1:], ends[1])
+    constant[:3] = np.linalg.solve(pieces[0, :3, :3], start)  # the fourth spline of the first interval is flat there
+    constant[count:] = np.linalg.solve(last[:3, 1:], end)
     averages = (
         spread[1:-3] + spread[2:-2] + spread[3:-1]
     ) / 3  # where a straight line takes the values of its coefficients
     constant[3:count] = np.interp(averages[3:count], averages[[2, count]], constant[[2, count]])
     matrix = np.zeros((count + 3, count - 3))
     matrix[3:count] = np.eye(count - 3)
-    return CommandBasis(cut.length, machine.pitch, spread, matrix, constant, placed)
+    return spread, matrix, constant
 
 
 def _nodes(width: float, count: int, structure: CamProfile | None) -> FloatArray:

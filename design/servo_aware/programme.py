@@ -129,13 +129,21 @@ class AxisProgramme:
 
     def keeps(self) -> bool:
         """Whether some command brings every axis into the tolerance, whatever its ratio; a design of least sync error is one."""
+        return self._found_in_tolerance() is True
+
+    def excludes(self) -> bool:
+        """Whether no command brings every axis into the tolerance, whatever its ratio: some of the rows alone allow none."""
+        return self._found_in_tolerance() is False
+
+    def _found_in_tolerance(self) -> bool | None:
+        """Look for a command that brings every axis into the tolerance; ``None`` where the rounds do not tell."""
         for _ in range(ROUNDS):
             found = self._solve_rows("sync_error", None, {})
             if found is None or found[1] > 1.0:
                 return False
             if not self._add_worst(found[0], 1.0, ratio=False):
                 return True
-        return False
+        return None
 
     def holds(self, profile: CamProfile) -> bool:
         """Whether a command keeps its limits and the axes theirs; if not, later programmes begin with rows where it fails."""

@@ -29,7 +29,7 @@ BOOKS = {
 """Cut lengths (mm) and line speeds (m/min) of the books; an example that is not here gets none."""
 
 SUBCOMMANDS = (
-    "cutlist", "simulate",
+    "cutlist", "simulate", "family",
     "new", "examples", "keys", "schema",
     "design", "compare", "limits", "ramps", "marks", "validate", "check", "quick", "envelope", "identify", "trace", "book",
     "export", "audit", "targets",
@@ -88,6 +88,7 @@ def example_cases(example: str) -> Iterator[Case]:
     yield case("limits", "limits", job, slow=example == "short-cut")
     yield case("ramps", "ramps", job, *out("ramps"), slow=example == "short-cut")
     yield case("marks", "marks", job, *out("marks"), "--delay", "2", slow=example == "short-cut")
+    yield case("family", "family", job, *out("family"), slow=example == "short-cut")
     ramp, order = ("--line-acceleration", "0.2 m/s^2"), "lists/order.csv"
     yield case("cutlist", "cutlist", job, order, *ramp, *out("cutlist"), slow=example == "short-cut")
     yield case(

@@ -1,0 +1,204 @@
+"""The command ``camwright family``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, TableTargets, final_paths, job_work
+from camwright.cli.views.files import files_view
+from camwright.cli.views.parts import new_table, new_text, stacked
+from camwright.drives.options import chosen_targets
+from camwright.figures.family import family_figure
+from camwright.house.json_text import to_json
+from camwright.house.numbers import converted, number, unit_shown, with_unit
+from camwright.house.output import Voice, complain
+from camwright.house.owned import Work, owned
+from camwright.house.picture_files import write_pictures
+from camwright.jobs.job import load_job
+from camwright.production.family import Family, family
+from camwright.production.family_answer import family_answer, family_files
+from camwright.profiles.errors import InputError
+from camwright.studies.covering import FOUND_TO
+from camwright.studies.family_bands import OVERLAP
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+_STEPS = 8
+_LEAST, _MOST = 0.01, 0.5
+"""Range of an overlap."""
+
+_HOW = {
+    "direct": "directly",
+    "transition": "through a transition of one cycle",
+    "stop": "only at a standstill",
+}
+
+
+def run(
+    job: GivenJob,
+    overlap: Annotated[
+        str,
+        typer.Option(
+            "--overlap", metavar="SHARE", help="How far neighbouring bands overlap, a share of the line speed."
+        ),
+    ] = f"{100 * OVERLAP:g} %",
+    targets: TableTargets = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Output directory; out/<name>-family if left out.")
+    ] = None,
+    no_figures: NoFigures = False,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> int:
+    """Cover a job's line speeds with the fewest cams where one will not do, and lead from each to the next in the sync zone."""
+    share = _share(overlap)
+    asked = load_job(job)
+    names = chosen_targets(targets, asked)
+    voice = Voice(as_json, quiet)
+    with voice.progress(_STEPS) as step:
+        found = family(asked, names, share, step)
+    directory = Path("out") / f"{asked.name}-family" if out is None else out
+    files = _written(found, directory, job_work("family", asked, job, out), figures=not no_figures)
+
+    def data() -> dict[str, Any]:
+        return {**family_answer(found), "files": [str(file) for file in files]}
+
+    voice.answer(data, lambda: stacked(*_views(found), files_view(files)))
+    return 0 if found.passed else 1
+
+
+def _share(text: str) -> float:
+    """Read a share: a percentage."""
+    digits, _, rest = text.strip().partition("%")
+    try:
+        share = float(digits) / 100 if not rest and "%" in text else float("nan")
+    except ValueError:
+        share = float("nan")
+    if not _LEAST <= share <= _MOST:
+        raise InputError(f"--overlap takes {100 * _LEAST:g} % to {100 * _MOST:g} %, e.g. 5 %; got {text[:40]!r}")
+    return share
+
+
+def _written(found: Family, directory: Path, work: Work, *, figures: bool) -> list[Path]:
+    """Write the controller's files, and the tables of each target into a folder of its own."""
+    with owned(directory, work, complain) as aside:
+        texts = {**family_files(found), "family.json": to_json({**family_answer(found), "profiles": _profiles(found)})}
+        for name, text in texts.items():
+            (aside / name).write_bytes(text.encode())
+        if figures:
+            write_pictures({"family": family_figure(found)}, aside)
+        files = final_paths(aside, directory)
+    for table in found.tables:
+        folder = directory / table.name
+        if table.files or folder.exists():  # older tables of what is withheld now go
+            with owned(folder, work, complain) as aside:
+                for name, text in table.files.items():
+                    (aside / name).write_bytes(text.encode())
+            files += [folder / name for name in sorted(table.files)]
+    return files
+
+
+def _profiles(found: Family) -> dict[str, object]:
+    """Give the cams and transitions as pieces of polynomials, master and slave in SI units."""
+    cams = {cam.job.name: cam.solution.profile.to_dict() for cam in found.cams}
+    changes = [change for each in found.switchings for change in each.changes if change.transition is not None]
+    return {
+        "cams": cams,
+        "transitions": [
+            {"from": each.before, "to": each.after, "profile": each.transition.profile.to_dict()}
+            for each in changes
+            if each.transition is not None
+        ],
+    }
+
+
+def _views(found: Family) -> list[RenderableType]:
+    """Show cams, changes, seams, and what was proved of their number."""
+    units = found.found.job.units
+    speed, error = unit_shown("m/s", units), unit_shown("m", units)
+    cams = new_table(title=f"{found.found.job.name}: {_count(found)}", title_justify="left")
+    for name in ("cam", f"from\n{speed}", f"to\n{speed}", f"sync error\n{error}", "checks"):
+        cams.add_column(name, justify="left" if name == "checks" else "right")
+    for cam in found.cams:
+        low, top = cam.line_speeds
+        failed = [check.name for check in cam.report.checks if not check.passed]
+        if not cam.passed and not failed:
+            failed = ["servo_tolerance"]
+        cams.add_row(
+            str(cam.number),
+            f"{converted(low, 'm/s', units):.5g}",
+            f"{converted(top, 'm/s', units):.5g}",
+            number(converted(max(cam.errors), "m", units)),
+            new_text(f"FAILED: {', '.join(failed)}", "bold red") if failed else new_text("passed", "green"),
+        )
+    return [cams, *([_switching_view(found)] if found.switchings else []), _seams(found), new_text(_said(found))]
+
+
+def _count(found: Family) -> str:
+    """Say how many cams there are, and what is proved of that."""
+    low, high = (with_unit(each, "m/s", 4, found.found.job.units) for each in found.found.job.line_speeds)
+    many = len(found.cams)
+    cams = "one cam does" if many == 1 else f"{many} cams"
+    proved = "" if many == 1 else ", the fewest" if found.found.fewest else f", at least {found.found.at_least} needed"
+    return f"{cams}{proved}, from {low} to {high}"
+
+
+def _switching_view(found: Family) -> RenderableType:
+    """Show where the controller switches, and how."""
+    units = found.found.job.units
+    speed = unit_shown("m/s", units)
+    table = new_table(title="Switching", title_justify="left")
+    for name in ("between", f"up above\n{speed}", f"down below\n{speed}", "how", ""):
+        table.add_column(name, justify="right" if speed in name else "left")
+    for each in found.switchings:
+        failed = sorted({check.name for checks in each.checks for check in checks if not check.passed})
+        table.add_row(
+            f"{each.changes[0].before} and {each.changes[0].after}",
+            f"{converted(each.up, 'm/s', units):.5g}",
+            f"{converted(each.down, 'm/s', units):.5g}",
+            _HOW[each.how],
+            new_text("passed", "green") if each.passed else new_text(f"FAILED: {', '.join(failed)}", "bold red"),
+        )
+    return table
+
+
+def _seams(found: Family) -> RenderableType:
+    """Show what was found at the seams of each target's tables."""
+    seams = new_table(title="Seams of the tables as read back", title_justify="left")
+    units = found.found.job.units
+    speed, acceleration = (unit_shown(unit, units) for unit in ("m/s", "m/s^2"))
+    for name in ("target", "numbers", f"velocity jump\n{speed}", f"acceleration jump\n{acceleration}", ""):
+        seams.add_column(name, justify="right" if "jump" in name else "left")
+    for table in found.tables:
+        told = [
+            *(f"cam {cam} withheld: {why}" for cam, why in table.withheld.items()),
+            *table.refused,
+            *([] if table.within else ["more than two tables may be off"]),
+        ]
+        seams.add_row(
+            table.name,
+            table.number_format,
+            number(converted(table.jump.velocity, "m/s", units)),
+            number(converted(table.jump.acceleration, "m/s^2", units)),
+            new_text("; ".join(told), "bold red") if told else new_text("passed", "green"),
+        )
+    return seams
+
+
+def _said(found: Family) -> str:
+    """Say what the bands are found to, and what the line does while a cam is changed."""
+    job, cams = found.found.job, found.found
+    lines = [f"lower ends of bands found to {100 * FOUND_TO:g} %"] if found.switchings else []
+    if not cams.fewest and job.objective != "sync_error":
+        lines.append('fewer cams are not excluded: minimise = "sync_error" asks nothing of the axis but its tolerance')
+    if found.switchings and cams.holds_line:
+        why = "its ramps would leave the bands" if job.line.ramps else "the job says of no ramp, [line] acceleration"
+        lines.append(f"the line must keep its speed until a change is over: {why}")
+    elif found.switchings:
+        lines.append("the line may ramp as the job says while a cam is changed")
+    lines.append(f"{job.name}: {'passed every check' if found.passed else 'FAILED'}")
+    return "\n".join(lines)

@@ -1,0 +1,139 @@
+"""What ``camwright family --json`` prints, and the files for the controller."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from camwright.answers.measures import checks_answer
+from camwright.answers.objective import objective_unit
+from camwright.answers.speed_band import band_answer
+from camwright.house.provenance import camwright_version
+from camwright.production.changes import Change
+from camwright.production.family import Family
+from camwright.production.family_cams import FamilyCam
+from camwright.production.switching import Switching
+from camwright.production.tables import transition_name
+from camwright.studies.covering import FOUND_TO
+
+CAMS_HEADER = "cam,name,from line speed [m/min],to line speed [m/min],greatest sync error [mm],checks"
+SWITCHING_HEADER = "runs,line speed,[m/min],change to,through,line meanwhile"
+
+_DECIMALS = 6
+"""Decimals of a line speed in a table for a controller (m/min), rounded to the side where both cams hold."""
+
+
+def family_answer(family: Family) -> dict[str, Any]:
+    """Answer of ``camwright family``."""
+    found = family.found
+    job = found.job
+    return {
+        "job": job.name,
+        "line_speeds_m_per_s": list(job.line_speeds),
+        "overlap": found.overlap.share,
+        "cams": [_cam(cam) for cam in family.cams],
+        "fewest": found.fewest,
+        "at_least": found.at_least,
+        "bands_found_to": FOUND_TO,
+        "switching": [_switching(each, holds_line=found.holds_line) for each in family.switchings],
+        "seams": {
+            table.name: {
+                "number_format": table.number_format,
+                "velocity_jump_m_per_s": table.jump.velocity,
+                "acceleration_jump_m_per_s2": table.jump.acceleration,
+                "position_jump_m": table.jump.position,
+                "passed": table.passed,
+                "withheld": {str(number): why for number, why in table.withheld.items()},
+                "refused": list(table.refused),
+            }
+            for table in family.tables
+        },
+        "passed": family.passed,
+    }
+
+
+def _cam(cam: FamilyCam) -> dict[str, Any]:
+    axis = cam.solution.axis
+    return {
+        "cam": cam.number,
+        "name": cam.job.name,
+        "band_m_per_s": list(cam.line_speeds),
+        "objective": {"name": cam.job.objective, "value": cam.objective, "unit": objective_unit(cam.job)},
+        "worst_sync_error_m": cam.errors[0],
+        "worst_of_all_servos_m": max(cam.errors),
+        "designed_sync_error_m": None if axis is None else axis.error,
+        "sync_tolerance_m": cam.job.cut.sync_tolerance,
+        **band_answer(cam.band),
+        "failed_checks": [check.name for check in cam.report.checks if not check.passed],
+        "passed": cam.passed,
+    }
+
+
+def _switching(each: Switching, *, holds_line: bool) -> dict[str, Any]:
+    up, down = each.changes
+    return {
+        "slower": up.before,
+        "faster": up.after,
+        "up_m_per_s": each.up,
+        "down_m_per_s": each.down,
+        "both_hold_m_per_s": list(each.line_speeds),
+        "how": each.how,
+        "hold_line_speed": holds_line,
+        "transition": {
+            name: {
+                "how": change.how,
+                "name": None if change.transition is None else transition_name(change),
+                "velocity_jump_m_per_s": change.jump.velocity,
+                "acceleration_jump_m_per_s2": change.jump.acceleration,
+                "position_jump_m": change.jump.position,
+                "checks": checks_answer(checks),
+            }
+            for name, change, checks in zip(("up", "down"), (up, down), each.checks, strict=True)
+        },
+        "passed": each.passed,
+    }
+
+
+def family_files(family: Family) -> dict[str, str]:
+    """Texts of the files for the controller by name."""
+    job = family.found.job
+    head = [
+        f"# camwright {camwright_version()}: {job.name}",
+        f"# job SHA-256: {job.sha256}",
+        "# a cam begins at the end of the sync zone before it; change there, at the next one after the line speed is passed",
+    ]
+    return {
+        "cams.csv": "\n".join([*head, CAMS_HEADER, *map(_cam_row, family.cams)]) + "\n",
+        "switching.csv": "\n".join([*head, SWITCHING_HEADER, *_switching_rows(family)]) + "\n",
+    }
+
+
+def _cam_row(cam: FamilyCam) -> str:
+    low, top = cam.line_speeds
+    verdict = "passed" if cam.passed else "FAILED"
+    return f"{cam.number},{cam.job.name},{_up(low)},{_down(top)},{max(cam.errors) * 1e3:.6f},{verdict}"
+
+
+def _switching_rows(family: Family) -> list[str]:
+    """Rows of the table of switching speeds: what runs, what the line does, and what is to run then."""
+    meanwhile = "keeps its speed" if family.found.holds_line else "may ramp"
+    rows = []
+    for each in family.switchings:
+        up, down = each.changes
+        rows.append(f"{up.before},rises above,{_down(each.up)},{up.after},{_through(up)},{meanwhile}")
+        rows.append(f"{down.before},falls below,{_up(each.down)},{down.after},{_through(down)},{meanwhile}")
+    return rows
+
+
+def _through(change: Change) -> str:
+    return transition_name(change) if change.how == "transition" else change.how
+
+
+def _up(value: float) -> str:
+    """Write a line speed in m/min, rounded up."""
+    return f"{math.ceil(value * 60 * 10**_DECIMALS) / 10**_DECIMALS:.{_DECIMALS}f}"
+
+
+def _down(value: float) -> str:
+    """Write a line speed in m/min, rounded down."""
+    return f"{math.floor(value * 60 * 10**_DECIMALS) / 10**_DECIMALS:.{_DECIMALS}f}"

@@ -1,0 +1,175 @@
+"""A family of cams: the fewest that cover the line speeds, each in sync over its band, and every change between them."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from camwright.cli.main import main
+from camwright.jobs.examples import example
+from camwright.jobs.job import Job, parse_job
+from camwright.production.family import Family, family
+from camwright.production.family_answer import family_answer, family_files
+from camwright.production.family_cams import family_cams
+from camwright.production.switching import switchings
+from camwright.profiles.errors import InfeasibleError, InputError
+from camwright.studies.axis_study import servos_of, solve_job
+from camwright.studies.covering import FOUND_TO
+from camwright.studies.family_bands import band_job
+from camwright.validation.production.cam_change import CamChange, run_change
+from camwright.validation.production.motion_table import ShiftCam
+from camwright.validation.report import judge
+from camwright.validation.servo.line_speeds import line_speed_errors
+
+
+def job(length: float, tolerance: float, command: str = "shaped", lowest: str = "10 %", ramp: str = "") -> Job:
+    """Give the bundled short cut, its servo known, with another length and tolerance (mm)."""
+    text = example("short-cut").text
+    text = re.sub(r"\[servo\.tolerance\].*?\n\n", "", text, flags=re.DOTALL)
+    for key, value in (
+        ("length", f'"{length} mm"'),
+        ("sync_tolerance", f'"{tolerance} mm"'),
+        ("command", f'"{command}"'),
+        ("line_speeds", f'["{lowest}", "100 %"]'),
+    ):
+        text = re.sub(rf"^{key} = .*$", f"{key} = {value}", text, flags=re.MULTILINE)
+    line = f'[line]\nacceleration = "{ramp}"\n' if ramp else ""
+    return parse_job(text.replace("[servo]", f"{line}[servo]", 1), "family")
+
+
+@pytest.fixture(scope="module")
+def in_sync() -> Family:
+    """Two cams in sync themselves, from 70 % of the line speed on."""
+    return family(job(290, 0.03, "in_sync", "70 %"), ["csv"])
+
+
+def require_held(found: Family, speeds: int = 40, phases: int = 64) -> None:
+    """Simulate every cam over its band, and every change over the part that both of its cams hold."""
+    tolerance = found.found.job.cut.sync_tolerance
+    low, high = found.found.job.line_speeds
+    cams = found.cams
+    assert cams[0].line_speeds[0] == pytest.approx(low, rel=1e-12)
+    assert cams[-1].line_speeds[1] == high
+    for cam in cams:
+        errors = line_speed_errors(
+            cam.solution.profile, cam.job.task, servos_of(cam.job), np.linspace(*cam.line_speeds, speeds), phases
+        )
+        assert errors.max() <= tolerance * (1.0 + 1e-6)
+        assert cam.band.holds(cam.line_speeds[0])
+        assert cam.band.holds(cam.line_speeds[1])
+    for (slower, faster), each in zip(itertools.pairwise(cams), found.switchings, strict=True):
+        assert slower.line_speeds[1] >= faster.line_speeds[0] * (1.0 + 0.999 * found.found.overlap.share)
+        assert faster.line_speeds[0] <= each.down < each.up <= slower.line_speeds[1]
+        for before, after, change in ((slower, faster, each.changes[0]), (faster, slower, each.changes[1])):
+            zero = after.running.zero
+            between = None if change.transition is None else ShiftCam(change.transition.profile, zero)
+            run = run_change(
+                CamChange(
+                    ShiftCam(before.solution.profile, before.running.zero),
+                    ShiftCam(after.solution.profile, zero),
+                    (before.job.task, after.job.task),
+                    between,
+                ),
+                found.found.job.servo,
+                [each.down, each.up],
+                phases,
+            )
+            limits = after.job.limits
+            assert run.sync_error <= tolerance
+            assert run.peaks.peak_acceleration <= limits.acceleration * 1.001
+            assert run.peaks.peak_speed <= limits.speed * 1.001
+
+
+def test_two_cams_in_sync_are_switched_in_the_zone(in_sync: Family) -> None:
+    assert in_sync.passed
+    assert len(in_sync.cams) == 2
+    assert in_sync.found.fewest
+    require_held(in_sync, 20)
+    (each,) = in_sync.switchings
+    assert each.how == "direct"
+    assert [change.jump.position for change in each.changes] == pytest.approx([0.0, 0.0], abs=1e-12)
+
+
+def test_one_cam_will_not_do_where_two_are_the_fewest(in_sync: Family) -> None:
+    found = in_sync.found
+    low, top = found.cams[1].line_speeds
+    for lowest in (found.job.line_speeds[0], low * (1.0 - 6.0 * FOUND_TO)):  # nor does the upper one reach further down
+        asked = band_job(found.job, lowest, top)
+        solution = solve_job(asked, suggest=False)
+        report = judge(solution.profile, asked.task, asked.servo, sweep=False, servo_aware=True, slowest=asked.slowest)
+        assert not report.passed
+
+
+def test_files_and_answer_tell_the_same(in_sync: Family) -> None:
+    answer, files = family_answer(in_sync), family_files(in_sync)
+    json.dumps(answer, allow_nan=False)
+    assert [cam["band_m_per_s"] for cam in answer["cams"]] == [list(cam.line_speeds) for cam in in_sync.cams]
+    assert all(cam["worst_sync_error_m"] <= cam["sync_tolerance_m"] for cam in answer["cams"])
+    rows = [line.split(",") for line in files["switching.csv"].splitlines() if not line.startswith("#")][1:]
+    (switch,) = answer["switching"]
+    up, down = (float(row[2]) / 60 for row in rows)
+    assert [row[:2] for row in rows] == [["1", "rises above"], ["2", "falls below"]]
+    assert switch["up_m_per_s"] - 1e-7 <= up <= switch["up_m_per_s"]  # never where the slower cam no longer holds
+    assert switch["down_m_per_s"] <= down <= switch["down_m_per_s"] + 1e-7
+    assert rows[0][3:] == ["2", "direct", "keeps its speed"]
+    names = [name for table in in_sync.tables for name in table.files]
+    assert len(names) == len(set(names)) == 2
+
+
+@pytest.mark.slow
+def test_the_line_of_a_job_that_ramps_gets_a_wider_overlap(in_sync: Family) -> None:
+    ramped = replace(in_sync.found.job.line, acceleration=0.05)
+    found = family_cams(replace(in_sync.found.job, line=ramped))
+    assert not found.holds_line
+    (each,) = switchings(found)
+    low, top = each.line_speeds
+    assert each.passed
+    assert each.down**2 - low**2 == pytest.approx(2 * 0.05 * 2 * found.job.cut.length, rel=1e-9)
+    assert top**2 - each.up**2 == pytest.approx(2 * 0.05 * 2 * found.job.cut.length, rel=1e-9)
+
+
+def test_jobs_without_a_band_are_refused() -> None:
+    with pytest.raises(
+        InputError, match=r"servo_aware = false: a family is of servo-aware cams.*write servo_aware = true"
+    ):
+        family_cams(parse_job(example("paper-600").text, "paper"))
+    with pytest.raises(InputError, match=r"line_speeds is the one line speed of the job.*write a range"):
+        family_cams(replace(job(300, 0.1), slowest=1.0))
+
+
+@pytest.mark.slow
+def test_a_line_speed_without_any_cam_is_told() -> None:
+    with pytest.raises(InfeasibleError, match=r"no family of cams covers its line speeds: at 80 m/min there is none"):
+        family_cams(job(205, 0.03, "in_sync", "50 %"))
+
+
+def test_an_overlap_wider_than_any_band_is_told(in_sync: Family) -> None:
+    with pytest.raises(InfeasibleError, match=r"below 80 m/min no cam holds a band as wide as the overlap of 40 %"):
+        family_cams(in_sync.found.job, 0.4)
+
+
+@pytest.mark.parametrize("text", ["5", "0.5 %", "60 %", "x %", "nan %"])
+def test_overlaps_that_are_none_are_refused(text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "job.toml"
+    file.write_text(example("short-cut").text)
+    assert main(["family", str(file), "--overlap", text]) == 2
+    assert "--overlap takes 1 % to 50 %, e.g. 5 %" in capsys.readouterr().err
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("length", "tolerance", "ramp"), [(266, 0.05, ""), (260, 0.1, ""), (263, 0.06, ""), (266, 0.05, "0.02 m/s^2")]
+)
+def test_shaped_families_hold_every_line_speed(length: float, tolerance: float, ramp: str) -> None:
+    found = family(job(length, tolerance, ramp=ramp), ["csv", "codesys"])
+    assert found.passed
+    assert found.found.fewest
+    assert len(found.cams) == 2
+    require_held(found)
+    assert [each.how for each in found.switchings] == ["transition"]
