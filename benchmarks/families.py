@@ -13,10 +13,10 @@ import numpy as np
 
 from camwright.jobs.examples import example
 from camwright.jobs.job import Job, parse_job
+from camwright.jobs.servos import servos_of
 from camwright.production.family_cams import family_cams
 from camwright.production.switching import switchings
 from camwright.profiles.objective import ObjectiveName
-from camwright.studies.axis_study import servos_of
 from camwright.validation.production.cam_change import CamChange, run_change
 from camwright.validation.production.motion_table import ShiftCam
 from camwright.validation.servo.line_speeds import line_speed_errors

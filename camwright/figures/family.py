@@ -10,9 +10,9 @@ from camwright.figures.panel import across, first_frame, head, page, wide_frame
 from camwright.figures.strokes import GREY, LINES, Stroke
 from camwright.house.numbers import unit_shown
 from camwright.house.pictures import APART, Band, Item, Line, Picture, Tick
+from camwright.jobs.servos import servos_of
 from camwright.production.family import Family
 from camwright.profiles.polynomial.profile import FloatArray
-from camwright.studies.axis_study import servos_of
 from camwright.validation.servo.line_speeds import line_speed_errors
 
 _POINTS = 121

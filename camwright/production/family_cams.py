@@ -11,10 +11,11 @@ from camwright.design.optimise import Solution
 from camwright.house.numbers import with_unit
 from camwright.house.progress import Step, ignore
 from camwright.jobs.job import Job
+from camwright.jobs.servos import servos_of
 from camwright.production.cams import ListCam, list_job
 from camwright.profiles.errors import InfeasibleError, InputError, Suggestion
 from camwright.profiles.objective import OBJECTIVES
-from camwright.studies.axis_study import servos_of, solve_job
+from camwright.studies.axis_study import solve_job
 from camwright.studies.covering import FOUND_TO, Overlap, Uncovered
 from camwright.studies.family_bands import OVERLAP, ROOM, asking, band_job, family_bands, placed_for_all, within
 from camwright.studies.remedies import solve_or_advise
@@ -172,7 +173,7 @@ def _cam(number: int, job: Job, low: float, top: float, *, last: bool) -> Family
     for times in (0,) if last else (0, *_SHORTER):
         asked = replace(band_job(job, low * (1.0 + times * FOUND_TO), top), name=_name(number, job))
         solution = solve_job(within(asked, share), suggest=False)
-        report = judge(solution.profile, asked.task, asked.servo, sweep=False, servo_aware=True, slowest=asked.slowest)
+        report = judge(solution.profile, asked.task, asked.servo, servo_aware=True, slowest=asked.slowest)
         if report.passed:
             break
     return _judged(number, asked, solution, report)

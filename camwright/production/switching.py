@@ -8,10 +8,10 @@ import numpy as np
 
 from camwright.design.production.axis_transition import design_axis_transition
 from camwright.design.production.transition import RunningCam
+from camwright.jobs.servos import servos_of
 from camwright.production.changes import Change, Transition, meets
 from camwright.production.family_cams import FamilyCam, FamilyCams
 from camwright.profiles.line import STEADY
-from camwright.studies.axis_study import servos_of
 from camwright.validation.check import Check
 from camwright.validation.production.cam_change import CamChange, change_checks
 from camwright.validation.production.motion_table import ShiftCam

@@ -7,9 +7,10 @@ from dataclasses import dataclass, replace
 from camwright.design.servo_aware.axis_problem import AxisProblem
 from camwright.design.servo_aware.programme import AxisProgramme
 from camwright.jobs.job import Job
+from camwright.jobs.servos import servos_of
 from camwright.jobs.wording import in_job_words
 from camwright.profiles.errors import SolverError
-from camwright.studies.axis_study import servos_of, shares_of, solve_job
+from camwright.studies.axis_study import shares_of, solve_job
 from camwright.studies.covering import Covering, Holds, Overlap, Uncovered, cover
 
 OVERLAP = 0.05

@@ -174,7 +174,7 @@ class CommandBasis:
     def _of_unknowns(self, table: FloatArray) -> FloatArray:
         """Turn rows over the coefficients into rows over the unknowns: ``table @ matrix``, whose columns hold a single 1 each, or two."""
         count = self.matrix.shape[1]
-        if self.sync is not None:
+        if count == len(self.constant) - 2 * _DEGREE:  # the states at both ends are given
             return np.ascontiguousarray(table[..., _DEGREE:-_DEGREE])
         found = table[..., :count].copy()
         found[..., :_DEGREE] += table[..., count:]  # the coefficients behind the end are those of the beginning

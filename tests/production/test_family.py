@@ -14,12 +14,13 @@ import pytest
 from camwright.cli.main import main
 from camwright.jobs.examples import example
 from camwright.jobs.job import Job, parse_job
+from camwright.jobs.servos import servos_of
 from camwright.production.family import Family, family
 from camwright.production.family_answer import family_answer, family_files
 from camwright.production.family_cams import family_cams
 from camwright.production.switching import switchings
 from camwright.profiles.errors import InfeasibleError, InputError
-from camwright.studies.axis_study import servos_of, solve_job
+from camwright.studies.axis_study import solve_job
 from camwright.studies.covering import FOUND_TO
 from camwright.studies.family_bands import band_job
 from camwright.validation.production.cam_change import CamChange, run_change
@@ -102,7 +103,7 @@ def test_one_cam_will_not_do_where_two_are_the_fewest(in_sync: Family) -> None:
     for lowest in (found.job.line_speeds[0], low * (1.0 - 6.0 * FOUND_TO)):  # nor does the upper one reach further down
         asked = band_job(found.job, lowest, top)
         solution = solve_job(asked, suggest=False)
-        report = judge(solution.profile, asked.task, asked.servo, sweep=False, servo_aware=True, slowest=asked.slowest)
+        report = judge(solution.profile, asked.task, asked.servo, servo_aware=True, slowest=asked.slowest)
         assert not report.passed
 
 
