@@ -66,7 +66,7 @@ def main() -> int:
             for change in each.changes:
                 before, after = (found.cams[number - 1] for number in (change.before, change.after))
                 zero = after.running.zero
-                middle = None if change.transition is None else ShiftCam(change.transition.profile, zero)
+                middle = ShiftCam(change.transitions[0].profile, zero) if change.transitions else None
                 run = run_change(
                     CamChange(
                         ShiftCam(before.solution.profile, before.running.zero),

@@ -105,13 +105,13 @@ def _written(found: Family, directory: Path, work: Work, *, figures: bool) -> li
 def _profiles(found: Family) -> dict[str, object]:
     """Give the cams and transitions as pieces of polynomials, master and slave in SI units."""
     cams = {cam.job.name: cam.solution.profile.to_dict() for cam in found.cams}
-    changes = [change for each in found.switchings for change in each.changes if change.transition is not None]
+    changes = [change for each in found.switchings for change in each.changes]
     return {
         "cams": cams,
         "transitions": [
-            {"from": each.before, "to": each.after, "profile": each.transition.profile.to_dict()}
-            for each in changes
-            if each.transition is not None
+            {"from": change.before, "to": change.after, "profile": each.profile.to_dict()}
+            for change in changes
+            for each in change.transitions
         ],
     }
 

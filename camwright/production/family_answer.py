@@ -82,7 +82,7 @@ def _switching(each: Switching, *, holds_line: bool) -> dict[str, Any]:
         "transition": {
             name: {
                 "how": change.how,
-                "name": None if change.transition is None else transition_name(change),
+                "name": transition_name(change) if change.transitions else None,
                 "velocity_jump_m_per_s": change.jump.velocity,
                 "acceleration_jump_m_per_s2": change.jump.acceleration,
                 "position_jump_m": change.jump.position,

@@ -99,7 +99,7 @@ def _change(
         *judge_transition(found.profile, other.zero, tasks[1]),
         *change_checks(between, servos, speeds),
     )
-    return Change(*pair, "transition", top, jump, 1, Transition(found.profile, top, checks)), checks
+    return Change(*pair, "transition", top, jump, 1, (Transition(found.profile, top, checks),)), checks
 
 
 def _running(cam: FamilyCam, family: FamilyCams) -> RunningCam:

@@ -69,7 +69,7 @@ def require_held(found: Family, speeds: int = 40, phases: int = 64) -> None:
         assert faster.line_speeds[0] <= each.down < each.up <= slower.line_speeds[1]
         for before, after, change in ((slower, faster, each.changes[0]), (faster, slower, each.changes[1])):
             zero = after.running.zero
-            between = None if change.transition is None else ShiftCam(change.transition.profile, zero)
+            between = ShiftCam(change.transitions[0].profile, zero) if change.transitions else None
             run = run_change(
                 CamChange(
                     ShiftCam(before.solution.profile, before.running.zero),
