@@ -107,7 +107,7 @@ def piece_of(entity: Any, name: str, resolution: Resolution) -> Drawn:
             "drawing to its origin"
         )
     if len(bulges) == 0:
-        raise InputError(f"{name}: it has fewer than two vertices; remove it")
+        return Drawn(None, (Notice("{name} (no length)", name=name),))
     return _cleaned(Piece(points, bulges, name, distance), resolution.least)
 
 

@@ -10,7 +10,7 @@ from camwright.profiles.tables.column_words import bare_unit
 from camwright.profiles.tables.delimited import LONGEST_LINE, Column, Sheet, number_in
 from camwright.profiles.tables.text import refuse
 
-_FIRST = re.compile(r"\s{0,99}Name([\t;,])")
+_FIRST = re.compile(r"\s{0,99}Name([\t;,:])")
 """How the file begins: with its project's name, or with those of the channels."""
 _KEY, _FILE = "Name", "File"
 _COPY = re.compile(r"(.{1,200}) \([0-9]{1,3}\)")

@@ -109,9 +109,12 @@ def _roles(sheet: Sheet, master: bool) -> dict[str, list[int]]:
     """
     where = f"{sheet.place}, line {sheet.heading}" if sheet.heading else sheet.place
     at: dict[str, list[int]] = {"time": [], "command": [], "actual": []}
+    scope = any(
+        column.heading == "Name" for column in sheet.columns
+    )  # whose times have that heading, whatever channels are called
     for number, column in enumerate(sheet.columns):
         role = trace_role(column.name) if column.name else None
-        if role in at:
+        if role in at and not (role == "time" and scope and column.heading != "Name"):
             at[role].append(number)
     names = [column.heading[:50] or column.name[:50] for column in sheet.columns]
     for name, found in at.items():
@@ -133,7 +136,6 @@ def _roles(sheet: Sheet, master: bool) -> dict[str, list[int]]:
             raise InputError(f"{where}: there is no column {name}; {told}write a header like {_HEADER}")
     if master and (masters := _masters(sheet)):
         at["master"] = masters
-    scope = all(sheet.columns[k].heading == "Name" for k in at["time"])
     for name in at:
         if len(at[name]) > 1 and not (name == "time" and scope):
             exact = [k for k in at[name] if sheet.columns[k].name.strip().lower() == name]

@@ -228,7 +228,7 @@ def nan_line(m, _):
         ),
         (lambda m, *_: m.add_line((0, 0, 0), (1, 0, 2)), "LINE #2F on layer 0: it is three-dimensional"),
         (lambda m, *_: m.add_lwpolyline([(0, 0), (1, 0)], dxfattribs={"extrusion": (0, 1, 0)}), "its plane is tilted"),
-        (lambda m, *_: m.add_lwpolyline([(0, 0)]), "fewer than two vertices"),
+        (lambda m, *_: m.add_lwpolyline([(0, 0)]), r"left out 1 × LWPOLYLINE #2F on layer 0 \(no length\)"),
         (lambda m, *_: m.add_polymesh((3, 3)), "it is a mesh"),
         (nested, "blocks are nested more than 8 deep"),
         (wide, f"unfold to more than {MOST_ENTITIES} entities"),

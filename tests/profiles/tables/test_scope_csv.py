@@ -50,6 +50,8 @@ TICKS = [[str(START + 10_000 * k), *row[1:]] for k, row in enumerate(PLAIN)]
         export([[*BOTH, f"{BOTH[0]} (1)", f"{BOTH[1]} (1)"]], [[*row, *row[1:]] for row in PLAIN]),
         export([[*BOTH, "Torque"]], [[*row, "" if k == 7 else "1"] for k, row in enumerate(PLAIN)]),
         export([BOTH], PLAIN).replace("EOF\n", ""),
+        export([BOTH], PLAIN, ":"),
+        export([[*BOTH, "func_timeshift", "Time_s"]], [[*row, "3", "4"] for row in PLAIN]),
     ],
 )
 def test_the_recording_is_the_same_whatever_the_settings(text: str) -> None:

@@ -159,9 +159,9 @@ def test_the_servo_does_not_depend_on_how_it_was_recorded(number: int, kind: str
     again = found(data)
     servo_found = again.servo
     for name in NAMES:
-        # a constant that is fitted too costs accuracy: within its own confidence; all else is the same trace
+        # a constant that is fitted too costs accuracy: within twice its own confidence, which one of twenty leaves; else it is one trace
         low, high = (again if kind == "other_zero" else expected).confidence[name]
-        slack = (0.5 if kind == "other_zero" else 0.02) * (high - low)
+        slack = (1.0 if kind == "other_zero" else 0.02) * (high - low)
         assert getattr(servo_found, name) == pytest.approx(getattr(expected.servo, name), abs=slack), name
 
 
