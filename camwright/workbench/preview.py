@@ -40,7 +40,7 @@ def preview(text: str, laws: Sequence[str] = (), place: float | None = None) -> 
     -------
     dict
         ``objective`` (name, value, unit), ``exact`` (whether it is what a design gives: the optimum of the job's own objective),
-        ``binding`` (the limits that are touched), ``slave_unit`` and ``turn`` (slave travel of a turn, null where nothing turns), ``place``
+        ``binding`` (the limits that are touched), ``units`` that the job is written in (metric, inch), ``slave_unit`` and ``turn`` (slave travel of a turn, null where nothing turns), ``place``
         (where a sync zone lies that has a place), ``line_speed_m_per_s``, ``zones_m``, ``limits`` in SI units, ``samples`` of the cam and
         of the ``laws``.
 
@@ -105,6 +105,7 @@ def _drawn(job: Job, task: Task, profile: CamProfile, laws: Sequence[str]) -> di
     known = baseline_names(task)
     return {
         "job": job.name,
+        "units": job.units.name,
         "binding": _binding(profile, task),
         "slave_unit": job.machine.slave_unit,
         "turn": job.machine.slave_turn,

@@ -77,6 +77,20 @@ def test_an_impossible_job_keeps_the_last_cam_and_offers_ways_out(page: Any, put
     assert value(page, "cut.length") == 337
 
 
+def test_a_job_in_inches_is_answered_in_inches(page: Any, put: Put) -> None:
+    put("cut.length", "24 in")
+    put("cut.line_speed", "260 ft/min")
+    page.locator("#badge.proved", has_text="29.189 ft/s²").wait_for()
+    assert page.input_value("#master") == "in"
+    assert "Released for line speeds: 0 … 260 ft/min" in page.inner_text("#panel")
+    assert "ratio (in/m)" not in page.inner_text("#readings")
+    assert page.inner_text('tr[data-row="ratio"] td:nth-child(3)') == "1 @ 0"
+    page.click("#undo")
+    page.click("#undo")
+    page.locator("#badge.proved", has_text="9.0718 m/s²").wait_for()
+    assert page.input_value("#master") == "mm"
+
+
 def test_a_failed_check_is_named_with_what_works(page: Any, put: Put) -> None:
     put("cut.sync_tolerance", "0.001 mm")
     page.locator("#badge.failed").wait_for()

@@ -1,7 +1,7 @@
 // The head of the page: the badge that says what the plots are, and the refusal with its ways out.
 
 import { button, make } from "./elements.js";
-import { withUnit } from "./numbers.js";
+import { toldSi, withUnit } from "./numbers.js";
 import { commit, state } from "./state.js";
 import { plain, withValue } from "./toml.js";
 import { checkName, word } from "./words.js";
@@ -16,7 +16,7 @@ export function badge(shown) {
   const failed = status === "failed" ? `: ${proof.checks.filter((check) => !check.passed).map((check) => checkName(check.name)).join(", ")}` : "";
   const stand = (status === "preview" || status === "proving") && drawn && !drawn.exact ? ` (${word("stands in")})` : "";
   shown.className = KIND[status] ?? "";
-  shown.textContent = `${word(status)}${failed}${objective ? `: ${word(objective.name)} ${withUnit(objective.value, objective.unit)}` : ""}${stand}`;
+  shown.textContent = `${word(status)}${failed}${objective ? `: ${word(objective.name)} ${toldSi(objective.value, objective.unit)}` : ""}${stand}`;
 }
 
 /** The refusal as the command line words it; each of its ways out is a button. */

@@ -5,7 +5,7 @@ import { button, make } from "./elements.js";
 import * as form from "./form.js";
 import { onGrip } from "./handles.js";
 import * as head from "./head.js";
-import { chosen, slaveUnits } from "./numbers.js";
+import { chosen, follow, slaveUnits } from "./numbers.js";
 import * as plots from "./plots.js";
 import { committed, drafted, redraw } from "./proof.js";
 import * as readings from "./readings.js";
@@ -28,6 +28,7 @@ function render() {
   $("undo").disabled = state.at === 0;
   $("redo").disabled = state.at === state.history.length - 1;
   if (state.drawn === null) return;
+  if (follow(state.drawn)) $("master").value = chosen.master;
   const focused = document.activeElement?.closest("#plots [data-path]")?.dataset.path;
   place = plots.draw($("plots"), state.drawn, onGrip);
   if (focused) document.querySelector(`#plots [data-path="${focused}"]`)?.focus();

@@ -28,9 +28,19 @@ export const withUnit = (value, unit) => [digits(value), printed(unit)].filter(B
 /** The job file's words for a quantity ("30 m/s^2") as they are printed. */
 export const printedQuantity = ({ number, unit }) => withUnit(number, unit);
 
-export const chosen = { master: "mm", slave: "m" };
+export const chosen = { master: "mm", slave: "m", inch: false };
 
-const METRES = { m: 1, in: 1 / 0.0254 };
+/** Follow the units that a job is written in; true where they are others than before. */
+export function follow(shown) {
+  const inch = shown.units === "inch";
+  if (inch === chosen.inch) return false;
+  Object.assign(chosen, { inch, master: inch ? "in" : "mm", slave: inch ? "in" : "m" });
+  return true;
+}
+
+/** Units of length of one metre. */
+export const METRES = { m: 1, in: 1 / 0.0254 };
+const FOOT = 0.3048; // m
 
 /** Units that the slave of a job can be shown in: what it is counted in, inches, and degrees of whatever turns. */
 export function slaveUnits(shown) {
@@ -49,13 +59,25 @@ export function slaveUnit(shown) {
   return { factor: METRES[unit], name: unit, small: unit === "m" ? { factor: 1e3, name: "mm" } : { factor: METRES.in, name: "in" } };
 }
 
-/** Lengths along the material, in mm or inches as the master is shown. */
-export const lengthUnit = () => (chosen.master === "in" ? { factor: METRES.in, name: "in" } : { factor: 1e3, name: "mm" });
+/** Whether lengths are told in inches: as the master is shown, and where it is none as the job is written. */
+const inInches = () => chosen.master === "in" || (chosen.master !== "mm" && chosen.inch);
 
-/** A value in SI units as people read it: lengths in mm or inches, angles in degrees. */
+/** Lengths along the material and speeds of the line, of one metre and one metre a second. */
+export const lengthUnit = () => (inInches() ? { factor: METRES.in, name: "in" } : { factor: 1e3, name: "mm" });
+export const speedUnit = () => (inInches() ? { factor: 60 / FOOT, name: "ft/min" } : { factor: 60, name: "m/min" });
+
+/** A value in SI units as people read it: lengths in mm or inches, motion of an inch job in feet, angles in degrees. */
 export function shownSi(value, unit) {
   if (value === null || value === undefined) return { value: null, unit: "" };
   if (unit === "m") return { value: value * lengthUnit().factor, unit: lengthUnit().name };
   if (unit === "rad") return { value: (value * 180) / Math.PI, unit: "°" };
+  if (unit === "m/s" && chosen.inch) return { value: value * speedUnit().factor, unit: speedUnit().name };
+  if (/^m\/s\^[23]$/.test(unit) && chosen.inch) return { value: value / FOOT, unit: printed(unit.replace("m", "ft")) };
   return { value, unit: printed(unit) };
+}
+
+/** A value in SI units with its unit, as a text. */
+export function toldSi(value, unit) {
+  const shown = shownSi(value, unit);
+  return [digits(shown.value), shown.unit].filter(Boolean).join(" ");
 }

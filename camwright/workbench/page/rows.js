@@ -1,6 +1,6 @@
 // What the stacked plots show, from the samples that the server sends.
 
-import { chosen, slaveUnit } from "./numbers.js";
+import { METRES, chosen, slaveUnit } from "./numbers.js";
 
 /** What is left of the travel when an even one is taken out. */
 function correction({ x_m: x, y }) {
@@ -16,7 +16,7 @@ export function rowsOf(shown) {
   const { factor, name, small } = slaveUnit(shown);
   const list = [
     { name: "correction", unit: small.name, factor: small.factor, of: (samples) => correction(samples).map((value) => value * small.factor) },
-    { name: "ratio", unit: shown.slave_unit === "rad" || name !== "m" ? `${name}/m` : "1", factor, of: scaled("ratio", factor) },
+    METRES[name] ? { name: "ratio", unit: "1", factor: 1, of: scaled("ratio", 1) } : { name: "ratio", unit: `${name}/m`, factor, of: scaled("ratio", factor) },
     { name: "speed", unit: `${name}/s`, factor, limit: "speed", of: scaled("speed", factor) },
     { name: "acceleration", unit: `${name}/s²`, factor, limit: "acceleration", of: scaled("acceleration", factor) },
     { name: "jerk", unit: `${name}/s³`, factor, limit: "jerk", of: scaled("jerk", factor) },

@@ -3,7 +3,7 @@
 import { post, sent } from "../api.js";
 import { button, dropZone, make, table, waiting } from "../elements.js";
 import { changed, commit, state } from "../state.js";
-import { shownSi, digits, printed } from "../numbers.js";
+import { digits, lengthUnit, printed, shownSi, speedUnit } from "../numbers.js";
 import { withValue } from "../toml.js";
 import { checkName, word } from "../words.js";
 import { ask } from "./asking.js";
@@ -36,7 +36,7 @@ export function show(panel) {
 function judged(data) {
   const save = (value) => (value === null ? "–" : `${digits(100 * value, 3)} %`);
   const measures = [["peak_acceleration", "peak_acceleration_m_per_s2"], ["rms_acceleration", "rms_acceleration_m_per_s2"]];
-  const beside = table(["", word("this cam"), word("optimised"), word("saving")], measures.map(([name, key]) => [`${word(name)} (m/s²)`, data.profile[key], data.optimum[key], save(data.saving[`${name}_rel`])]));
+  const beside = table(["", word("this cam"), word("optimised"), word("saving")], measures.map(([name, key]) => [`${word(name)} (${shownSi(1, "m/s^2").unit})`, shownSi(data.profile[key], "m/s^2").value, shownSi(data.optimum[key], "m/s^2").value, save(data.saving[`${name}_rel`])]));
   const checks = table([word("check"), "", word("value"), word("limit"), ""], data.checks.map((check) => {
     const [value, limit] = [shownSi(check.value, check.unit), shownSi(check.limit, check.unit)];
     return [checkName(check.name), make("td", word(check.passed ? "passed" : "failed"), check.passed ? "passed" : "failed"), value.value, limit.value, value.unit];
@@ -47,8 +47,10 @@ function judged(data) {
 /** Each cut of a recorded run: by how much the tool missed, and what kind of error that is. */
 function cuts(data) {
   const { total } = data.errors;
-  const told = table([word("sync error"), "mm"], [[word("offset"), total.offset_mm], [word("drift"), total.drift_mm_per_cut], [word("scatter"), total.scatter_mm]]);
-  const list = table([word("cut number"), "m/min", `${word("sync error")} (mm)`, `${word("length")} (mm)`], data.cuts.slice(0, MOST).map((cut) => [cut.number, 60 * cut.line_speed_m_per_s, cut.sync_error_mm, cut.length_mm]));
+  const [size, pace] = [lengthUnit(), speedUnit()];
+  const told = table([word("sync error"), size.name], [["offset", total.offset_mm], ["drift", total.drift_mm_per_cut], ["scatter", total.scatter_mm]].map(([name, value]) => [word(name), shownSi(1e-3 * value, "m").value]));
+  const length = (value) => (value === null ? null : shownSi(1e-3 * value, "m").value);
+  const list = table([word("cut number"), pace.name, `${word("sync error")} (${size.name})`, `${word("length")} (${size.name})`], data.cuts.slice(0, MOST).map((cut) => [cut.number, pace.factor * cut.line_speed_m_per_s, length(cut.sync_error_mm), length(cut.length_mm)]));
   const verdict = make("p", word(data.passed ? "passed" : "failed"), data.passed ? "passed" : "failed");
   return [verdict, ...data.causes.map((cause) => make("p", cause)), told, list];
 }

@@ -1,7 +1,7 @@
 // The proof: objective beside its bound, every check, the line speeds that the cam is released for, remedies.
 
 import { make, row, table } from "../elements.js";
-import { digits, printed, shownSi, withUnit } from "../numbers.js";
+import { digits, shownSi, speedUnit, toldSi } from "../numbers.js";
 import { state } from "../state.js";
 import { wayOut } from "../head.js";
 import { checkName, word } from "../words.js";
@@ -11,9 +11,9 @@ export function show(panel) {
   const { proof } = state;
   if (!proof) return panel.replaceChildren(noDesign());
   const { objective } = proof;
-  const bound = objective.lower_bound === null ? "–" : withUnit(objective.lower_bound, objective.unit);
+  const bound = objective.lower_bound === null ? "–" : toldSi(objective.lower_bound, objective.unit);
   const gap = objective.gap === null ? "–" : `${digits(100 * objective.gap, 2)} %`;
-  const head = table([word("objective"), word("value"), word("bound"), word("gap")], [[word(objective.name), withUnit(objective.value, objective.unit), bound, gap]]);
+  const head = table([word("objective"), word("value"), word("bound"), word("gap")], [[word(objective.name), toldSi(objective.value, objective.unit), bound, gap]]);
   const lines = proof.checks.map((check) => {
     const [value, limit] = [shownSi(check.value, check.unit), shownSi(check.limit, check.unit)];
     return [checkName(check.name), make("td", word(check.passed ? "passed" : "failed"), check.passed ? "passed" : "failed"), value.value, limit.value, value.unit];
@@ -27,9 +27,10 @@ export function show(panel) {
 }
 
 function released({ speed_band: band }) {
-  const speed = (value) => digits(60 * value, 4);
+  const { factor, name } = speedUnit();
+  const speed = (value) => digits(factor * value, 4);
   if (!band.length) return make("p", word("released nowhere"), "failed");
-  return make("p", `${word("released")}: ${band.map(([low, high]) => `${speed(low)} … ${speed(high)}`).join(", ")} ${printed("m/min")}`);
+  return make("p", `${word("released")}: ${band.map(([low, high]) => `${speed(low)} … ${speed(high)}`).join(", ")} ${name}`);
 }
 
 function waysOut(list) {

@@ -1,10 +1,10 @@
 // Cut length against line speed: what is possible. A click or the arrow keys set the working point.
 
 import { button, make, onPress, svg } from "../elements.js";
-import { digits } from "../numbers.js";
+import { digits, lengthUnit, speedUnit } from "../numbers.js";
 import { plot } from "../scale.js";
 import { commit, state } from "../state.js";
-import { withValue } from "../toml.js";
+import { withValue, written } from "../toml.js";
 import { word } from "../words.js";
 import { ask } from "./asking.js";
 
@@ -16,18 +16,21 @@ export function show(panel) {
 }
 
 function edgesOf(data) {
-  const found = Object.fromEntries(Object.entries(data.edges).map(([name, list]) => [name, list.map((each) => [each.length_mm, each.line_speed_m_per_min]).filter(([, speed]) => speed !== null)]));
-  return { ...found, linear: data.max_line_speed.map((each) => [each.length_mm, each.linear_m_per_min]).filter(([, speed]) => speed !== null) };
+  const [size, pace] = [1e-3 * lengthUnit().factor, speedUnit().factor / 60]; // of a millimetre, and of a metre a minute
+  const points = (list, key) => list.filter((each) => each[key] !== null).map((each) => [size * each.length_mm, pace * each[key]]);
+  const found = Object.fromEntries(Object.entries(data.edges).map(([name, list]) => [name, points(list, "line_speed_m_per_min")]));
+  return { ...found, linear: points(data.max_line_speed, "linear_m_per_min") };
 }
 
 function draw(data) {
   const edges = edgesOf(data);
+  const units = [lengthUnit().name, speedUnit().name];
   const points = Object.values(edges).flat();
   const { samples, line_speed_m_per_s: line } = state.drawn;
-  let here = [1e3 * (samples.x_m[samples.x_m.length - 1] - samples.x_m[0]), 60 * line];
+  let here = [lengthUnit().factor * (samples.x_m[samples.x_m.length - 1] - samples.x_m[0]), speedUnit().factor * line];
   const all = [...points, here];
   const most = (order) => Math.max(...all.map((each) => each[order]));
-  const { drawing, across, down, inverse, bottom } = plot({ x: [Math.min(...all.map(([x]) => x)) * 0.95, most(0)], y: [0, 1.08 * most(1)], height: 320, xTitle: `${word("cut length")} (mm)`, yTitle: `${word("line speed")} (m/min)` });
+  const { drawing, across, down, inverse, bottom } = plot({ x: [Math.min(...all.map(([x]) => x)) * 0.95, most(0)], y: [0, 1.08 * most(1)], height: 320, xTitle: `${word("cut length")} (${units[0]})`, yTitle: `${word("line speed")} (${units[1]})` });
   const trace = (list) => list.map(([x, y], i) => `${i ? "L" : "M"}${across(x).toFixed(1)} ${down(y).toFixed(1)}`).join("");
   const area = edges.perfect_axis;
   drawing.append(svg("path", { class: "possible", d: `M${across(area[0][0])} ${bottom}L${trace(area).slice(1)}L${across(area[area.length - 1][0])} ${bottom}Z` }));
@@ -37,10 +40,10 @@ function draw(data) {
     here = [Math.max(length, 1), Math.max(speed, 0.1)];
     spot.setAttribute("cx", across(here[0]));
     spot.setAttribute("cy", down(here[1]));
-    told.textContent = `${digits(here[0], 4)} mm, ${digits(here[1], 4)} m/min`;
+    told.textContent = here.map((value, order) => `${digits(value, 4)} ${units[order]}`).join(", ");
   };
   const told = Object.assign(make("p"), { role: "status" });
-  const take = () => commit(withValue(withValue(state.text, "cut.length", JSON.stringify(`${Number(here[0].toPrecision(4))} mm`)), "cut.line_speed", JSON.stringify(`${Number(here[1].toPrecision(4))} m/min`)));
+  const take = () => commit(["cut.length", "cut.line_speed"].reduce((text, path, order) => withValue(text, path, written(here[order], units[order])), state.text));
   put(here);
   drawing.append(spot);
   drawing.addEventListener("click", (event) => {

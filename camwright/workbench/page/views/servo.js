@@ -2,7 +2,7 @@
 
 import { newestOnly, post } from "../api.js";
 import { make, svg, table, waiting } from "../elements.js";
-import { digits, lengthUnit, shownSi } from "../numbers.js";
+import { digits, lengthUnit, shownSi, speedUnit } from "../numbers.js";
 import { path, plot } from "../scale.js";
 import { state } from "../state.js";
 import { word } from "../words.js";
@@ -22,7 +22,7 @@ export function show(panel) {
     const { ok, data } = await post("servo", { design: proof.design, share, curve });
     if (state.proof !== proof || !figures.isConnected) return;
     if (!ok) return figures.replaceChildren(make("p", data.message, "failed"));
-    told.textContent = ` ${digits(60 * data.line_speed_m_per_s, 4)} m/min (${Math.round(100 * share)} %)`;
+    told.textContent = ` ${digits(speedUnit().factor * data.line_speed_m_per_s, 4)} ${speedUnit().name} (${Math.round(100 * share)} %)`;
     slider.setAttribute("aria-valuetext", told.textContent);
     figures.replaceChildren(...drawn(data));
     if (curve) over.replaceChildren(overSpeed(data, proof));
@@ -82,18 +82,19 @@ function errors(data, factor, unit, close) {
 function overSpeed(data, proof) {
   const { line_speed_m_per_s: speeds, error_m: error, worst_error_m: worst } = data.over_line_speed;
   const { factor, name } = lengthUnit();
+  const pace = speedUnit();
   const tolerance = data.sync_tolerance_m * factor;
   const least = 1e-3 * tolerance;
   const most = 1.5 * Math.max(tolerance, ...worst.map((value) => value * factor));
-  const made = plot({ x: [0, 60 * speeds[speeds.length - 1]], y: [least, most], xTitle: `${word("line speed")} (m/min)`, yTitle: `${word("shear_zone_error")} (${name})`, logarithmic: true, height: 200 });
+  const made = plot({ x: [0, pace.factor * speeds[speeds.length - 1]], y: [least, most], xTitle: `${word("line speed")} (${pace.name})`, yTitle: `${word("shear_zone_error")} (${name})`, logarithmic: true, height: 200 });
   const { drawing, across, down, left, right, top, bottom } = made;
-  for (const [low, high] of proof.speed_band) drawing.prepend(svg("rect", { class: "zone", x: across(60 * low), y: top, width: across(60 * Math.min(high, speeds[speeds.length - 1])) - across(60 * low), height: bottom - top }));
+  for (const [low, high] of proof.speed_band) drawing.prepend(svg("rect", { class: "zone", x: across(pace.factor * low), y: top, width: across(pace.factor * Math.min(high, speeds[speeds.length - 1])) - across(pace.factor * low), height: bottom - top }));
   drawing.append(svg("line", { class: "limit", x1: left, x2: right, y1: down(tolerance), y2: down(tolerance) }));
-  const along = speeds.map((value) => 60 * value);
+  const along = speeds.map((value) => pace.factor * value);
   const curve = (list) => list.map((value) => Math.max(value * factor, least));
   if (worst.some((value, i) => value > error[i])) drawing.append(svg("path", { class: "curve phase", d: path(along, curve(worst), across, down) }));
   drawing.append(svg("path", { class: "curve", d: path(along, curve(error), across, down) }));
-  const here = across(60 * data.line_speed_m_per_s);
+  const here = across(pace.factor * data.line_speed_m_per_s);
   drawing.append(svg("line", { class: "cursor here", x1: here, x2: here, y1: top, y2: bottom }));
   return captioned(drawing, [["curve", word("optimised")], ["limit", word("sync tolerance")], ["zone", word("released")]]);
 }

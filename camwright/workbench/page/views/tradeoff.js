@@ -1,7 +1,7 @@
 // What each objective costs in the others: every optimum and law as a point between two measures, and as a table.
 
 import { chooser, make, onPress, row, svg, table } from "../elements.js";
-import { digits, printed } from "../numbers.js";
+import { digits, shownSi } from "../numbers.js";
 import { plot } from "../scale.js";
 import { set, state } from "../state.js";
 import { word } from "../words.js";
@@ -29,7 +29,7 @@ function costs(data, names) {
     const cost = each.cost[name];
     return make("td", cost === null ? "∞" : digits(cost, 3), each.within_limits && cost !== null && cost < 1.0005 ? "number best" : "number");
   };
-  const list = table([word("profile"), ...names.map((name) => `${word(name)} (${printed(data.measures[name].unit)})`)], data.profiles.map((each) => [
+  const list = table([word("profile"), ...names.map((name) => `${word(name)} (${shownSi(1, data.measures[name].unit).unit})`)], data.profiles.map((each) => [
     profileName(word(each.name), each.within_limits), ...names.map((name) => cell(each, name)),
   ]));
   data.profiles.forEach((each, number) => { if (each.kind === "objective") row(list, number).className = "own"; });
@@ -53,13 +53,13 @@ function nameAt(text, x, y, { top, bottom }, named) {
 
 /** Points between two measures; an optimum is a disc that a click makes the job's objective. */
 function scatter(data, first, second) {
-  const points = data.profiles.map((each) => ({ ...each, at: [each.values[first], each.values[second]] })).filter(({ at }) => at.every((value) => value !== null));
+  const points = data.profiles.map((each) => ({ ...each, at: [first, second].map((name) => shownSi(each.values[name], data.measures[name].unit).value) })).filter(({ at }) => at.every((value) => value !== null));
   const ends = (order) => {
     const all = points.map(({ at }) => at[order]);
     const room = 0.12 * (Math.max(...all) - Math.min(...all) || 1);
     return [Math.min(...all) - room, Math.max(...all) + room];
   };
-  const unit = (name) => printed(data.measures[name].unit);
+  const unit = (name) => shownSi(1, data.measures[name].unit).unit;
   const made = plot({ x: ends(0), y: ends(1), xTitle: `${word(first)} (${unit(first)})`, yTitle: `${word(second)} (${unit(second)})` });
   made.drawing.setAttribute("role", "group");
   made.drawing.setAttribute("aria-label", word("tradeoff"));
