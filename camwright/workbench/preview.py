@@ -40,9 +40,9 @@ def preview(text: str, laws: Sequence[str] = (), place: float | None = None) -> 
     -------
     dict
         ``objective`` (name, value, unit), ``exact`` (whether it is what a design gives: the optimum of the job's own objective),
-        ``binding`` (the limits that are touched), ``units`` that the job is written in (metric, inch), ``slave_unit`` and ``turn`` (slave travel of a turn, null where nothing turns), ``place``
-        (where a sync zone lies that has a place), ``line_speed_m_per_s``, ``zones_m``, ``limits`` in SI units, ``samples`` of the cam and
-        of the ``laws``.
+        ``binding`` (the limits that are touched), ``units`` that the job is written in (metric, inch), ``slave_unit`` and ``turn`` (slave
+        travel of a turn, null where nothing turns), ``place`` (where a sync zone lies that has a place), ``line_speed_m_per_s``,
+        ``zones_m``, ``limits`` in SI units, ``samples`` of the cam and of the ``laws``.
 
     Raises
     ------
