@@ -83,6 +83,9 @@ class InfeasibleError(CamwrightError):
     kept
         Line speeds (m/s), the least and the job's own, over which a command keeps the tolerance that none keeps over the whole band;
         ``None`` where that was not looked for or there is no such part.
+    bands
+        Bands of line speeds (m/s) that one cam each holds and which together cover the job's, where no single one does; ``None`` where that
+        was not looked for or there are none.
 
     Examples
     --------
@@ -106,6 +109,7 @@ class InfeasibleError(CamwrightError):
         unit: str,
         suggestions: tuple[Suggestion, ...],
         kept: tuple[float, float] | None = None,
+        bands: tuple[tuple[float, float], ...] | None = None,
     ) -> None:
         super().__init__(str(message))
         self.message = message
@@ -114,6 +118,7 @@ class InfeasibleError(CamwrightError):
         self.unit = unit
         self.suggestions = suggestions
         self.kept = kept
+        self.bands = bands
 
 
 class SolverError(CamwrightError):

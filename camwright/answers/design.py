@@ -16,14 +16,15 @@ from camwright.answers.measures import checks_answer, lengths_answer, profiles_a
 from camwright.answers.objective import agreement_answer, objective_answer
 from camwright.answers.speed_band import band_answer
 from camwright.studies.design import Design
-from camwright.studies.remedies import Remedy
+from camwright.studies.remedies import Bands, Remedy
 
 
-def design_answer(design: Design, ways: Sequence[Remedy], files: Sequence[Path]) -> dict[str, Any]:
+def design_answer(design: Design, ways: Sequence[Remedy], bands: Bands | None, files: Sequence[Path]) -> dict[str, Any]:
     """Answer of ``camwright design``."""
     return brief_answer(design, files) | {
         "profiles": profiles_answer(design.comparison),
         "remedies": [asdict(way) for way in ways],
+        "family_bands_m_per_s": None if bands is None else [list(band) for band in bands],
         "minimum_cut_length_mm": lengths_answer(design.lengths),
         **lead_answer(design.job, design.report.length_errors),
     }

@@ -16,4 +16,5 @@ def error_answer(exit_code: int, message: str, failure: CamwrightError | None) -
         answer |= {"binding": failure.binding, "excess": {"value": failure.excess, "unit": failure.unit}}
         answer["suggestions"] = [asdict(suggestion) for suggestion in failure.suggestions]
         answer["line_speeds_kept_m_per_s"] = None if failure.kept is None else list(failure.kept)
+        answer["family_bands_m_per_s"] = None if failure.bands is None else [list(band) for band in failure.bands]
     return answer

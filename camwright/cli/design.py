@@ -27,7 +27,7 @@ from camwright.jobs.job import load_job
 from camwright.stored.save import design_files
 from camwright.studies.axis_study import AxisStudy
 from camwright.studies.design import STEPS, Design, optimise
-from camwright.studies.remedies import Remedy, remedies
+from camwright.studies.remedies import Bands, Remedy, family_of, family_words, remedies
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -66,11 +66,12 @@ def run(
         if not brief:
             step("looking for a way out")
             ways = remedies(asked, result.report, result.band)
+            bands = None if result.passed else family_of(asked)
 
     if brief:
         voice.answer(lambda: brief_answer(result, files), lambda: _brief_view(result, files))
     else:
-        voice.answer(lambda: design_answer(result, ways, files), lambda: _view(result, ways, files))
+        voice.answer(lambda: design_answer(result, ways, bands, files), lambda: _view(result, ways, bands, files))
     return 0 if result.passed else 1
 
 
@@ -82,7 +83,7 @@ def _compare(design: Design, step: Step) -> None:
     _ = design.lengths
 
 
-def _view(design: Design, ways: Sequence[Remedy], files: Sequence[Path]) -> RenderableType:
+def _view(design: Design, ways: Sequence[Remedy], bands: Bands | None, files: Sequence[Path]) -> RenderableType:
     """Show a design: objective, comparison, checks, minimum cut lengths, files."""
     lengths = [] if design.lengths is None else [lengths_view(design.lengths, design.job.units)]
     return stacked(
@@ -94,7 +95,7 @@ def _view(design: Design, ways: Sequence[Remedy], files: Sequence[Path]) -> Rend
         *lengths,
         files_view(files),
         band_view(design.band, design.job.units),
-        *_ways(design, ways),
+        *_ways(design, ways, bands),
         new_text(_verdict(design), "bold" if design.passed else "bold red"),
     )
 
@@ -111,17 +112,16 @@ def _brief_view(design: Design, files: Sequence[Path]) -> RenderableType:
     )
 
 
-def _ways(design: Design, ways: Sequence[Remedy]) -> list[RenderableType]:
-    """Show the changes with which the job passed, where it did not as it is."""
+def _ways(design: Design, ways: Sequence[Remedy], bands: Bands | None) -> list[RenderableType]:
+    """Show the changes with which the job passed, where it did not as it is, and the family that covers its line speeds."""
     if design.passed:
         return []
+    told = ["what makes it pass, each alone, designed and checked:", *(f"  {way.words}" for way in ways)]
     if not ways:
-        return [new_text("no change that was tried makes it pass")]
-    return [
-        new_text(
-            "\n".join(["what makes it pass, each alone, designed and checked:", *(f"  {way.words}" for way in ways)])
-        )
-    ]
+        told = ["no change that was tried makes it pass"]
+    if bands is not None:
+        told.append(family_words(bands, design.job.units))
+    return [new_text("\n".join(told))]
 
 
 def _verdict(design: Design) -> str:

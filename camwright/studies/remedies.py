@@ -5,7 +5,7 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Iterator
 from copy import deepcopy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from time import process_time
 from typing import Any
 
@@ -13,8 +13,10 @@ from camwright.design.optimise import Solution
 from camwright.house.numbers import METRIC, Units, inside, with_unit
 from camwright.jobs.job import Job, read_job
 from camwright.jobs.wording import place_of
-from camwright.profiles.errors import CamwrightError, InfeasibleError, Suggestion
+from camwright.profiles.errors import CamwrightError, InfeasibleError, SolverError, Suggestion
 from camwright.studies.axis_study import solve_job, sync_error
+from camwright.studies.covering import Uncovered
+from camwright.studies.family_bands import family_bands, placed_for_all
 from camwright.studies.speed_band import SpeedBand
 from camwright.validation.report import ValidationReport, judge
 
@@ -40,6 +42,9 @@ _METRIC = {"mm": "m", "m/min": "m/s", "m/s^2": "m/s^2", "m/s^3": "m/s^3"}
 
 _TABLES = {"servo_aware": "objective", "command": "objective", "stroke": "machine"}
 """Tables of a job file with keys that no message names."""
+
+Bands = tuple[tuple[float, float], ...]
+"""Lower and upper end (m/s) of the bands of a family, ascending."""
 
 
 @dataclass(frozen=True)
@@ -179,9 +184,30 @@ def solve_or_advise(job: Job) -> Solution:
     if line_speeds is not None and line_speeds[0] < line_speeds[1]:
         low, high = (with_unit(speed, "m/s", units=job.units) for speed in line_speeds)
         part = f". One is held to it from {low} to {high}"
+    bands = family_of(job)
+    family = f". {family_words(bands, job.units)}" if bands else ""
     raise InfeasibleError(
-        f"{reason.message}{part}. {works}", reason.binding, excess, reason.unit, kept, line_speeds
+        f"{reason.message}{part}. {works}{family}", reason.binding, excess, reason.unit, kept, line_speeds, bands
     ) from reason
+
+
+def family_of(job: Job) -> Bands | None:
+    """Find the bands of a family of cams where no single one holds a job's line speeds; ``None`` where there is no such family."""
+    if not job.servo_aware or job.slowest == 1.0:
+        return None
+    try:  # zones that last a time are as long on the material as at the job's line speed, for all cams alike
+        fixed = replace(job, cut=replace(job.cut, sync_time=None, shear_time=None))
+        found = family_bands(placed_for_all(fixed))
+    except (InfeasibleError, SolverError):
+        return None
+    return None if isinstance(found, Uncovered) or len(found.covering.bands) == 1 else found.covering.bands
+
+
+def family_words(bands: Bands, units: Units) -> str:
+    """Tell the bands of a family."""
+    speeds = [tuple(with_unit(speed, "m/s", 4, units) for speed in band) for band in bands]
+    told = ", ".join(f"{low} to {high}" for low, high in speeds)
+    return f"A family of {len(bands)} cams covers its line speeds, each holds a band (camwright family): {told}"
 
 
 def _taken_further(suggestion: Suggestion, units: Units) -> Iterator[Remedy]:

@@ -69,7 +69,7 @@ def test_design_prints_the_promised_object(designed: tuple[Path, dict[str, Any]]
         "job", "status", "objective", "lower_bound_method", "starts", "pieces", "profiles", "checks", "passed",
         "minimum_cut_length_mm", "tangential_mismatch", "files",
         "servo_aware", "robust", "lead_time_ms", "length_error_mm", "length_error_with_lead_mm", "length_variation_mm",
-        "speed_band", "speed_band_binds", "remedies",
+        "speed_band", "speed_band_binds", "remedies", "family_bands_m_per_s",
     }  # fmt: skip
     assert answer["speed_band"] == [[0.0, pytest.approx(80 / 60)]]
     assert answer["speed_band_binds"] == ["none", "jerk"]
@@ -106,7 +106,7 @@ def test_a_brief_design_is_the_same_cam_with_the_same_proof(
     assert main(["design", "--brief", "--out", str(tmp_path / "cam"), "--json"]) == 0
     brief = strict(capsys.readouterr().out)
     assert answer.keys() - brief.keys() == {
-        "profiles", "remedies", "minimum_cut_length_mm",
+        "profiles", "remedies", "family_bands_m_per_s", "minimum_cut_length_mm",
         "lead_time_ms", "length_error_mm", "length_error_with_lead_mm", "length_variation_mm",
     }  # fmt: skip
     assert {key: answer[key] for key in brief if key != "files"} == {k: v for k, v in brief.items() if k != "files"}
@@ -408,6 +408,7 @@ def test_a_job_that_physics_forbids_ends_with_3(tmp_path: Path, capsys: pytest.C
         "excess",
         "suggestions",
         "line_speeds_kept_m_per_s",
+        "family_bands_m_per_s",
     }
     assert answer["binding"] == "acceleration"
     assert answer["excess"].keys() == {"value", "unit"}

@@ -23,6 +23,7 @@ from camwright.profiles.errors import InfeasibleError, InputError
 from camwright.studies.axis_study import solve_job
 from camwright.studies.covering import FOUND_TO
 from camwright.studies.family_bands import band_job
+from camwright.studies.remedies import family_of, family_words
 from camwright.validation.production.cam_change import CamChange, run_change
 from camwright.validation.production.motion_table import ShiftCam
 from camwright.validation.report import judge
@@ -174,3 +175,14 @@ def test_shaped_families_hold_every_line_speed(length: float, tolerance: float, 
     assert len(found.cams) == 2
     require_held(found)
     assert [each.how for each in found.switchings] == ["transition"]
+
+
+def test_a_design_that_fails_is_shown_the_family(in_sync: Family) -> None:
+    bands = family_of(in_sync.found.job)
+    assert bands is not None
+    assert bands[-1] == pytest.approx(in_sync.cams[-1].line_speeds, rel=0.05)
+    assert family_words(bands, in_sync.found.job.units) == (
+        f"A family of 2 cams covers its line speeds, each holds a band (camwright family): 56 m/min to {60 * bands[0][1]:.4g} m/min, "
+        f"{60 * bands[1][0]:.4g} m/min to 80 m/min"
+    )
+    assert family_of(replace(in_sync.found.job, slowest=1.0)) is None
