@@ -63,6 +63,11 @@ def test_the_page_speaks_three_languages(page: Any) -> None:
         page.locator("#undo", has_text=undo).wait_for()
         page.locator("#panel td", has_text=check).wait_for()
         assert page.get_attribute("html", "lang") == language
+    page.select_option("#language", "zh")  # whose words may be broken after each sign
+    page.click("[data-view=compare]")
+    page.locator("#panel rect.bar").first.wait_for()
+    assert page.locator("#panel td").first.bounding_box()["width"] >= 80
+    page.click("[data-view=checks]")
     page.select_option("#language", "de")
     page.locator('.field[data-path="cut.sync_tolerance"] label', has_text="Synchrontoleranz").wait_for()
     page.locator('[id="field-cut.sync_tolerance"]').focus()
