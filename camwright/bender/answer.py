@@ -81,7 +81,7 @@ def _failed_collisions(count: int) -> Notice:
         "if the rule is guided by hand or lifted over the mould at these bends, accept it with --accept-collisions"
     )
     if count == 1:
-        return Notice(f"the check {COLLISIONS} failed in one program; {way_out}")
+        return Notice(f"the check {COLLISIONS} failed in 1 program; {way_out}")
     return Notice(f"the check {COLLISIONS} failed in {{count}} programs; {way_out}", count=str(count))
 
 

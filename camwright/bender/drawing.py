@@ -1,4 +1,4 @@
-"""From a DXF file to outlines: units, styles, overlaps, and loose entities joined into paths."""
+"""From a DXF or CFF2 file to outlines: units, styles, overlaps, and loose entities joined into paths."""
 
 from __future__ import annotations
 
@@ -12,11 +12,13 @@ from typing import Any, Literal
 import numpy as np
 
 from camwright.bender.chords import FoundArc, with_arcs
+from camwright.bender.die_file import is_cf2
+from camwright.bender.die_styles import bridges_of, die_styles
 from camwright.bender.dxf_blocks import Seen, require_bounded, walk
 from camwright.bender.dxf_curves import MOST_SEGMENTS
 from camwright.bender.dxf_entities import Resolution, is_line_work, piece_of
 from camwright.bender.dxf_opening import open_dxf, readable
-from camwright.bender.dxf_styles import Layers, Style, StyleChoice
+from camwright.bender.dxf_styles import Layers, Style, StyleChoice, StylePieces
 from camwright.bender.job import UNITS
 from camwright.bender.joining import join
 from camwright.bender.near_ends import NearEnds, near_ends
@@ -91,6 +93,8 @@ class Drawing:
         What was left out, repaired, merged or not joined.
     marks
         Marks of bridges.
+    bridge_width
+        Width of the bridges that the file itself has (m); 0 where it has none.
     """
 
     outlines: tuple[Outline, ...]
@@ -101,15 +105,7 @@ class Drawing:
     near_ends: tuple[NearEnds, ...]
     warnings: tuple[str, ...]
     marks: tuple[BridgeMark, ...] = ()
-
-
-@dataclass(eq=False)
-class _Found:
-    """What one style holds: its name as first seen, its pieces (m), and what of it cannot be bent."""
-
-    style: Style
-    pieces: list[Piece] = field(default_factory=list)
-    faults: list[str] = field(default_factory=list)
+    bridge_width: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,7 +119,7 @@ class _Lines:
 
 
 def read_drawing(path: Path, reading: Reading) -> Drawing:
-    """Read the die lines of a DXF file.
+    """Read the die lines of a DXF or a CFF2 file.
 
     Parameters
     ----------
@@ -138,13 +134,21 @@ def read_drawing(path: Path, reading: Reading) -> Drawing:
         The file is no DXF, holds several styles of which none is chosen, or lines that cannot be bent; every message
         with the file, the entity and the reason.
     """
-    document, warnings = open_dxf(path)
-    with readable(path):
-        unit, doubts = _unit(path, document, reading.units)
-        left_out: Counter[str] = Counter()
-        marks: list[BridgeMark] = []
-        layers, everything, others = _gathered(path, document, reading, UNITS[unit], left_out, marks)
+    left_out: Counter[str] = Counter()
+    marks: list[BridgeMark] = []
+    warnings: tuple[str, ...] = ()
+    others: list[StylePieces] = []
+    if is_cf2(path):
+        unit, doubts, everything = die_styles(path, reading.units, (_LEAST, _GREATEST), left_out)
+        layers = {found.style.layer for found in everything}
+    else:
+        document, warnings = open_dxf(path)
+        with readable(path):
+            unit, doubts = _unit(path, document, reading.units)
+            layers, everything, others = _gathered(path, document, reading, UNITS[unit], left_out, marks)
     chosen = _chosen(path, everything, layers, reading.style, left_out)
+    width, more = bridges_of(path, chosen, reading.gap, marks)
+    doubts += more
     lines = [_lines(path, found, reading, left_out) for found in chosen]
     outlines = [
         Outline(p.points, p.bulges, Notice("{file}: {what}", file=path.name, what=p.name), p.flattening)
@@ -168,7 +172,7 @@ def read_drawing(path: Path, reading: Reading) -> Drawing:
         *_few([arc.told for one in lines for arc in one.arcs], "{count} more runs of chords lie on arcs"),
     ]
     warnings += (*doubts, *(Notice("{file}: {what}", file=path.name, what=text) for text in told))
-    return Drawing(tuple(outlines), tuple(styles), unit, _size(outlines), overlaps, near, warnings, tuple(marks))
+    return Drawing(tuple(outlines), tuple(styles), unit, _size(outlines), overlaps, near, warnings, tuple(marks), width)
 
 
 def _unit(path: Path, document: Any, units: str | None) -> tuple[str, tuple[str, ...]]:
@@ -196,13 +200,13 @@ def _unit(path: Path, document: Any, units: str | None) -> tuple[str, tuple[str,
 
 def _gathered(
     path: Path, document: Any, reading: Reading, unit: float, left_out: Counter[str], marks: list[BridgeMark]
-) -> tuple[set[str], list[_Found], list[_Found]]:
+) -> tuple[set[str], list[StylePieces], list[StylePieces]]:
     """Read what is shown of the layer that is asked for, style by style; the names of all layers; and what the other layers hold."""
     resolution = Resolution(reading.flattening / unit, _LEAST / unit, _GREATEST / unit)
     layers = Layers(document.layers)
     names = {name.casefold(): name for name in sorted(layers.names)}
-    found: dict[tuple[str, str, str], _Found] = {}
-    others: dict[tuple[str, str, str], _Found] = {}
+    found: dict[tuple[str, str, str], StylePieces] = {}
+    others: dict[tuple[str, str, str], StylePieces] = {}
     wanted = None if reading.style.layer is None else reading.style.layer.casefold()
     hidden: Counter[str] = Counter()
     segments = aside = 0
@@ -220,7 +224,7 @@ def _gathered(
             if not is_line_work(seen.entity):
                 left_out[Notice("{kind} (no line work)", kind=seen.entity.dxftype())] += 1
                 continue
-            own = found.setdefault(seen.style.key, _Found(seen.style))
+            own = found.setdefault(seen.style.key, StylePieces(seen.style))
             try:
                 drawn = piece_of(seen.entity, seen.name, resolution)
             except InputError as error:
@@ -258,7 +262,7 @@ def _mark(seen: Seen, unit: float, marks: list[BridgeMark], left_out: Counter[st
     marks.append(BridgeMark(seen.name, (x, y)))
 
 
-def _aside(seen: Seen, others: dict[tuple[str, str, str], _Found], resolution: Resolution, unit: float) -> int:
+def _aside(seen: Seen, others: dict[tuple[str, str, str], StylePieces], resolution: Resolution, unit: float) -> int:
     """Read an entity of a layer that is not bent, to tell what lies on it; what cannot be read does no harm there."""
     if not is_line_work(seen.entity):
         return 0
@@ -268,11 +272,11 @@ def _aside(seen: Seen, others: dict[tuple[str, str, str], _Found], resolution: R
         return 0
     if piece is None:
         return 0
-    others.setdefault(seen.style.key, _Found(seen.style)).pieces.append(piece.scaled(unit))
+    others.setdefault(seen.style.key, StylePieces(seen.style)).pieces.append(piece.scaled(unit))
     return len(piece.bulges)
 
 
-def _mixed(chosen: Sequence[_Found], everything: Sequence[_Found], tolerance: float) -> list[Notice]:
+def _mixed(chosen: Sequence[StylePieces], everything: Sequence[StylePieces], tolerance: float) -> list[Notice]:
     """Name what is bent and lies on something of another style, bent or not."""
     try:
         overlaps = between_styles([found.pieces for found in everything], tolerance)
@@ -291,8 +295,8 @@ def _mixed(chosen: Sequence[_Found], everything: Sequence[_Found], tolerance: fl
 
 
 def _chosen(
-    path: Path, everything: Sequence[_Found], layers: set[str], choice: StyleChoice, left_out: Counter[str]
-) -> list[_Found]:
+    path: Path, everything: Sequence[StylePieces], layers: set[str], choice: StyleChoice, left_out: Counter[str]
+) -> list[StylePieces]:
     """Pick the styles that are asked for.
 
     Raises
@@ -323,13 +327,13 @@ def _chosen(
     return fitting
 
 
-def _style_words(found: _Found) -> str:
+def _style_words(found: StylePieces) -> str:
     count = len(found.pieces) + len(found.faults)
     length = 1e3 * sum(piece.length for piece in found.pieces)
     return f"--style {found.style}: {count} {'entity' if count == 1 else 'entities'}, {length:.3f} mm"
 
 
-def _lines(path: Path, found: _Found, reading: Reading, left_out: Counter[str]) -> _Lines:
+def _lines(path: Path, found: StylePieces, reading: Reading, left_out: Counter[str]) -> _Lines:
     """Join the pieces of one style: what is drawn twice is used once, chords that lie on an arc become that arc.
 
     Raises

@@ -108,10 +108,10 @@ def piece_of(entity: Any, name: str, resolution: Resolution) -> Drawn:
         )
     if len(bulges) == 0:
         return Drawn(None, (Notice("{name} (no length)", name=name),))
-    return _cleaned(Piece(points, bulges, name, distance), resolution.least)
+    return cleaned(Piece(points, bulges, name, distance), resolution.least)
 
 
-def _cleaned(piece: Piece, least: float) -> Drawn:
+def cleaned(piece: Piece, least: float) -> Drawn:
     """Leave out what has no length, and take arcs that no machine could tell from a line as lines."""
     points, bulges = piece.points, piece.bulges
     notes: list[str] = []

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
+from camwright.bender.piece import Piece
+from camwright.profiles.bender.bridges import BridgeMark
 from camwright.profiles.errors import InputError
 
 _BYBLOCK, _BYLAYER = 0, 256
@@ -43,6 +45,16 @@ class Style:
 
 MODEL_SPACE = Style("0", _WHITE, "Continuous")
 """What an entity in model space takes that says BYBLOCK."""
+
+
+@dataclass(eq=False)
+class StylePieces:
+    """What one style holds: its name as first seen, its pieces (m), what cannot be bent, and bridges of its own with their widths (m)."""
+
+    style: Style
+    pieces: list[Piece] = field(default_factory=list)
+    faults: list[str] = field(default_factory=list)
+    bridges: list[tuple[BridgeMark, float]] = field(default_factory=list)
 
 
 @dataclass(frozen=True)

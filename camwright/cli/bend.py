@@ -224,8 +224,15 @@ def _bent(
     if place is not None:
         outlines = [outline.begin_at(*place) for outline in outlines]
     step("writing and proving programs")
-    bent = bend_outlines(outlines, bender, drawing.stem, found.marks)
-    return BentDrawing(drawing, hashlib.sha256(drawing.read_bytes()).hexdigest(), bender, found, bent)
+    marks = found.marks
+    notes: tuple[str, ...] = ()
+    if found.bridge_width and (bender.bridges.asked or bender.bridges.layer is not None):
+        text = "the bridges that are asked for are taken, not the {count} of the file"
+        marks, notes = (), (Notice(text, count=str(len(marks))),)
+    elif found.bridge_width:
+        bender = replace(bender, bridges=replace(bender.bridges, width=found.bridge_width))
+    bent = bend_outlines(outlines, bender, drawing.stem, marks)
+    return BentDrawing(drawing, hashlib.sha256(drawing.read_bytes()).hexdigest(), bender, found, bent, notes)
 
 
 def _write(
