@@ -88,9 +88,9 @@ class ValidationReport:
     motor: MotorMeasures
     tangential_mismatch: float | None
     servo: ServoResponse | None
-    profile: CamProfile = field(repr=False)
-    task: Task = field(repr=False)
-    loop: Servo = field(repr=False)
+    profile: CamProfile = field(repr=False, compare=False)
+    task: Task = field(repr=False, compare=False)
+    loop: Servo = field(repr=False, compare=False)
 
     @property
     def passed(self) -> bool:
