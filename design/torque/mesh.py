@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from camwright.design.torque.programme import Guess
 from camwright.design.torque.task import Pattern
@@ -66,3 +67,37 @@ def remesh(guess: Guess, pattern: Pattern, counts: tuple[int, ...]) -> Guess:
         node += len(mesh)
     a, v, q = (np.concatenate([part[k] for part in parts]) for k in range(3))
     return Guess(tuple(meshes), guess.lengths, a, v, q, guess.ends)
+
+
+def divide(guess: Guess, pattern: Pattern, chosen: NDArray[np.bool_]) -> Guess:
+    """Divide some intervals of a motion, which stays what it is, in three; ``chosen`` is true for those, phases one after the other."""
+    meshes, first = [], 0
+    for mesh in guess.mesh:
+        split = chosen[first : first + len(mesh)]
+        meshes.append(np.repeat(np.where(split, mesh / 3, mesh), np.where(split, 3, 1)))
+        first += len(mesh)
+    at = np.nonzero(chosen)[0]
+    inner = states_within(guess, pattern, np.array([1.0, 2.0]) / 3)
+    a, v, q = (
+        np.insert(part, np.repeat(at + 1, 2), new[at].ravel())
+        for part, new in zip((guess.acceleration, guess.velocity, guess.position), inner, strict=True)
+    )
+    return Guess(tuple(meshes), guess.lengths, a, v, q, guess.ends)
+
+
+def states_within(guess: Guess, pattern: Pattern, shares: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Acceleration, velocity and position at shares of every interval, a row for each interval."""
+    a, v, q = (part[:-1, None] for part in (guess.acceleration, guess.velocity, guess.position))
+    rise = np.diff(guess.acceleration)[:, None]
+    d = _widths(guess, pattern)[:, None] * shares
+    return (
+        a + rise * shares,
+        v + d * (a + rise * shares / 2),
+        q + d * (v + d * (a / 2 + rise * shares / 6)),
+    )
+
+
+def _widths(guess: Guess, pattern: Pattern) -> FloatArray:
+    """Lengths of all intervals as shares of the return; phases without motion have none."""
+    moving = [length for phase, length in zip(pattern, guess.lengths, strict=True) if phase != "rest"]
+    return np.concatenate([mesh * length for mesh, length in zip(guess.mesh, moving, strict=True)])

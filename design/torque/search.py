@@ -23,6 +23,7 @@ from camwright.design.torque.guesses import (
     turning_from,
 )
 from camwright.design.torque.mesh import remesh
+from camwright.design.torque.peaks import ABOVE, peaks, sharpened
 from camwright.design.torque.programme import MOST_ITERATIONS, Guess, TorqueAnswer, TorqueProgramme
 from camwright.design.torque.task import Pattern, TorqueTask
 from camwright.profiles.errors import SolverError
@@ -122,7 +123,7 @@ def solve_torque(
     def keep(answer: TorqueAnswer, pattern: Pattern) -> None:
         back = finish(answer.guess, pattern, task)
         if _keeps_limits(back, task) and accepted(back):
-            found.append((max(answer.value, floor), back, answer.residual))
+            found.append((max(_value(task, answer, pattern), floor), back, answer.residual))
 
     second: list[tuple[TorqueAnswer, Pattern]] = []
     for answer, pattern in _distinct(first):
@@ -132,16 +133,7 @@ def solve_torque(
         keep(*second[-1])
     if second:
         answer, pattern = min(second, key=lambda entry: entry[0].value)
-        for count in LADDER:
-            finer = _finer(task, pattern, answer, count, floor)
-            iterations += finer.iterations
-            if not finer.success:
-                break
-            keep(finer, pattern)
-            settled = finer.value > answer.value * (1 - SETTLED)
-            answer = finer
-            if settled:
-                break
+        iterations += _taken_further(task, pattern, answer, floor, keep)
     found += [entry for entry in _given(task, starts if found else profiles) if accepted(entry[1])]
     if not found:
         raise SolverError(
@@ -154,6 +146,38 @@ def solve_torque(
     agreeing = sum(each <= values[0] * (1 + AGREEMENT) for each in values)
     spread = values[-1] / values[0] - 1.0 if values[0] > 0 else 0.0
     return TorqueSolution(back, value, spread, len(first), agreeing, residual, iterations)
+
+
+def _taken_further(
+    task: TorqueTask,
+    pattern: Pattern,
+    answer: TorqueAnswer,
+    floor: float,
+    keep: Callable[[TorqueAnswer, Pattern], None],
+) -> int:
+    """Take an answer to finer meshes until it settles, then divide intervals where its peak hides; the iterations."""
+    iterations = 0
+    for count in LADDER:
+        finer = _finer(task, pattern, answer, count, floor)
+        iterations += finer.iterations
+        if not finer.success:
+            break
+        keep(finer, pattern)
+        settled = finer.value > answer.value * (1 - SETTLED)
+        answer = finer
+        if settled:
+            break
+    for above in ABOVE if task.aim == "peak_torque" else ():
+        guess = sharpened(answer.guess, pattern, task, max(answer.value, floor), above)
+        if guess is None:
+            continue
+        finer = _solved(task, pattern, guess, answer.value, floor)
+        iterations += finer.iterations
+        if not finer.success:
+            break
+        keep(finer, pattern)
+        answer = finer
+    return iterations
 
 
 def _first_look(
@@ -178,15 +202,24 @@ def zone_peak(task: Task) -> float:
 
 
 def _finer(task: TorqueTask, pattern: Pattern, answer: TorqueAnswer, count: int, floor: float) -> TorqueAnswer:
-    """Solve again on a finer mesh; near the floor of a peak, for the least mean square under it."""
+    """Solve again on a finer mesh."""
     parts = len(answer.guess.mesh)
-    guess = remesh(answer.guess, pattern, (count // parts,) * parts)
+    return _solved(task, pattern, remesh(answer.guess, pattern, (count // parts,) * parts), answer.value, floor)
+
+
+def _solved(task: TorqueTask, pattern: Pattern, guess: Guess, value: float, floor: float) -> TorqueAnswer:
+    """Solve from a guess that has about a value; near the floor of a peak, for the least mean square under it."""
     programme = _programme(task, pattern, guess)
-    if answer.value <= floor * (1 + AT_FLOOR):
+    if value <= floor * (1 + AT_FLOOR):
         under = programme.solve(guess, ceiling=floor)
         if under.success:
             return under
     return programme.solve(guess, floor=floor)
+
+
+def _value(task: TorqueTask, answer: TorqueAnswer, pattern: Pattern) -> float:
+    """Objective of an answer; a peak is looked for between the programme's points too."""
+    return float(peaks(answer.guess, pattern, task).max()) if task.aim == "peak_torque" else answer.value
 
 
 def _programme(task: TorqueTask, pattern: Pattern, guess: Guess, iterations: int = MOST_ITERATIONS) -> TorqueProgramme:
@@ -211,7 +244,12 @@ def _given(task: TorqueTask, starts: Sequence[CamProfile]) -> list[tuple[float, 
     for back in starts:
         if _keeps_limits(back, task):
             guess = from_profile(back, task, LADDER[-1])
-            kept.append((_programme(task, ANYHOW, guess).value(guess), back, 0.0))
+            value = (
+                float(peaks(guess, ANYHOW, task).max())
+                if task.aim == "peak_torque"
+                else _programme(task, ANYHOW, guess).value(guess)
+            )
+            kept.append((value, back, 0.0))
     return kept
 
 

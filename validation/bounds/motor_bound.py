@@ -42,7 +42,9 @@ PLACES = 2001
 NEAR = 2e-3
 """Share of the mean square below which nothing is left to be proved."""
 EDGE = 5e-3
-"""Share to which the greatest peak is found that is proved to be too low."""
+"""Share by which a peak may lie above that of the zone to need no other bound."""
+PEAKS = (0.993, 0.98, 0.96, 0.93, 0.9, 0.86, 0.82, 0.76, 0.7, 0.6, 0.5)
+"""Shares of a peak that are tried for the greatest that is proved to be too low."""
 
 
 def motor_bound(profile: CamProfile, task: Task, objective: MotorObjective, motion: Bound) -> Bound:
@@ -205,15 +207,13 @@ def _least_square(path: PathTask, level: float) -> tuple[float, str]:
 
 
 def _least_peak(path: PathTask, low: float, high: float) -> float:
-    """Greatest peak that is proved to be too low, by halving between one of the zone and that of a motion; the zone's if none is."""
-    best = low
-    while high - low > EDGE * high:
-        middle = 0.5 * (low + high)
-        if no_motion_below(path, middle):
-            best = low = middle
-        else:
-            high = middle
-    return best
+    """Greatest of a ladder of peaks that is proved to be too low, from that of a motion down to one of the zone, which it is if none is."""
+    for share in PEAKS:
+        if high * share <= low:
+            break
+        if no_motion_below(path, high * share):
+            return high * share
+    return low
 
 
 def _zone_peak(profile: CamProfile, task: Task) -> float:

@@ -13,13 +13,15 @@ from camwright.design.returns.problem import return_problem
 from camwright.design.returns.solver import objective_value, solve_return
 from camwright.design.torque.finish import finish
 from camwright.design.torque.guesses import ANYHOW, RESTING, from_profile, resting
-from camwright.design.torque.mesh import remesh, spread
+from camwright.design.torque.mesh import divide, remesh, spread
 from camwright.design.torque.path_starts import path_starts
+from camwright.design.torque.peaks import peaks
 from camwright.design.torque.placing import place_by_objective
 from camwright.design.torque.programme import TorqueProgramme
 from camwright.design.torque.search import solve_torque, zone_peak
 from camwright.design.torque.task import TorqueTask
 from camwright.profiles.cut import Cut
+from camwright.profiles.errors import InfeasibleError
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import CrankSlider, LinearCarriage, RotaryKnife
 from camwright.profiles.objective import CommandObjective
@@ -174,6 +176,43 @@ def test_a_finer_mesh_is_the_same_motion() -> None:
     x = np.concatenate([[0.0], np.cumsum(finer.mesh[0])])
     assert sum(finer.mesh[0]) == pytest.approx(1.0)
     assert finer.position == pytest.approx(back(x * back.end) / task.scale, abs=2e-3)
+
+
+def test_divided_intervals_are_the_same_motion() -> None:
+    task = _torque_task(Task(CRANK, SHEAR, TURNS), "peak_torque")
+    guess = from_profile(quintic_between(task.task.sync, task.problem.length, task.problem.height), task, 12)
+    chosen = np.arange(12) % 4 == 1
+    finer = divide(guess, ANYHOW, chosen)
+    assert len(finer.mesh[0]) == 12 + 2 * int(chosen.sum())
+    fewer = np.concatenate([[0.0], np.cumsum(guess.mesh[0])])
+    more = np.concatenate([[0.0], np.cumsum(finer.mesh[0])])
+    assert finer.acceleration == pytest.approx(np.interp(more, fewer, guess.acceleration), abs=1e-9)
+    same = np.isin(np.round(more, 12), np.round(fewer, 12))
+    assert finer.position[same] == pytest.approx(guess.position, abs=1e-12)
+    assert peaks(finer, ANYHOW, task).max() == pytest.approx(peaks(guess, ANYHOW, task).max(), rel=1e-3)
+
+
+def test_no_peak_hides_between_the_points_of_the_programme() -> None:
+    """The torque bends within an interval, and the solver would put its peaks where it does not look: 0.6 % of them once."""
+    task = Task(CRANK, replace(SHEAR, length=0.5), TURNS)
+    solution = solve(task, "peak_torque")
+    value = CRANK.motor_ratio * float(measure_motor(solution.profile, task).peak_torque or 0.0)
+    assert value == pytest.approx(solution.minimised, rel=1e-5)
+
+
+@pytest.mark.slow
+def test_a_corner_of_the_places_is_gone_down_to() -> None:
+    """A crank of its own, whose least peak lies at a corner: from the scan's best place alone the solver came 1.4 % above."""
+    crank = CrankSlider(crank=0.11, rod=0.22, crank_inertia=1.0, carriage_mass=220.0)
+    cut, limits = Cut(0.5, 0.465, 0.038, 0.01, 0.02, 1e-4), Limits(15.0, 44.0, 1800.0, reversal=False)
+    task = Task(crank, cut, limits)
+    found = solve(task, "peak_torque")
+    for aside in (-0.03, -0.01, 0.01, 0.03):
+        try:
+            other = solve(task.placed_at(found.machine.place + aside), "peak_torque")
+        except InfeasibleError:
+            continue
+        assert found.minimised <= other.minimised * (1 + 2e-3)
 
 
 def test_a_mesh_shares_its_density_evenly() -> None:

@@ -1,0 +1,33 @@
+"""Peaks of the torque between the points at which a programme looks at it, and the mesh that takes them away."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from camwright.design.torque.mesh import divide, states_within
+from camwright.design.torque.programme import Guess
+from camwright.design.torque.task import Pattern, TorqueTask
+from camwright.profiles.polynomial.profile import FloatArray
+
+SHARES = np.linspace(0.0, 1.0, 33)
+"""Places of every interval at which the torque is looked at."""
+ABOVE = (3e-4, 1e-4, 5e-5)
+"""Shares by which a peak may lie above what the programme knows of it, in the rounds in which intervals are divided."""
+
+
+def peaks(guess: Guess, pattern: Pattern, task: TorqueTask) -> FloatArray:
+    """Greatest magnitude of the torque or force at the slave in every interval."""
+    machine, scale, time = task.machine, task.scale, task.duration
+    a, v, q = states_within(guess, pattern, SHARES)
+    phases = [phase for phase in pattern if phase != "rest"]
+    sign = np.repeat([-1.0 if phase == "back" else 1.0 for phase in phases], [len(mesh) for mesh in guess.mesh])
+    y = task.start + scale * q
+    inertial = machine.inertia(y) * a + machine.inertia_slope(y) * scale * v**2 / 2
+    force = scale / time**2 * inertial + machine.friction * sign[:, None]
+    return np.asarray(np.abs(force).max(axis=1))
+
+
+def sharpened(guess: Guess, pattern: Pattern, task: TorqueTask, limit: float, above: float) -> Guess | None:
+    """Divide the intervals in which the torque goes beyond a limit by more than a share; None if there is none."""
+    beyond = peaks(guess, pattern, task) > limit * (1 + above)
+    return divide(guess, pattern, beyond) if beyond.any() else None
