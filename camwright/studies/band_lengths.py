@@ -101,14 +101,12 @@ def _servo_aware(job: Job, command: Command) -> float | None:
     )
     some = thinned(shares, _LOOKED)
 
-    def holds(shape: Cut, looked: tuple[float, ...]) -> bool:
+    def missed(shape: Cut, looked: tuple[float, ...] = some) -> float:
+        problem = AxisProblem(job.task.with_cut(shape), command, servos, True, shares=looked)
         try:
-            return AxisProgramme(AxisProblem(job.task.with_cut(shape), command, servos, True, shares=looked)).keeps()
+            return AxisProgramme(problem).missed(ratio=False)
         except SolverError:  # at the edge of what double precision resolves
-            return False
-
-    def missed(shape: Cut) -> float:
-        return -np.inf if holds(shape, some) else np.inf
+            return np.inf
 
     def lower(sync_zone: float) -> float:
         if command == "shaped":  # a mean speed beyond the limit is all that forbids it
@@ -125,7 +123,7 @@ def _servo_aware(job: Job, command: Command) -> float | None:
     for _ in range(_TRIES):
         if best is None or best >= pitch:
             return None
-        if holds(search.shape(best, zone), shares):
+        if missed(search.shape(best, zone), shares) <= 0.0:
             return best
         best *= _LONGER
     return None

@@ -8,14 +8,18 @@ from dataclasses import dataclass, replace
 
 from camwright.design.feasible.extremes import Extremes
 from camwright.design.optimise import motion_objective, solve
+from camwright.design.optimise_axis import AXIS_RATIO
 from camwright.design.returns.curve_limits import motor_limits
-from camwright.design.servo_aware.axis_problem import AxisProblem
+from camwright.design.servo_aware.axis_problem import AxisProblem, thinned
 from camwright.design.servo_aware.programme import AxisProgramme
 from camwright.jobs.job import Job
 from camwright.jobs.servos import between_of, servos_of
 from camwright.profiles.errors import InfeasibleError, InputError, SolverError
 from camwright.profiles.objective import MotionObjective, of_command, of_motion
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
+from camwright.studies.axis_study import shares_of
 from camwright.validation.report import judge
 
 ACCURACY, SERVO_AWARE_ACCURACY = 1e-4, 5e-3
@@ -30,14 +34,25 @@ BESIDE, GROWTH = 2.0, 4.0
 SLOWEST, LONGEST = 0.02, 4.0
 """Line speeds down to this share of the perfect axis' highest, and cut lengths up to this multiple of its shortest, are looked at."""
 
+LEAST_ZONE = 1.01
+"""Shortest cut that is looked at, as a multiple of the sync zone: a return must be left."""
+
 _INSIDE = 1e-6
 """What the perfect axis' own edge is asked with, relative to it: solvers need room."""
 
 RAMP = "line_ramp"
 """What binds where no cam bears the ramps of the line: the check that would fail."""
 
-TOLERANCE = "sync_tolerance"
-"""What binds where no servo-aware command brings the axis into the tolerance."""
+TOLERANCE, BAND, AXIS = "sync_tolerance", "sync_over_line_speeds", "axis_acceleration"
+"""What binds where no servo-aware command brings the axis into the tolerance, none at every line speed of the job, none with the axis'
+own limits kept: where it is not the ratio, speed or reversal of the axis."""
+
+_LOOKED = 6
+"""Each so many-th of the line speeds of a design is looked at while an edge is searched; at the edge that is told, all."""
+
+_BACK, _TRIES = 0.996, 16
+"""Factor by which an edge is taken back where it holds at those line speeds, of servos at the corners of their ranges, but not at all of
+them, and how often it is."""
 
 
 @dataclass(frozen=True)
@@ -100,25 +115,29 @@ def highest_speed(
     """
     if perfect is None:
         return None, ""
-    objective = stand_in(job)
-    found, failed = _edge(
-        lambda share: fails(job, job.task.designed_at(perfect * share), objective),
-        SLOWEST,
-        max(accuracy, _accuracy(job)),
-        None if near is None else near / perfect,
-    )
-    return (None if found is None else perfect if not failed else perfect * found), failed
+    end = perfect
+    if _shaped(job):  # beyond it the mean speed alone is too high
+        end = max(perfect, job.limits.speed * job.cut.length / job.machine.pitch)
+    at = None if near is None else near / end
+    found, failed = _kept(job, lambda share: job.task.designed_at(end * share), SLOWEST, accuracy, at)
+    return (None if found is None else end if not failed else end * found), failed
 
 
 def shortest_cut(job: Job, perfect: float | None) -> tuple[float | None, str]:
     """Shortest cut at the job's line speed that passes (m), and what fails below it, empty where the perfect axis ends there."""
     if perfect is None:
         return None, ""
-    objective = stand_in(job)
-    found, failed = _edge(
-        lambda share: fails(job, job.task.with_length(perfect / share), objective), 1.0 / LONGEST, _accuracy(job)
-    )
-    return (None if found is None else perfect if not failed else perfect / found), failed
+    end = perfect
+    if _shaped(job):
+        by_speed = job.machine.pitch * job.cut.line_speed / job.limits.speed
+        end = min(perfect, max(by_speed, job.cut.sync_zone * LEAST_ZONE))
+    found, failed = _kept(job, lambda share: job.task.with_length(end / share), 1.0 / LONGEST)
+    return (None if found is None else end if not failed else end / found), failed
+
+
+def _shaped(job: Job) -> bool:
+    """Whether the command may be shaped, of a machine that goes on by a pitch: it need not be in sync in all of the sync zone."""
+    return job.servo_aware and job.command == "shaped" and job.machine.pitch > 0.0
 
 
 def stand_in(job: Job) -> MotionObjective:
@@ -138,7 +157,7 @@ def fails(job: Job, task: Task, objective: MotionObjective) -> str:
         The first check that fails, or what makes a design impossible; empty where it passes.
     """
     if job.servo_aware:
-        return "" if _reaches(job, task) else TOLERANCE
+        return "" if _reaches(job, task, shares_of(job.slowest), between_of(job)) else TOLERANCE
     try:
         solution = solve(task, objective, suggest=False, thorough=False)
     except InfeasibleError as error:
@@ -149,23 +168,89 @@ def fails(job: Job, task: Task, objective: MotionObjective) -> str:
     return next((check.name for check in report.checks if not check.passed), "")
 
 
-def _reaches(job: Job, task: Task) -> bool:
-    """Whether a servo-aware command within the limits brings the axis into the tolerance, its own limits kept."""
+def _kept(
+    job: Job, at: Callable[[float], Task], least: float, accuracy: float = ACCURACY, near: float | None = None
+) -> tuple[float | None, str]:
+    """Find the greatest share of the perfect axis' edge that passes, as `_edge`.
+
+    Of a servo-aware job at some line speeds and with servos at the corners of their ranges first, then at all and with those between.
+    """
+    if not job.servo_aware:
+        objective = stand_in(job)
+        return _edge(lambda share: fails(job, at(share), objective), least, accuracy, near)
+    shares = shares_of(job.slowest)
+    some = thinned(shares, _LOOKED)
+    found, failed = _edge(
+        lambda share: "" if _reaches(job, at(share), some) else TOLERANCE,
+        least,
+        max(accuracy, SERVO_AWARE_ACCURACY),
+        near,
+    )
+    tries = _TRIES if some != shares or between_of(job) else 0
+    while tries and found is not None and not _reaches(job, at(found), shares, between_of(job)):
+        tries -= 1
+        found, failed = (found * _BACK if tries and found * _BACK > least else None), TOLERANCE
+    if not failed:
+        return found, failed
+    return found, binding_of(job, at(1.0 if found is None else found * (1.0 + SERVO_AWARE_ACCURACY)))
+
+
+def _reaches(job: Job, task: Task, shares: tuple[float, ...], between: tuple[Servo, ...] = ()) -> bool:
+    """Whether a servo-aware command within the limits brings the axis into the tolerance at line speeds, its own limits kept."""
+    return any(
+        _missed(AxisProgramme(_problem(job, task.with_limits(limits), shares, between)), ratio=_asks_ratio(job)) <= 0.0
+        for limits in motor_limits(task.machine, task.limits)
+    )
+
+
+def _asks_ratio(job: Job) -> bool:
+    """Whether a design holds the ratio of the axis, too: not where it makes the sync error least."""
+    return job.objective != "sync_error"
+
+
+def _problem(
+    job: Job, task: Task, shares: tuple[float, ...], between: tuple[Servo, ...] = (), *, axis_limits: bool = True
+) -> AxisProblem:
+    """Give what a design asks for at line speeds, and of servos between the corners of their ranges."""
+    return AxisProblem(task, job.command, servos_of(job), axis_limits=axis_limits, between=between, shares=shares)
+
+
+def _missed(programme: AxisProgramme, *, ratio: bool) -> float:
+    """By how much servo-aware commands miss the tolerance; infinite where none keeps the limits, or none can be found."""
     try:
-        return any(
-            AxisProgramme(
-                AxisProblem(
-                    task.with_limits(limits), job.command, servos_of(job), axis_limits=True, between=between_of(job)
-                )
-            ).reaches()
-            for limits in motor_limits(task.machine, task.limits)
-        )
+        return programme.missed(ratio=ratio)
     except (InputError, SolverError):
-        return False
+        return math.inf
 
 
-def _accuracy(job: Job) -> float:
-    return SERVO_AWARE_ACCURACY if job.servo_aware else ACCURACY
+def binding_of(job: Job, task: Task) -> str:
+    """Name what a servo-aware design beyond the edge fails: where more than one thing does, the first of them."""
+    free = _problem(job, task, shares_of(job.slowest), axis_limits=False)
+    programme = AxisProgramme(free)
+    missed = _missed(programme, ratio=_asks_ratio(job))
+    if missed <= 0.0:
+        return _axis_limit(job, task, programme.last)
+    if job.slowest < 1.0 and _reaches(job, task, (1.0,)):
+        return BAND
+    if (
+        math.isinf(missed)
+        and _shaped(job)
+        and job.machine.pitch * task.cut.line_speed > task.limits.speed * task.cut.length
+    ):
+        return "speed"
+    if math.isinf(missed):
+        blind = replace(job, servo_aware=False, cut=replace(job.cut, shaped=False))
+        return fails(blind, task.with_cut(replace(task.cut, shaped=False)), stand_in(job)) or TOLERANCE
+    error_alone = AxisProgramme(replace(free, shares=(1.0,)))
+    return AXIS_RATIO if _asks_ratio(job) and _missed(error_alone, ratio=False) <= 0.0 else TOLERANCE
+
+
+def _axis_limit(job: Job, task: Task, profile: CamProfile | None) -> str:
+    """Name the limit that the axis itself breaks with a command that brings it into the tolerance."""
+    if profile is None:
+        return AXIS
+    report = judge(profile, task.from_return(), job.servo, servo_aware=True)
+    return next((check.name for check in report.checks if check.name.startswith("axis_") and not check.passed), AXIS)
 
 
 def _edge(

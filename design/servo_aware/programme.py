@@ -30,6 +30,8 @@ BAND_ACCEPTED = 1e-5
 ROUNDS = 30
 # Share by which the value of one round may be that of the round before, where rows beyond the tolerance have no effect.
 STILL = 1e-7
+# Shares of the tolerance below this one are not told apart.
+LEAST_MISSED = 1e-3
 # A peak that later programmes keep is taken as this share of its limit at least: the peak of a steady motion is rounding.
 LEAST_PEAK = 1e-6
 
@@ -51,7 +53,7 @@ class _Before:
     vertices
         Optima of linear programmes, by what was asked.
     answer
-        The last answer and its command.
+        The last answer that was looked at, and its command.
     """
 
     tight: set[int]
@@ -129,20 +131,33 @@ class AxisProgramme:
 
     def keeps(self) -> bool:
         """Whether some command brings every axis into the tolerance, whatever its ratio; a design of least sync error is one."""
-        return self._found_in_tolerance() is True
+        return self.missed(ratio=False) <= 0.0
 
     def excludes(self) -> bool:
         """Whether no command brings every axis into the tolerance, whatever its ratio: some of the rows alone allow none."""
-        return self._found_in_tolerance() is False
+        missed = self._missed(ratio=False)
+        return missed is not None and missed > 0.0
 
-    def _found_in_tolerance(self) -> bool | None:
-        """Look for a command that brings every axis into the tolerance; ``None`` where the rounds do not tell."""
+    def missed(self, *, ratio: bool) -> float:
+        """By how much the commands miss the tolerance, of which the best keeps so much as a share.
+
+        A logarithm, which goes evenly over the cut length. At most zero where some command keeps it: with the ratio where `reaches` is
+        true, without where `keeps` is. Above zero the true share may be larger still, as rows that are yet to come can only make it worse.
+        Infinite where none keeps the limits, or none was found.
+        """
+        missed = self._missed(ratio=ratio)
+        return math.inf if missed is None else missed
+
+    def _missed(self, *, ratio: bool) -> float | None:
+        """Look for a command that brings every axis into the tolerance, as `missed`; ``None`` where the rounds do not tell."""
+        allowed = 1.0 - self.margin if ratio else 1.0
         for _ in range(ROUNDS):
-            found = self._solve_rows("sync_error", None, {})
-            if found is None or found[1] > 1.0:
-                return False
-            if not self._add_worst(found[0], 1.0, ratio=False):
-                return True
+            found = self._solve_rows("sync_error", None, {}, elastic=ratio)
+            if found is None:
+                return math.inf
+            missed = math.log(max(found[1] / allowed, LEAST_MISSED))
+            if missed > 0.0 or not self._add_worst(found[0], 1.0, ratio=ratio):
+                return missed
         return None
 
     def holds(self, profile: CamProfile) -> bool:
@@ -196,6 +211,11 @@ class AxisProgramme:
         rows = {row.tobytes() for row in (*matrix, *(-matrix))}
         price = sum(float(prices[number]) for number, row in enumerate(vertex.matrix[:, :-1]) if row.tobytes() in rows)
         return (1.0 - LIMIT_MARGIN) * (1.0 - kept * float(vertex.x[-1]) / price) if price > 0.0 else 0.0
+
+    @property
+    def last(self) -> CamProfile | None:
+        """The command that was looked at last."""
+        return None if self._before.answer is None else self._before.answer[1]
 
     def profile(self, unknowns: FloatArray) -> CamProfile:
         """Return the command of an answer, from the start of the return; asked again, the same one."""

@@ -9,10 +9,14 @@ import pytest
 from camwright.answers.limits import limits_answer
 from camwright.design.feasible.extremes import extremes
 from camwright.jobs.job import Job, load_job
+from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InfeasibleError
+from camwright.profiles.limits import Limits
+from camwright.profiles.machines import RotaryKnife
+from camwright.profiles.servo import Servo
 from camwright.studies.axis_study import solve_job
 from camwright.studies.limits import limits
-from camwright.studies.reach import ACCURACY, reach
+from camwright.studies.reach import ACCURACY, binding_of, reach
 from camwright.validation.report import judge
 
 
@@ -23,7 +27,7 @@ def passes(job: Job) -> bool:
     except InfeasibleError:
         return False
     task = job.task.with_machine(solution.machine)
-    return judge(solution.profile, task, job.servo, servo_aware=job.servo_aware).passed
+    return judge(solution.profile, task, job.servo, servo_aware=job.servo_aware, slowest=job.slowest).passed
 
 
 @pytest.mark.parametrize("name", ["paper-600", "cross-cutter", "flying-saw", "thick-product"])
@@ -36,6 +40,48 @@ def test_inside_the_edges_designs_pass_and_beyond_they_fail(name: str) -> None:
     for factor, right in ((1 - 2 * ACCURACY, True), (1 + 2 * ACCURACY, False)):
         assert passes(replace(job, cut=replace(job.cut, line_speed=speed * factor))) == right
         assert passes(replace(job, cut=replace(job.cut, length=length / factor))) == right
+
+
+SHAPED = replace(
+    load_job(),
+    machine=RotaryKnife(0.52),
+    cut=Cut(0.45, 1.2, 0.15, 0.045, 0.105, 1.5e-4, shaped=True),
+    limits=Limits(3.6, 110.0, 22000.0),
+    servo=Servo(140.0, 0.8, 40.0, 0.002, 1.0),
+    servo_aware=True,
+    slowest=1.0,
+)
+"""A shaped command, which need not be in sync in all of the sync zone: it goes further than what a command in sync can."""
+
+
+@pytest.mark.slow
+def test_a_shaped_command_ends_where_the_axis_breaks_its_own_limits() -> None:
+    far = extremes(SHAPED.task)
+    found = reach(SHAPED, far)
+    assert found.line_speed_binding == found.cut_length_binding == "axis_speed"
+    assert found.max_line_speed is not None
+    assert found.min_cut_length is not None
+    assert far.min_cut_length is not None
+    assert found.min_cut_length < 0.8 * far.min_cut_length
+    for factor, right in ((0.992, True), (1.008, False)):
+        assert passes(replace(SHAPED, cut=replace(SHAPED.cut, line_speed=found.max_line_speed * factor))) == right
+        assert passes(replace(SHAPED, cut=replace(SHAPED.cut, length=found.min_cut_length / factor))) == right
+
+
+@pytest.mark.slow
+def test_a_band_of_line_speeds_counts_as_it_does_for_a_design() -> None:
+    job = load_job("examples/short-cut.toml")
+    found = reach(job, extremes(job.task))
+    assert found.max_line_speed is not None
+    for factor, right in ((0.992, True), (1.008, False)):
+        assert passes(replace(job, cut=replace(job.cut, line_speed=found.max_line_speed * factor))) == right
+
+
+@pytest.mark.parametrize(
+    ("length", "binding"), [(0.2, "sync_tolerance"), (0.215, "axis_ratio"), (0.225, "axis_speed"), (0.17, "speed")]
+)
+def test_what_binds_beyond_the_edge_is_named(length: float, binding: str) -> None:
+    assert binding_of(SHAPED, SHAPED.task.with_length(length)) == binding
 
 
 def test_the_paper_runs_faster_with_a_perfect_axis_than_in_tolerance() -> None:
