@@ -57,27 +57,24 @@ class _Child:
 
 
 _REHEARSAL = ("design", "--brief", "--json", "--out", "out")
-"""What a spare process runs before it is needed: a design of the bundled job has imported and made all that takes long."""
+"""What a process that stands by runs before it is needed: a design of the bundled job imports and makes all that takes long."""
+
+_QUIET = 2.0
+"""Time (s) without a call after which a process begins to stand by: a hand that drags needs both processors."""
 
 
-class Runner:
-    """Runs commands in a process of its own, one call at a time; a newer call of the same kind ends an older one with its process.
+class _Processes:
+    """Processes that wait for commands: one runs them, and behind it one stands by once nobody has asked for anything for a while."""
 
-    A second one stands by from the first answer on, so that who follows an ended call does not wait for a process to begin.
+    def __init__(self, command_line: CommandLine, quiet: float) -> None:
+        self._command_line, self._quiet = command_line, quiet
+        self._all = [self._spawn()]
+        self._waking: asyncio.TimerHandle | None = None
 
-    Parameters
-    ----------
-    command_line
-        What runs them; a function of a module, so that the process finds it by its name.
-    """
-
-    def __init__(self, command_line: CommandLine) -> None:
-        self._command_line = command_line
-        self._children = [self._spawn()]  # the one that runs commands, and behind it the one that stands by
-        self._newest: dict[str, int] = {}
-        self._running: str | None = None
-        self._closed = False
-        self._free = asyncio.Lock()
+    @property
+    def first(self) -> _Child:
+        """The one that runs commands."""
+        return self._all[0]
 
     def _spawn(self, *, rehearse: bool = False) -> _Child:
         """Start a process that waits for commands."""
@@ -87,6 +84,54 @@ class Runner:
             process.start()
         theirs.close()
         return _Child(process, ours)
+
+    def put_off(self) -> None:
+        """Begin to wait for quiet anew, if none stands by."""
+        self._wake_no_more()
+        if len(self._all) == 1:
+            self._waking = asyncio.get_running_loop().call_later(self._quiet, self._stand_by)
+
+    def _wake_no_more(self) -> None:
+        """Wait for quiet no longer."""
+        if self._waking is not None:
+            self._waking.cancel()
+
+    def _stand_by(self) -> None:
+        self._all.append(self._spawn(rehearse=True))
+
+    def replace(self) -> None:
+        """End the one that runs commands, whatever it does; who stands by takes its place."""
+        self._wake_no_more()
+        _stop(self._all.pop(0))
+        if not self._all:
+            self._all.append(self._spawn())
+
+    def close(self) -> None:
+        """End all."""
+        self._wake_no_more()
+        for child in self._all:
+            _stop(child)
+
+
+class Runner:
+    """Runs commands in a process of its own, one call at a time; a newer call of the same kind ends an older one with its process.
+
+    After some quiet a second one stands by, so that who follows an ended call does not wait for a process to begin.
+
+    Parameters
+    ----------
+    command_line
+        What runs them; a function of a module, so that the process finds it by its name.
+    quiet
+        Time (s) without a call after which the second one begins.
+    """
+
+    def __init__(self, command_line: CommandLine, quiet: float = _QUIET) -> None:
+        self._processes = _Processes(command_line, quiet)
+        self._newest: dict[str, int] = {}
+        self._running: str | None = None
+        self._closed = False
+        self._free = asyncio.Lock()
 
     async def run(self, kind: str, commands: Sequence[Sequence[str]], inputs: dict[str, bytes]) -> Ran:
         """Run commands one after the other, in a folder that holds the inputs, until one fails.
@@ -109,16 +154,20 @@ class Runner:
         async with self._free:
             if self._closed or call != self._newest[kind]:
                 raise StaleError
-            self._running, child = kind, self._children[0]
+            self._running, child = kind, self._processes.first
             child.line.send((tuple(tuple(command) for command in commands), inputs))
             ran = await asyncio.get_running_loop().run_in_executor(None, _received, child.line)
-            if child is self._children[0]:
+            if child is self._processes.first:
                 self._running = None
-            if len(self._children) == 1 and not self._closed:
-                self._children.append(self._spawn(rehearse=True))
+            self.asked()
         if ran is None or call != self._newest[kind]:
             raise StaleError
         return ran
+
+    def asked(self) -> None:
+        """Hear that somebody asks for something, of whomever: nothing else is begun meanwhile."""
+        if not self._closed:
+            self._processes.put_off()
 
     def forget(self, kind: str) -> None:
         """End what is asked for, for nobody waits for it any more."""
@@ -126,18 +175,15 @@ class Runner:
         self._end(kind)
 
     def _end(self, kind: str) -> None:
-        """End a call of a kind if it runs; the spare process takes its place."""
+        """End a call of a kind if it runs."""
         if self._running == kind and not self._closed:
-            _stop(self._children.pop(0))
             self._running = None
-            if not self._children:
-                self._children.append(self._spawn())
+            self._processes.replace()
 
     def close(self) -> None:
         """End the processes; calls that wait for them are told that they are stale, and so are all that come later."""
         self._closed = True
-        for child in self._children:
-            _stop(child)
+        self._processes.close()
 
 
 def _stop(child: _Child) -> None:

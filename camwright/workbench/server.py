@@ -101,6 +101,7 @@ class Workbench:
             answer = _AT_ONCE[name](await _body(request))
         except InputError as error:
             return _refusal(error, _NO_CALL)
+        self._runner.asked()
         try:
             return JSONResponse(await run_in_threadpool(answer))
         except CamwrightError as error:

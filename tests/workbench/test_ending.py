@@ -116,17 +116,19 @@ def test_a_newer_design_ends_an_older_one_and_leaves_other_calls_alone(address: 
 
 def test_a_process_stands_by_for_who_follows_an_ended_call() -> None:
     others = {child.pid for child in multiprocessing.active_children()}
-    runner = Runner(main)
+    runner = Runner(main, quiet=0.0)
 
     async def follow() -> tuple[set[int | None], set[int | None]]:
         await runner.run("check", (("check", "job.toml", "--json"),), {"job.toml": PAPER.encode()})
+        await asyncio.sleep(0.1)
         before = {child.pid for child in multiprocessing.active_children()}
         old = asyncio.create_task(runner.run("design", (DESIGN,), {"job.toml": SLOW.encode()}))
-        await asyncio.sleep(0.3)
+        await asyncio.sleep(0.3)  # it runs
         ran = await runner.run("design", (DESIGN,), {"job.toml": PAPER.encode()})
         assert json.loads(ran.answer)["passed"] is True
         with pytest.raises(StaleError):
             await old
+        await asyncio.sleep(0.1)
         return before, {child.pid for child in multiprocessing.active_children()}
 
     try:
