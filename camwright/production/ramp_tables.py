@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, get_args
 
 from camwright.drives.export import Exported, Stretch, export_possible, export_report
 from camwright.drives.withheld import older_tables
@@ -19,7 +19,10 @@ from camwright.profiles.tables.target import Header
 from camwright.profiles.tables.targets import target_of
 from camwright.validation.rebuilt import TableJudgement, judge_table
 
-KINDS = ("ramp_in", "ramp_out", "one_shot")
+RampKind = Literal["ramp_in", "ramp_out", "one_shot"]
+"""A start, a stop, or one piece on demand."""
+
+KINDS: tuple[RampKind, ...] = get_args(RampKind)
 """Motions that are written."""
 
 
@@ -35,8 +38,8 @@ class RampTables:
         By the kind of motion: targets that cannot take it, and why.
     """
 
-    results: dict[str, tuple[Exported, ...]]
-    refused: dict[str, dict[str, tuple[str, ...]]]
+    results: dict[RampKind, tuple[Exported, ...]]
+    refused: dict[RampKind, dict[str, tuple[str, ...]]]
 
     @property
     def files(self) -> dict[str, str]:

@@ -5,36 +5,30 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
-from camwright.drives.export import Exported, export_possible
+from camwright.drives.export import export_possible
 from camwright.house.progress import Step, ignore
 from camwright.house.provenance import provenance
 from camwright.jobs.job import Job
 from camwright.jobs.numbers import job_numbers
 from camwright.profiles.errors import InputError
-from camwright.profiles.polynomial.profile import FloatArray
 from camwright.recipes.expected import STEPS as EXPECTED_STEPS
-from camwright.recipes.expected import expected, recipe_checks, sound
+from camwright.recipes.expected import expected, sound
 from camwright.recipes.language import Language
-from camwright.recipes.manifest import sha256
 from camwright.recipes.model import (
     RECIPE_VERSION,
     JobRecord,
     Origin,
     Particulars,
-    Points,
     Profile,
     Recipe,
-    RecipeTable,
     Refusal,
-    TableFile,
-    TableUnit,
 )
+from camwright.recipes.ramp_tables import STEPS as START_STEPS
+from camwright.recipes.ramp_tables import recipe_table, start_tables
 from camwright.stored.design_file import StoredDesign
 from camwright.studies.remedies import solve_or_advise
 
-STEPS = 1 + EXPECTED_STEPS
+STEPS = 1 + EXPECTED_STEPS + START_STEPS
 """Steps that `make_recipe` tells beside one for each target."""
 
 NO_PARTICULARS = Particulars()
@@ -107,6 +101,7 @@ def make_recipe(
         raise InputError(*(f"{name}: {fault}" for name, faults in refused.items() for fault in faults))
     origin = provenance(job.sha256)
     libraries = origin["libraries"]
+    starts, start_texts = start_tables(design, targets, step)
     recipe = Recipe(
         schema_version=RECIPE_VERSION,
         kind="camwright recipe",
@@ -117,46 +112,12 @@ def make_recipe(
         job=JobRecord(job.text, job_numbers(job)),
         slave_unit=job.machine.slave_unit,
         profile=Profile(tuple(profile.breaks.tolist()), tuple(map(tuple, profile.coefficients.tolist()))),
-        tables=tuple(_table(result) for result in results),
+        tables=tuple(recipe_table(result, TABLES) for result in results),
         refused=tuple(Refusal(name, faults) for name, faults in refused.items()),
         provenance=Origin(str(origin["camwright"]), job.sha256, libraries if isinstance(libraries, dict) else {}),
         particulars=particulars,
+        start_tables=starts,
         **vars(values),
     )
-    return MadeRecipe(recipe, {_path(name): text for result in results for name, text in result.files.items()})
-
-
-def _path(name: str) -> str:
-    return f"{TABLES}/{name}"
-
-
-def _table(result: Exported) -> RecipeTable:
-    table, target, units = result.table, result.target, result.units
-    return RecipeTable(
-        target=target.name,
-        title=target.title,
-        released=result.passed,
-        files=tuple(TableFile(_path(name), sha256(text.encode())) for name, text in result.files.items()),
-        master_unit=TableUnit(units.master.symbol, units.master.size),
-        slave_unit=TableUnit(units.slave.symbol, units.slave.size),
-        points=Points(
-            tuple(table.x.tolist()), tuple(table.y.tolist()), _column(table.ratio), _column(table.ratio_slope)
-        ),
-        position_error=result.position_error,
-        ratio_error=result.deviation.ratio,
-        acceleration_error=result.deviation.acceleration,
-        within_asked_error=result.accurate,
-        wraps=result.judgement.wraps,
-        checks=recipe_checks(result.judgement.checks),
-        interpolation=target.interpolation,
-        number_format=target.number_format,
-        evidence=target.evidence,
-        tested_on_controller=target.tested_on_controller,
-        steps=target.steps,
-    )
-
-
-def _column(values: FloatArray) -> tuple[float | None, ...] | None:
-    if np.isnan(values).all():
-        return None
-    return tuple(None if np.isnan(value) else value for value in values.tolist())
+    texts = {f"{TABLES}/{name}": text for result in results for name, text in result.files.items()}
+    return MadeRecipe(recipe, {**texts, **start_texts})

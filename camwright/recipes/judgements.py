@@ -113,6 +113,7 @@ def _marked(text: str, check: RecipeCheck) -> str:
 
 def files(recipe: Recipe, words: Catalogue) -> list[Block]:
     """List the tables with the first digits of their checksums."""
-    rows = [[file.path, file.sha256[:_SHORT]] for table in recipe.tables for file in table.files]
+    tables = [*recipe.tables, *(table for motion in recipe.start_tables for table in motion.tables)]
+    rows = [[file.path, file.sha256[:_SHORT]] for table in tables for file in table.files]
     head = [words("column.file"), words("column.sha256")]
     return [*([table_block(head, rows, left=2)] if rows else []), text_block(words("files.note"))]

@@ -311,6 +311,28 @@ class Refusal:
 
 
 @dataclass(frozen=True, config=_STRICT)
+class RampTables:
+    """The tables of a start, a stop or one piece on demand.
+
+    Parameters
+    ----------
+    motion
+        Which of them.
+    profile
+        The motion, from zero on the master and the slave.
+    tables
+        Its tables, in the order of the targets.
+    refused
+        Targets that cannot take it.
+    """
+
+    motion: Literal["ramp_in", "ramp_out", "one_shot"]
+    profile: Profile
+    tables: tuple[RecipeTable, ...]
+    refused: tuple[Refusal, ...]
+
+
+@dataclass(frozen=True, config=_STRICT)
 class Origin:
     """Where the recipe comes from: versions, and the SHA-256 of the job file."""
 
@@ -426,6 +448,9 @@ class Recipe:
         What print marks may ask of it, over the line speed; none in a recipe of an earlier version.
     line_ramp
         How hard the line may ramp; ``None`` in recipes that were made before it was told.
+    start_tables
+        Tables of start, stop and one piece on demand; none where the machine cannot start and stop at the line speed, and in recipes that
+        were made before they were held.
     """
 
     schema_version: Literal[1]
@@ -453,3 +478,4 @@ class Recipe:
     start_stop: StartStop | None = None
     marks: tuple[MarksAt, ...] = ()
     line_ramp: LineRampRecord | None = None
+    start_tables: tuple[RampTables, ...] = ()

@@ -55,6 +55,10 @@ def _ends(found: MarkRange) -> MarkEnds:
     return MarkEnds(*(None if end is None else float(end) for end in (found.earliest, found.latest)))
 
 
+_MOTIONS = {"ramp_in": "start.in", "ramp_out": "start.out", "one_shot": "start.one"}
+"""Names of motions, by keys of the catalogue."""
+
+
 def start_blocks(recipe: Recipe, words: Catalogue) -> list[Block]:
     """Set start and stop: a table of both, and what they ask of park, sensor and line speed."""
     found, units = recipe.start_stop, words.units
@@ -81,7 +85,31 @@ def start_blocks(recipe: Recipe, words: Catalogue) -> list[Block]:
         latency=_told(found.latency, "s", words),
     )
     verdict = [] if found.passed else [text_block(words("start.failed"), strong=True)]
-    return [table_block(head, rows), *verdict, text_block(facts)]
+    return [table_block(head, rows), *verdict, text_block(facts), *_table_blocks(recipe, words)]
+
+
+def _table_blocks(recipe: Recipe, words: Catalogue) -> list[Block]:
+    """Set a row for each target: the points of its tables of start, stop and one piece, or that there is none, and why."""
+    motions = recipe.start_tables
+    if not motions:
+        return []
+    cells: dict[str, list[str]] = {}
+    reasons: dict[str, str] = {}
+    for number, record in enumerate(motions):
+        for table in record.tables:
+            failed = [words.named("check", check.name) for check in table.checks if not check.passed]
+            told = str(len(table.points.master)) if table.files else f"✗ {', '.join(failed)}"
+            cells.setdefault(table.target, [words("nothing")] * len(motions))[number] = told
+        for refusal in record.refused:
+            cells.setdefault(refusal.target, [words("nothing")] * len(motions))
+            reasons.setdefault(refusal.target, "; ".join(refusal.reasons))
+    head = [words("start.target"), *(words(_MOTIONS[record.motion]) for record in motions)]
+    why = [text_block(words("start.refused", target=target, reasons=reason)) for target, reason in reasons.items()]
+    return [
+        table_block(head, [[target, *row] for target, row in cells.items()]),
+        text_block(words("start.tables")),
+        *why,
+    ]
 
 
 def _values(ramp: RampRecord) -> tuple[float, float, float, float]:

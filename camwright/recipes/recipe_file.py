@@ -29,6 +29,8 @@ def recipe_text(recipe: Recipe) -> str:
     data = asdict(recipe)
     if recipe.particulars == Particulars():
         del data["particulars"]  # recipes of versions that knew none read as they were written
+    if not recipe.start_tables:
+        del data["start_tables"]
     return canonical(data)
 
 

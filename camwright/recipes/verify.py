@@ -2,36 +2,35 @@
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from camwright.drives.export import covering, position_error, stored_count
+from camwright.drives.export import covering, stored_count
 from camwright.house.provenance import camwright_version
 from camwright.jobs.numbers import job_numbers
 from camwright.profiles.errors import InputError
-from camwright.profiles.tables.cam_table import CamTable, Unit, Units
-from camwright.profiles.tables.deviation import deviation
-from camwright.profiles.tables.targets import TARGETS, read_table
-from camwright.profiles.tables.text import decode
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.tables.cam_table import Units
+from camwright.profiles.tables.targets import TARGETS
 from camwright.recipes.expected import expected
 from camwright.recipes.html import recipe_html
 from camwright.recipes.manifest import MANIFEST_FILE, read_manifest, sha256
-from camwright.recipes.model import Points, Recipe, RecipeTable
+from camwright.recipes.model import Recipe, RecipeTable
 from camwright.recipes.pdf import recipe_pdf
+from camwright.recipes.ramp_tables import start_faults
 from camwright.recipes.recipe_file import (
     RECIPE_FILE,
     parse_recipe,
     recipe_text,
     stored_design,
 )
-from camwright.recipes.sheet_faults import differs, sheet_faults
+from camwright.recipes.sheet_faults import sheet_faults
 from camwright.recipes.signature import SIGNATURE_FILE, is_signed
+from camwright.recipes.table_faults import Fault, check_faults, motion_faults, table_faults
 from camwright.recipes.xlsx import recipe_xlsx
 from camwright.stored.design_file import MOST_BYTES, StoredDesign
 from camwright.validation.rebuilt import RUN, judge_table
@@ -46,22 +45,6 @@ _SHEETS: dict[str, Callable[[Recipe], bytes]] = {
     "recipe.xlsx": recipe_xlsx,
 }
 """What people read, made of recipe.json alone."""
-
-
-@dataclass(frozen=True)
-class Fault:
-    """What is wrong with a recipe folder.
-
-    Parameters
-    ----------
-    file
-        Path inside the folder.
-    what
-        What is wrong: the value found, and the one recorded.
-    """
-
-    file: str
-    what: str
 
 
 @dataclass(frozen=True)
@@ -134,7 +117,9 @@ def examine(directory: Path, key: Path | None = None) -> Verified:
             Fault(RECIPE_FILE, f"made by camwright {made_by}: {own} does not compute the sheet anew; that version does")
         )
     else:
-        faults += [Fault(RECIPE_FILE, what) for what in sheet_faults(recipe, expected(stored_design(recipe)))]
+        design = stored_design(recipe)
+        faults += [Fault(RECIPE_FILE, what) for what in sheet_faults(recipe, expected(design))]
+        faults += start_faults(recipe, design, data)
         remade = list(_remade(recipe, data))
         faults += [other for other in remade if other.file == _PAGE]
         notes += [other for other in remade if other.file != _PAGE]
@@ -155,6 +140,9 @@ def _proved(recipe: Recipe, files: int, anew: bool, notes: list[Fault], key: Pat
     yield f"{files} files have the checksums of the manifest, none is missing or added"
     released = [table for table in recipe.tables if table.files]
     yield f"{len(released)} tables, read and rebuilt as their drives do, have the recorded points, errors and checks"
+    starts = sum(bool(table.files) for motion in recipe.start_tables for table in motion.tables)
+    if starts and anew:
+        yield f"{starts} tables of start, stop and one piece have so, between the park and the cam, as designed anew"
     if anew:
         sheets = [name for name in _SHEETS if name not in {note.file for note in notes}]
         yield f"{len(recipe.checks)} checks, expected values, speed band and working range are those computed anew of the cam and its job"
@@ -230,9 +218,26 @@ def _contents(data: dict[str, bytes | None]) -> list[Fault]:
     except InputError as error:
         return [Fault(RECIPE_FILE, fault.removeprefix(f"{RECIPE_FILE}: ")) for fault in error.faults]
     faults = [Fault(RECIPE_FILE, what) for what in _own_faults(recipe, design, content)]
+    judged = partial(_cam_faults, design)
     for table in recipe.tables:
-        faults += _table_faults(table, design, data)
+        faults += table_faults(table, recipe.slave_unit, data, judged)
+    for motion in recipe.start_tables:
+        for table in motion.tables:
+            faults += table_faults(table, recipe.slave_unit, data, _unjudged)
     return faults
+
+
+def _cam_faults(design: StoredDesign, table: RecipeTable, rebuilt: CamProfile, units: Units) -> Iterator[str]:
+    """Compare errors and checks of the cam's own table with the recorded ones."""
+    job = design.job
+    yield from motion_faults(table, rebuilt, covering(design.profile, rebuilt, job), job, job.task.slave_at_start)
+    stored = stored_count(TARGETS[table.target], job, units.slave.size)
+    yield from check_faults(table, judge_table(rebuilt, job.task, job.servo, table.wraps, RUN, stored))
+
+
+def _unjudged(_table: RecipeTable, _rebuilt: CamProfile, _units: Units) -> Iterator[str]:
+    """Judge nothing: starts and stops are judged where the sheet is computed anew, for their motions are found so."""
+    yield from ()
 
 
 def _text(content: bytes) -> str:
@@ -271,84 +276,6 @@ def _differences(stored: Any, again: Any, path: str = "") -> Iterator[tuple[str,
             yield from _differences(stored.get(key), again.get(key), f"{path}.{key}")
     elif stored != again:
         yield path, stored, again
-
-
-def _table_faults(table: RecipeTable, design: StoredDesign, data: dict[str, bytes | None]) -> list[Fault]:
-    """Read one table again and judge it again."""
-    faults = [
-        Fault(file.path, f"SHA-256 is {sha256(content)}, {RECIPE_FILE} has {file.sha256}")
-        for file in table.files
-        if (content := data.get(file.path)) is not None and sha256(content) != file.sha256
-    ]
-    faults += [
-        Fault(file.path, f"missing, or not a readable file: {RECIPE_FILE} has it")
-        for file in table.files
-        if data.get(file.path) is None
-    ]
-    if table.released and not table.files:
-        faults.append(Fault(RECIPE_FILE, f"the table for {table.target} is released and has no file"))
-    target = TARGETS.get(table.target)
-    if target is None:
-        return [*faults, Fault(RECIPE_FILE, f"there is no target {table.target!r:.40}")]
-    content = data.get(table.files[0].path) if table.files else None
-    if content is None:
-        return faults  # not released, or told with the checksums
-    path = table.files[0].path
-    try:
-        read = read_table(target, decode(content, path), path)
-        units = Units(
-            Unit(table.master_unit.symbol, table.master_unit.size),
-            Unit(table.slave_unit.symbol, table.slave_unit.size, design.job.machine.slave_unit),
-        )
-        return [*faults, *(Fault(path, what) for what in _number_faults(table, read, units, design))]
-    except InputError as error:
-        return [*faults, *(Fault(path, fault.removeprefix(f"{path}: ")) for fault in error.faults)]
-
-
-def _number_faults(table: RecipeTable, read: CamTable, units: Units, design: StoredDesign) -> Iterator[str]:
-    """Compare the points, the errors and the checks of a table with the recorded ones."""
-    yield from _point_faults(table.points, read)
-    job, profile = design.job, design.profile
-    if read.units is not None and read.units != units:
-        yield f"units are {_units(read.units)}, recorded {_units(units)}"
-        units = read.units
-    rebuilt = units.to_si(TARGETS[table.target].rebuild(read))
-    profile = covering(profile, rebuilt, job)
-    off = deviation(profile, rebuilt)
-    error = position_error(profile, rebuilt, off, job, job.task.slave_at_start)
-    scale = float(np.ptp(profile(profile.breaks))) or 1.0
-    yield from differs("position error (m)", error, table.position_error, scale)
-    yield from differs("ratio error", off.ratio, table.ratio_error, float(np.abs(profile(profile.breaks, 1)).max()))
-    yield from differs("acceleration error", off.acceleration, table.acceleration_error, 1.0)
-    stored = stored_count(TARGETS[table.target], job, units.slave.size)
-    judgement = judge_table(rebuilt, job.task, job.servo, table.wraps, RUN, stored)
-    again = {check.name: check for check in judgement.checks}
-    recorded = {check.name: check for check in table.checks}
-    if again.keys() != recorded.keys():
-        yield f"checks are {', '.join(again)}, recorded {', '.join(recorded)}"
-    for name in again.keys() & recorded.keys():
-        new, old = again[name], recorded[name]
-        yield from differs(f"check {name}, {new.unit}", new.value, old.value, abs(old.limit or 1.0))
-        if new.passed is not old.passed:
-            yield f"check {name} {'passes' if new.passed else 'fails'}, recorded {'passed' if old.passed else 'failed'}"
-
-
-def _point_faults(points: Points, read: CamTable) -> Iterator[str]:
-    """Compare points bit by bit; the first that differs is told."""
-    if read.points != len(points.master):
-        yield f"{read.points} points, recorded {len(points.master)}"
-        return
-    columns = {"master": read.x, "slave": read.y, "ratio": read.ratio, "ratio slope": read.ratio_slope}
-    for (name, values), stored in zip(columns.items(), asdict(points).values(), strict=True):
-        recorded = np.array([math.nan] * len(values) if stored is None else stored, dtype=float)
-        same = (values == recorded) | (np.isnan(values) & np.isnan(recorded))
-        if not same.all():
-            i = int(np.argmin(same))
-            yield f"point {i + 1}: {name} is {float(values[i])!r}, recorded {float(recorded[i])!r}"
-
-
-def _units(units: Units) -> str:
-    return ", ".join(f"{unit.symbol} ({unit.size!r} {unit.si})" for unit in (units.master, units.slave))
 
 
 def verify_answer(found: Verified) -> dict[str, Any]:

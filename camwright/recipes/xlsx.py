@@ -123,7 +123,7 @@ def _parameters(page: _Page, recipe: Recipe, words: Catalogue) -> None:
         page.row(words(key, **values), value, unit_shown(unit, words.units), words.named("binding", edge.binding))
     page.gap()
     page.head(words("section.files"), "SHA-256")
-    for table in recipe.tables:
+    for table in (*recipe.tables, *(table for motion in recipe.start_tables for table in motion.tables)):
         for file in table.files:
             page.row(file.path, file.sha256)
 

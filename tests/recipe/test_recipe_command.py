@@ -53,7 +53,8 @@ def test_the_folder_holds_what_the_answer_lists(say: Say, paper_job: Path, tmp_p
     code, said, _ = say("verify", out, "--json")
     answer = json.loads(said)
     assert (code, answer["ok"], answer["faults"], answer["notes"]) == (0, True, [], [])
-    assert len(answer["proved"]) == 5
+    assert len(answer["proved"]) == 6
+    assert sum(path.startswith("ramps/") for path in found) >= 3 * 3
 
 
 @pytest.mark.slow

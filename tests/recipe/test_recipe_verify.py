@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import random
 import shutil
@@ -11,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from camwright.profiles.errors import InputError
+from camwright.profiles.tables.targets import TARGETS, read_table
 from camwright.recipes.build import MadeRecipe
 from camwright.recipes.html import recipe_html
 from camwright.recipes.manifest import manifest_text
@@ -148,18 +150,36 @@ def test_a_changed_point_is_told_by_its_value_although_all_checksums_fit(folder:
     digest_of = {"path": f"tables/{file.name}"}
 
     def stay(data: dict) -> None:
-        from camwright.recipes.manifest import sha256
-
         for table in data["tables"]:
             for entry in table["files"]:
                 if entry["path"] == digest_of["path"]:
-                    entry["sha256"] = sha256(file.read_bytes())
+                    entry["sha256"] = hashlib.sha256(file.read_bytes()).hexdigest()
 
     edit(folder, stay)
     faults = [fault for fault in verify(folder) if fault.file == digest_of["path"]]
     assert any("is 100.1, recorded" in fault.what for fault in faults)
     assert any("check acceleration" in fault.what for fault in faults)
     assert len(faults) == len(verify(folder))
+
+
+def test_a_changed_start_is_told_although_all_checksums_fit(folder: Path) -> None:
+    """A point of its table in file and recipe.json alike: the motion is not the one designed anew, and breaks a limit."""
+    file = folder / "ramps" / "ramp_in_paper_600_cam.csv"
+    lines = file.read_text(encoding="utf-8").splitlines(keepends=True)
+    at = next(k for k in range(len(lines) - 2, 0, -1) if lines[k][:1].isdigit())
+    cells = lines[at].split(",")
+    lines[at] = ",".join([cells[0], repr(float(cells[1]) + 0.5), *cells[2:]])
+    file.write_bytes("".join(lines).encode())
+
+    def stay(data: dict) -> None:
+        table = next(each for each in data["start_tables"][0]["tables"] if each["target"] == "csv")
+        table["files"][0]["sha256"] = hashlib.sha256(file.read_bytes()).hexdigest()
+        table["points"]["slave"] = read_table(TARGETS["csv"], "".join(lines), file.name).y.tolist()
+
+    edit(folder, stay)
+    faults = verify(folder)
+    assert {fault.file for fault in faults} <= {"ramps/ramp_in_paper_600_cam.csv", "recipe.html"}
+    assert any("position error" in fault.what for fault in faults)
 
 
 @pytest.mark.parametrize(
@@ -219,9 +239,10 @@ def test_a_table_that_cannot_be_read_is_told(folder: Path) -> None:
 def test_what_is_proved_is_said(folder: Path) -> None:
     found = examine(folder)
     assert found.faults == found.notes == ()
-    files, tables, _, sheet, rest = found.proved
+    files, tables, starts, _, sheet, rest = found.proved
     assert files.startswith(f"{len([file for file in folder.rglob('*') if file.is_file()])} files have the checksums")
     assert tables.startswith("3 tables, read and rebuilt as their drives do")
+    assert starts.startswith("9 tables of start, stop and one piece have so, between the park and the cam")
     assert sheet == "recipe.html, recipe.pdf, recipe.xlsx say what recipe.json says"
     assert rest == "not proved: who wrote it (no signature was checked)"
 
@@ -263,6 +284,10 @@ SHEET: dict[str, Callable[[dict], object]] = {
     "start_stop.ramp_out": lambda data: data["start_stop"].update(ramp_out=None),
     "marks[9].redesign.earliest": lambda data: data["marks"][9]["redesign"].update(earliest=-0.3),
     "marks[9].redesign.latest": lambda data: data["marks"][9]["redesign"].update(latest=0.3),
+    "start_tables.ramp_in.profile": lambda data: data["start_tables"][0]["profile"]["coefficients"][0].__setitem__(
+        0, 1e-3
+    ),
+    "start_tables are not those": lambda data: data["start_tables"].pop(),
     "working_range.min_length.binding": lambda data: data["working_range"]["min_length"].update(binding="stroke"),
 }
 
