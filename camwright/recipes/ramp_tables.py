@@ -1,26 +1,20 @@
-"""The tables of start, stop and one piece on demand that a recipe holds, and what is wrong with them."""
+"""The tables of start, stop and one piece on demand that a recipe holds."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from functools import partial
+from collections.abc import Sequence
 
 import numpy as np
 
-from camwright.drives.export import Exported, Stretch, stored_count
+from camwright.drives.export import Exported
 from camwright.house.progress import Step, ignore
-from camwright.production.ramp_tables import KINDS, RampKind, stretch_of, write_ramps
+from camwright.production.ramp_tables import KINDS, RampKind, write_ramps
 from camwright.production.ramps import Ramps, ramps
 from camwright.profiles.errors import InfeasibleError
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
-from camwright.profiles.tables.cam_table import Units
-from camwright.profiles.tables.deviation import deviation
-from camwright.profiles.tables.targets import TARGETS
 from camwright.recipes.expected import recipe_checks
 from camwright.recipes.manifest import sha256
-from camwright.recipes.model import Points, Profile, RampTables, Recipe, RecipeTable, Refusal, TableFile, TableUnit
-from camwright.recipes.recipe_file import RECIPE_FILE
-from camwright.recipes.table_faults import Fault, check_faults, motion_faults, table_faults
+from camwright.recipes.model import Points, Profile, RampTables, RecipeTable, Refusal, TableFile, TableUnit
 from camwright.stored.design_file import StoredDesign
 
 FOLDER = "ramps"
@@ -28,9 +22,6 @@ FOLDER = "ramps"
 
 STEPS = len(KINDS)
 """Steps that `start_tables` tells."""
-
-_SAME = 1e-9
-"""Part of its travel by which a motion designed anew may be off the recorded one: another processor."""
 
 
 def start_tables(
@@ -52,7 +43,7 @@ def start_tables(
     (tables, texts)
         What the recipe holds, nothing where the machine cannot start and stop at its line speed; and the files' texts by path.
     """
-    found = _found(design)
+    found = found_ramps(design)
     if found is None:
         return (), {}
     written = write_ramps(found, targets, required=False, step=step)
@@ -63,64 +54,22 @@ def start_tables(
             tuple(recipe_table(result, FOLDER) for result in written.results[kind]),
             tuple(Refusal(name, why) for name, why in written.refused[kind].items()),
         )
-        for kind, profile in _motions(found).items()
+        for kind, profile in motions_of(found).items()
     )
     return records, {f"{FOLDER}/{name}": text for name, text in written.files.items()}
 
 
-def _found(design: StoredDesign) -> Ramps | None:
+def found_ramps(design: StoredDesign) -> Ramps | None:
+    """Design start and stop of a cam's machine; ``None`` where there are none at its line speed."""
     try:
         return ramps(design.job, cam=design.profile)
     except InfeasibleError:
         return None
 
 
-def _motions(found: Ramps) -> dict[RampKind, CamProfile]:
+def motions_of(found: Ramps) -> dict[RampKind, CamProfile]:
+    """Give the motions that are written, in the order of `KINDS`."""
     return dict(zip(KINDS, (found.start_table, found.stop_table, found.one_shot), strict=True))
-
-
-def start_faults(recipe: Recipe, design: StoredDesign, data: Mapping[str, bytes | None]) -> Iterator[Fault]:
-    """Design start and stop anew, and judge their tables between the park and the cam.
-
-    Parameters
-    ----------
-    recipe
-        The recipe, of this version of camwright.
-    design
-        Its cam and job.
-    data
-        Contents of the folder's files by path.
-    """
-    if not recipe.start_tables:
-        return  # the recipe was made before it held them, or the machine cannot start so
-    found = _found(design)
-    if found is None or [each.motion for each in recipe.start_tables] != list(KINDS):
-        yield Fault(RECIPE_FILE, "start_tables are not those of this cam")
-        return
-    for record, (kind, profile) in zip(recipe.start_tables, _motions(found).items(), strict=True):
-        recorded = CamProfile.from_arrays(record.profile.breaks, record.profile.coefficients)
-        if not _is_same(profile, recorded):
-            yield Fault(RECIPE_FILE, f"start_tables.{kind}.profile is not the motion designed anew")
-        judged = partial(_judged, found, stretch_of(found, kind, profile), profile)
-        for table in record.tables:
-            yield from table_faults(table, recipe.slave_unit, data, judged)
-
-
-def _is_same(profile: CamProfile, recorded: CamProfile) -> bool:
-    size = float(np.ptp(profile(profile.breaks))) or 1.0
-    return (
-        abs(profile.length - recorded.length) <= _SAME * profile.length
-        and deviation(profile, recorded).position <= _SAME * size
-    )
-
-
-def _judged(
-    found: Ramps, stretch: Stretch, profile: CamProfile, table: RecipeTable, rebuilt: CamProfile, units: Units
-) -> Iterator[str]:
-    """Compare errors and checks of one table with the recorded ones."""
-    yield from motion_faults(table, rebuilt, profile, found.job, stretch.slave_start)
-    stored = stored_count(TARGETS[table.target], found.job, units.slave.size)
-    yield from check_faults(table, stretch.judge(rebuilt, stored))
 
 
 def recipe_table(result: Exported, folder: str) -> RecipeTable:

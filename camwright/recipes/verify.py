@@ -21,7 +21,7 @@ from camwright.recipes.html import recipe_html
 from camwright.recipes.manifest import MANIFEST_FILE, read_manifest, sha256
 from camwright.recipes.model import Recipe, RecipeTable
 from camwright.recipes.pdf import recipe_pdf
-from camwright.recipes.ramp_tables import start_faults
+from camwright.recipes.ramp_faults import start_faults
 from camwright.recipes.recipe_file import (
     RECIPE_FILE,
     parse_recipe,

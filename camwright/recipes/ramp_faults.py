@@ -1,0 +1,68 @@
+"""What is wrong with the tables of start, stop and one piece on demand that a recipe holds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import partial
+
+import numpy as np
+
+from camwright.drives.export import Stretch, stored_count
+from camwright.production.ramp_tables import KINDS, stretch_of
+from camwright.production.ramps import Ramps
+from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.tables.cam_table import Units
+from camwright.profiles.tables.deviation import deviation
+from camwright.profiles.tables.targets import TARGETS
+from camwright.recipes.model import Recipe, RecipeTable
+from camwright.recipes.ramp_tables import found_ramps, motions_of
+from camwright.recipes.recipe_file import RECIPE_FILE
+from camwright.recipes.table_faults import Fault, check_faults, motion_faults, table_faults
+from camwright.stored.design_file import StoredDesign
+
+_SAME = 1e-9
+"""Part of its travel by which a motion designed anew may be off the recorded one: another processor."""
+
+
+def start_faults(recipe: Recipe, design: StoredDesign, data: Mapping[str, bytes | None]) -> Iterator[Fault]:
+    """Design start and stop anew, and judge their tables between the park and the cam.
+
+    Parameters
+    ----------
+    recipe
+        The recipe, of this version of camwright.
+    design
+        Its cam and job.
+    data
+        Contents of the folder's files by path.
+    """
+    if not recipe.start_tables:
+        return  # the recipe was made before it held them, or the machine cannot start so
+    found = found_ramps(design)
+    if found is None or [each.motion for each in recipe.start_tables] != list(KINDS):
+        yield Fault(RECIPE_FILE, "start_tables are not those of this cam")
+        return
+    for record, (kind, profile) in zip(recipe.start_tables, motions_of(found).items(), strict=True):
+        recorded = CamProfile.from_arrays(record.profile.breaks, record.profile.coefficients)
+        if not _is_same(profile, recorded):
+            yield Fault(RECIPE_FILE, f"start_tables.{kind}.profile is not the motion designed anew")
+        judged = partial(_judged, found, stretch_of(found, kind, profile), profile)
+        for table in record.tables:
+            yield from table_faults(table, recipe.slave_unit, data, judged)
+
+
+def _is_same(profile: CamProfile, recorded: CamProfile) -> bool:
+    size = float(np.ptp(profile(profile.breaks))) or 1.0
+    return (
+        abs(profile.length - recorded.length) <= _SAME * profile.length
+        and deviation(profile, recorded).position <= _SAME * size
+    )
+
+
+def _judged(
+    found: Ramps, stretch: Stretch, profile: CamProfile, table: RecipeTable, rebuilt: CamProfile, units: Units
+) -> Iterator[str]:
+    """Compare errors and checks of one table with the recorded ones."""
+    yield from motion_faults(table, rebuilt, profile, found.job, stretch.slave_start)
+    stored = stored_count(TARGETS[table.target], found.job, units.slave.size)
+    yield from check_faults(table, stretch.judge(rebuilt, stored))
