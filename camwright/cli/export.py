@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -9,11 +10,15 @@ import typer
 
 from camwright.cli.options import Json, Quiet, option_quantity
 from camwright.cli.views.parts import new_table, new_text, stacked
+from camwright.cli.views.speed_tables import speed_tables_view
 from camwright.drives.export import export_answer
 from camwright.drives.options import chosen_targets, parse_targets
+from camwright.drives.speed_tables import named, speed_tables, speed_tables_answer
 from camwright.drives.table_files import TableFiles, export
 from camwright.house.files import read_text
 from camwright.house.output import Voice, complain
+from camwright.house.owned import Work, owned
+from camwright.jobs.job import Job
 from camwright.jobs.table_units import parse_units
 from camwright.profiles.errors import InputError
 from camwright.profiles.tables.knots import Accuracy
@@ -49,6 +54,13 @@ def run(
     force: Annotated[
         bool, typer.Option("--force", help="Write tables that break a limit, too; their head says so.")
     ] = False,
+    by_speed: Annotated[
+        bool,
+        typer.Option(
+            "--speed-tables",
+            help="Tables of a smooth return that the controller adds, each times a power of the line speed, for every line speed.",
+        ),
+    ] = False,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> int:
@@ -61,6 +73,8 @@ def run(
     wanted = None if units is None else parse_units(units, stored.job.task)
     directory = design.parent / "tables" if out is None else out
     voice = Voice(as_json, quiet)
+    if by_speed:
+        return _by_speed(stored.job, names, directory, voice)
     with voice.progress(len(names) + 1) as step:
         written = export(
             stored,
@@ -77,6 +91,23 @@ def run(
         lambda: {**export_answer(written.results), "set_aside": written.older}, lambda: _view(written, directory)
     )
     return 0 if written.passed else 1
+
+
+def _by_speed(job: Job, names: Sequence[str], directory: Path, voice: Voice) -> int:
+    """Write tables that are added by powers of the line speed."""
+    with voice.progress(len(names)) as step:
+        found = []
+        for target in named(names):
+            step(f"tables for {target.name}")
+            found.append(speed_tables(job, target))
+    texts = {name: text for each in found for name, text in each.files.items()}
+    if texts:
+        with owned(directory, Work("export", job.name, job.sha256, adds=True), complain) as aside:
+            for name, text in texts.items():
+                (aside / name).write_bytes(text.encode())
+    files = [directory / name for name in sorted(texts)]
+    voice.answer(lambda: speed_tables_answer(found), lambda: speed_tables_view(found, files, job.units))
+    return 0 if all(each.passed for each in found) else 1
 
 
 def _design(path: Path) -> StoredDesign:

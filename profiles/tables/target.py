@@ -192,6 +192,8 @@ class Target:
         Whether its tables say of each piece what law it follows; else all follow `law`.
     master_steps
         Spacings of the master that it takes, in whole units of the table; none where the file holds no master positions.
+    adds_scaled
+        How the controller adds cams that are scaled while they run, and where this is known from; empty where no such way is documented.
     """
 
     name: str
@@ -212,6 +214,7 @@ class Target:
     least_step: float = 0.0
     states_laws: bool = False
     master_steps: tuple[int, ...] = ()
+    adds_scaled: str = ""
 
     @property
     def counts(self) -> bool:

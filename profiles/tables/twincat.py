@@ -300,6 +300,11 @@ TARGET = Target(
         "Read the cam back in the engineering tool and compare its peak values with the head of the file.",
         "The units are those of the axes: set them as the head of the file states.",
     ),
+    adds_scaled=(
+        "MC_CamIn_V2 runs several superimposed cam plates, MC_CamAdd adds one, MC_CamScaling_V2 changes SlaveScaling during motion: "
+        "infosys TF5050 (1002620683, 1002674827, 460415883, scaling modes 1003655819); slave = cam times SlaveScaling plus SlaveOffset, "
+        "and set points of single couplings are added: infosys TF5550 (21872062987, 21872092811)"
+    ),
     endings=("_twincat.st",),
     write=write,
     read=read,
