@@ -45,9 +45,11 @@ def family_figure(family: Family) -> Picture:
         curves.append(Line(points, stroke.colour, stroke.width, f"cam {cam.number}", stroke.dash))
     low = math.log10(0.7 * _DEEPEST * tolerance)
     high = max(math.log10(tolerance), *(float(line.points[:, 1].max()) for line in curves)) + 0.15
-    lowest, highest = (each * speed for each in job.line_speeds)
     bands = [
-        Band(lowest, highest, "green", "a cam of the family is in sync"),
+        *(
+            Band(low * speed, high * speed, "green", "a cam of the family passed every check")
+            for low, high in (cam.line_speeds for cam in family.cams if cam.passed)
+        ),
         *(
             Band(each.down * speed, each.up * speed, "hatched", "between switching down and up")
             for each in family.switchings

@@ -186,3 +186,47 @@ def test_a_design_that_fails_is_shown_the_family(in_sync: Family) -> None:
         f"{60 * bands[1][0]:.4g} m/min to 80 m/min"
     )
     assert family_of(replace(in_sync.found.job, slowest=1.0)) is None
+
+
+@pytest.mark.parametrize("as_json", [True, False])
+def test_the_command_writes_and_says_what_was_found(
+    in_sync: Family,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    as_json: bool,
+) -> None:
+    monkeypatch.setattr("camwright.cli.family.family", lambda *_: in_sync)
+    (tmp_path / "job.toml").write_text(in_sync.found.job.text, encoding="utf-8")
+    out = tmp_path / "family"
+    assert main(["family", str(tmp_path / "job.toml"), "--out", str(out), *(["--json"] if as_json else [])]) == 0
+    shown = capsys.readouterr().out
+    expected = {"switching.csv", "cams.csv", "family.json", "family.svg", "family.png"}
+    assert expected <= {file.name for file in out.iterdir()}
+    assert len(list((out / "csv").glob("F*.csv"))) == 2
+    stored = json.loads((out / "family.json").read_text())
+    assert len(stored["profiles"]["cams"]) == 2
+    assert stored["profiles"]["transitions"] == []
+    if as_json:
+        answer = json.loads(shown)
+        assert answer["fewest"]
+        assert {Path(file).name for file in answer["files"]} >= expected
+        assert {key: value for key, value in answer.items() if key != "files"} == {
+            key: value for key, value in stored.items() if key != "profiles"
+        }
+    else:
+        assert "2 cams, the fewest, from 56 m/min to" in " ".join(shown.split())
+        assert "the line must keep its speed until a change is over" in " ".join(shown.split())
+        svg = (out / "family.svg").read_text()
+        assert all(words in svg for words in ("cam 1", "cam 2", "sync tolerance", "between switching down and up"))
+
+
+def test_a_family_whose_change_needs_a_standstill_is_not_released(in_sync: Family) -> None:
+    (each,) = in_sync.switchings
+    stopped = replace(each, changes=(each.changes[0], replace(each.changes[1], how="stop")))
+    found = replace(in_sync, switchings=(stopped,))
+    assert stopped.how == "stop"
+    assert not stopped.passed
+    assert not found.passed
+    assert not family_answer(found)["passed"]
+    assert ",stop," in family_files(found)["switching.csv"]
