@@ -14,7 +14,11 @@ from camwright.production.family import Family
 from camwright.production.family_cams import FamilyCam
 from camwright.production.switching import Switching
 from camwright.production.tables import transition_name
+from camwright.stored.design_text import design_text
+from camwright.studies.axis_study import axis_study
 from camwright.studies.covering import FOUND_TO
+from camwright.studies.design import Design
+from camwright.validation.bounds.bound import Bound
 
 CAMS_HEADER = "cam,name,from line speed [m/min],to line speed [m/min],greatest sync error [mm],checks"
 SWITCHING_HEADER = "runs,line speed,[m/min],change to,through,line meanwhile"
@@ -105,7 +109,15 @@ def family_files(family: Family) -> dict[str, str]:
     return {
         "cams.csv": "\n".join([*head, CAMS_HEADER, *map(_cam_row, family.cams)]) + "\n",
         "switching.csv": "\n".join([*head, SWITCHING_HEADER, *_switching_rows(family)]) + "\n",
+        **{f"cam-{cam.number}.design.json": design_text(_design(cam)) for cam in family.cams},
     }
+
+
+def _design(cam: FamilyCam) -> Design:
+    """Put a cam as a design of its own, of which recipes and tables are made; its servos were run over its band already."""
+    return Design(
+        cam.job, cam.solution, Bound(math.nan, "none"), cam.report, axis_study(cam.job, cam.solution), None, cam.band
+    )
 
 
 def _cam_row(cam: FamilyCam) -> str:

@@ -20,6 +20,7 @@ from camwright.production.family_answer import family_answer, family_files
 from camwright.production.family_cams import family_cams
 from camwright.production.switching import switchings
 from camwright.profiles.errors import InfeasibleError, InputError
+from camwright.stored.design_file import parse_design
 from camwright.studies.axis_study import solve_job
 from camwright.studies.covering import FOUND_TO
 from camwright.studies.family_bands import band_job
@@ -124,6 +125,16 @@ def test_files_and_answer_tell_the_same(in_sync: Family) -> None:
     assert len(names) == len(set(names)) == 2
 
 
+def test_each_cam_is_a_design_of_its_own(in_sync: Family) -> None:
+    files = family_files(in_sync)
+    for cam in in_sync.cams:
+        stored = parse_design(files[f"cam-{cam.number}.design.json"], "cam")
+        assert stored.job.line_speeds == pytest.approx(cam.line_speeds, rel=1e-15)
+        assert stored.job.name == cam.job.name
+        x = np.linspace(0.0, stored.profile.end, 20)
+        assert (stored.profile(x) == cam.solution.profile(x)).all()
+
+
 @pytest.mark.slow
 def test_the_line_of_a_job_that_ramps_gets_a_wider_overlap(in_sync: Family) -> None:
     ramped = replace(in_sync.found.job.line, acceleration=0.05)
@@ -201,7 +212,15 @@ def test_the_command_writes_and_says_what_was_found(
     out = tmp_path / "family"
     assert main(["family", str(tmp_path / "job.toml"), "--out", str(out), *(["--json"] if as_json else [])]) == 0
     shown = capsys.readouterr().out
-    expected = {"switching.csv", "cams.csv", "family.json", "family.svg", "family.png"}
+    expected = {
+        "switching.csv",
+        "cams.csv",
+        "cam-1.design.json",
+        "cam-2.design.json",
+        "family.json",
+        "family.svg",
+        "family.png",
+    }
     assert expected <= {file.name for file in out.iterdir()}
     assert len(list((out / "csv").glob("F*.csv"))) == 2
     stored = json.loads((out / "family.json").read_text())
