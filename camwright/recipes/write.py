@@ -90,7 +90,7 @@ def recipe(
     >>> recipe(optimise(load_job()), folder, ["csv"], language="de").released
     True
     >>> sorted(file.name for file in folder.iterdir())
-    ['manifest.json', 'recipe.html', 'recipe.json', 'recipe.pdf', 'recipe.xlsx', 'tables']
+    ['manifest.json', 'ramps', 'recipe.html', 'recipe.json', 'recipe.pdf', 'recipe.xlsx', 'tables']
     """
     require_replaceable(Path(directory), is_recipe)
     names = targets or design.job.output.targets or ("csv",)
