@@ -19,7 +19,7 @@ from camwright.jobs.table_cycle import whole_cycle
 from camwright.profiles.errors import InputError
 from camwright.profiles.returns import baseline
 from camwright.profiles.tables.count_grid import without_rounding
-from camwright.profiles.tables.targets import TARGETS, detect, read_table
+from camwright.profiles.tables.targets import LAYOUTS, TARGETS, detect, read_table
 from camwright.profiles.tables.text import decode
 from camwright.profiles.tables.trace_csv import read_trace_csv
 from camwright.validation.identify.preparation import unwrapped
@@ -95,7 +95,17 @@ def foreign() -> dict[str, str]:
     )
     times = [(f"{k},{a};{b}\n") for k, (a, b) in enumerate(comma)]
     scope = "Name\tScope\nFile\tx\n\nName\tAxis.SetPos\tName\tAxis.ActPos\nUnit\t(none)\tUnit\t(none)\n\n"
+    keys = "".join(
+        f"{key}\t{value}\t{value}\t{key}\t{value}\n" for key, value in (("SampleTime[ms]", "1"), ("Unit", "mm"))
+    )
+    rates = f"Name\tScope\nFile\tx\n\nName\tAxis.SetPos\tAxis.ActPos\tName\tTorque\n{keys}\n"
     return {
+        "galil": "' knife\nEP 100,0\n" + "".join(f"ET[{k}]={round(b * 1e6)}\n" for k, b in enumerate(y)) + "EN\n",
+        "arrays": "".join(
+            f"{name}Pos : ARRAY[1..{len(x)}] OF LREAL := [{', '.join(cells)}];\n"
+            for name, cells in (("Master", [a for a, _ in pairs]), ("Slave", [b for _, b in pairs]))
+        ),
+        "trace rates": rates + "".join(f"{k}\t{a}\t{b}\t{k // 4 * 4}\t1\n" for k, (a, b) in enumerate(comma)) + "EOF\n",
         "semicolons": "Leit [mm];Folge [mm]\n" + "".join(f"{a};{b}\n" for a, b in comma),
         "quoted": 'sep=;\n"No";"Theta (deg)";"S (Pos)";\n'
         + "".join(f'"{k}";"{a}";"{b}";\n' for k, (a, b) in enumerate(comma)),
@@ -127,7 +137,7 @@ def main() -> int:
                 unwrapped(read_trace_csv(text, "trace"), "trace")
                 counts["recordings"] += 1
                 continue
-            target = TARGETS[name] if name in TARGETS and dice.random() < 0.7 else detect(text, "cam")
+            target = LAYOUTS[name] if name in LAYOUTS and dice.random() < 0.7 else detect(text, "cam")
             table = read_table(target, text, "cam")
             counts["read"] += 1
             counted = without_rounding(whole_cycle(table, job, "cam").table)

@@ -43,7 +43,7 @@ _MOST_ROWS = 40
 
 
 def run(
-    drawing: Annotated[Path | None, typer.Argument(metavar="[DRAWING]", help="Die lines (DXF).")] = None,
+    drawing: Annotated[Path | None, typer.Argument(metavar="[DRAWING]", help="Die lines (DXF or CFF2).")] = None,
     job: Annotated[
         Path | None, typer.Option("--job", metavar="BENDER", help="Bender job (TOML); the bundled bender if left out.")
     ] = None,
@@ -121,7 +121,7 @@ def run(
             raise InputError("--calibrate makes a table and bends no drawing; leave the drawing out")
         return _calibrate(measurements, bender, out, voice)
     if drawing is None:
-        raise InputError("no drawing is named; give a DXF file, or test bends with --calibrate")
+        raise InputError("no drawing is named; give a DXF or CFF2 file, or test bends with --calibrate")
     _require_name(drawing)
     if bridges is not None:
         bender = replace(bender, bridges=_bridges(bridges, bender.bridges))
