@@ -52,6 +52,8 @@ AXIS_RATIO = "axis_ratio"
 GROWN = 4.0
 # Samples that a servo remembers and those of a cycle, together, that are looked at.
 MOST_SAMPLES = 2**15
+# A line speed that is named for more samples than that is so much higher than need be: it is written with three digits.
+RAISED = 1.006
 # Cuts up to so many times the asked length, and line speeds down to such a share, are looked at for a way out.
 LONGEST, SLOWEST = 8.0, 0.02
 
@@ -167,9 +169,16 @@ def _servo_blind(task: Task, cost: ObjectiveName, designs: Callable[[Task], bool
 def _require_samples(cut: Cut, servos: tuple[Servo, ...]) -> None:
     """Refuse a line that is so slow that the rows of a servo-aware design do not fit; a servo follows it well without one."""
     shortest = min(servo.sample_time for servo in servos)
-    samples = max(memory(servo.loop) for servo in servos) + math.ceil(cut.period / shortest)
+    past = max(memory(servo.loop) for servo in servos)
+    samples = past + math.ceil(cut.period / shortest)
+    if past >= MOST_SAMPLES:
+        gain = min(servo.position_gain for servo in servos)
+        raise InputError(
+            f"a servo-aware design looks at all that the servo remembers, {past} samples of {shortest * 1e3:g} ms, the limit is "
+            f"{MOST_SAMPLES}; raise the least position gain, {gain:.3g} 1/s, or leave servo_aware out"
+        )
     if samples > MOST_SAMPLES:
-        slowest = cut.length / (shortest * MOST_SAMPLES) * 60
+        slowest = cut.length / (shortest * (MOST_SAMPLES - past - 1)) * 60 * RAISED
         raise InputError(
             Message(
                 f"{{@line_speed}} = {cut.line_speed * 60:g} m/min: a servo-aware design looks at every sample of a cycle, {samples} "

@@ -135,7 +135,7 @@ def judge_table(
         raise InputError(f"a table is run over at least {LEAST_WRAPS} wraps; got {wraps}")
     cuts = cuts_in(rebuilt, task.cut)
     whole = one_cycle(rebuilt, task.cut, cuts)
-    cycles = _each_cut(whole, task, cuts)
+    cycles = each_cut(whole, task, cuts)
     periods = -(-wraps // cuts)
     wrapped = rebuilt.shift(-rebuilt.start).repeat(periods)
     checks = (
@@ -153,7 +153,7 @@ def cuts_in(rebuilt: CamProfile, cut: Cut) -> int:
     return max(1, round(rebuilt.length / cut.length))
 
 
-def _each_cut(whole: CamProfile, task: Task, cuts: int) -> list[CamProfile]:
+def each_cut(whole: CamProfile, task: Task, cuts: int) -> list[CamProfile]:
     """Take a table of several cuts apart, each over ``[0, x_c]`` and from its own pitch on."""
     length, pitch = task.cut.length, task.machine.pitch
     if cuts == 1:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from camwright.jobs.job import Job
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
+from camwright.validation.rebuilt import cuts_in
 
 Misfit = Callable[[FloatArray], FloatArray]
 """How ill each of some beginnings fits, shape ``(n,)`` to ``(n,)``."""
@@ -42,7 +43,7 @@ def aligned(
     Parameters
     ----------
     rebuilt
-        One cycle from master 0 on, in SI units.
+        One cycle from master 0 on, in SI units, or several.
     count
         Size of the counts that its positions are in (slave unit), if that is coarse: its exact ratio is noise then, and
         chords between the places take its part; beginnings that differ by what a count does are as good as each other.
@@ -63,7 +64,8 @@ def aligned(
     inside = np.clip(in_zone, _EDGE * cut.length, cut.sync_zone - _EDGE * cut.length)
     meant, slope = sync(in_zone), sync(inside, 1)
     zone = (cut.return_start + cut.return_zone) % cut.length
-    stretch = rebuilt.length / cut.length
+    cuts = cuts_in(rebuilt, cut)
+    stretch = rebuilt.length / (cuts * cut.length)
     lever = float(np.abs(machine.tool_ratio(task.slave_at_sync_start + meant)).max())
     speed = machine.tool_ratio(task.slave_at_sync_start + sync(inside)) / cut.sync_ratio
 
@@ -81,7 +83,7 @@ def aligned(
             found.append(np.maximum(position, np.abs(slip).max(axis=1) * cut.sync_zone / cut.sync_tolerance))
         return np.concatenate(found)
 
-    step = cut.sync_zone / (_IN_ZONE - 1) if count > 0.0 else 0.5 * cut.length / rebuilt.pieces
+    step = cut.sync_zone / (_IN_ZONE - 1) if count > 0.0 else 0.5 * cuts * cut.length / rebuilt.pieces
     slack = (
         (count or grain) * lever / cut.sync_tolerance * cut.sync_zone / step
     )  # a chord, or a ratio, off by its rounding
@@ -109,7 +111,7 @@ def _beginnings(rebuilt: CamProfile, stretch: float, zone: float, width: float, 
     tried = np.concatenate([points - zone, points - zone - width])
     extra = max(0, _EVENLY // len(points))
     if extra > 1:
-        gaps = np.diff(np.append(points, points[0] + length))
+        gaps = np.diff(np.append(points, points[0] + rebuilt.length / stretch))
         between = points[:, None] + gaps[:, None] * (np.arange(1, extra) / extra)
         tried = np.concatenate([tried, between.ravel() - zone])
     return np.unique(np.mod(tried, length))

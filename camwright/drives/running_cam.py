@@ -6,9 +6,10 @@ from dataclasses import dataclass, replace
 
 from camwright.drives.alignment import aligned
 from camwright.drives.options import with_slopes
+from camwright.drives.several_cuts import cuts_of, first_cut
 from camwright.jobs.job import Job
 from camwright.jobs.place import not_placed, place_in
-from camwright.jobs.table_cycle import whole_cycle
+from camwright.jobs.table_cycle import WholeCycle, whole_cycle
 from camwright.profiles.errors import InputError
 from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile
@@ -16,7 +17,7 @@ from camwright.profiles.tables.cam_table import CamTable
 from camwright.profiles.tables.count_grid import rounded_to, spacing_rounded_to, without_rounding
 from camwright.profiles.tables.target import Target
 from camwright.profiles.tables.targets import detect, layout_of, read_table
-from camwright.validation.rebuilt import one_cycle
+from camwright.validation.rebuilt import cuts_in, each_cut, one_cycle
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +29,7 @@ class RunningCam:
     target, table, notes, job, counted
         As of `camwright.drives.audit.Audit`.
     rebuilt
-        The cam from the job's master zero on, as many cycles as the table holds (slave unit over m).
+        The cam from the job's master zero on, as many cuts as the table holds (slave unit over m).
     count
         Size of the counts that its positions are in (slave unit); 0 where it has none.
     """
@@ -43,8 +44,9 @@ class RunningCam:
 
     @property
     def cycle(self) -> CamProfile:
-        """One cycle of the job."""
-        return one_cycle(self.rebuilt, self.job.cut)
+        """One cycle of the job: the first, if the table holds several cuts."""
+        cuts = cuts_in(self.rebuilt, self.job.cut)
+        return each_cut(one_cycle(self.rebuilt, self.job.cut, cuts), self.job.task, cuts)[0]
 
 
 def running_cam(
@@ -65,16 +67,26 @@ def running_cam(
     """
     layout = detect(text, place) if target is None else layout_of(target)
     placed = replace(job, machine=_with_place(job.machine, text, place))
-    whole = whole_cycle(with_slopes(read_table(layout, text, place), slopes), placed, place, units, travel)
+    whole, cuts = _whole(with_slopes(read_table(layout, text, place), slopes), placed, place, units, travel)
     table, counted = whole.table, without_rounding(whole.table)
     rebuilt = whole.units.to_si(layout.rebuild(table if counted is None else counted.table))
-    one_cycle(rebuilt, job.cut)  # refuses another period
+    one_cycle(rebuilt, job.cut, cuts)  # refuses another period
     count = 0.0 if counted is None else counted.count * whole.units.slave.size
     grain = rounded_to(whole.table.y) * whole.units.slave.size
     tick = spacing_rounded_to(whole.table.x) * whole.units.master.size
     rebuilt, notes = aligned(rebuilt.shift(-rebuilt.start), placed, count=count, grain=grain, tick=tick)
     told = (*table.notes, *whole.notes, *((counted.note,) if counted else ()), *notes)
     return RunningCam(layout, table, told, placed, rebuilt, count, counted is not None)
+
+
+def _whole(table: CamTable, job: Job, place: str, units: str | None, travel: str | None) -> tuple[WholeCycle, int]:
+    """Bring a table to whole cycles of the job, and count its cuts: several where it closes on whole counts only then."""
+    cuts = cuts_of(table)
+    if cuts == 1:
+        return whole_cycle(table, job, place, units, travel), 1
+    found = whole_cycle(first_cut(table, cuts), job, place, units, travel)
+    note = f"the table holds {cuts} cuts, after which it closes"
+    return WholeCycle(replace(table, units=found.table.units), found.units, (note, *found.notes)), cuts
 
 
 def _with_place(machine: Machine, text: str, place: str) -> Machine:

@@ -6,16 +6,20 @@ import json
 from fractions import Fraction
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from camwright.cli.main import main
 from camwright.drives.export import Exported, export, export_report
+from camwright.drives.running_cam import running_cam
+from camwright.drives.several_cuts import cuts_of
 from camwright.house.owned import LIST
 from camwright.jobs.job import Job, load_job, parse_job
 from camwright.jobs.table_units import parse_units
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import baseline
+from camwright.profiles.tables.cam_table import make_table
 from camwright.profiles.tables.targets import TARGETS
 from camwright.stored.save import save
 from camwright.studies.design import optimise
@@ -69,6 +73,32 @@ def test_a_table_closes_over_as_many_cuts_as_its_counts_need(target: str, counts
     assert abs(result.drift) < 1e-15
     assert result.passed
     assert result.table.period * result.units.master.size == pytest.approx(0.6 * cuts, rel=1e-12)
+
+
+@pytest.mark.parametrize("target", COUNTING)
+@pytest.mark.parametrize(("counts", "blades", "cuts"), [(36_000, 3, 1), (131_072, 3, 3), (100_000, 7, 7)])
+@pytest.mark.parametrize("units", ["cycle,{counts}/rev", None])
+def test_a_table_of_several_cuts_is_read_as_that(
+    target: str, counts: int, blades: int, cuts: int, units: str | None
+) -> None:
+    job = knife(f"{400 * blades} mm", blades)
+    result = written(job, target, f"mm,{counts}/rev")
+    name, text = next(iter(result.files.items()))
+    found = running_cam(text, name, job, units=units and units.format(counts=counts))
+    assert found.rebuilt.length == pytest.approx(0.6 * cuts, rel=1e-9)
+    assert found.rebuilt.advance == pytest.approx(0.4 * cuts, rel=1e-9)
+    assert (f"the table holds {cuts} cuts, after which it closes" in found.notes) == (cuts > 1)
+    assert found.cycle.length == pytest.approx(0.6, rel=1e-12)
+    judged = judge_table(found.rebuilt, job.task, job.servo, stored=0.4 * blades / counts)
+    assert judged.passed
+
+
+def test_a_table_of_one_cut_is_one() -> None:
+    job = knife("400 mm")
+    straight = CamProfile.from_arrays([0.0, 0.6], [[0.0, 2 / 3]])
+    for profile, cuts in ((profile_of(job), 1), (straight, 1), (profile_of(job).repeat(4), 4)):
+        x = np.linspace(0.0, profile.length, 361)
+        assert cuts_of(make_table(x, np.rint(profile(x) / 1e-5), law="spline")) == cuts
 
 
 def test_cambox_is_called_with_the_period_in_the_master_s_unit() -> None:

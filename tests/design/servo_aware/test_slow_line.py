@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import re
 import time
 from dataclasses import replace
 
 import pytest
 
-from camwright.design.optimise_axis import MOST_SAMPLES, solve_axis
+from camwright.design.optimise_axis import MOST_SAMPLES, _require_samples, solve_axis
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InfeasibleError, InputError
 from camwright.profiles.limits import Limits
@@ -20,13 +21,26 @@ CUT = Cut(0.267, 80 / 60, 0.126, 0.04, 0.086, 0.25e-3, shaped=True)
 TASK = Task(RotaryKnife(0.4), CUT, Limits(200 / 60, 100.0, 20_000.0))
 
 
-def test_a_crawling_line_is_refused_at_once_with_the_slowest_that_is_taken() -> None:
+@pytest.mark.parametrize("servo", [SERVO, replace(SERVO, position_gain=0.7)])
+def test_a_crawling_line_is_refused_at_once_with_the_slowest_that_is_taken(servo: Servo) -> None:
     slow = replace(CUT, line_speed=1e-5)
     began = time.process_time()
-    with pytest.raises(InputError, match=r"\d+ here, the limit is 32768; raise the line speed above 0.177 m/min"):
-        solve_axis(TASK.with_cut(slow), "peak_acceleration", "shaped", (SERVO,))
+    with pytest.raises(InputError, match=r"\d+ here, the limit is 32768; raise the line speed above ") as refused:
+        solve_axis(TASK.with_cut(slow), "peak_acceleration", "shaped", (servo,))
     assert time.process_time() - began < 0.5
     assert MOST_SAMPLES == 32768
+    named = float(re.findall(r"above ([\d.]+) m/min", str(refused.value))[0]) / 60
+    _require_samples(replace(CUT, line_speed=named), (servo,))
+    with pytest.raises(InputError):
+        _require_samples(replace(CUT, line_speed=0.98 * named), (servo,))
+
+
+def test_a_servo_that_remembers_too_much_is_refused_at_any_line_speed() -> None:
+    with pytest.raises(
+        InputError,
+        match=r"looks at all that the servo remembers, \d+ samples .* raise the least position gain, 0.1 1/s",
+    ):
+        solve_axis(TASK, "peak_acceleration", "shaped", (replace(SERVO, position_gain=0.1),))
 
 
 def test_a_job_that_no_shaped_command_does_is_refused_in_seconds() -> None:
