@@ -171,12 +171,6 @@ def _require_samples(cut: Cut, servos: tuple[Servo, ...]) -> None:
     shortest = min(servo.sample_time for servo in servos)
     past = max(memory(servo.loop) for servo in servos)
     samples = past + math.ceil(cut.period / shortest)
-    if past >= MOST_SAMPLES:
-        gain = min(servo.position_gain for servo in servos)
-        raise InputError(
-            f"a servo-aware design looks at all that the servo remembers, {past} samples of {shortest * 1e3:g} ms, the limit is "
-            f"{MOST_SAMPLES}; raise the least position gain, {gain:.3g} 1/s, or leave servo_aware out"
-        )
     if samples > MOST_SAMPLES:
         slowest = cut.length / (shortest * (MOST_SAMPLES - past - 1)) * 60 * RAISED
         raise InputError(

@@ -35,14 +35,6 @@ def test_a_crawling_line_is_refused_at_once_with_the_slowest_that_is_taken(servo
         _require_samples(replace(CUT, line_speed=0.98 * named), (servo,))
 
 
-def test_a_servo_that_remembers_too_much_is_refused_at_any_line_speed() -> None:
-    with pytest.raises(
-        InputError,
-        match=r"looks at all that the servo remembers, \d+ samples .* raise the least position gain, 0.1 1/s",
-    ):
-        solve_axis(TASK, "peak_acceleration", "shaped", (replace(SERVO, position_gain=0.1),))
-
-
 def test_a_job_that_no_shaped_command_does_is_refused_in_seconds() -> None:
     """The corners of the ranges leave no command; to see that took the dual simplex over 90 s."""
     corners = tuple(
