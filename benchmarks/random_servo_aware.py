@@ -2,8 +2,9 @@
 
 Machines, cuts and limits are those of ``random_machines.py``, the servo is drawn so slow that it matters, the command and the objective
 from all there are. A design counts if every check passes (those of the axis' own limits only where the design says that it keeps them)
-and if the sync error that it predicts is the one that the validation's simulation finds. A refusal counts if the job is infeasible, or
-its servo unstable or too slow; so does a least sync error above the tolerance, which a design of that objective says. Writes the counts
+and if the sync error that it predicts is the one that the validation's simulation finds. A refusal counts if the job is infeasible and
+every way out that it is shown then passes, or if its servo is unstable or too slow; so does a least sync error above the tolerance, which
+a design of that objective says. Writes the counts
 of each machine to ``results/random_servo_aware.csv`` and prints every job that ended otherwise; the exit code is 0 if there is none:
 
     python benchmarks/random_servo_aware.py [--jobs 60] [--seed 1] [--machine crank_slider]
@@ -20,11 +21,11 @@ from pathlib import Path
 from time import process_time
 
 import numpy as np
-from random_machines import MACHINES, RandomJob, random_job, spread
+from random_machines import MACHINES, TO_SI, RandomJob, apply, random_job, spread
 
 from camwright.design.optimise_axis import solve_axis
 from camwright.design.servo_aware.command_basis import Command
-from camwright.profiles.errors import CamwrightError, InfeasibleError, InputError
+from camwright.profiles.errors import CamwrightError, InfeasibleError, InputError, Suggestion
 from camwright.profiles.objective import OBJECTIVES, ObjectiveName
 from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
@@ -52,16 +53,38 @@ def draw_servo(rng: np.random.Generator, job: RandomJob) -> Servo:
 
 def ended(job: RandomJob, servo: Servo, command: Command, objective: ObjectiveName) -> tuple[str, str]:
     """Design a job; how it ended, and what there is to say about it."""
-    cut = replace(job.cut, shaped=command == "shaped")
     try:
-        solution = solve_axis(job.task.with_cut(cut), objective, command, (servo,), suggest=False)
+        return designed(job, servo, command, objective, suggest=True)
     except InfeasibleError as error:
-        return "infeasible", error.binding
+        for suggestion in error.suggestions:
+            named = f"{error.binding}: {suggestion.change} {suggestion.value!r} {suggestion.unit}"
+            try:
+                end, note = designed(followed(job, suggestion), servo, command, objective, suggest=False)
+            except CamwrightError as other:
+                return f"infeasible, then {type(other).__name__}", f"{named}: {other}"
+            if end != "passed":
+                return f"infeasible, then {end}", f"{named}: {note}"
+        return "infeasible", f"{error.binding}: {len(error.suggestions)} ways out"
     except InputError as error:
         known = ("unstable", "remembers", "needs to know what the motor moves")
         return ("refused" if any(words in str(error) for words in known) else "InputError"), str(error)
     except CamwrightError as error:
         return type(error).__name__, str(error)
+
+
+def followed(job: RandomJob, suggestion: Suggestion) -> RandomJob:
+    """Follow a suggestion."""
+    if suggestion.change == "sync_tolerance":
+        return replace(job, cut=replace(job.cut, sync_tolerance=suggestion.value * TO_SI[suggestion.unit]))
+    return apply(job, suggestion)
+
+
+def designed(
+    job: RandomJob, servo: Servo, command: Command, objective: ObjectiveName, *, suggest: bool
+) -> tuple[str, str]:
+    """Design a job and validate it."""
+    cut = replace(job.cut, shaped=command == "shaped")
+    solution = solve_axis(job.task.with_cut(cut), objective, command, (servo,), suggest=suggest)
     axis = solution.axis
     if axis is None:
         return "no axis", ""

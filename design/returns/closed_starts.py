@@ -9,6 +9,7 @@ import numpy as np
 from camwright.design.returns.scaling import ScaledProblem
 from camwright.design.returns.structure import VANISHED, extreme_motion
 from camwright.design.returns.transcription import Arc, ScaledMotion
+from camwright.profiles.closed_forms.smoothest import smoothest
 from camwright.profiles.closed_forms.softest import softest
 from camwright.profiles.objective import OBJECTIVES
 
@@ -16,10 +17,13 @@ from camwright.profiles.objective import OBJECTIVES
 def known_start(problem: ScaledProblem) -> tuple[ScaledMotion, tuple[Arc, ...]] | None:
     """Optimum in closed form, with the arcs that it has and their objective; None where no closed form is known.
 
-    That is so for the least RMS jerk and for all but motions from rest to rest. Limits of the position are left out of account.
+    That is so for all but motions from rest to rest, and for a least RMS jerk that reaches none of its limits or several. Limits of the
+    position are left out of account.
     """
-    if problem.objective == "rms_jerk" or not problem.rest_to_rest:
+    if not problem.rest_to_rest:
         return None
+    if problem.objective == "rms_jerk":
+        return _smoothest_start(problem)
     if OBJECTIVES[problem.objective].form == "peak":
         extreme = extreme_motion(problem)
         if extreme is None:
@@ -45,3 +49,16 @@ def known_start(problem: ScaledProblem) -> tuple[ScaledMotion, tuple[Arc, ...]] 
     arcs = [arc for arc in arcs if arc[1] > VANISHED]
     lengths, ends = np.array([arc[1] for arc in arcs]), [arc[2] for arc in arcs]
     return ScaledMotion(lengths, np.array([0.0, *ends]), objective), tuple(arc[0] for arc in arcs)
+
+
+def _smoothest_start(problem: ScaledProblem) -> tuple[ScaledMotion, tuple[Arc, ...]] | None:
+    motion = smoothest(problem.height, problem.greatest_ratio, problem.greatest_slope, problem.greatest_jerk)
+    if motion is None or min(motion.lengths) <= VANISHED:
+        return None
+    arcs: list[Arc] = [_ARC_OF[held] for held in motion.held]
+    if len(arcs) == 2:  # the speed is touched where they meet
+        arcs[0] = "fall"
+    return ScaledMotion(np.array(motion.lengths), np.array(motion.accelerations), motion.mean_square), tuple(arcs)
+
+
+_ARC_OF: dict[str, Arc] = {"": "free", "speed": "cruise", "acceleration": "hold", "jerk": "ramp"}

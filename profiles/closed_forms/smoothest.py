@@ -1,0 +1,164 @@
+"""The smoothest motion from rest to rest: the least mean square of the jerk where one limit binds, in closed form.
+
+The motion is unique, so it is its own mirror image: half of it decides. Away from the limits the jerk is a parabola over time (Pontryagin:
+it is the costate of the acceleration) whose second derivative is the same all along; it is zero where the acceleration is held, and where
+the speed is. Limits that bind together have no closed form here.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+HALVINGS = 60
+TOUCHED, HELD = float(Fraction(8, 15)), 0.6
+"""Mean speeds over the limit's: above the first the speed touches its limit in the middle, above the second it is held there."""
+
+
+@dataclass(frozen=True)
+class SmoothestMotion:
+    """A smoothest motion in unit time, by its pieces.
+
+    Parameters
+    ----------
+    lengths
+        Durations of its pieces.
+    accelerations
+        Bernstein coefficients of the acceleration, cubic on each piece, neighbours sharing one.
+    held
+        For each piece, what is held on it: ``"jerk"``, ``"acceleration"``, ``"speed"`` or nothing.
+    top
+        Greatest speed, acceleration and jerk.
+    mean_square
+        Mean square of the jerk.
+    """
+
+    lengths: tuple[float, ...]
+    accelerations: tuple[float, ...]
+    held: tuple[str, ...]
+    top: tuple[float, float, float]
+    mean_square: float
+
+
+def smoothest(distance: float, speed: float, acceleration: float, jerk: float) -> SmoothestMotion | None:
+    """Return the motion over a distance in unit time; None where it reaches none of the limits, or more than one kind.
+
+    - speed ``V`` held over ``1 - 2 r``: ``v = V s² (6 - 8 s + 3 s²)`` with ``s = t / r`` and ``r = 5/4 (1 - D/V)``;
+    - speed touched in the middle: ``v = α s² + β s³ + γ s⁴`` with ``s = 2 t``, ``α = 30 D - 12 V``;
+    - acceleration ``A`` held: the last parabola, from ``d`` before the middle, has ``c = 3 A / d³``, the first lasts ``r`` with
+      ``r²/4 - r³/3 = d³/3``, and ``d`` is such that the way is right;
+    - jerk ``J`` held at both ends: the parabola between them lasts ``2 d``, with ``d² = 5/12 - 10 D/J``.
+    """
+    for found in (
+        _speed_bound(distance, speed),
+        _acceleration_bound(distance, acceleration),
+        _jerk_bound(distance, jerk),
+    ):
+        if found is not None and all(
+            value <= limit * (1 + 1e-12) for value, limit in zip(found.top, (speed, acceleration, jerk), strict=True)
+        ):
+            return found
+    return None
+
+
+def _speed_bound(distance: float, speed: float) -> SmoothestMotion | None:
+    share = distance / speed
+    if not TOUCHED < share < 1.0:
+        return None
+    if share >= HELD:
+        r = 1.25 * (1.0 - share)
+        peak = 4.0 * speed / r
+        return SmoothestMotion(
+            (r, 1.0 - 2.0 * r, r),
+            (0.0, peak, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -peak, 0.0),
+            ("", "speed", ""),
+            (speed, 4.0 / 9.0 * peak, 12.0 * speed / r**2),
+            2.0 * 19.2 * speed**2 / r**3,
+        )
+    alpha = 30.0 * distance - 12.0 * speed
+    beta, gamma = 4.0 * speed - 2.0 * alpha, alpha - 3.0 * speed
+    first, second = 4.0 / 3.0 * alpha, 8.0 / 3.0 * alpha + 2.0 * beta
+    # where the jerk, 4 (2 α + 6 β s + 12 γ s²), is zero the acceleration is greatest; one of its zeros is within the half
+    root = (36.0 * beta**2 - 96.0 * alpha * gamma) ** 0.5
+    s = next(s for s in ((-6.0 * beta + root) / (24.0 * gamma), (-6.0 * beta - root) / (24.0 * gamma)) if 0.0 < s < 1.0)
+    ends = (8.0 * alpha, 4.0 * (2.0 * alpha + 6.0 * beta + 12.0 * gamma))
+    square = 4 * alpha**2 + 12 * alpha * beta + 12 * beta**2 + 16 * alpha * gamma + 36 * beta * gamma + 28.8 * gamma**2
+    return SmoothestMotion(
+        (0.5, 0.5),
+        (0.0, first, second, 0.0, -second, -first, 0.0),
+        ("", ""),
+        (speed, 2.0 * s * (2.0 * alpha + s * (3.0 * beta + 4.0 * gamma * s)), max(abs(end) for end in ends)),
+        16.0 * square,
+    )
+
+
+def _acceleration_bound(distance: float, acceleration: float) -> SmoothestMotion | None:
+    """Hold the acceleration; None where its limit is not reached, or leaves no motion."""
+    low, high = 0.0, 0.5
+    for _ in range(HALVINGS):
+        d = 0.5 * (low + high)
+        r = _first(d)
+        enough = r + d < 0.5 and 2.0 * _half_way(r, d, acceleration) > distance
+        low, high = (d, high) if enough else (low, d)
+    d = low
+    r = _first(d)
+    hold = 0.5 - d - r
+    if d <= 0.0 or hold <= 0.0 or abs(2.0 * _half_way(r, d, acceleration) - distance) > 1e-9 * distance:
+        return None
+    c = 3.0 * acceleration / d**3
+    m = c * (0.5 - r)
+    rise = acceleration * r - c * r**4 / 24 - m * r**3 / 6
+    square = c**2 * r**5 / 20 + c * m * r**4 / 4 + m**2 * r**3 / 3 + 2.0 / 15.0 * c**2 * d**5
+    a, first = acceleration, acceleration - m * r**2 / 6
+    held = (a,) * 4
+    return SmoothestMotion(
+        (r, hold, 2.0 * d, hold, r),
+        (0.0, first, a, *held, a, -a, *(-each for each in held), -a, -first, 0.0),
+        ("", "acceleration", "", "acceleration", ""),
+        (rise + a * hold + 5.0 / 24.0 * c * d**4, a, max(c * r**2 / 2 + m * r, c * d**2 / 2)),
+        2.0 * square,
+    )
+
+
+def _jerk_bound(distance: float, jerk: float) -> SmoothestMotion | None:
+    square = 5.0 / 12.0 - 10.0 * distance / jerk
+    if not 0.0 < square < 0.25:
+        return None
+    d = square**0.5
+    r, c = 0.5 - d, 1.5 * jerk / d**3
+    a, inner = jerk * r, jerk * r + 2.0 / 3.0 * jerk * d
+    x = max(d**2 - 4.0 / 3.0 * d**3, 0.0) ** 0.5  # from the middle to where the acceleration is greatest
+    return SmoothestMotion(
+        (r, 2.0 * d, r),
+        (0.0, a / 3, 2 * a / 3, a, inner, -inner, -a, -2 * a / 3, -a / 3, 0.0),
+        ("jerk", "", "jerk"),
+        (
+            jerk / 8 - 3.0 / 16.0 * jerk * d,
+            c / 2 * (d**2 * x - x**3 / 3) - jerk * x,
+            max(jerk, abs(jerk - c * d**2 / 2)),
+        ),
+        2.0 * jerk**2 * (0.3 / d - 0.5),
+    )
+
+
+def _first(d: float) -> float:
+    """Duration of the first parabola for that of half the last: ``r²/4 - r³/3 = d³/3``, by Newton's method from above."""
+    r = 0.5
+    for _ in range(HALVINGS):
+        slope = r / 2 - r**2
+        step = (r**2 / 4 - r**3 / 3 - d**3 / 3) / slope if slope > 0 else 0.25
+        r = min(max(r - step, 1e-12), 0.5)
+        if abs(step) < 1e-16:
+            break
+    return r
+
+
+def _half_way(r: float, d: float, acceleration: float) -> float:
+    """Way of half the motion."""
+    c = 3.0 * acceleration / d**3
+    m = c * (0.5 - r)
+    hold = 0.5 - d - r
+    rise = acceleration * r - c * r**4 / 24 - m * r**3 / 6
+    way = acceleration * r**2 / 2 - c * r**5 / 30 - m * r**4 / 8
+    way += rise * hold + acceleration * hold**2 / 2
+    return way + (rise + acceleration * hold) * d + 2.0 / 15.0 * c * d**5
