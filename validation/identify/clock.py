@@ -100,12 +100,12 @@ def with_clock(fit: TraceFit, found: Minimum) -> Minimum:
     unsure = float(trials.weights[near].sum()) < _KNOWN
     if unsure and ripple < _PLAIN * noise:
         return _summed(found, trials)
-    known, lead = _refined(
-        fit, found, trials, tooth
-    )  # what was tried is an approximation: a plain ripple is asked exactly
-    if known.cost > found.cost or (unsure and lead < -2.0 * math.log(1.0 - _KNOWN) * _noise(fit, known)):
+    teeth = _refined(fit, found, trials, tooth)  # what was tried is an approximation: a plain ripple is asked exactly
+    known, noise = teeth[0], _noise(fit, teeth[0])
+    close = [each for each in teeth if each.cost - known.cost < -2.0 * math.log(1.0 - _KNOWN) * noise]
+    if known.cost > found.cost or (unsure and len(close) > 1):
         return _summed(found, trials)
-    return _with_doubt(fit, known)
+    return _with_doubt(fit, known) if len(close) == 1 else _mixed(fit, close, noise)
 
 
 def _with_doubt(fit: TraceFit, found: Minimum) -> Minimum:
@@ -235,8 +235,8 @@ def _between(at: FloatArray, nodes: FloatArray, values: FloatArray) -> FloatArra
     )
 
 
-def _refined(fit: TraceFit, found: Minimum, trials: _Trials, tooth: float) -> tuple[Minimum, float]:
-    """Fit the clock too, from the best sample times of which no two belong to one tooth; by how much the second best is worse."""
+def _refined(fit: TraceFit, found: Minimum, trials: _Trials, tooth: float) -> list[Minimum]:
+    """Fit the clock too, from the best sample times of which no two belong to one tooth; the best first."""
     chosen: list[int] = []
     for trial in np.argsort(trials.costs).tolist():
         if all(abs(trials.steps[trial] - trials.steps[other]) > 0.75 * tooth for other in chosen):
@@ -252,8 +252,24 @@ def _refined(fit: TraceFit, found: Minimum, trials: _Trials, tooth: float) -> tu
         values |= {name: value_at(name, float(at)) for name, at in zip(names, trials.centres[trial], strict=True)}
         # the phase counts from the middle of the trace, the clock from its first row
         fits.append(fit.minimum(values, found.names, float((half / step + trials.phases[trial]) % 1.0), ROUNDS))
-    best, *others = sorted(fits, key=lambda each: each.cost)
-    return best, min((each.cost for each in others), default=math.inf) - best.cost
+    return sorted(fits, key=lambda each: each.cost)
+
+
+def _mixed(fit: TraceFit, teeth: list[Minimum], noise: float) -> Minimum:
+    """Mix the fits of some teeth, none of which the trace rules out, by their likelihood: the best fit, with the 95 % of them all."""
+    best = teeth[0]
+    weights = np.exp([-0.5 * (each.cost - best.cost) / noise for each in teeth])
+    weights /= weights.sum()
+    sure = [_with_doubt(fit, each) for each in teeth]
+    errors, bounds = {}, {}
+    for name in best.names:
+        centres = np.array([coordinate(name, each.values[name]) for each in sure])
+        widths = np.array([each.errors[name] for each in sure])
+        middle = coordinate(name, best.values[name])
+        errors[name] = math.sqrt(float(weights @ (widths**2 + (centres - middle) ** 2)))
+        low, high = (_quantile(weights, centres, widths, share) for share in (0.025, 0.975))
+        bounds[name] = (value_at(name, low), value_at(name, high))
+    return replace(best, errors=errors, bounds=bounds)
 
 
 def _summed(found: Minimum, trials: _Trials) -> Minimum:

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from camwright.profiles.servo import Servo
 from camwright.profiles.trace import Trace
-from camwright.validation.identify.clock import with_clock
+from camwright.validation.identify.clock import _mixed, with_clock
 from camwright.validation.identify.colour import with_colour
-from camwright.validation.identify.fit import Minimum, TraceFit
+from camwright.validation.identify.fit import CONFIDENCE, Minimum, TraceFit, coordinate, value_at
 from camwright.validation.identify.rounding import count_of, with_rounding
 from camwright.validation.servo.sampled_axis import axis_response, mean_response, ripple_response
 
@@ -117,3 +119,28 @@ def test_rounding_widens_as_far_as_it_moves_the_parameters() -> None:
         widened = with_rounding(fit, found, *counts), with_colour(fit, found)
         said.append(max(each.errors["bandwidth"] for each in widened))
     assert float(np.sqrt(np.mean(np.square(moved)))) < 1.5 * float(np.sqrt(np.mean(np.square(said))))
+
+
+def test_teeth_of_the_clock_that_the_trace_cannot_tell_apart_are_all_in_the_interval() -> None:
+    """A linear return under 50 um of noise: two sample times 4 % apart fit alike, each known to a microsecond by itself."""
+    noise = 2.8e-9
+    fit: Any = SimpleNamespace(times=np.empty(2000), doubt=lambda _: 0.0)
+
+    def tooth(step: float, worse: float) -> Minimum:
+        at, error = coordinate("sample_time", step), 1e-4
+        bounds = {"sample_time": tuple(value_at("sample_time", at + side * CONFIDENCE * error) for side in (-1, 1))}
+        cost = 2000 * noise + worse * noise
+        return Minimum({"sample_time": step}, ("sample_time",), 0.1, cost, {"sample_time": error}, bounds)
+
+    best, other, worst = tooth(6.4081e-3, 0.0), tooth(6.1433e-3, 3.0), tooth(5.9e-3, 9.0)
+    mixed = _mixed(fit, [best, other, worst], noise)
+    low, high = mixed.bounds["sample_time"]
+    assert mixed.values == best.values
+    assert low == pytest.approx(6.1433e-3, rel=1e-3)
+    assert low < 6.1433e-3 < 6.4081e-3 < high < 6.42e-3
+    likelihoods = np.exp([0.0, -1.5, -4.5])
+    weights = likelihoods / likelihoods.sum()
+    apart = np.log([1.0, 6.1433 / 6.4081, 5.9 / 6.4081])
+    assert mixed.errors["sample_time"] == pytest.approx(float(np.sqrt(weights @ apart**2)), rel=1e-2)
+    alone = _mixed(fit, [best, tooth(6.1433e-3, 60.0)], noise).bounds["sample_time"]
+    assert alone == pytest.approx(best.bounds["sample_time"], rel=1e-6)
