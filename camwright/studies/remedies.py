@@ -14,9 +14,11 @@ from camwright.house.numbers import METRIC, Units, inside, with_unit
 from camwright.jobs.job import Job, read_job
 from camwright.jobs.wording import place_of
 from camwright.profiles.errors import CamwrightError, InfeasibleError, SolverError, Suggestion
+from camwright.profiles.objective import OBJECTIVES
 from camwright.studies.axis_study import solve_job, sync_error
 from camwright.studies.covering import Uncovered
 from camwright.studies.family_bands import family_bands, placed_for_all
+from camwright.studies.reach import fails, stand_in
 from camwright.studies.speed_band import SpeedBand
 from camwright.validation.report import ValidationReport, judge
 
@@ -29,7 +31,8 @@ _WIDER = (1.02, 1.1, 1.3, 1.7, 2.5, 4.0)
 """Factors that are tried in turn on a line speed, a sync zone and a tolerance."""
 
 _FURTHER = (1.03, 1.1, 1.18, 1.27, 1.4, 1.6, 2.0)
-"""Factors by which a change is taken further that makes a motion possible but does not yet pass."""
+_SLOWER_YET = (2.7, 4.0, 6.0, 10.0, 20.0)
+"""Factors by which a change is taken further that makes a motion possible but does not yet pass; a line speed further still."""
 
 _DIGITS = 4
 """Significant digits of a value that is told."""
@@ -88,7 +91,8 @@ class _Trial:
         if remedy.change == "command":
             table["servo_aware"] = True
         try:
-            return _passes(read_job(data, None, "job"))
+            job = read_job(data, None, "job")
+            return not _hopeless(job) and _passes(job)
         except CamwrightError:
             return False
 
@@ -98,6 +102,11 @@ class _Trial:
             if self.works(remedy):
                 yield remedy
                 return
+
+
+def _hopeless(job: Job) -> bool:
+    """Whether even the motion that stands in for a job of the motor fails: that is known in a hundredth of the time."""
+    return not job.servo_aware and OBJECTIVES[job.objective].of == "motor" and bool(fails(job, job.task, stand_in(job)))
 
 
 def _passes(job: Job) -> bool:
@@ -225,7 +234,7 @@ def _taken_further(suggestion: Suggestion, units: Units) -> Iterator[Remedy]:
         value = inside(value / METRIC.shown[si].factor * shown.factor, _FINE_DIGITS, up=up)
         unit = shown.typed or shown.printed
     yield Remedy(suggestion.change, value, unit)
-    for factor in _FURTHER:
+    for factor in _FURTHER + (_SLOWER_YET if suggestion.change == "line_speed" else ()):
         yield Remedy(suggestion.change, inside(value * (factor if up else 1.0 / factor), _DIGITS, up=up), unit)
 
 

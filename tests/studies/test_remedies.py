@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,13 +13,13 @@ import pytest
 from shaped_job import JOB
 
 from camwright.cli.main import main
-from camwright.jobs.job import BUNDLED_JOB, parse_job
+from camwright.jobs.job import BUNDLED_JOB, Job, parse_job
 from camwright.jobs.toml_text import toml_text
 from camwright.profiles.errors import InfeasibleError
 from camwright.studies import remedies as module
 from camwright.studies.axis_study import solve_job
 from camwright.studies.design import optimise
-from camwright.studies.remedies import Remedy, remedies, solve_or_advise
+from camwright.studies.remedies import Remedy, _Trial, remedies, solve_or_advise
 from camwright.studies.speed_band import job_band
 from camwright.validation.report import judge
 
@@ -106,6 +107,63 @@ def test_each_suggestion_of_an_infeasible_job_is_designed_and_passes() -> None:
     for each in caught.value.suggestions:
         value = "shaped" if each.change == "command" else each.value
         assert passes(changed(FAST, each.change, value, each.unit)), each
+
+
+SLOW_AXIS = """
+name = "slow axis"
+[machine]
+kind = "linear_carriage"
+stroke = "670 mm"
+mass = "28 kg"
+travel_per_turn = "45 mm"
+[cut]
+length = "975 mm"
+line_speed = "14.1 m/min"
+sync_zone = "660 mm"
+shear_zone = "132 mm"
+sync_tolerance = "1 mm"
+[limits]
+speed = "50 m/min"
+acceleration = "6 m/s^2"
+jerk = "7.7 m/s^3"
+[servo]
+bandwidth = "30 rad/s"
+damping = 0.988
+position_gain = "2.71 1/s"
+sample_time = "15.8 ms"
+velocity_feedforward = 0.844
+[objective]
+minimise = "peak_jerk"
+"""
+"""Possible from 2.3 m/min down by its jerk, in tolerance only far below."""
+
+
+def test_a_line_speed_far_below_what_the_limits_allow_is_found_where_the_axis_needs_it() -> None:
+    job = parse_job(SLOW_AXIS, "job")
+    with pytest.raises(InfeasibleError) as caught:
+        solve_or_advise(job)
+    (slower,) = [each.value for each in caught.value.suggestions if each.change == "line_speed"]
+    assert 0.5 < slower < 1.2
+    there = replace(job, cut=replace(job.cut, line_speed=slower / 60.0))
+    solution = solve_job(there)
+    assert judge(solution.profile, there.task.with_machine(solution.machine), there.servo).passed
+
+
+def test_a_change_that_even_the_stand_in_fails_is_not_designed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A job of the motor takes seconds a design, its stand-in hundredths."""
+    text = SLOW_AXIS.replace("peak_jerk", "energy").replace('"7.7 m/s^3"', '"200 m/s^3"')
+    designed: list[float] = []
+
+    def counted(job: Job) -> bool:
+        designed.append(job.cut.line_speed)
+        return True
+
+    monkeypatch.setattr("camwright.studies.remedies._passes", counted)
+    trial = _Trial(parse_job(text, "job"))
+    assert not trial.works(Remedy("line_speed", 12.0, "m/min"))
+    assert designed == []
+    assert trial.works(Remedy("line_speed", 0.8, "m/min"))
+    assert len(designed) == 1
 
 
 def test_a_job_that_can_be_designed_is_designed() -> None:
