@@ -100,7 +100,8 @@ def limit_facts(recipe: Recipe) -> list[Fact]:
     limits, unit = recipe.job.si["limits"], recipe.slave_unit
     powers = {"speed": "/s", "acceleration": "/s^2", "jerk": "/s^3"}
     facts = [Fact(key, limits[key], unit + power) for key, power in powers.items()]
-    facts.append(Fact("reversal", limits["reversal"], "word"))
+    turns_back = MACHINES[recipe.job.si["machine"]["kind"]].turns_back  # a carriage cannot help it
+    facts.append(Fact("reversal", limits["reversal"] or turns_back, "word"))
     if limits["motor"] is not None:
         facts.append(Fact("motor", limits["motor"]["points"], "curve"))
     line = recipe.job.si.get("line", {})

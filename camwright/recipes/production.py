@@ -126,7 +126,7 @@ def mark_head(words: Catalogue) -> list[str]:
     methods = [words(key) for key in ("marks.redesign", "marks.phase", "marks.offset")]
     return [
         words("marks.line", unit=speed),
-        *(f"{method}, {words(end, unit=length)}" for method in methods for end in ("marks.earliest", "marks.latest")),
+        *(words(end, method=method, unit=length) for method in methods for end in ("marks.earliest", "marks.latest")),
     ]
 
 

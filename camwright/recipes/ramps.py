@@ -14,6 +14,9 @@ from camwright.validation.production.line_ramp import Allowed
 _SHOWN = 5
 """Of the line speeds each of this number is on the sheet."""
 
+_LEAST = 1e-3
+"""Ramp (m/s²) below which none is told: what rounding leaves of a limit that is used up, and no line ramps so slowly."""
+
 
 def ramp_record(found: LineRamps) -> LineRampRecord:
     """Write how hard the line may ramp as a recipe holds it."""
@@ -62,7 +65,7 @@ def ramp_blocks(recipe: Recipe, words: Catalogue) -> list[Block]:
         binding=words.named("binding", found.binding),
     )  # fmt: skip
     blocks = [table_block(head, rows), text_block(plc, strong=True)]
-    if found.stop_length is not None:
+    if found.stop_length is not None and (found.stop is None or found.stop >= _LEAST):
         blocks.append(text_block(words("ramp.stop_length", length=shown(found.stop_length, "m", 4, words.units))))
     alone = ramp_text(found.by_acceleration_alone, words)
     blocks.append(text_block(words("ramp.alone", ramp=alone, unit=unit)))
@@ -72,7 +75,7 @@ def ramp_blocks(recipe: Recipe, words: Catalogue) -> list[Block]:
 
 
 def ramp_text(value: float | None, words: Catalogue) -> str:
-    """Write a ramp that is allowed, rounded to the safe side; nothing binds where there is none."""
+    """Write a ramp that is allowed, rounded to the safe side, none below `_LEAST`; nothing binds where there is none."""
     if value is None:
         return words("ramp.any")
-    return words.number(inside(converted(value, "m/s^2", words.units), 4, up=False), 4) if value > 0.0 else "0"
+    return words.number(inside(converted(value, "m/s^2", words.units), 4, up=False), 4) if value >= _LEAST else "0"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 import unicodedata
 from collections.abc import Iterator
 from dataclasses import replace
@@ -46,6 +47,13 @@ def test_pages_title_and_size(made: MadeRecipe, saw: MadeRecipe) -> None:
             assert 2 <= len(pages) <= 5
             for page in pages:
                 assert [float(x) for x in page.mediabox[2:]] == pytest.approx([595.276, 841.89], abs=0.01)  # A4
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_units_of_headings_are_whole(made: MadeRecipe, language: Language) -> None:
+    text = "".join(page.extract_text() for page in read(recipe_pdf(replace(made.recipe, language=language))).pages)
+    assert "(m/\n" not in text
+    assert re.search(rf"\(m/min\)\s+{catalogue(language)('marks.redesign')}", text)
 
 
 def test_the_same_recipe_gives_the_same_bytes_without_any_date(made: MadeRecipe) -> None:

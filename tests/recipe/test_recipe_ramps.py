@@ -56,6 +56,24 @@ def test_a_cam_that_bears_no_ramp_says_so(made: MadeRecipe) -> None:
     assert "21.1" in alone["text"]
 
 
+def test_what_rounding_leaves_of_a_ramp_is_none(made: MadeRecipe) -> None:
+    """A crank's jerk limit that is used up left 0.13 mm/s², and 935 m of material that run through."""
+    left = replace(ramp_record(FOUND), acceleration=1.398e-4, stop=1.336e-4, stop_length=935.4)
+    _, plc, *others = ramp_blocks(replace(made.recipe, line_ramp=left), catalogue("en"))
+    assert "ramps up to 0 m/s² (jerk), emergency stop up to 0 m/s²" in plc["text"]
+    assert not [each for each in others if "935" in each["text"]]
+
+
+@pytest.mark.parametrize("allowed", [False, True])
+def test_a_carriage_runs_backwards_whatever_the_job_says_and_a_knife_only_if_it_may(
+    made: MadeRecipe, saw: MadeRecipe, allowed: bool
+) -> None:
+    for recipe, told in ((made.recipe, allowed), (saw.recipe, True)):
+        numbers = {**recipe.job.si, "limits": {**recipe.job.si["limits"], "reversal": allowed}}
+        facts = limit_facts(replace(recipe, job=replace(recipe.job, si=numbers)))
+        assert [fact.value for fact in facts if fact.key == "reversal"] == [told]
+
+
 def test_an_older_recipe_is_set_without(made: MadeRecipe) -> None:
     older = replace(made.recipe, line_ramp=None)
     assert len(ramp_blocks(older, catalogue("en"))) == 1
