@@ -133,8 +133,9 @@ def _from_words(table: CamTable, job: Job, place: str) -> tuple[Units, tuple[str
     if slave_word is not None:
         return Units(master, Unit(*_slave_word(slave_word, machine, place), machine.slave_unit)), tuple(notes)
     if not (table.advance > 0 and machine.pitch > 0):
+        advance = table.advance if table.kind == "appending" else 0.0
         raise InputError(
-            f"{place}: the slave advances by {table.advance!r} in a cycle, so its unit cannot be told from the pitch; "
+            f"{place}: the slave advances by {advance:.10g} in a cycle, so its unit cannot be told from the pitch; "
             "say it with --units, for example --units cycle,mm (cycle: the master's unit is that in which the cut length "
             "is the table's period)"
         )
