@@ -82,7 +82,7 @@ CHANGES = (
     Change("phases", "simulation.py", "\nPHASES = 16\n", "\nPHASES = 8\n"),
     Change("phases of a design", "axis_response.py", "\nPHASES = 16\n", "\nPHASES = 8\n"),
     Change("samples", "simulation.py", "\n_MOST_SAMPLES = 2**17\n", "\n_MOST_SAMPLES = 2**16\n"),
-    Change("samples one by one", "simulation.py", "\nWHOLE = 2**13\n", "\nWHOLE = 2**14\n"),
+    Change("samples one by one", "simulation.py", "\nWHOLE, WHOLE_PART = 2**13,", "\nWHOLE, WHOLE_PART = 2**14,"),
     Change("limits of the axis", "axis_motion.py", "\nALLOWANCE = 1e-3\n", "\nALLOWANCE = 2e-3\n"),
     Change("cut length, axis in sync", "axis_lengths.py", "= 8, 2e-4, 4e-3", "= 8, 2e-3, 4e-3"),
     Change("sync zone, axis in sync", "axis_lengths.py", "= 8, 2e-4, 4e-3", "= 8, 2e-4, 4e-2"),

@@ -25,6 +25,7 @@ from camwright.design.servo_aware.rows import RATIO
 from camwright.design.servo_aware.servo_weights import memory
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import (
+    Covered,
     InfeasibleError,
     InputError,
     SolverError,
@@ -291,7 +292,7 @@ def _infeasible(problem: AxisProblem, settles: _Ways | None) -> InfeasibleError:
         excess,
         "mm",
         suggestions,
-        None if kept is None else (kept, cut.line_speed),
+        Covered(None if kept is None else (kept, cut.line_speed)),
     )
 
 

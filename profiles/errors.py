@@ -67,6 +67,24 @@ class Suggestion:
     unit: str
 
 
+@dataclass(frozen=True)
+class Covered:
+    """What of a job's band of line speeds can be held where no one command holds all of it.
+
+    Parameters
+    ----------
+    part
+        Line speeds (m/s), the least and the job's own, over which one command keeps the tolerance; ``None`` where that was not looked for
+        or there is no such part.
+    family
+        Bands of line speeds (m/s) that one cam each holds and which together cover the job's; ``None`` where that was not looked for or
+        there are none.
+    """
+
+    part: tuple[float, float] | None = None
+    family: tuple[tuple[float, float], ...] | None = None
+
+
 class InfeasibleError(CamwrightError):
     """Physics is at fault: no motion keeps the limits.
 
@@ -80,12 +98,8 @@ class InfeasibleError(CamwrightError):
         By how much the limit would have to be exceeded, in the unit named; None if no value of this limit alone would do.
     suggestions
         Single changes that work, each checked.
-    kept
-        Line speeds (m/s), the least and the job's own, over which a command keeps the tolerance that none keeps over the whole band;
-        ``None`` where that was not looked for or there is no such part.
-    bands
-        Bands of line speeds (m/s) that one cam each holds and which together cover the job's, where no single one does; ``None`` where that
-        was not looked for or there are none.
+    covered
+        What of the job's line speeds can be held, where no one command holds all of them.
 
     Examples
     --------
@@ -108,8 +122,7 @@ class InfeasibleError(CamwrightError):
         excess: float | None,
         unit: str,
         suggestions: tuple[Suggestion, ...],
-        kept: tuple[float, float] | None = None,
-        bands: tuple[tuple[float, float], ...] | None = None,
+        covered: Covered = Covered(),
     ) -> None:
         super().__init__(str(message))
         self.message = message
@@ -117,8 +130,7 @@ class InfeasibleError(CamwrightError):
         self.excess = excess
         self.unit = unit
         self.suggestions = suggestions
-        self.kept = kept
-        self.bands = bands
+        self.covered = covered
 
 
 class SolverError(CamwrightError):

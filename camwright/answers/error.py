@@ -15,6 +15,11 @@ def error_answer(exit_code: int, message: str, failure: CamwrightError | None) -
         answer["status"] = "infeasible"
         answer |= {"binding": failure.binding, "excess": {"value": failure.excess, "unit": failure.unit}}
         answer["suggestions"] = [asdict(suggestion) for suggestion in failure.suggestions]
-        answer["line_speeds_kept_m_per_s"] = None if failure.kept is None else list(failure.kept)
-        answer["family_bands_m_per_s"] = None if failure.bands is None else [list(band) for band in failure.bands]
+        answer["line_speeds_kept_m_per_s"] = _listed(failure.covered.part)
+        answer["family_bands_m_per_s"] = _listed(failure.covered.family)
     return answer
+
+
+def _listed(band: tuple[Any, ...] | None) -> list[Any] | None:
+    """Put a band, or several, as JSON has them."""
+    return None if band is None else [list(each) if isinstance(each, tuple) else each for each in band]

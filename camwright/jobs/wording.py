@@ -61,7 +61,7 @@ def in_job_words(units: Units = METRIC) -> Iterator[None]:
     except InfeasibleError as error:
         message = words(error.message, units)
         raise InfeasibleError(
-            message, error.binding, error.excess, error.unit, error.suggestions, error.kept
+            message, error.binding, error.excess, error.unit, error.suggestions, error.covered
         ) from error
     except InputError as error:
         if not any(isinstance(message, Message) for message in error.messages):

@@ -13,7 +13,7 @@ from camwright.design.optimise import Solution
 from camwright.house.numbers import METRIC, Units, inside, with_unit
 from camwright.jobs.job import Job, read_job
 from camwright.jobs.wording import place_of
-from camwright.profiles.errors import CamwrightError, InfeasibleError, SolverError, Suggestion
+from camwright.profiles.errors import CamwrightError, Covered, InfeasibleError, SolverError, Suggestion
 from camwright.profiles.objective import OBJECTIVES
 from camwright.studies.axis_study import solve_job, sync_error
 from camwright.studies.covering import Uncovered
@@ -177,7 +177,7 @@ def solve_or_advise(job: Job) -> Solution:
     try:
         return solve_job(job)
     except InfeasibleError as error:
-        offered, line_speeds = error.suggestions, error.kept
+        offered, line_speeds = error.suggestions, error.covered.part
         if excess is None and error.binding == reason.binding:
             excess = error.excess  # by how much is found with what would work
     trial = _Trial(job)
@@ -196,7 +196,12 @@ def solve_or_advise(job: Job) -> Solution:
     bands = family_of(job)
     family = f". {family_words(bands, job.units)}" if bands else ""
     raise InfeasibleError(
-        f"{reason.message}{part}. {works}{family}", reason.binding, excess, reason.unit, kept, line_speeds, bands
+        f"{reason.message}{part}. {works}{family}",
+        reason.binding,
+        excess,
+        reason.unit,
+        kept,
+        Covered(line_speeds, bands),
     ) from reason
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from camwright import load_job, optimise
 from camwright.jobs.wording import error_words, in_job_words, place_of, value_words, words
-from camwright.profiles.errors import InfeasibleError, InputError, SolverError
+from camwright.profiles.errors import Covered, InfeasibleError, InputError, SolverError
 from camwright.profiles.message import Message, Value
 
 SHORT = Message(
@@ -56,9 +56,10 @@ def test_errors_that_leave_speak_of_the_job_file() -> None:
     with pytest.raises(InputError, match=r"\[machine\] stroke = 100 mm") as caught, in_job_words():
         raise InputError("first", SHORT)
     assert caught.value.faults == ("first", words(SHORT))
+    covered = Covered((0.5, 1.0), ((0.1, 0.6), (0.5, 1.0)))
     with pytest.raises(InfeasibleError, match=r"^\[limits\] jerk binds$") as refused, in_job_words():
-        raise InfeasibleError(Message("{@jerk} binds"), "jerk", None, "m/s^3", ())
-    assert (refused.value.binding, refused.value.unit) == ("jerk", "m/s^3")
+        raise InfeasibleError(Message("{@jerk} binds"), "jerk", None, "m/s^3", (), covered)
+    assert (refused.value.binding, refused.value.unit, refused.value.covered) == ("jerk", "m/s^3", covered)
     assert error_words(SolverError("no answer")) == ("no answer",)
 
 

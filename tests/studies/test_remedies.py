@@ -216,12 +216,12 @@ def test_a_band_that_no_command_keeps_is_told_its_least_tolerance_and_the_part_t
     with pytest.raises(InfeasibleError, match=r"One is held to it from \d.* m/min to 80 m/min\. What works") as refused:
         solve_or_advise(job)
     error = refused.value
-    assert error.kept is not None
-    assert error.kept[0] < error.kept[1] == pytest.approx(job.cut.line_speed)
+    assert error.covered.part is not None
+    assert error.covered.part[0] < error.covered.part[1] == pytest.approx(job.cut.line_speed)
     assert {each.change for each in error.suggestions} >= {"sync_tolerance", "line_speeds", "line_speed"}
     assert '[objective] line_speeds = ["' in str(error)
-    if error.bands is not None:  # each band is held by a cam of its own
-        assert f"A family of {len(error.bands)} cams covers its line speeds" in str(error)
+    if error.covered.family is not None:  # each band is held by a cam of its own
+        assert f"A family of {len(error.covered.family)} cams covers its line speeds" in str(error)
     low = next(each.value for each in error.suggestions if each.change == "line_speeds")
     told = BAND.replace('"shaped"', f'"shaped"\nline_speeds = ["{low:.15g} m/min", "100 %"]')
     narrow = parse_job(told, "band")

@@ -145,7 +145,7 @@ def test_a_refusal_says_for_which_part_of_the_band_there_is_a_cam() -> None:
         solve_axis(task, "rms_acceleration", "shaped", (PAPER,), shares=BAND)
     (part,) = [each for each in refused.value.suggestions if each.change == "line_speeds"]
     slowest = part.value / 60 / CUT.line_speed
-    assert refused.value.kept == pytest.approx((slowest * CUT.line_speed, CUT.line_speed))
+    assert refused.value.covered.part == pytest.approx((slowest * CUT.line_speed, CUT.line_speed))
     assert 0.1 < slowest < 1.0
     narrow = tuple(share for share in BAND if share > slowest - 1e-9)
     solution = solve_axis(task, "rms_acceleration", "shaped", (PAPER,), shares=narrow, suggest=False)
