@@ -32,6 +32,9 @@ _MARGIN = 7e-3
 """Share by which the band in the shear zone is drawn in, as rows stand at single places, times and line speeds."""
 
 _ROUNDS = 40
+_FELT = 1e-6
+"""Part of its bound by which a row must change for a travel of a cycle, else it does not know the transition."""
+
 _SOFTER = 1e-3
 """Share by which the sync error may be above the least, where that is above what is asked."""
 
@@ -160,9 +163,11 @@ class _Block:
     """Rows of one servo at one line speed, in units of their bounds, and those of them that stand."""
 
     def __init__(self, rows: AxisRows, scale: float) -> None:
-        size = rows.size
-        self._matrix, self._constant = rows.matrix * (scale / size)[:, None], rows.constant / size
-        self._low, self._high = rows.low / size, rows.high / size
+        # what a row cannot change is the other cam's, and was judged there
+        felt = np.abs(rows.matrix).max(axis=1) * scale > _FELT * rows.size
+        size = rows.size[felt]
+        self._matrix, self._constant = rows.matrix[felt] * (scale / size)[:, None], rows.constant[felt] / size
+        self._low, self._high = rows.low[felt] / size, rows.high[felt] / size
         self._stands = np.zeros(len(size), dtype=bool)
         self._stands[:: max(1, len(size) // _EACH)] = True
 

@@ -117,7 +117,8 @@ class ChangeRows:
         ):
             room = _AXIS_MARGIN * high
             matrix, constant = self._rows(axis, places, order)
-            least = low if low == 0.0 else low + room
+            # a slave that must not run backwards may by half of what its check allows: where it stands, rows leave no other way
+            least = low - 0.5 * room if low == 0.0 else low + room
             # rows in units of the limit, so that both kinds can stand in one block
             found.append((matrix / high, constant / high, least / high, (high - room) / high))
         return AxisRows(
