@@ -204,9 +204,9 @@ class ZoneTable:
     def _at(self, points: NDArray[np.intp], order: int) -> tuple[FloatArray, FloatArray]:
         """Axis or its ratio at some of the points, as rows over the unknowns."""
         instants, of = np.unique(self._points.of[points], return_inverse=True)
-        if self._short:
+        if "_sums" in vars(self):
             matrix, constant = (part[instants] for part in self._sums)
-        else:
+        else:  # the first rows may well tell that there is no answer to judge
             matrix, constant = self._basis.sums(self._samples(instants), self._weights)
         weights = self._combined[order][points]
         return np.einsum("pa,pan->pn", weights, matrix[of]), np.einsum("pa,pa->p", weights, constant[of])
