@@ -28,6 +28,12 @@ METHOD = "convex programme of averages, with the line's ramps"
 INTERVALS = 400
 """Intervals of the mesh; it holds the breaks of the motion that is judged."""
 
+FINER, WIDE = 1600, 5e-4
+"""Intervals of a second mesh, and the gap from which on it is tried."""
+
+LIKE = 1e-3
+"""Gap up to which a motion is called the best there is."""
+
 SHORTEST = 1e-7
 """Intervals shorter than this part of the return are joined to their neighbours."""
 
@@ -114,28 +120,44 @@ def ramped_bound(profile: CamProfile, task: Task, objective: MotionObjective) ->
     Bound
         The value over time at the line speed, of the cycle for a peak; without one where the solver fails.
     """
-    cut, length, v = task.cut, task.cut.return_zone, task.cut.line_speed
     of = OBJECTIVES[objective]
-    start = cut.return_start
-    back = profile.restrict(start, start + length)
+    start = task.cut.return_start
+    back = profile.restrict(start, start + task.cut.return_zone)
+    ends = [abs(each.value) for each in back.extrema(of.order)]
+    own = (math.sqrt(back.mean_square(of.order)) if of.form == "rms" else max(ends)) * task.cut.line_speed**of.order
+    found = _on_mesh(back, task, objective, INTERVALS)
+    zone = task.cut.line_speed**of.order * max(abs(each.value) for each in task.sync.extrema(of.order))
+    least = zone if of.form == "peak" else 0.0
+    if not max(found, least) >= own * (1.0 - WIDE):  # wide, or not a number
+        found = float(np.fmax(found, _on_mesh(back, task, objective, FINER)))
+    if of.form == "peak" and not max(found, least) >= own * (1.0 - LIKE):
+        found = float(np.fmax(found, _on_mesh(back, task, objective, FINER, exactly=True)))
+    return Bound(math.nan, NONE) if math.isnan(found) else Bound(max(found, least), METHOD)
+
+
+def _on_mesh(
+    back: CamProfile, task: Task, objective: MotionObjective, intervals: int, *, exactly: bool = False
+) -> float:
+    """Bound the return on a mesh of so many intervals and its own breaks; not a number where the solver fails.
+
+    A peak's programme is linear: ``exactly`` solves it to a vertex, which takes three times as long.
+    """
+    length, v, of, start = task.cut.return_zone, task.cut.line_speed, OBJECTIVES[objective], back.start
     unit = max(abs(each.value) for each in back.extrema(2)) * length**2 or 1.0
-    nodes = _Nodes(_mesh((back.breaks - start) / length))
+    nodes = _Nodes(_mesh((back.breaks - start) / length, intervals))
     equal = list(_ends(nodes, task, unit))
     less = [*_limits(nodes, task, unit, objective), *_asked(nodes, task, unit), *_hiding(nodes, task, unit, objective)]
     square, goal = _goal(nodes, objective)
-    value = _solved(nodes, equal, less, square, goal)
+    value = _by_highs(nodes, equal, less, goal) if exactly else _solved(nodes, equal, less, square, goal)
     if value is None:
-        return Bound(math.nan, NONE)
+        return math.nan
     reached = math.sqrt(max(0.0, value)) if of.form == "rms" else value
-    found = reached * unit / length**of.order * v**of.order * (1.0 - ACCURACY)
-    if of.form == "peak":
-        found = max(found, v**of.order * max(abs(each.value) for each in task.sync.extrema(of.order)))
-    return Bound(found, METHOD)
+    return reached * unit / length**of.order * v**of.order * (1.0 - ACCURACY)
 
 
-def _mesh(own: FloatArray) -> FloatArray:
+def _mesh(own: FloatArray, intervals: int) -> FloatArray:
     """Lengths of intervals: even ones, cut at a motion's own breaks."""
-    nodes = np.union1d(np.linspace(0.0, 1.0, INTERVALS + 1), np.clip(own, 0.0, 1.0))
+    nodes = np.union1d(np.linspace(0.0, 1.0, intervals + 1), np.clip(own, 0.0, 1.0))
     kept = np.concatenate([[True], np.diff(nodes) > SHORTEST])
     nodes = nodes[kept]
     nodes[0], nodes[-1] = 0.0, 1.0
@@ -243,19 +265,42 @@ def _goal(nodes: _Nodes, objective: MotionObjective) -> tuple[Any, FloatArray]:
 def _solved(nodes: _Nodes, equal: list[Row], less: list[Row], square: Any, goal: FloatArray) -> float | None:
     """Solve the programme: the value of its dual, which is below its own; None where the solver does not end."""
     import clarabel
-    from scipy.sparse import csc_array, triu, vstack
+    from scipy.sparse import csc_array, triu
 
-    matrix = csc_array(vstack([row for row, _ in (*equal, *less)]))
-    right = np.concatenate([limit for _, limit in (*equal, *less)])
-    sizes = np.sqrt(np.asarray(matrix.multiply(matrix).sum(axis=1)).ravel())
-    count = sum(len(limit) for _, limit in equal)
+    scaled, right, count = _scaled(nodes, equal, less)
     settings = clarabel.DefaultSettings()
     settings.verbose = False
     settings.max_iter = 200
     cones = [clarabel.ZeroConeT(count), clarabel.NonnegativeConeT(len(right) - count)]
-    scaled = csc_array(nodes.times(1.0 / sizes, matrix))
-    answer = clarabel.DefaultSolver(csc_array(triu(square)), goal, scaled, right / sizes, cones, settings).solve()
+    answer = clarabel.DefaultSolver(csc_array(triu(square)), goal, csc_array(scaled), right, cones, settings).solve()
     if str(answer.status) not in ("Solved", "AlmostSolved"):
         return None
     aside = ALMOST if str(answer.status) == "AlmostSolved" else 0.0
     return float(min(answer.obj_val, answer.obj_val_dual)) * (1.0 - aside)
+
+
+def _scaled(nodes: _Nodes, equal: list[Row], less: list[Row]) -> tuple[Any, FloatArray, int]:
+    """Put rows below each other, each of size one: the matrix, its right side, and how many rows are equal and not at most."""
+    from scipy.sparse import csr_array, vstack
+
+    matrix = csr_array(vstack([row for row, _ in (*equal, *less)]))
+    right = np.concatenate([limit for _, limit in (*equal, *less)])
+    sizes = np.sqrt(np.asarray(matrix.multiply(matrix).sum(axis=1)).ravel())
+    return csr_array(nodes.times(1.0 / sizes, matrix)), right / sizes, sum(len(limit) for _, limit in equal)
+
+
+def _by_highs(nodes: _Nodes, equal: list[Row], less: list[Row], goal: FloatArray) -> float | None:
+    """Solve a linear programme to a vertex; None where that fails."""
+    from scipy.optimize import linprog
+
+    rows, right, count = _scaled(nodes, equal, less)
+    found = linprog(
+        goal,
+        A_ub=rows[count:],
+        b_ub=right[count:],
+        A_eq=rows[:count],
+        b_eq=right[:count],
+        bounds=(None, None),
+        method="highs-ipm",
+    )
+    return float(found.fun) if found.status == 0 else None

@@ -192,6 +192,23 @@ def test_a_ramp_that_comes_too_fast_is_refused_by_its_jerk() -> None:
     assert can_ramp(task.with_line(Line(5.0, None, softer)))
 
 
+def test_a_wide_gap_is_looked_at_on_a_finer_mesh_and_to_a_vertex(monkeypatch: pytest.MonkeyPatch) -> None:
+    task = paper(0.6, Line(3.0, 6.0))
+    found = solve(task, "peak_jerk")
+    bounds = []
+    for coarse, finer in ((24, 24), (24, 160)):
+        monkeypatch.setattr("camwright.validation.bounds.ramped.INTERVALS", coarse)
+        monkeypatch.setattr("camwright.validation.bounds.ramped.FINER", finer)
+        for like in (1.0, 0.0):  # by the interior point alone; and to a vertex whatever the gap
+            monkeypatch.setattr("camwright.validation.bounds.ramped.LIKE", like)
+            monkeypatch.setattr("camwright.validation.bounds.ramped.WIDE", 0.0)
+            bounds.append(ramped_bound(found.profile, task, "peak_jerk").value)
+    assert bounds[0] == pytest.approx(bounds[1], rel=1e-3)
+    assert bounds[2] == pytest.approx(bounds[3], rel=1e-3)
+    assert bounds[0] < bounds[3] <= found.minimised * (1 + 1e-9)
+    assert found.minimised < bounds[3] * (1 + 2e-3)
+
+
 def test_the_bound_of_a_steady_line_is_not_above_the_closed_form() -> None:
     task = paper(0.6, STEADY)
     for objective in ("peak_acceleration", "rms_acceleration", "peak_jerk", "rms_jerk"):
