@@ -49,6 +49,8 @@ FURTHER = (1.0, 1.02, 1.1)
 WIDER = (1.0 + ASIDE, 1.01, 1.1, 1.5)
 # What binds where the error alone can be held to the tolerance, and the ratio of the axis cannot be held to what goes with it.
 AXIS_RATIO = "axis_ratio"
+# Rounds after which a job that is not proved to be impossible is designed.
+HOPELESS = 3
 # So much faster grows what is looked at.
 GROWN = 4.0
 # Samples that a servo remembers and those of a cycle, together, that are looked at.
@@ -70,6 +72,7 @@ def solve_axis(
     shares: tuple[float, ...] = (1.0,),
     *,
     suggest: bool = True,
+    proved: bool = True,
 ) -> Solution:
     """Design the cycle of a cutting machine whose axis keeps to the material in the shear zone.
 
@@ -92,6 +95,8 @@ def solve_axis(
         Line speeds at which all this must hold, as shares of the cut's, from the full line speed down.
     suggest
         Whether an `InfeasibleError` says what would work; finding that takes longer than the design.
+    proved
+        Whether that is designed before it is told; otherwise some of the line speeds tell, and designing it is for the caller.
 
     Raises
     ------
@@ -108,7 +113,9 @@ def solve_axis(
     cost = _cost(machine, objective)
 
     def designs(other: Task) -> bool:
-        return _designs(lambda: solve_axis(other, objective, command, servos, between, shares, suggest=False))
+        return not proved or _designs(
+            lambda: solve_axis(other, objective, command, servos, between, shares, suggest=False)
+        )
 
     blind = None
     if command == "in_sync" or not machine.placed:
@@ -133,12 +140,26 @@ def solve_axis(
         loosest = _within(replace(problem, axis_limits=False), motor_speed_limits(placed, limits))
 
         def narrower(fewer: tuple[float, ...]) -> bool:
-            return _designs(lambda: solve_axis(task, objective, command, servos, between, fewer, suggest=False))
+            return not proved or _designs(
+                lambda: solve_axis(task, objective, command, servos, between, fewer, suggest=False)
+            )
 
         raise _infeasible(loosest, (lambda cut: designs(task.with_cut(cut)), narrower) if suggest else None)
     motion = min(motions, key=lambda each: each.value)
     status = blind.status if blind is not None and not motion.programmes else SolveStatus.BEST_FOUND
     return _solution(motion, status, task.with_machine(placed), objective, order)
+
+
+def may_keep(task: Task, servos: tuple[Servo, ...], shares: tuple[float, ...]) -> bool:
+    """Whether a shaped command may keep the tolerance, the axis within its limits: false where some of the line speeds prove it cannot.
+
+    A fraction of the time of a design. Arguments as in `solve_axis`, the machine placed.
+    """
+    problem = AxisProblem(task, "shaped", servos, True, shares=thinned(shares, LOOKED))
+    try:
+        return AxisProgramme(problem).reaches(HOPELESS) is not False
+    except SolverError:
+        return True  # it was not told
 
 
 def _designs(design: Callable[[], Solution]) -> bool:
@@ -361,13 +382,12 @@ def _works(problem: AxisProblem) -> bool:
     """Whether a command brings the axis into the tolerance at some of the line speeds; what is offered is designed for all of them."""
     some = replace(problem, between=(), shares=thinned(problem.shares, LOOKED))
     try:
-        if (
-            len(some.servos) > FEW_SERVOS
-        ):  # who cannot serve these does not serve all, which takes several times as long to see
+        # who cannot serve a few servos does not serve all, which takes several times as long to see
+        if len(some.servos) > FEW_SERVOS:
             few = replace(some, servos=(some.servos[0], some.servos[1], some.servos[-1]), shares=some.shares[:1])
             if not AxisProgramme(few).reaches():
                 return False
-        return AxisProgramme(some).reaches()
+        return bool(AxisProgramme(some).reaches())
     except (InputError, SolverError):
         return False
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from camwright.design.optimise import Solution, solve
-from camwright.design.optimise_axis import solve_axis
+from camwright.design.optimise_axis import may_keep, solve_axis
 from camwright.house.threads import one_thread
 from camwright.jobs.job import Job
 from camwright.jobs.servos import between_of, servos_of
@@ -98,7 +98,7 @@ def shares_of(slowest: float) -> tuple[float, ...]:
     )
 
 
-def solve_job(job: Job, *, suggest: bool = True) -> Solution:
+def solve_job(job: Job, *, suggest: bool = True, proved: bool = True) -> Solution:
     """Design the cycle of a job, servo-aware if it says so.
 
     Parameters
@@ -107,6 +107,8 @@ def solve_job(job: Job, *, suggest: bool = True) -> Solution:
         The job.
     suggest
         As in `camwright.design.optimise.solve`.
+    proved
+        As in `camwright.design.optimise_axis.solve_axis`.
 
     Raises
     ------
@@ -118,13 +120,23 @@ def solve_job(job: Job, *, suggest: bool = True) -> Solution:
     with in_job_words(job.units), one_thread():
         if job.servo_aware:
             servos, between, shares = servos_of(job), between_of(job), shares_of(job.slowest)
-            return solve_axis(job.task, job.objective, job.command, servos, between, shares, suggest=suggest)
+            return solve_axis(
+                job.task, job.objective, job.command, servos, between, shares, suggest=suggest, proved=proved
+            )
         if job.objective == "sync_error":
             raise InputError(
                 '[objective] minimise = "sync_error": for servo-aware designs only; add servo_aware = true or minimise '
                 'e.g. "peak_acceleration"'
             )
         return solve(job.task, job.objective, suggest=suggest)
+
+
+def beyond_reach(job: Job) -> bool:
+    """Whether it is proved that no design of a job keeps its tolerance and the limits of the axis; quicker than to design it."""
+    if not job.servo_aware or job.command != "shaped" or not job.machine.placed or job.limits.motor is not None:
+        return False
+    with one_thread():
+        return not may_keep(job.task, servos_of(job), shares_of(job.slowest))
 
 
 def cam_for_one_speed(job: Job) -> tuple[CamProfile, Task] | None:

@@ -101,7 +101,7 @@ def asking(job: Job) -> tuple[Holds, Holds]:
         if (low, top) not in known:
             programme = _programme(job, low, top, 1.0 - ROOM)
             try:
-                known[low, top] = programme.keeps() if job.objective == "sync_error" else programme.reaches()
+                known[low, top] = programme.keeps() if job.objective == "sync_error" else bool(programme.reaches())
             except SolverError:  # at the edge of what double precision resolves
                 known[low, top] = False
         return known[low, top]

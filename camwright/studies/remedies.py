@@ -15,14 +15,14 @@ from camwright.jobs.job import Job, read_job
 from camwright.jobs.wording import place_of
 from camwright.profiles.errors import CamwrightError, Covered, InfeasibleError, SolverError, Suggestion
 from camwright.profiles.objective import OBJECTIVES
-from camwright.studies.axis_study import solve_job, sync_error
+from camwright.studies.axis_study import beyond_reach, solve_job, sync_error
 from camwright.studies.covering import Uncovered
 from camwright.studies.family_bands import family_bands, placed_for_all
 from camwright.studies.reach import fails, stand_in
 from camwright.studies.speed_band import SpeedBand
 from camwright.validation.report import ValidationReport, judge
 
-SECONDS = 8.0
+SECONDS = 5.0
 """Processor time after which no more changes are tried; the one that is being tried is finished."""
 
 _SLOWER = (1.0, 0.97, 0.9, 0.8, 0.65, 0.5, 0.35, 0.25, 0.15, 0.1, 0.05)
@@ -60,15 +60,22 @@ class Remedy:
         Key of the job file. ``"command"`` goes with ``servo_aware = true``.
     value, unit
         What to write: a number and its unit, or a word, or true, without one. For ``"line_speeds"`` it is where they begin.
+    also
+        What must be changed with it: line speeds that end at the old one.
     """
 
     change: str
     value: float | str | bool
     unit: str
+    also: str = ""
 
     @property
     def words(self) -> str:
-        """The change as a line of a job file, its table before it."""
+        """The change as a line of a job file, its table before it, and what must go with it."""
+        return f"{self._alone}, {self.also}" if self.also else self._alone
+
+    @property
+    def _alone(self) -> str:
         also = "servo_aware = true, " if self.change == "command" else ""
         return f"{_place(self.change).replace(f'] {self.change}', f'] {also}{self.change}')} = {_written(self)}"
 
@@ -79,34 +86,50 @@ class _Trial:
     def __init__(self, job: Job) -> None:
         self._data = tomllib.loads(job.text.removeprefix("\ufeff"))
         self._end = process_time() + SECONDS
+        band = self._data.get("objective", {}).get("line_speeds")
+        self._slowest = str(band[0]) if isinstance(band, list) and len(band) == 2 else ""
 
     def works(self, remedy: Remedy) -> bool:
         """Whether the job with a change is designed and passes every check; false where there is no time left to see."""
         if process_time() > self._end:
             return False
         data = deepcopy(self._data)
+        if remedy.also:
+            data["objective"]["line_speeds"] = [self._slowest, "100 %"]
         table = data.setdefault(_table(remedy.change), {})
         value = f"{remedy.value:.15g} {remedy.unit}" if remedy.unit else remedy.value
         table[_key(remedy.change)] = [value, "100 %"] if remedy.change == "line_speeds" else value
         if remedy.change == "command":
             table["servo_aware"] = True
         try:
-            job = read_job(data, None, "job")
-            return not _hopeless(job) and _passes(job)
+            other = read_job(data, None, "job")
+            return not _hopeless(other) and _passes(other)
         except CamwrightError:
             return False
 
     def first(self, remedies: Iterator[Remedy]) -> Iterator[Remedy]:
         """Give the first of some changes that works, if any."""
         for remedy in remedies:
-            if self.works(remedy):
-                yield remedy
+            whole = self._with(remedy)
+            if self.works(whole):
+                yield whole
                 return
+
+    def _with(self, remedy: Remedy) -> Remedy:
+        """Add to another line speed that line speeds which end at the old one end at it too."""
+        if remedy.change != "line_speed" or not self._slowest:
+            return remedy
+        return replace(remedy, also=f'[objective] line_speeds = ["{self._slowest}", "100 %"]')
 
 
 def _hopeless(job: Job) -> bool:
-    """Whether even the motion that stands in for a job of the motor fails: that is known in a hundredth of the time."""
-    return not job.servo_aware and OBJECTIVES[job.objective].of == "motor" and bool(fails(job, job.task, stand_in(job)))
+    """Whether even the motion that stands in for a job of the motor fails, or some line speeds prove that no axis keeps to the material.
+
+    Either is known in a fraction of the time of a design.
+    """
+    if job.servo_aware:
+        return beyond_reach(job)
+    return OBJECTIVES[job.objective].of == "motor" and bool(fails(job, job.task, stand_in(job)))
 
 
 def _passes(job: Job) -> bool:
@@ -175,7 +198,7 @@ def solve_or_advise(job: Job) -> Solution:
     except InfeasibleError as error:
         reason, excess = error, error.excess
     try:
-        return solve_job(job)
+        return solve_job(job, proved=False)  # every change is designed and judged below
     except InfeasibleError as error:
         offered, line_speeds = error.suggestions, error.covered.part
         if excess is None and error.binding == reason.binding:
@@ -232,7 +255,7 @@ def _taken_further(suggestion: Suggestion, units: Units) -> Iterator[Remedy]:
     if suggestion.change == "motor":
         return  # a curve of many numbers: no single value to write
     up = suggestion.change != "line_speed" and not suggestion.change.startswith("line.")
-    value, unit = suggestion.value, suggestion.unit
+    value, unit = inside(suggestion.value, _FINE_DIGITS, up=up), suggestion.unit
     si = _METRIC.get(unit)
     if si is not None and units is not METRIC:
         shown = units.shown[si]

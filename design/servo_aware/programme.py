@@ -117,9 +117,9 @@ class AxisProgramme:
             before = found[1]
         return found
 
-    def reaches(self) -> bool:
-        """Whether some command brings every axis into the tolerance; no more exactly than that asks for."""
-        for _ in range(ROUNDS):
+    def reaches(self, rounds: int = ROUNDS) -> bool | None:
+        """Whether some command brings every axis into the tolerance, no more exactly than that asks for; ``None`` after too few rounds."""
+        for _ in range(rounds):
             found = self._feasible(
                 "peak_acceleration", {}
             )  # the gentlest command breaks the fewest limits between the rows
@@ -127,7 +127,7 @@ class AxisProgramme:
                 return False
             if not self._add_worst(found[0], 1.0, ratio=True):
                 return True
-        return False
+        return None
 
     def keeps(self) -> bool:
         """Whether some command brings every axis into the tolerance, whatever its ratio; a design of least sync error is one."""

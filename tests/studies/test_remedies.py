@@ -236,3 +236,14 @@ def test_a_band_that_no_command_keeps_is_told_its_least_tolerance_and_the_part_t
         else:
             with pytest.raises(InfeasibleError):
                 solve_job(other, suggest=False)
+
+
+def test_a_lower_line_speed_takes_the_ends_of_the_line_speeds_with_it() -> None:
+    """Line speeds that are written by number end at the old line speed: they must end at the new one, or the job is refused."""
+    text = Path("examples/short-cut.toml").read_text(encoding="utf-8")
+    job = parse_job(text.replace('"290 mm"', '"250 mm"').replace("[servo.tolerance]", "[servo.tolerance]\n#"), "job")
+    trial = module._Trial(job)
+    found = list(trial.first(iter([module.Remedy("line_speed", 40.0, "m/min")])))
+    assert [each.words for each in found] == [
+        '[cut] line_speed = "40 m/min", [objective] line_speeds = ["8 m/min", "100 %"]'
+    ]
