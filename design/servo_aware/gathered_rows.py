@@ -62,7 +62,6 @@ class GatheredRows:
         self.bands: list[AxisRows] = []
         self.ratios: list[AxisRows] = []
         self.own = OwnRows(problem)
-        self._own_due = True
         self._between = BetweenServos(problem)
         self._tables = [[ZoneTable(axis, problem.basis) for axis in axes] for axes in problem.axes]
 
@@ -101,9 +100,8 @@ class GatheredRows:
         self.bands += between
         added |= bool(between)
         # limits of the axis bind in the first rounds or never: after one without any they are looked at in the end again
-        if self.problem.axis_limits and (self._own_due or not added):
-            self._own_due = self.own.add_worst(command.profile)
-            added |= self._own_due
+        if self.problem.axis_limits and (self.own.due or not added):
+            added |= self.own.add_worst(command.profile)
         self.bands = merged(self.bands)  # a programme takes one block quicker than many
         return added
 
@@ -189,6 +187,7 @@ class OwnRows:
     def __init__(self, problem: AxisProblem) -> None:
         self.problem = problem
         self.rows: list[AxisRows] = []
+        self.due = True  # whether the last look added some, or there was none yet
         self._judged: CamProfile | None = None
         self._excess: dict[tuple[float, int], FloatArray] = {}
 
@@ -219,7 +218,8 @@ class OwnRows:
                     matrix, constant = axis.rows(self.problem.basis, places, times, order)
                     room, ones = high * AXIS_MARGIN, np.ones(len(matrix))
                     self.rows.append(AxisRows(matrix, constant, (low + room) * ones, (high - room) * ones))
-        return len(self.rows) > before
+        self.due = len(self.rows) > before
+        return self.due
 
     def _over(self, axis: Axis, profile: CamProfile, order: int) -> FloatArray:
         """By how much the nominal axis breaks a limit over the cycle, by time after a sample and place; negative within it."""

@@ -99,7 +99,11 @@ class ZoneTable:
         self.last = math.inf
         self._judged: tuple[Tried, FloatArray] | None = None
         self._points = _points(axis)
-        self._ideal = axis.ideal(self._points.places)
+
+    @cached_property
+    def _ideal(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """What the axis would do at the points in sync, as `Axis.ideal` has it."""
+        return self.axis.ideal(self._points.places)
 
     @property
     def places(self) -> FloatArray:

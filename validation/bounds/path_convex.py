@@ -12,6 +12,8 @@ points an interval.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from camwright.profiles.polynomial.profile import FloatArray
@@ -37,6 +39,42 @@ def least_square_in_time(task: PathTask) -> float:
     return PathDual(task).best()
 
 
+@dataclass(frozen=True)
+class _Grid:
+    """A motion on the grid: its time (s), the intervals' width, and by Gauss-Legendre's points half the inertia and the greatest ``z``.
+
+    ``ends`` are ``z`` at the ends, ``tail`` the price of coming to rest beyond the end, ``string`` the ``p`` of the shortest way under the
+    greatest ``z``.
+    """
+
+    time: float
+    width: float
+    half: FloatArray
+    top: FloatArray
+    ends: tuple[float, float]
+    tail: float
+    string: FloatArray
+
+
+def _grid(task: PathTask, tail: float) -> _Grid:
+    nodes = np.linspace(0.0, task.stretched[-1], INTERVALS + 1)
+    width = float(nodes[1])
+    points = nodes[:-1] + width * (0.5 + 0.5 * _NODES[:, None])
+    top = np.interp(points, task.stretched, task.top) ** 0.75
+    first, last = (energy**0.75 for energy in task.energies)
+    way = np.append(nodes, nodes[-1] + tail) if tail else nodes
+    under = np.concatenate([[first], top.min(axis=0)[1:], np.full(len(way) - INTERVALS, last)])
+    return _Grid(
+        task.time,
+        width,
+        0.5 * np.interp(points, task.stretched, task.inertia),
+        top,
+        (first, last),
+        9 / 64 * tail,  # over the tail it costs 16/9 z²/tail at least
+        32 / 9 * _slopes_of_hull(way, under)[: INTERVALS + 1],
+    )
+
+
 class PathDual:
     """The dual function on a grid.
 
@@ -52,26 +90,13 @@ class PathDual:
 
     def __init__(self, task: PathTask, tail: float = 0.0, search: tuple[int, float] = SEARCH) -> None:
         self._steps, self._least = search
-        nodes = np.linspace(0.0, task.stretched[-1], INTERVALS + 1)
-        self._time = task.time
-        self._h = float(nodes[1])
-        points = nodes[:-1] + self._h * (0.5 + 0.5 * _NODES[:, None])
-        self._half = 0.5 * np.interp(points, task.stretched, task.inertia)
-        self._top = np.interp(points, task.stretched, task.top) ** 0.75
-        self._ends = tuple(energy**0.75 for energy in task.energies)
-        # over the tail it costs 16/9 z²/tail at least
-        self._tail = 9 / 64 * tail
-        way = np.append(nodes, nodes[-1] + tail) if tail else nodes
-        under = np.concatenate(
-            [[self._ends[0]], self._top.min(axis=0)[1:], np.full(len(way) - INTERVALS, self._ends[1])]
-        )
-        self._string = 32 / 9 * _slopes_of_hull(way, under)[: INTERVALS + 1]
+        self._grid = _grid(task, tail)
 
     def best(self) -> float:
         """Greatest value over the price of time."""
-        line = self._ends[0] + (self._ends[1] - self._ends[0]) * (np.arange(INTERVALS) + 0.5) / INTERVALS
+        line = self._grid.ends[0] + (self._grid.ends[1] - self._grid.ends[0]) * (np.arange(INTERVALS) + 0.5) / INTERVALS
         typical = float(line.mean())
-        unit = typical ** (8 / 3) / float(self._half.mean()) / (self._h * INTERVALS) ** 2
+        unit = typical ** (8 / 3) / float(self._grid.half.mean()) / (self._grid.width * INTERVALS) ** 2
         p, greatest = np.zeros(INTERVALS + 1), 0.0
         low, high = LEAST, GREATEST
         for _ in range(HALVINGS):
@@ -79,57 +104,57 @@ class PathDual:
             price = unit * float(np.exp(middle))
             p, value, time = self.at_price(price, p, line)
             greatest = max(greatest, value)
-            low, high = (middle, high) if time > self._time else (low, middle)
+            low, high = (middle, high) if time > self._grid.time else (low, middle)
         return greatest
 
     def at_price(self, price: float, p: FloatArray, line: FloatArray) -> tuple[FloatArray, float, float]:
         """Climb at one price of time, from ``p`` or from a motion of the kind of a line of ``z``: ``p``, the value, the motion's time."""
-        starts = [p, self._string, *(self._start(line * factor, price) for factor in FACTORS)]
+        starts = [p, self._grid.string, *(self._start(line * factor, price) for factor in FACTORS)]
         return self._climb(max(starts, key=lambda start: self._value(start, price)), price)
 
     def _start(self, z: FloatArray, price: float) -> FloatArray:
         """``p`` whose inner minimum is at a given ``z``, its mean such that the ends balance."""
-        slope = 2.0 / 3.0 * price * self._half[1] * np.minimum(z, self._top[1]) ** (-5 / 3)
-        p = np.concatenate([[0.0], np.cumsum(slope * self._h)])
-        wanted = (self._ends[0] - self._ends[1]) / (9 / 32 * self._h * INTERVALS)
+        slope = 2.0 / 3.0 * price * self._grid.half[1] * np.minimum(z, self._grid.top[1]) ** (-5 / 3)
+        p = np.concatenate([[0.0], np.cumsum(slope * self._grid.width)])
+        wanted = (self._grid.ends[0] - self._grid.ends[1]) / (9 / 32 * self._grid.width * INTERVALS)
         return np.asarray(p - 0.5 * (p[:-1] + p[1:]).mean() + wanted)
 
     def _parts(self, p: FloatArray, price: float) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Give means over each interval: ``z`` of the inner minimum, its value, its second derivative over the slope, and the time."""
-        slope = np.diff(p) / self._h
+        slope = np.diff(p) / self._grid.width
         steep = np.maximum(slope, FLAT * price)
-        z = (2.0 / 3.0 * price * self._half / steep) ** 0.6
-        at_top = (z >= self._top) | (slope <= 0)
-        z = np.where(at_top, self._top, z)
-        pace = self._half * z ** (-2 / 3)
+        z = (2.0 / 3.0 * price * self._grid.half / steep) ** 0.6
+        at_top = (z >= self._grid.top) | (slope <= 0)
+        z = np.where(at_top, self._grid.top, z)
+        pace = self._grid.half * z ** (-2 / 3)
         curve = np.where(at_top, 0.0, -0.6 * z / steep)
         return _SHARES @ z, _SHARES @ (slope * z + price * pace), _SHARES @ curve, _SHARES @ pace
 
     def _value(self, p: FloatArray, price: float) -> float:
         _, value, _, _ = self._parts(p, price)
-        square = self._h * float((p[:-1] ** 2 + p[:-1] * p[1:] + p[1:] ** 2).sum()) / 3
-        ends = float(p[0]) * self._ends[0] - float(p[-1]) * self._ends[1]
-        ends -= self._tail * float(p[-1]) ** 2
-        return float(ends + self._h * float(value.sum()) - 9 / 64 * square - price * self._time)
+        square = self._grid.width * float((p[:-1] ** 2 + p[:-1] * p[1:] + p[1:] ** 2).sum()) / 3
+        ends = float(p[0]) * self._grid.ends[0] - float(p[-1]) * self._grid.ends[1]
+        ends -= self._grid.tail * float(p[-1]) ** 2
+        return float(ends + self._grid.width * float(value.sum()) - 9 / 64 * square - price * self._grid.time)
 
     def _climb(self, p: FloatArray, price: float) -> tuple[FloatArray, float, float]:
         """Newton's method for one price: ``p``, the value, and the time that the motion takes which the price asks for."""
         from scipy.linalg import solveh_banded
 
-        h, value = self._h, self._value(p, price)
+        h, value = self._grid.width, self._value(p, price)
         for _ in range(self._steps):
             z, _, curve, _ = self._parts(p, price)
             rise = np.zeros(len(p))
-            rise[0], rise[-1] = self._ends[0], -self._ends[1]
+            rise[0], rise[-1] = self._grid.ends[0], -self._grid.ends[1]
             rise[:-1] -= z
             rise[1:] += z
             rise[:-1] -= 9 / 64 * h * (2 * p[:-1] + p[1:]) / 3
             rise[1:] -= 9 / 64 * h * (2 * p[1:] + p[:-1]) / 3
-            rise[-1] -= 2 * self._tail * p[-1]
+            rise[-1] -= 2 * self._grid.tail * p[-1]
             main, beside = np.zeros(len(p)), np.zeros(len(p))
             for part in (slice(None, -1), slice(1, None)):
                 main[part] += 9 / 64 * h * 2 / 3 - curve / h
-            main[-1] += 2 * self._tail
+            main[-1] += 2 * self._grid.tail
             beside[1:] = 9 / 64 * h / 3 + curve / h
             step = solveh_banded(np.stack([beside, main]), rise)
             gain, share = float(rise @ step), 1.0
