@@ -257,13 +257,14 @@ def _possible(problem: ScaledProblem) -> ScaledMotion | None:
 def _confirmed(problem: ScaledProblem) -> tuple[CamProfile | None, int]:
     """Polish the optimum that a closed form tells; None if there is none, or if the programme comes to anything else.
 
-    A slave that keeps to a stroke of its own accord needs no limits of the position.
+    A slave that keeps to a stroke of its own accord needs no limits of the position. Of quintics the limits are put at the nodes alone:
+    where they are not kept between, the motion is none.
     """
     known = known_start(_unconfined(problem))
     if known is None:
         return None, 0
     start, arcs = known
-    shape = Shape(arcs, start.degree, True, problem.objective)
+    shape = Shape(arcs, start.degree, True, problem.objective, at_nodes=start.degree > 1)
     motion, statistics = programme(shape, known=True).solve(problem, start)
     iterations = int(statistics["iter_count"])
     if statistics["success"] and abs(motion.objective - start.objective) <= CONFIRMED * start.objective:
