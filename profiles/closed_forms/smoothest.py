@@ -1,8 +1,8 @@
-"""The smoothest motion from rest to rest: the least mean square of the jerk where one limit binds, in closed form.
+"""The smoothest motion from rest to rest: the least mean square of the jerk where one limit binds, or the speed's and one more.
 
 The motion is unique, so it is its own mirror image: half of it decides. Away from the limits the jerk is a parabola over time (Pontryagin:
 it is the costate of the acceleration) whose second derivative is the same all along; it is zero where the acceleration is held, and where
-the speed is. Limits that bind together have no closed form here.
+the speed is. Other limits that bind together have no form here.
 """
 
 from __future__ import annotations
@@ -47,12 +47,18 @@ def smoothest(distance: float, speed: float, acceleration: float, jerk: float) -
     - speed touched in the middle: ``v = α s² + β s³ + γ s⁴`` with ``s = 2 t``, ``α = 30 D - 12 V``;
     - acceleration ``A`` held: the last parabola, from ``d`` before the middle, has ``c = 3 A / d³``, the first lasts ``r`` with
       ``r²/4 - r³/3 = d³/3``, and ``d`` is such that the way is right;
-    - jerk ``J`` held at both ends: the parabola between them lasts ``2 d``, with ``d² = 5/12 - 10 D/J``.
+    - jerk ``J`` held at both ends: the parabola between them lasts ``2 d``, with ``d² = 5/12 - 10 D/J``;
+    - jerk held for ``r``, then a parabola for ``x`` to the speed that is held: ``V/J = r²/2 + r x/2 + x²/12``, and ``x`` such that the
+      way is right;
+    - acceleration held, then a parabola for ``e`` to the speed that is held: the first lasts ``y e``, the hold ``(g - 1/2) e`` with
+      ``g = (1/6 - y³/3) / y²``, ``V/A = e (y - y⁴/2 + g (1 - 2 y³))``, and ``y`` such that the way is right.
     """
     for found in (
         _speed_bound(distance, speed),
         _acceleration_bound(distance, acceleration),
         _jerk_bound(distance, jerk),
+        _jerk_and_speed_bound(distance, speed, jerk),
+        _acceleration_and_speed_bound(distance, speed, acceleration),
     ):
         if found is not None and all(
             value <= limit * (1 + 1e-12) for value, limit in zip(found.top, (speed, acceleration, jerk), strict=True)
@@ -138,6 +144,72 @@ def _jerk_bound(distance: float, jerk: float) -> SmoothestMotion | None:
             max(jerk, abs(jerk - c * d**2 / 2)),
         ),
         2.0 * jerk**2 * (0.3 / d - 0.5),
+    )
+
+
+def _jerk_and_speed_bound(distance: float, speed: float, jerk: float) -> SmoothestMotion | None:
+    ratio = speed / jerk
+
+    def ramp(x: float) -> float:
+        return float((x**2 / 12 + 2.0 * ratio) ** 0.5) - x / 2
+
+    def way(x: float) -> float:
+        r = ramp(x)
+        return jerk * (r**3 / 6 + r**2 * x / 2 + 0.35 * r * x**2 + x**3 / 20) + speed * (0.5 - r - x)
+
+    low, high = 0.0, min((12.0 * ratio) ** 0.5, 0.5)
+    for _ in range(HALVINGS):
+        x = 0.5 * (low + high)
+        low, high = (x, high) if ramp(x) + x < 0.5 and 2.0 * way(x) > distance else (low, x)
+    x = low
+    r = ramp(x)
+    cruise = 1.0 - 2.0 * (r + x)
+    if min(x, r, cruise) <= 0.0 or abs(2.0 * way(x) - distance) > 1e-9 * distance:
+        return None
+    bend = jerk * (3.0 + 6.0 * r / x)
+    a, s = jerk * r, jerk / bend
+    inner = a + x * jerk / 3
+    peak = a + x * (jerk * (s - s**2 / 2) - bend * (s**2 / 2 - s**3 / 3))
+    return SmoothestMotion(
+        (r, x, cruise, x, r),
+        (0.0, a / 3, 2 * a / 3, a, inner, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -inner, -a, -2 * a / 3, -a / 3, 0.0),
+        ("jerk", "", "speed", "", "jerk"),
+        (speed, peak, max(jerk, (bend - jerk) ** 2 / (4.0 * bend))),
+        2.0 * (jerk**2 * r + x * (jerk**2 / 3 - jerk * bend / 6 + bend**2 / 30)),
+    )
+
+
+def _acceleration_and_speed_bound(distance: float, speed: float, acceleration: float) -> SmoothestMotion | None:
+    def parts(y: float) -> tuple[float, float, float, float]:
+        """Lengths of the last parabola and of the hold, speed at the end of the first parabola, and the way."""
+        g = (1.0 / 6.0 - y**3 / 3.0) / y**2
+        e = speed / acceleration / (y - y**4 / 2 + g * (1.0 - 2.0 * y**3))
+        hold, first = e * (g - 0.5), acceleration * e * (y - y**4 / 2 - 2.0 * g * y**3)
+        way = acceleration * e**2 * (y**2 / 2 - 0.4 * y**5 - 1.5 * g * y**4)
+        way += first * hold + acceleration * hold**2 / 2
+        way += (first + acceleration * hold) * e + 0.35 * acceleration * e**2
+        return e, hold, first, 2.0 * (way + speed * (0.5 - e * (y + 1.0) - hold))
+
+    low, high = 1e-3, 0.5
+    for _ in range(HALVINGS):
+        y = 0.5 * (low + high)
+        low, high = (y, high) if parts(y)[3] > distance else (low, y)
+    e, hold, _, way = parts(low)
+    r = low * e
+    cruise = 1.0 - 2.0 * (r + hold + e)
+    if min(hold, cruise) <= 0.0 or abs(way - distance) > 1e-9 * distance:
+        return None
+    a, c = acceleration, 12.0 * acceleration / e**3
+    m = c * (hold + e / 2)
+    first, held = a - m * r**2 / 6, (a,) * 3
+    up = (0.0, first, a, a, *held, a, 0.0, 0.0)
+    square = c**2 * r**5 / 20 + c * m * r**4 / 4 + m**2 * r**3 / 3 + c**2 * e**5 / 120
+    return SmoothestMotion(
+        (r, hold, e, cruise, e, hold, r),
+        (*up, 0.0, 0.0, *(-each for each in reversed(up))),
+        ("", "acceleration", "", "speed", "", "acceleration", ""),
+        (speed, a, max(c * r**2 / 2 + m * r, c * e**2 / 8)),
+        2.0 * square,
     )
 
 

@@ -17,6 +17,10 @@ CASES = [
     (FAR, 4.3, FAR),
     (FAR, FAR, 50.0),
     (FAR, FAR, 42.0),
+    (1.5, FAR, 80.0),
+    (1.3, FAR, 130.0),
+    (1.6, 5.5, FAR),
+    (1.55, 5.6, FAR),
 ]
 
 
@@ -67,5 +71,5 @@ def test_a_quadratic_programme_on_a_grid_finds_nothing_better(limits: tuple[floa
 
 def test_where_no_limit_is_reached_or_two_are_it_says_nothing() -> None:
     assert smoothest(1.0, 1.9, 5.8, 61.0) is None
-    assert smoothest(1.0, 1.5, 4.5, 60.0) is None
+    assert smoothest(1.0, 1.5, 5.2, 60.0) is None
     assert smoothest(1.0, 0.99, FAR, FAR) is None
