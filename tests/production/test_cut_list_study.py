@@ -89,6 +89,16 @@ def test_crops_and_skips() -> None:
     assert found.line.length == pytest.approx(1.7)
 
 
+def test_a_ramp_that_is_a_small_part_of_the_limits_is_borne_but_for_rounding() -> None:
+    """The jerk limit is exceeded by 5e-10, which in terms of so gentle a ramp is a millionth."""
+    found = plan_list(
+        line_of(load_job(EXAMPLES / "cross-sealer.toml"), 0.3), CutList((ListRow(0.25, 1), ListRow(0.9, 1)))
+    )
+    assert all(cam.bears_ramps and cam.report.passed for cam in found.cams)
+    checks = [check for cam in found.cams for check in cam.report.checks if check.name == "line_ramp"]
+    assert all(check.limit == pytest.approx(0.3, rel=1e-5) for check in checks)
+
+
 def test_a_plan_without_a_stated_ramp_is_refused() -> None:
     with pytest.raises(InputError, match="how hard the line ramps is not stated"):
         line_of(load_job(), None)
