@@ -27,6 +27,9 @@ below what a drive resolves."""
 _AS_GREAT = 1.0 - 1e-6
 """Share of the greatest error that counts as it; the first such point is taken."""
 
+_NEAR = 0.9
+"""Share of a greatest error below which no hump of it is looked for."""
+
 _ROUNDING = 1e-15
 """Share of the positions by which errors differ that are the same: they are differences of positions."""
 
@@ -108,7 +111,7 @@ def _with_places(
     """Measure a response at some of its samples; gives the master positions (m), too, that decided it."""
     response, zone, shear = _measured(run, profile, task, tolerance)
     start = task.cut.return_start + task.cut.return_zone
-    greatest = (zone, (zone[0], -zone[1]), (run.master, _following_error(run, profile, task)(...)), shear)
+    greatest = (zone, (zone[0], -zone[1]), (run.master, _following_sizes(run, profile, task)), shear)
     met = [start + place for place in (response.crossing, response.settling) if place is not None]
     noise = _ROUNDING * max(abs(profile.advance), task.cut.length)
     return response, [*met, *(place for master, size in greatest for place in humps(master, size, noise))]
@@ -282,6 +285,19 @@ def _peak_following_error(run: ServoRun, profile: CamProfile, task: Task) -> flo
     at_tool = _following_error(run, profile, task)
     found = float(at_tool(np.unravel_index(off.argmax(), off.shape)))
     return float(at_tool(off * _lever(machine) >= found).max(initial=found))
+
+
+def _following_sizes(run: ServoRun, profile: CamProfile, task: Task) -> FloatArray:
+    """Magnitude of command minus axis at every point, at the tool (m); 0 where it is surely not near its greatest."""
+    off = np.abs(run.command - run.axis)
+    if task.machine.slave_unit == "m":
+        return off
+    at_tool, lever = _following_error(run, profile, task), _lever(task.machine)
+    greatest = float(at_tool(np.unravel_index(off.argmax(), off.shape)))
+    near = off * lever >= _NEAR * greatest
+    found = np.zeros_like(off)
+    found[near] = at_tool(near)
+    return found
 
 
 def _following_error(run: ServoRun, profile: CamProfile, task: Task) -> Callable[[_Index], FloatArray]:
