@@ -36,7 +36,7 @@ _GONE = 1e-15
 _SMOOTH, _ADDED = 32, 8
 """Samples on a piece beside its transient, and samples that are added evenly in a gap."""
 
-_MOST_KEPT = 2**12
+_MOST_KEPT = 2**11
 """Samples of the first round, beside the least that every piece needs."""
 
 _ROUNDS = 16
