@@ -28,7 +28,7 @@ _SPEEDS = 3
 _EACH = 32
 """Rows of a block that stand from the start, and the most that are added to it in a round."""
 
-_MARGIN = 7e-3
+_MARGIN = 1e-2
 """Share by which the band in the shear zone is drawn in, as rows stand at single places, times and line speeds."""
 
 _ROUNDS = 40

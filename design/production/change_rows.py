@@ -19,7 +19,7 @@ from camwright.profiles.servo import Servo
 CYCLES = 2
 """Cycles over which the axis is looked at, the transition's first."""
 
-_FEWEST, _MOST, _EACH_SAMPLE = 16, 160, 6
+_FEWEST, _MOST, _EACH_SAMPLE = 16, 480, 6
 """Places in a shear zone: fewest, most, and for each sample in it; what softens a change swings up where the zone ends."""
 
 _TIMES = 4

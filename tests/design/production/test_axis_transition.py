@@ -123,3 +123,31 @@ def test_a_command_in_sync_stays_in_sync_in_the_zone() -> None:
 def test_no_transition_where_none_keeps_the_limits(cams: tuple[RunningCam, RunningCam]) -> None:
     one, other = (replace(cam, task=cam.task.with_limits(replace(cam.task.limits, acceleration=0.1))) for cam in cams)
     assert design_axis_transition(one, other, SPEEDS, "shaped", (SERVO,)) is None
+
+
+@pytest.mark.slow
+def test_a_long_shear_zone_of_a_carriage_is_looked_at_closely() -> None:
+    job = parse_job(example("flying-saw").text, "flying-saw")
+    cut = replace(
+        job.cut,
+        origin="return",
+        shaped=True,
+        length=1.6,
+        sync_zone=0.6,
+        shear_zone=0.4,
+        shear_zone_at=0.2,
+        sync_tolerance=5e-5,
+    )
+    own, top = job.task.with_cut(cut), job.cut.line_speed
+    speeds = 0.9 * top, 0.95 * top
+    pair = []
+    for high, low in ((speeds[1], 0.85 * top), (top, speeds[0])):
+        there = own.at_speed(high)
+        solution = solve_axis(there, "peak_acceleration", "shaped", (job.servo,), shares=(1.0, low / high))
+        pair.append(RunningCam(there, solution.profile))
+    for one, other in (pair, pair[::-1]):
+        found = design_axis_transition(one, other, speeds, "shaped", (job.servo,))
+        assert found is not None
+        cams = (ShiftCam(each.profile, each.zero) for each in (one, other))
+        change = CamChange(*cams, (one.task, other.task), ShiftCam(found.profile, other.zero))
+        assert run_change(change, job.servo, list(speeds)).sync_error <= cut.sync_tolerance
