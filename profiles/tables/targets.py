@@ -14,6 +14,7 @@ from camwright.profiles.tables import (
     kollmorgen,
     lenze,
     logix,
+    movelink,
     pacdrive,
     schneider_asc,
     sew,
@@ -54,7 +55,10 @@ TARGETS: dict[str, Target] = {
 }
 """All targets by name."""
 
-LAYOUTS: dict[str, Target] = {**TARGETS, **{layout.name: layout for layout in (galil.LAYOUT, st_arrays.LAYOUT)}}
+LAYOUTS: dict[str, Target] = {
+    **TARGETS,
+    **{layout.name: layout for layout in (galil.LAYOUT, movelink.LAYOUT, st_arrays.LAYOUT)},
+}
 """All layouts that are read, by name: those of the targets, and some that are not written."""
 
 _SIGNS: tuple[tuple[str, str], ...] = (
@@ -71,6 +75,7 @@ _SIGNS: tuple[tuple[str, str], ...] = (
     ("kollmorgen-kas", r"(?m)^TABLE_BEGIN"),
     ("schneider-asc", r"(?m)^CamPoints\s{0,99}$"),
     ("trio", r"(?m)^[ \t]{0,99}TABLE[ \t]{0,99}\("),
+    ("trio-movelink", movelink.SIGN),
     ("galil", galil.SIGN),
     ("sew", r"\A\s{0,100}[0-9]{1,5};?\s*\n"),
     ("lenze", r"\A\s{0,99}[-+.,0-9]{1,40}[ \t]{1,20}[-+.,0-9]{1,40}(?:[ \t]{1,20}[-+.,0-9]{1,40})?[ \t]{0,20}//"),
@@ -125,7 +130,7 @@ def read_table(target: Target, text: str, place: str) -> CamTable:
 
 _OTHERS = (
     (r"<TcSmItem\b", "an item of a TwinCAT project (.xti)"),
-    (r"\b(?:MOVELINK|FLEXLINK)\s{0,9}\(", "a Trio program that moves by MOVELINK or FLEXLINK calls, not by a table"),
+    (r"\bFLEXLINK\s{0,9}\(", "a Trio program that moves by FLEXLINK calls, not by a table"),
 )
 """What other files are, by words that they have: named, so that nobody looks for the option that reads them."""
 

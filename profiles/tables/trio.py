@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -55,17 +56,13 @@ def read(text: str, place: str) -> CamTable:
     """
     values: dict[int, float] = {}
     calls: list[tuple[list[str], int]] = []
-    known: dict[str, str | None] = {}
-    for number, line in enumerate(lines_of(text, place), start=1):
-        for statement in _statements(line):
-            call, given = _CAMBOX.fullmatch(statement), _GIVEN.fullmatch(statement)
-            if given:
-                name, value = given[1].lower(), given[2].strip()
-                known[name] = value if known.setdefault(name, value) == value and _PLAIN.fullmatch(value) else None
-            elif call:
-                calls.append(([cell.strip() for cell in call[1].split(",")], number))
-            elif _TABLE.match(statement):
-                _fill(values, statement, place, number)
+    known = known_numbers(text, place)
+    for number, statement in numbered_statements(text, place):
+        call = _CAMBOX.fullmatch(statement)
+        if call:
+            calls.append(([cell.strip() for cell in call[1].split(",")], number))
+        elif _TABLE.match(statement):
+            _fill(values, statement, place, number)
     if not values:
         raise refuse(place, None, "there is no line TABLE(address, value, …) in it")
     check_count(len(values), 2, MOST_POINTS, place)
@@ -84,9 +81,21 @@ def read(text: str, place: str) -> CamTable:
     return make_table(range(len(values)), [values[a] for a in addresses], law="line", notes=(note,))
 
 
-def _statements(line: str) -> list[str]:
-    """Cut a line at colons; what stands behind an apostrophe is a comment."""
-    return [part.strip() for part in line.partition("'")[0].split(":") if part.strip()]
+def numbered_statements(text: str, place: str) -> Iterator[tuple[int, str]]:
+    """Go through a program's statements, each with the number of its line: cut at colons, without what stands behind an apostrophe."""
+    for number, line in enumerate(lines_of(text, place), start=1):
+        yield from ((number, part.strip()) for part in line.partition("'")[0].split(":") if part.strip())
+
+
+def known_numbers(text: str, place: str) -> dict[str, str | None]:
+    """Find the variables of a program, names in small letters: the one number that it gives each, ``None`` where it gives anything else."""
+    known: dict[str, str | None] = {}
+    for _, statement in numbered_statements(text, place):
+        given = _GIVEN.fullmatch(statement)
+        if given:
+            name, value = given[1].lower(), given[2].strip()
+            known[name] = value if known.setdefault(name, value) == value and _PLAIN.fullmatch(value) else None
+    return known
 
 
 def _fill(values: dict[int, float], statement: str, place: str, number: int) -> None:

@@ -85,10 +85,11 @@ motion functions of TwinCAT are POLYNOM1, POLYNOM3, POLYNOM5 and POLYNOM5_MM.
 A number in structured text that is no plain number is refused with its line.
 
 Some layouts are read and not written: `galil`, the ECAM table of a Galil program (`EP`, `ET[0]=...`, numbers only; straight lines
-between), and `st-arrays`, structured text with one array of master and one of slave positions, as the cam editor Quintic exports it (a
-cubic spline is assumed); its CSV is read as columns. Named and refused, with the way out, are TwinCAT's `.xti` items and Trio programs of
-`MOVELINK` and `FLEXLINK` calls: no public source says exactly what motion they make. Of Omron, Inovance and Delta no layout is known; their
-points as two columns are read like anybody's.
+between), and `st-arrays`, structured text with one array of master and one of slave positions, as the cam editor Quintic exports
+it (a cubic spline is assumed); its CSV is read as columns; and `trio-movelink`, a cycle of Trio's `MOVELINK` calls (parabolas and
+lines). Named and refused, with the way out, are TwinCAT's `.xti` items and Trio programs of `FLEXLINK` calls: no public source
+says exactly what their sine is. Of Omron, Inovance and Delta no layout is known; their points as two columns are read like
+anybody's.
 
 Columns of numbers may be separated by commas, semicolons, tabs, bars or blanks, with a decimal point or comma, in quotes,
 with `sep=;`, with an index column, in UTF-8, UTF-16, GBK or code page 1252. Headings may take several lines; units stand
