@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 from camwright.design.feasible.refusal import infeasible, require_feasible
@@ -128,7 +128,7 @@ def solve_axis(
     by_motor = _within(problem, motor_speed_limits(placed, limits))
     motions = _kept(by_motor, cost) if limits.motor is not None else []
     if not motions:
-        found = [_either(_within(problem, each), cost) for each in motor_limits(placed, limits)]
+        found = [_either(_within(problem, each), cost) for each in widest(motor_limits(placed, limits))]
         motions = [motion for motion in found if motion is not None]
     if not motions and limits.motor is not None:
         motions = _kept(replace(by_motor, axis_limits=False), cost)
@@ -209,6 +209,15 @@ def _require_samples(cut: Cut, servos: tuple[Servo, ...]) -> None:
 def _within(problem: AxisProblem, limits: Limits) -> AxisProblem:
     """Put a problem within other limits."""
     return replace(problem, task=problem.task.with_limits(limits))
+
+
+def widest(rectangles: Sequence[Limits]) -> list[Limits]:
+    """Leave out rectangles of a motor's curve that lie in another one, each once: a command within it is within the other."""
+    found: list[Limits] = []
+    for each in sorted(rectangles, key=lambda limits: (-limits.speed, -limits.acceleration)):
+        if all(each.acceleration > other.acceleration for other in found):
+            found.append(each)
+    return found
 
 
 def _kept(problem: AxisProblem, cost: ObjectiveName) -> list[AxisMotion]:

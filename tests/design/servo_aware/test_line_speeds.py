@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from camwright.design.optimise import Solution
-from camwright.design.optimise_axis import solve_axis
+from camwright.design.optimise_axis import solve_axis, widest
 from camwright.design.servo_aware.axis_problem import AxisProblem
 from camwright.design.servo_aware.command_basis import Command
 from camwright.design.servo_aware.programme import AxisProgramme
@@ -168,3 +168,12 @@ def test_prices_of_the_least_error_bound_the_peak_that_goes_with_it(acceleration
     share = softer[1] / problem.limits[2][1]
     assert bound <= share + 1e-6
     assert (bound > 0.95) == (acceleration == 100.0)
+
+
+def test_rectangles_within_others_are_left_out() -> None:
+    """Every rectangle left out lies in one that is kept, and none that is kept lies in another."""
+    sizes = [(2.7, 21.0), (2.7, 21.0), (2.7, 17.0), (1.0, 21.0), (1.5, 30.0), (3.0, 5.0)]
+    rectangles = [replace(LIMITS, speed=speed, acceleration=acceleration) for speed, acceleration in sizes]
+    kept = [(each.speed, each.acceleration) for each in widest(rectangles)]
+    assert kept == [(3.0, 5.0), (2.7, 21.0), (1.5, 30.0)]
+    assert all(any(a <= c and b <= d for c, d in kept) for a, b in sizes)
