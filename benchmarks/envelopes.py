@@ -72,13 +72,13 @@ def wrong(job: Job, edge: Edge, random: np.random.Generator, *, checked: bool) -
     return found, tried
 
 
-def main() -> None:
-    """Print what was tried and what was wrong."""
+def main() -> int:
+    """Print what was tried and what was wrong; the rows are written after each envelope."""
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 100
     random, base = np.random.default_rng(SEED), load_job()
     totals = {"perfect axis": [0, 0], "axis in tolerance": [0, 0]}
     began = time.process_time()
-    for _ in range(count):
+    for number in range(1, count + 1):
         job = drawn(base, random)
         try:
             answer = envelope_answer(job, LENGTHS)
@@ -91,14 +91,17 @@ def main() -> None:
         ):
             for total, more in enumerate(wrong(job, edge, random, checked=checked)):
                 totals[name][total] += more
-    seconds = (time.process_time() - began) / count
-    lines = ["edge,envelopes,seed,places,wrong,processor_s_an_envelope"]
+        written(totals, number, (time.process_time() - began) / number)
     for name, (bad, tried) in totals.items():
         print(f"{name}: {bad} of {tried} places wrong")
-        lines.append(f"{name},{count},{SEED},{tried},{bad},{seconds:.1f}")
-    print(f"{seconds:.1f} s an envelope")
-    RESULTS.write_text("\n".join(lines) + "\n")
+    return 1 if any(bad for bad, _ in totals.values()) else 0
+
+
+def written(totals: dict[str, list[int]], envelopes: int, seconds: float) -> None:
+    """Write what was found so far."""
+    rows = [f"{name},{envelopes},{SEED},{tried},{bad},{seconds:.1f}" for name, (bad, tried) in totals.items()]
+    RESULTS.write_text("\n".join(["edge,envelopes,seed,places,wrong,processor_s_an_envelope", *rows]) + "\n")
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())
