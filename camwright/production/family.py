@@ -65,9 +65,7 @@ def family(job: Job, names: Sequence[str], overlap: float = OVERLAP, step: Step 
     found = family_cams(job, overlap, step)
     step("leading from cam to cam")
     between = switchings(found)
-    if not found.holds_line and any(
-        each.how == "stop" for each in between
-    ):  # over a narrower part there may be transitions
+    if not found.holds_line and not all(each.passed for each in between):  # over a narrower part they may
         found = family_cams(job, overlap, step, hold=True)
         between = switchings(found)
     step("writing the tables and running their seams")

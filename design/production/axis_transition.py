@@ -101,7 +101,7 @@ class _Programme:
         low, high = line_speeds
         speeds = np.unique(np.linspace(low, high, _SPEEDS)).tolist()
         self._bands = [_Block(change.bands(servo, speed), change.scale) for servo in servos for speed in speeds]
-        self._own = [_Block(change.own(servos[0], high), change.scale)]
+        self._own = [_Block(change.own(servos[0], speed), change.scale) for speed in speeds[:: len(speeds) - 1 or 1]]
 
     def solve(self, band: float | None) -> tuple[FloatArray, float] | None:
         """Make the sync error least (``None``), or the peak acceleration within a band (share of the tolerance).

@@ -25,8 +25,8 @@ _FEWEST, _MOST, _EACH_SAMPLE = 16, 480, 6
 _TIMES = 4
 """Times after a sample at which the axis is looked at."""
 
-_MOST_SAMPLES = 256
-"""Samples of a cycle at most at which the axis' own motion is looked at."""
+_MOST_PLACES = 512
+"""Places of a cycle at most at which the axis' own motion is looked at, two for each sample."""
 
 _AXIS_MARGIN = 1e-3
 """Share by which the limits of the axis are drawn in, as rows stand at single places."""
@@ -108,7 +108,7 @@ class ChangeRows:
         task = self.after.task.at_speed(line_speed)
         axis = Axis(task, servo)
         length = self.after.profile.end
-        step = max(axis.sample, length / _MOST_SAMPLES)
+        step = max(0.5 * axis.sample, length / _MOST_PLACES)
         places = np.arange(0.0, CYCLES * length, step)
         found = []
         for order, low, high in (
@@ -117,8 +117,8 @@ class ChangeRows:
         ):
             room = _AXIS_MARGIN * high
             matrix, constant = self._rows(axis, places, order)
-            # a slave that must not run backwards may by half of what its check allows: where it stands, rows leave no other way
-            least = low - 0.5 * room if low == 0.0 else low + room
+            # a slave that must not run backwards may by a tenth of what its check allows: where it stands, rows leave no other way
+            least = low - 0.1 * room if low == 0.0 else low + room
             # rows in units of the limit, so that both kinds can stand in one block
             found.append((matrix / high, constant / high, least / high, (high - room) / high))
         return AxisRows(
