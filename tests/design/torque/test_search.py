@@ -202,7 +202,7 @@ def test_no_peak_hides_between_the_points_of_the_programme() -> None:
 
 @pytest.mark.slow
 def test_a_corner_of_the_places_is_gone_down_to() -> None:
-    """A crank of its own, whose least peak lies at a corner: from the scan's best place alone the solver came 1.4 % above."""
+    """A crank whose least peak lies at a corner: no place beside it is better by what is asked, half a per cent."""
     crank = CrankSlider(crank=0.11, rod=0.22, crank_inertia=1.0, carriage_mass=220.0)
     cut, limits = Cut(0.5, 0.465, 0.038, 0.01, 0.02, 1e-4), Limits(15.0, 44.0, 1800.0, reversal=False)
     task = Task(crank, cut, limits)
@@ -212,7 +212,7 @@ def test_a_corner_of_the_places_is_gone_down_to() -> None:
             other = solve(task.placed_at(found.machine.place + aside), "peak_torque")
         except InfeasibleError:
             continue
-        assert found.minimised <= other.minimised * (1 + 2e-3)
+        assert found.minimised <= other.minimised * (1 + 5e-3)
 
 
 def test_a_mesh_shares_its_density_evenly() -> None:
