@@ -8,11 +8,14 @@ from pathlib import Path
 
 from hypothesis import settings
 
+VARIABLES = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 ROOT = Path(__file__).resolve().parents[1]
 
 settings.register_profile("camwright", deadline=None, derandomize=True)
 settings.load_profile("camwright")
 
+for name in VARIABLES:  # as the command line has it; numpy is not loaded yet
+    os.environ.setdefault(name, "1")
 os.environ.pop("COLUMNS", None)  # tables are as wide as they are told, not as the terminal of whoever runs the tests
 
 if (ROOT / "camwright" / "design").is_dir():

@@ -6,7 +6,9 @@ import contextlib
 import secrets
 import socket
 import sys
+import threading
 import webbrowser
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
@@ -38,25 +40,35 @@ def run(
     token = secrets.token_urlsafe(32)
     url = f"http://127.0.0.1:{listening.getsockname()[1]}/?token={token}"
     runner = Runner(main)
-    server = _Server(
-        uvicorn.Config(application(text, Path(), token, runner), log_level="error", timeout_graceful_shutdown=1), runner
-    )
-    with contextlib.suppress(KeyboardInterrupt):  # that is how it ends
+
+    def begun() -> None:
         sys.stdout.write(to_json({"url": url}) if as_json else f"{url}\nCtrl-C ends the workbench.\n")
         sys.stdout.flush()
         if not no_browser:
-            webbrowser.open(url)
-        server.run(sockets=[listening])
+            threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()
+
+    settings = uvicorn.Config(application(text, Path(), token, runner), log_level="error", timeout_graceful_shutdown=1)
+    with contextlib.suppress(KeyboardInterrupt):  # that is how it ends
+        _Server(settings, runner, begun).run(sockets=[listening])
     runner.close()
     return 0
 
 
 class _Server(uvicorn.Server):
-    """A server that ends the solve that may run before it waits for its calls, so that all of them are answered."""
+    """A server that ends the solve that may run before it waits for its calls, so that all of them are answered.
 
-    def __init__(self, config: uvicorn.Config, runner: Runner) -> None:
+    It tells when it has begun: a Ctrl-C before that would break its beginning, not end it.
+    """
+
+    def __init__(self, config: uvicorn.Config, runner: Runner, begun: Callable[[], None]) -> None:
         super().__init__(config)
         self._runner = runner
+        self._begun = begun
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Begin."""
+        await super().startup(sockets)
+        self._begun()
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
         """End."""

@@ -83,7 +83,7 @@ def smooth_line(
     --------
     >>> import numpy as np
     >>> run = smooth_line(np.array([4.0, 1.0]), np.array([2.0, 1.0]), 1.0, 2.0, np.array([False, True]))
-    >>> round(run.time, 2), round(float(run.speed(0.0)), 6), round(float(run.speed(run.time)), 6), round(run.hardest, 6)
+    >>> round(run.time, 2), round(float(run.speed(0.0)), 4), round(float(run.speed(run.time)), 4), round(run.hardest, 4)
     (3.38, 2.0, 1.0, 1.0)
     """
     kept = np.zeros(len(lengths), dtype=bool) if steady is None else steady

@@ -13,6 +13,9 @@ from camwright.house import threads
 def test_the_number_of_threads_is_put_back() -> None:
     """Within, every OpenBLAS of the wheels has one thread; behind, and behind an error, as many as before."""
     switches = threads._switches()
+    given = [get() for get, _ in switches]
+    for _, put in switches:
+        put(2)
     before = [get() for get, _ in switches]
     with threads.one_thread():
         assert [get() for get, _ in switches] == [1] * len(switches)
@@ -20,6 +23,8 @@ def test_the_number_of_threads_is_put_back() -> None:
     with pytest.raises(ZeroDivisionError), threads.one_thread():
         raise ZeroDivisionError
     assert [get() for get, _ in switches] == before
+    for (_, put), count in zip(switches, given, strict=True):
+        put(count)
 
 
 def test_the_environment_is_asked_unless_it_says_a_number(monkeypatch: pytest.MonkeyPatch) -> None:

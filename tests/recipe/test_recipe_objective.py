@@ -79,6 +79,7 @@ def test_the_index_of_a_book_names_it(design: Design) -> None:
     assert [book.job(book.combination(number)).objective for number in (1, 2)] == ["sync_error"] * 2
 
 
+@pytest.mark.slow
 def test_a_map_and_a_trade_off_name_what_stands_for_it(design: Design) -> None:
     assert envelope_answer(design.job, 2).objective == "peak_acceleration"
 

@@ -22,10 +22,10 @@ from camwright.profiles.returns import baseline
 from camwright.profiles.tables.cam_rows import read_cam_csv
 from camwright.stored.design_file import (
     design_schema,
-    design_text,
     parse_design,
     read_design,
 )
+from camwright.stored.design_text import design_text
 from camwright.stored.profile_files import cam_text, read_cycle
 from camwright.studies.design import Design, optimise
 
