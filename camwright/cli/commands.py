@@ -109,7 +109,7 @@ COMMANDS: dict[str, Command] = {
         "camwright simulate board.toml --list order.csv --line-acceleration '1 m/s^2' --slip 0.0002",
     ),
     "family": Command(
-        "Cover a job's line speeds with the fewest cams where one will not do, and lead from each to the next in the sync zone.",
+        "Cover a job's line speeds with several cams, as few as are found, and lead from each to the next in the sync zone.",
         PRODUCTION,
         "camwright family short-cut.toml --overlap 5%",
     ),

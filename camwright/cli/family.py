@@ -54,7 +54,7 @@ def run(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> int:
-    """Cover a job's line speeds with the fewest cams where one will not do, and lead from each to the next in the sync zone."""
+    """Cover a job's line speeds with several cams, as few as are found, and lead from each to the next in the sync zone."""
     share = _share(overlap)
     asked = load_job(job)
     names = chosen_targets(targets, asked)

@@ -12,6 +12,7 @@ from camwright.house.provenance import camwright_version
 from camwright.production.changes import Change
 from camwright.production.family import Family
 from camwright.production.family_cams import FamilyCam
+from camwright.production.list_answer import seams_answer
 from camwright.production.switching import Switching
 from camwright.production.tables import transition_name
 from camwright.stored.design_text import design_text
@@ -40,18 +41,7 @@ def family_answer(family: Family) -> dict[str, Any]:
         "at_least": found.at_least,
         "bands_found_to": FOUND_TO,
         "switching": [_switching(each, holds_line=found.holds_line) for each in family.switchings],
-        "seams": {
-            table.name: {
-                "number_format": table.number_format,
-                "velocity_jump_m_per_s": table.jump.velocity,
-                "acceleration_jump_m_per_s2": table.jump.acceleration,
-                "position_jump_m": table.jump.position,
-                "passed": table.passed,
-                "withheld": {str(number): why for number, why in table.withheld.items()},
-                "refused": list(table.refused),
-            }
-            for table in family.tables
-        },
+        "seams": seams_answer(family.tables),
         "passed": family.passed,
     }
 

@@ -11,7 +11,7 @@ from camwright.house.provenance import camwright_version
 from camwright.production.changes import Change
 from camwright.production.cut_list import ListPlan, ListStudy
 from camwright.production.list_file import line_run_text
-from camwright.production.tables import transition_name
+from camwright.production.tables import TargetSeams, transition_name
 from camwright.validation.production.seams import NO_JUMP
 
 PLC_HEADER = "piece,length [mm],kind,cam,run first,highest line speed [m/min]"
@@ -42,18 +42,7 @@ def list_answer(study: ListStudy) -> dict[str, Any]:
             "velocity_jump_m_per_s": jump.velocity,
             "acceleration_jump_m_per_s2": jump.acceleration,
             "position_jump_m": jump.position,
-            "by_target": {
-                table.name: {
-                    "number_format": table.number_format,
-                    "velocity_jump_m_per_s": table.jump.velocity,
-                    "acceleration_jump_m_per_s2": table.jump.acceleration,
-                    "position_jump_m": table.jump.position,
-                    "passed": table.passed,
-                    "withheld": {str(number): why for number, why in table.withheld.items()},
-                    "refused": list(table.refused),
-                }
-                for table in study.tables
-            },
+            "by_target": seams_answer(study.tables),
         },
         "crops": int(asked.crops.sum()),
         "material_m": float(asked.gaps.sum()),
@@ -149,3 +138,19 @@ def _changes(planned: ListPlan) -> list[str]:
         f"{change.before},{change.after},{change.how},{_speed(change.line_speed)},{change.times}"
         for change in planned.changes.values()
     ]
+
+
+def seams_answer(tables: tuple[TargetSeams, ...]) -> dict[str, Any]:
+    """Tell the steps at the seams of the tables of each target, which tables were withheld and why, and what it refused."""
+    return {
+        table.name: {
+            "number_format": table.number_format,
+            "velocity_jump_m_per_s": table.jump.velocity,
+            "acceleration_jump_m_per_s2": table.jump.acceleration,
+            "position_jump_m": table.jump.position,
+            "passed": table.passed,
+            "withheld": {str(number): why for number, why in table.withheld.items()},
+            "refused": list(table.refused),
+        }
+        for table in tables
+    }

@@ -52,12 +52,13 @@ these targets alone, for `export`, `recipe` and `book`.
 
 ## Tables that know the line speed
 
-`camwright export DESIGN --to twincat --speed-tables` writes tables of position, ratio and curvature, and of the curvature's change
-where these do not do, which the controller adds, each times a power of the line speed. Their sum is another command at every
-line speed, so the axis is in sync at all of them: 0.0021 mm off at most at 300 mm and up to 80 m/min on the published knife and
-servo, where the position alone is 0.75 mm off ([theory](theory.md#8-servo-aware-design)). The position is a smooth return, softer
-at its ends and steeper in its middle than the design's. The files are read back and their sum is judged at 21 line speeds, servo
-and limits included; where one fails none is written, and the answer says up to which speed all pass.
+`camwright export DESIGN --to twincat --speed-tables` writes tables of position, ratio and curvature, and of the curvature's
+change where these do not do, which the controller adds, each times a power of the line speed. Their sum is another command at
+every line speed, which follows the servo: the simulated axis is 0.0021 mm off at most at 300 mm and up to 80 m/min on the
+published knife and servo, where the position alone is 0.75 mm off; its limits allow 69 m/min there
+([theory](theory.md#8-servo-aware-design)). The position is a smooth return, softer at its ends and steeper in its middle than the
+design's. The files are read back and their sum is judged at 21 line speeds, servo and limits included; where one fails none is
+written, and the answer says up to which speed all pass.
 
 Only targets with evidence for cams that are scaled while they run take part: `twincat`. A Trio controller can add the moves of
 other axes (ADDAX: technical reference manual), but the table multiplier of CAMBOX is read when the command is loaded, so a cut
