@@ -13,8 +13,8 @@ from camwright.profiles.tables import (
     isg,
     kollmorgen,
     lenze,
+    linked_moves,
     logix,
-    movelink,
     pacdrive,
     schneider_asc,
     sew,
@@ -57,7 +57,7 @@ TARGETS: dict[str, Target] = {
 
 LAYOUTS: dict[str, Target] = {
     **TARGETS,
-    **{layout.name: layout for layout in (galil.LAYOUT, movelink.LAYOUT, st_arrays.LAYOUT)},
+    **{layout.name: layout for layout in (galil.LAYOUT, linked_moves.LAYOUT, st_arrays.LAYOUT)},
 }
 """All layouts that are read, by name: those of the targets, and some that are not written."""
 
@@ -75,7 +75,7 @@ _SIGNS: tuple[tuple[str, str], ...] = (
     ("kollmorgen-kas", r"(?m)^TABLE_BEGIN"),
     ("schneider-asc", r"(?m)^CamPoints\s{0,99}$"),
     ("trio", r"(?m)^[ \t]{0,99}TABLE[ \t]{0,99}\("),
-    ("trio-movelink", movelink.SIGN),
+    ("trio-linked-moves", linked_moves.SIGN),
     ("galil", galil.SIGN),
     ("sew", r"\A\s{0,100}[0-9]{1,5};?\s*\n"),
     ("lenze", r"\A\s{0,99}[-+.,0-9]{1,40}[ \t]{1,20}[-+.,0-9]{1,40}(?:[ \t]{1,20}[-+.,0-9]{1,40})?[ \t]{0,20}//"),
@@ -128,10 +128,7 @@ def read_table(target: Target, text: str, place: str) -> CamTable:
     return table
 
 
-_OTHERS = (
-    (r"<TcSmItem\b", "an item of a TwinCAT project (.xti)"),
-    (r"\bFLEXLINK\s{0,9}\(", "a Trio program that moves by FLEXLINK calls, not by a table"),
-)
+_OTHERS = ((r"<TcSmItem\b", "an item of a TwinCAT project (.xti)"),)
 """What other files are, by words that they have: named, so that nobody looks for the option that reads them."""
 
 

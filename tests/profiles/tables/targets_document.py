@@ -87,10 +87,13 @@ A number in structured text that is no plain number is refused with its line.
 
 Some layouts are read and not written: `galil`, the ECAM table of a Galil program (`EP`, `ET[0]=...`, numbers only; straight lines
 between), and `st-arrays`, structured text with one array of master and one of slave positions, as the cam editor Quintic exports
-it (a cubic spline is assumed); its CSV is read as columns; and `trio-movelink`, a cycle of Trio's `MOVELINK` calls (parabolas and
-lines). Named and refused, with the way out, are TwinCAT's `.xti` items and Trio programs of `FLEXLINK` calls: no public source
-says exactly what their sine is. Of Omron, Inovance and Delta no layout is known; their points as two columns are read like
-anybody's.
+it (a cubic spline is assumed); its CSV is read as columns; and `trio-linked-moves`, a cycle of Trio's `MOVELINK` and `FLEXLINK`
+calls: base distance, straight ramps, and those by the curves of the options (sine, powers 5, 7 and 9). That a sine is half a cosine
+of the speed follows from the peak accelerations that Trio's reference prints beside a straight ramp's.
+Named and refused, with the way out, are TwinCAT's `.xti` items: a search of public repositories and of Beckhoff's pages found
+project items of axes and terminals, but no cam in one, and no description of its elements. The cam editor's own exports, points as
+columns or the function blocks' points, are read. Of Omron, Inovance and Delta no layout is known; their points as two columns are
+read like anybody's.
 
 Columns of numbers may be separated by commas, semicolons, tabs, bars or blanks, with a decimal point or comma, in quotes,
 with `sep=;`, with an index column, in UTF-8, UTF-16, GBK or code page 1252. Headings may take several lines; units stand

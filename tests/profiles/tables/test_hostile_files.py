@@ -415,7 +415,6 @@ def test_any_bytes_are_read_or_refused(data: bytes) -> None:
             '<?xml version="1.0"?>\n<TcSmItem xmlns:xsi="x"><Camming/></TcSmItem>\n',
             "an item of a TwinCAT project (.xti)",
         ),
-        ("BASE(1)\nFLEXLINK(100, 200, 10, 10, 0)\n", "a Trio program that moves by FLEXLINK calls"),
     ],
 )
 def test_files_that_are_not_read_are_named_with_a_way_out(text: str, what: str) -> None:

@@ -120,7 +120,7 @@ def test_arrays_that_are_no_cam_are_refused(old: str, new: str, message: str):
 
 
 def test_what_is_read_only_is_no_target():
-    assert set(LAYOUTS) - set(TARGETS) == {"galil", "st-arrays", "trio-movelink"}
+    assert set(LAYOUTS) - set(TARGETS) == {"galil", "st-arrays", "trio-linked-moves"}
     assert layout_of("GALIL") is LAYOUTS["galil"]
     with pytest.raises(InputError, match=r"there is no layout 'gail'; the layouts are codesys, .*galil"):
         layout_of("gail")
