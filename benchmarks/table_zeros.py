@@ -20,7 +20,6 @@ from camwright.drives.running_cam import running_cam
 from camwright.jobs.job import Job
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import baseline
-from camwright.validation.rebuilt import judge_table
 
 SAME = 1e-6
 """Part by which figures of a moved table may differ."""
@@ -44,8 +43,7 @@ def rows(x: np.ndarray, y: np.ndarray, pitch: float, kind: str) -> str:
 
 def figures(text: str, job: Job) -> tuple[bool, dict[str, float]]:
     """Judge a table: whether it passes, and the value of every check."""
-    found = running_cam(text, "table", job)
-    judgement = judge_table(found.rebuilt, job.task, job.servo, count=found.count)
+    judgement = running_cam(text, "table", job).judged()
     return judgement.passed, {check.name: float(check.value or 0.0) for check in judgement.checks}
 
 

@@ -66,6 +66,10 @@ def aligned(
     zone = (cut.return_start + cut.return_zone) % cut.length
     cuts = cuts_in(rebuilt, cut)
     stretch = rebuilt.length / (cuts * cut.length)
+    chord, piece = cut.sync_zone / (_IN_ZONE - 1), 0.5 * cuts * cut.length / rebuilt.pieces
+    count = count or (
+        grain if piece < chord else 0.0
+    )  # the closer the points, the more their rounding shakes the ratio
     lever = float(np.abs(machine.tool_ratio(task.slave_at_sync_start + meant)).max())
     speed = machine.tool_ratio(task.slave_at_sync_start + sync(inside)) / cut.sync_ratio
 
@@ -83,7 +87,7 @@ def aligned(
             found.append(np.maximum(position, np.abs(slip).max(axis=1) * cut.sync_zone / cut.sync_tolerance))
         return np.concatenate(found)
 
-    step = cut.sync_zone / (_IN_ZONE - 1) if count > 0.0 else 0.5 * cuts * cut.length / rebuilt.pieces
+    step = chord if count > 0.0 else piece
     slack = (
         (count or grain) * lever / cut.sync_tolerance * cut.sync_zone / step
     )  # a chord, or a ratio, off by its rounding

@@ -20,7 +20,7 @@ from camwright.profiles.tables.target import Target
 from camwright.profiles.tables.text import read_text
 from camwright.studies.line_ramps import line_ramps
 from camwright.studies.remedies import solve_or_advise
-from camwright.validation.rebuilt import TableJudgement, differences, judge_table, sampled_peaks
+from camwright.validation.rebuilt import TableJudgement, differences, sampled_peaks
 from camwright.validation.report import ValidationReport, judge
 
 MEASURES: dict[str, str] = {
@@ -162,7 +162,7 @@ def audit(
     found = running_cam(read_text(path), str(path), job, target, units, travel, slopes)
     placed, cycle = found.job, found.cycle
     step("judging")
-    judgement = judge_table(found.rebuilt, placed.task, job.servo, count=found.count)
+    judgement = found.judged()
     report = judge(cycle, placed.task, job.servo)
     step("solving")
     solution = solve_or_advise(job)

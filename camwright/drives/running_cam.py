@@ -17,7 +17,7 @@ from camwright.profiles.tables.cam_table import CamTable
 from camwright.profiles.tables.count_grid import rounded_to, spacing_rounded_to, without_rounding
 from camwright.profiles.tables.target import Target
 from camwright.profiles.tables.targets import detect, layout_of, read_table
-from camwright.validation.rebuilt import cuts_in, each_cut, one_cycle
+from camwright.validation.rebuilt import LEAST_WRAPS, RUN, TableJudgement, cuts_in, each_cut, judge_table, one_cycle
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +31,9 @@ class RunningCam:
     rebuilt
         The cam from the job's master zero on, as many cuts as the table holds (slave unit over m).
     count
-        Size of the counts that its positions are in (slave unit); 0 where it has none.
+        Size of the counts that its positions are in (slave unit), their rounding taken off; 0 where it has none.
+    stored
+        Size of the counts that straight lines lead between (slave unit); 0 where none do.
     """
 
     target: Target
@@ -41,6 +43,12 @@ class RunningCam:
     rebuilt: CamProfile
     count: float
     counted: bool
+    stored: float
+
+    def judged(self) -> TableJudgement:
+        """Judge it as an export of the job's own design is judged: over the same run, with the same allowances."""
+        job = self.job
+        return judge_table(self.rebuilt, job.task, job.servo, LEAST_WRAPS, RUN, self.stored, count=self.count)
 
     @property
     def cycle(self) -> CamProfile:
@@ -76,7 +84,9 @@ def running_cam(
     tick = spacing_rounded_to(whole.table.x) * whole.units.master.size
     rebuilt, notes = aligned(rebuilt.shift(-rebuilt.start), placed, count=count, grain=grain, tick=tick)
     told = (*table.notes, *whole.notes, *((counted.note,) if counted else ()), *notes)
-    return RunningCam(layout, table, told, placed, rebuilt, count, counted is not None)
+    return RunningCam(
+        layout, table, told, placed, rebuilt, count, counted is not None, grain if set(table.laws) == {"line"} else 0.0
+    )
 
 
 def _whole(table: CamTable, job: Job, place: str, units: str | None, travel: str | None) -> tuple[WholeCycle, int]:
