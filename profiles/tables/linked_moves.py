@@ -13,15 +13,15 @@ from camwright.profiles.polynomial.profile import FloatArray
 from camwright.profiles.tables.cam_table import CamTable, PieceLaw, make_table
 from camwright.profiles.tables.interpolation import by_law
 from camwright.profiles.tables.target import Target, not_written
-from camwright.profiles.tables.text import integer, real, refuse, shown
-from camwright.profiles.tables.trio import known_numbers, numbered_statements
+from camwright.profiles.tables.text import refuse, shown
+from camwright.profiles.tables.trio_program import Numbers, numbered_statements
 
 MOST_MOVES = 1_000
 
 SIGN = r"(?m)\b(?:MOVE|FLEX)LINK[ \t]{0,9}\(|^[ \t]{0,99}ML[ \t]{0,9}\("
 """What a text with such calls has."""
 
-_CALL = re.compile(r"(MOVELINK|ML|FLEXLINK)\s{0,9}\(([^()]*)\)(?:\s{0,9}AXIS\s{0,9}\(([^()]*)\))?", re.IGNORECASE)
+_CALL = re.compile(r"(MOVELINK|ML|FLEXLINK)\s{0,9}\((.*?)\)(?:\s{0,9}AXIS\s{0,9}\(([^()]*)\))?", re.IGNORECASE)
 _BASE = re.compile(r"BASE\s{0,9}\(([^(),]*)[^()]*\)", re.IGNORECASE)
 _OTHER = re.compile(
     r"(?:.*\bTHEN\s+)?(MOVELINK|ML|FLEXLINK|MOVE|MOVEABS|CAM|CAMBOX|CONNECT|MOVECIRC|FORWARD|REVERSE|ADDAX)\b.*",
@@ -85,15 +85,14 @@ def read(text: str, place: str) -> CamTable:
     """
     moves, axes = [], set()
     base = ""
-    known = known_numbers(text, place)
+    numbers = Numbers.of(text, place)
     for number, statement in numbered_statements(text, place):
         call, chosen, other = _CALL.fullmatch(statement), _BASE.fullmatch(statement), _OTHER.fullmatch(statement)
         if chosen:
             base = chosen[1].strip()
         elif call:
-            cells = [known.get(cell.strip().lower()) or cell.strip() for cell in call[2].split(",")]
             make = _flexed if call[1].upper() == "FLEXLINK" else _linked
-            moves.append(make(cells, place, number))
+            moves.append(make(call[2].split(","), numbers, place, number))
             axes.add((call[3] if call[3] is not None else base).strip().lower())
         elif other:
             raise refuse(
@@ -111,13 +110,13 @@ def read(text: str, place: str) -> CamTable:
     return _joined(moves, place)
 
 
-def _linked(cells: list[str], place: str, number: int) -> _Move:
+def _linked(cells: list[str], numbers: Numbers, place: str, number: int) -> _Move:
     """Take one ``MOVELINK``; where both ramps are longer than the link distance the controller shortens them in proportion."""
     if len(cells) < 5:
         raise refuse(place, number, f"MOVELINK({shown(', '.join(cells))}) has {len(cells)} arguments, not 5 or more")
-    distance, link, speeding, slowing = (real(cell, place, number) for cell in cells[:4])
-    based = real(cells[7], place, number) if len(cells) > 7 else 0.0
-    options = _options(cells, 5, place, number)
+    distance, link, speeding, slowing = (numbers.value(cell, place, number) for cell in cells[:4])
+    based = numbers.value(cells[7], place, number) if len(cells) > 7 else 0.0
+    options = _options(cells, 5, numbers, place, number)
     if not (link > 0.0 and speeding >= 0.0 and slowing >= 0.0):
         raise refuse(place, number, f"MOVELINK over {link:g}, with ramps of {speeding:g} and {slowing:g}, is no motion")
     share = min(1.0, link / (speeding + slowing)) if speeding + slowing else 1.0
@@ -128,11 +127,11 @@ def _linked(cells: list[str], place: str, number: int) -> _Move:
     return _Move(based / link, rise, 0.0, speeding, even, slowing, 0.0, curve, number)
 
 
-def _flexed(cells: list[str], place: str, number: int) -> _Move:
+def _flexed(cells: list[str], numbers: Numbers, place: str, number: int) -> _Move:
     """Take one ``FLEXLINK``: an even move, and a travel between the parts of the way, in per cent, that are left to it."""
     if len(cells) < 8:
         raise refuse(place, number, f"FLEXLINK({shown(', '.join(cells))}) has {len(cells)} arguments, not 8 or more")
-    based, excited, link, *parts = (real(cell, place, number) for cell in cells[:7])
+    based, excited, link, *parts = (numbers.value(cell, place, number) for cell in cells[:7])
     before, after, speeding, slowing = parts
     room = 100.0 - before - after
     if not (link > 0.0 and min(parts) >= 0.0 and room >= 0.0 and speeding + slowing <= 100.0 and (room or not excited)):
@@ -146,13 +145,13 @@ def _flexed(cells: list[str], place: str, number: int) -> _Move:
     up, down = 0.01 * speeding * window, 0.01 * slowing * window
     even = window - up - down
     rise = excited / (even + 0.5 * (up + down)) if window else 0.0
-    curve = _curve(_options(cells, 8, place, number), place, number)
+    curve = _curve(_options(cells, 8, numbers, place, number), place, number)
     return _Move(based / link, rise, 0.01 * before * link, up, even, down, 0.01 * after * link, curve, number)
 
 
-def _options(cells: list[str], at: int, place: str, number: int) -> int:
+def _options(cells: list[str], at: int, numbers: Numbers, place: str, number: int) -> int:
     """Read the bits of the options, 0 where they are left out."""
-    return integer(cells[at], place, number) if len(cells) > at else 0
+    return numbers.whole(cells[at], place, number) if len(cells) > at else 0
 
 
 def _curve(options: int, place: str, number: int) -> int:

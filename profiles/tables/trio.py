@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 
 import numpy as np
 
@@ -11,22 +10,17 @@ from camwright.profiles.errors import InputError
 from camwright.profiles.tables.cam_table import CamTable, make_table
 from camwright.profiles.tables.interpolation import chords, in_format
 from camwright.profiles.tables.target import Header, Target, companion
-from camwright.profiles.tables.text import (
-    check_count,
-    integer,
-    lines_of,
-    real,
-    refuse,
-    shown,
-)
+from camwright.profiles.tables.text import check_count, refuse, shown
+from camwright.profiles.tables.trio_program import Numbers, run
 
 MOST_POINTS = 16_000
 
-_LINE = re.compile(r"TABLE\s*\(([^()]*)\)", re.IGNORECASE)
+_LINE = re.compile(r"TABLE\s*\((.*)\)", re.IGNORECASE)
 _TABLE = re.compile(r"TABLE\s*\(", re.IGNORECASE)
 _CAMBOX = re.compile(r"CAMBOX\s*\(([^()]*)\)(?:\s*AXIS\s*\([^()]*\))?", re.IGNORECASE)
-_GIVEN = re.compile(r"([A-Za-z]\w{0,59})\s*=(.*)")
-_PLAIN = re.compile(r"[-+.0-9eE]{1,40}")
+_INNER = re.compile(r".*\bTHEN\s+TABLE\s*\(.*", re.IGNORECASE)
+_PATTERN = 1 << 3
+"""Option of CAMBOX: the multiplier is the address of a list of multipliers."""
 
 
 def write(table: CamTable, header: Header) -> dict[str, str]:
@@ -51,27 +45,32 @@ def write(table: CamTable, header: Header) -> dict[str, str]:
 def read(text: str, place: str) -> CamTable:
     """Values of the ``TABLE`` lines of a program; from its ``CAMBOX`` line which of them, the multiplier and the link distance.
 
-    Variables that the program gives one number are known. Other statements are passed over. Without a ``CAMBOX`` line of
-    numbers all values are the table, and master positions are counted in its steps.
+    Expressions of variables that the program gives one number are computed, loops are run. Other statements are passed over. Without a
+    ``CAMBOX`` line of numbers all values are the table, and master positions are counted in its steps.
     """
     values: dict[int, float] = {}
-    calls: list[tuple[list[str], int]] = []
-    known = known_numbers(text, place)
-    for number, statement in numbered_statements(text, place):
+    calls: dict[int, list[str]] = {}
+    numbers = Numbers.of(text, place)
+    for line, statement, known in run(text, place, numbers):
         call = _CAMBOX.fullmatch(statement)
         if call:
-            calls.append(([cell.strip() for cell in call[1].split(",")], number))
+            calls[line] = [cell.strip() for cell in call[1].split(",")]
         elif _TABLE.match(statement):
-            _fill(values, statement, place, number)
+            _fill(values, statement, known, place, line)
+        elif _INNER.fullmatch(statement):
+            raise refuse(
+                place,
+                line,
+                f"{shown(statement)} fills the table on a condition; leave the lines that are meant in the file",
+            )
     if not values:
         raise refuse(place, None, "there is no line TABLE(address, value, …) in it")
     check_count(len(values), 2, MOST_POINTS, place)
-    calls = [([known.get(cell.lower()) or cell for cell in cells], number) for cells, number in calls]
-    plain = [(cells, number) for cells, number in calls if len(cells) >= 4 and all(map(_PLAIN.fullmatch, cells[:4]))]
-    if len({tuple(cells[:4]) for cells, _ in plain}) > 1:
-        raise refuse(place, plain[1][1], "there is more than one CAMBOX; leave the one that is meant in the file")
+    plain = [found for line, cells in calls.items() if (found := _call(cells, numbers, place, line))]
+    if len({found[:4] for found in plain}) > 1:
+        raise refuse(place, plain[1][4], "there is more than one CAMBOX; leave the one that is meant in the file")
     if plain:
-        return _called(values, *plain[0], place)
+        return _called(values, plain[0], place)
     addresses = sorted(values)
     if addresses[-1] - addresses[0] + 1 != len(values):
         raise refuse(place, None, "the addresses of the table have a gap")
@@ -81,47 +80,54 @@ def read(text: str, place: str) -> CamTable:
     return make_table(range(len(values)), [values[a] for a in addresses], law="line", notes=(note,))
 
 
-def numbered_statements(text: str, place: str) -> Iterator[tuple[int, str]]:
-    """Go through a program's statements, each with the number of its line: cut at colons, without what stands behind an apostrophe."""
-    for number, line in enumerate(lines_of(text, place), start=1):
-        yield from ((number, part.strip()) for part in line.partition("'")[0].split(":") if part.strip())
-
-
-def known_numbers(text: str, place: str) -> dict[str, str | None]:
-    """Find the variables of a program, names in small letters: the one number that it gives each, ``None`` where it gives anything else."""
-    known: dict[str, str | None] = {}
-    for _, statement in numbered_statements(text, place):
-        given = _GIVEN.fullmatch(statement)
-        if given:
-            name, value = given[1].lower(), given[2].strip()
-            known[name] = value if known.setdefault(name, value) == value and _PLAIN.fullmatch(value) else None
-    return known
-
-
-def _fill(values: dict[int, float], statement: str, place: str, number: int) -> None:
+def _fill(values: dict[int, float], statement: str, numbers: Numbers, place: str, line: int) -> None:
     """Take the values of one ``TABLE`` line."""
     found = _LINE.fullmatch(statement)
-    if not found:
-        raise refuse(place, number, f"{shown(statement)} is not of the form TABLE(address, value, …)")
+    if not found or "," not in found[1]:
+        raise refuse(place, line, f"{shown(statement)} is not of the form TABLE(address, value, …)")
     first, *cells = found[1].split(",")
-    address = integer(first, place, number)
+    address = numbers.whole(first, place, line)
     for offset, cell in enumerate(cells):
         if address + offset in values:
-            raise refuse(place, number, f"the address {address + offset} is filled twice")
-        values[address + offset] = real(cell, place, number)
+            raise refuse(place, line, f"the address {address + offset} is filled twice")
+        values[address + offset] = numbers.value(cell, place, line)
+    if len(values) > MOST_POINTS:
+        raise refuse(place, line, f"the table has more than {MOST_POINTS} values")
 
 
-def _called(values: dict[int, float], cells: list[str], number: int, place: str) -> CamTable:
+_Call = tuple[int, int, float, float, int]
+"""Start, end, multiplier and link distance of a ``CAMBOX``, and its line."""
+
+
+def _call(cells: list[str], numbers: Numbers, place: str, line: int) -> _Call | None:
+    """Compute the arguments of a ``CAMBOX``; ``None`` where they are not known."""
+    if len(cells) < 4:
+        return None
+    try:
+        start, end, multiplier, distance = (numbers.value(cell, place, line) for cell in cells[:4])
+    except InputError:
+        return None
+    if start != round(start) or end != round(end):
+        raise refuse(place, line, f"CAMBOX runs from {start:g} to {end:g}, which are no addresses")
+    if len(cells) > 5 and numbers.whole(cells[5], place, line) & _PATTERN:
+        raise refuse(
+            place,
+            line,
+            "CAMBOX takes its multipliers from a list (option 8), a cycle is none of them; leave the option out",
+        )
+    return round(start), round(end), multiplier, distance, line
+
+
+def _called(values: dict[int, float], call: _Call, place: str) -> CamTable:
     """Take the part of the table that a ``CAMBOX(start, end, multiplier, link distance, …)`` runs."""
-    start, end = (integer(cell, place, number) for cell in cells[:2])
-    multiplier, distance = (real(cell, place, number) for cell in cells[2:4])
+    start, end, multiplier, distance, line = call
     if not 0 < end - start <= MOST_POINTS:
-        raise refuse(place, number, f"CAMBOX runs from {start} to {end}, which is no part of a table")
+        raise refuse(place, line, f"CAMBOX runs from {start} to {end}, which is no part of a table")
     missing = [address for address in range(start, end + 1) if address not in values]
     if missing:
-        raise refuse(place, number, f"CAMBOX runs over the address {missing[0]}, which no TABLE line fills")
+        raise refuse(place, line, f"CAMBOX runs over the address {missing[0]}, which no TABLE line fills")
     if not (distance > 0.0 and multiplier != 0.0):
-        raise refuse(place, number, f"the link distance {distance:g} and the multiplier {multiplier:g} make no motion")
+        raise refuse(place, line, f"the link distance {distance:g} and the multiplier {multiplier:g} make no motion")
     count = end - start
     y = [values[start + k] * multiplier for k in range(count + 1)]
     note = f"CAMBOX runs {count + 1} values of the table, times {multiplier:g}, over a link distance of {distance:g}"

@@ -81,7 +81,8 @@ that run backwards along it are put in order. A kernel's table
 that leaves out where its cycle ends takes the pitch of the job if it runs on to that, else `--travel '400 mm'` says it.
 An L5X with a CAM and the CAM_PROFILE computed from it is judged by the profile; a CAM without slopes asks for
 `--slopes A,B`; a profile that was never calculated, and a tag whose two copies differ, are refused. TwinCAT sources
-(`.TcPOU`, `.TcGVL`) and whole Trio programs (`TABLE`, `BASE`, comments, variables, `CAMBOX` with link distance and multiplier) are read;
+(`.TcPOU`, `.TcGVL`) and whole Trio programs (`TABLE`, `BASE`, comments, variables and
+their sums, `FOR` loops, `CAMBOX` with link distance and multiplier) are read;
 motion functions of TwinCAT are POLYNOM1, POLYNOM3, POLYNOM5 and POLYNOM5_MM.
 A number in structured text that is no plain number is refused with its line.
 
