@@ -84,18 +84,19 @@ def recordings(number: int) -> Iterator[Recording]:
         yield Recording(seed, servo, motion, noise if random.random() < 0.8 or not count else 0.0, count, seed % 5 != 2)
 
 
-def command_of(motion: str, last: float) -> Command:
-    """Give the command over time (s): a cam of the bundled job's cut, or a sine from half a hertz to a last frequency in 2 s."""
+def command_of(motion: str, last: float, begun: float) -> Command:
+    """Give the command over time (s): a cam of the bundled job's cut, its cycle begun before, or a sine up to a last frequency in 2 s."""
     if motion == "sweep":
         return lambda time: np.where(time > 0, 0.02 * np.sin(2 * np.pi * (0.5 + (last - 0.5) * time / 4.0) * time), 0.0)
     cycle = baseline(motion, Task(RotaryKnife(0.4), CUT, FREE))
-    return lambda time: np.asarray(cycle(time * CUT.line_speed, outside="repeat"))
+    return lambda time: np.asarray(cycle((time + begun) * CUT.line_speed, outside="repeat"))
 
 
 def recorded(what: Recording) -> Trace:
     """Run the servo by a plain loop over its samples, from a second before the recording."""
     servo, random = what.servo, np.random.default_rng(100_000 + what.seed)
-    command = command_of(what.motion, float(random.uniform(8.0, 20.0)))
+    last, begun, zero = random.uniform(8.0, 20.0), random.uniform(0.0, CUT.length / CUT.line_speed), random.random()
+    command = command_of(what.motion, last, begun)
     clock = -1.0 - servo.sample_time * random.random()
     whole = sample_plant(servo, servo.sample_time)
     times = STEP * np.arange(ROWS)
@@ -113,7 +114,7 @@ def recorded(what: Recording) -> Trace:
     actual = actual + random.normal(0.0, what.noise, ROWS) if what.noise else actual
     given = command(times)
     if what.count:
-        actual, given = (np.round(signal / what.count) * what.count for signal in (actual, given))
+        actual, given = (np.round(signal / what.count + zero) * what.count for signal in (actual, given))
     return Trace(0.0, STEP, given, actual, "m")
 
 

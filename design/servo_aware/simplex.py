@@ -162,7 +162,7 @@ class _State:
                 if self._since:  # looked at again without rounding
                     self._renew()
                     return None
-                return NoPoint(float(broken[worst]) / (1.0 + float(np.abs(shares).sum())) - _ACCURATE)
+                return NoPoint(self._least(int(rows[worst]), shares))
             prices = np.maximum(self.price[rising], 0.0)
             near = prices / shares[rising] <= ((prices + _SLACK) / shares[rising]).min()
             out = int(rising[near][shares[rising][near].argmax()])
@@ -172,6 +172,16 @@ class _State:
                 self._renew()
                 break
         return None
+
+    def _least(self, row: int, shares: FloatArray) -> float:
+        """By how much rows contradict each other, one being a sum of those that bind, whatever rounding left of that sum; in the box.
+
+        The sum is made of the rows themselves: their inverse may be all rounding, where they are nearly parallel.
+        """
+        of, falling = self.of, np.minimum(shares, 0.0)
+        off = of.matrix[row] - falling @ of.matrix[self.active]
+        broken = float(falling @ of.bound[self.active]) - float(of.bound[row]) - _BOX * float(np.abs(off).sum())
+        return broken / (1.0 - float(falling.sum())) - _ACCURATE
 
     def _exchange(self, out: int, row: int, shares: FloatArray, broken: float) -> FloatArray:
         """Let a row bind in the place of another; give the step of the point."""

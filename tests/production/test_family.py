@@ -177,7 +177,8 @@ def test_overlaps_that_are_none_are_refused(text: str, tmp_path: Path, capsys: p
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("length", "tolerance", "ramp"), [(266, 0.05, ""), (260, 0.1, ""), (263, 0.06, ""), (266, 0.05, "0.02 m/s^2")]
+    ("length", "tolerance", "ramp"),
+    [(266, 0.05, ""), (260, 0.1, ""), (263, 0.06, ""), (280, 0.02, ""), (266, 0.05, "0.02 m/s^2")],
 )
 def test_shaped_families_hold_every_line_speed(length: float, tolerance: float, ramp: str) -> None:
     found = family(job(length, tolerance, ramp=ramp), ["csv", "codesys"])

@@ -83,5 +83,16 @@ def test_a_proof_never_asks_for_more_than_is_missing(seed: int) -> None:
     assert 0.0 < proof.least <= least * (1 + 1e-9)
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_rows_that_are_parallel_but_for_rounding_prove_nothing(seed: int) -> None:
+    # bells so wide that they are nearly one another; the rows have a point by their making
+    rng = np.random.default_rng(seed)
+    place = np.linspace(0.0, 1.0, 300)
+    bells = np.exp(-(((place[:, None] - np.linspace(0.0, 1.0, 12)) / 0.6) ** 2))
+    matrix = np.vstack([bells, -bells])
+    bound = matrix @ rng.normal(scale=0.1, size=12) + 1e-6 * rng.random(len(matrix))
+    assert not isinstance(dual_simplex(matrix, bound, np.append(np.zeros(11), 1.0)), NoPoint)
+
+
 def test_a_cost_without_bound_has_no_answer() -> None:
     assert dual_simplex(np.array([[1.0, 0.0], [0.0, -1.0]]), np.ones(2), np.array([1.0, 0.0])) is None
