@@ -18,7 +18,7 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from time import process_time
+from time import monotonic, process_time
 
 import numpy as np
 
@@ -266,48 +266,61 @@ def follow(job: RandomJob, error: InfeasibleError) -> tuple[str, str]:
     return WAY_OUT, f"{error.binding}: {', '.join(suggestion.change for suggestion in error.suggestions)}"
 
 
+HEAD = (
+    "machine",
+    "seed",
+    "jobs",
+    "passed",
+    "infeasible_suggestions_work",
+    "other",
+    "suggestions",
+    "mean_s",
+    "longest_s",
+)
+
+
+def counted(kind: str, seed: int, ends: Sequence[End]) -> tuple[object, ...]:
+    """Row of a machine."""
+    count = Counter(end.end for end in ends)
+    offered = sum(end.note.count(",") + 1 for end in ends if end.end == WAY_OUT)
+    seconds = [end.seconds for end in ends]
+    other = len(ends) - count[PASSED] - count[WAY_OUT]
+    times = f"{np.mean(seconds):.2f}", f"{max(seconds):.2f}"
+    return kind, seed, len(ends), count[PASSED], count[WAY_OUT], other, offered, *times
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the jobs, write the counts, print all other ends; the exit code tells whether every job ended well."""
+    """Run the jobs, write the counts, print all other ends; the exit code tells whether every job ended well.
+
+    The machines take turns and the counts are written after each, so that a run that is ended early has as many jobs of each machine.
+    """
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--jobs", type=int, default=300)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--machine", choices=tuple(MACHINES), action="append")
+    parser.add_argument("--minutes", type=float, default=math.inf, help="begin no round of jobs after so many")
     parser.add_argument("--out", type=Path, default=RESULTS / "random_machines.csv")
     options = parser.parse_args(arguments)
-    head = [
-        "machine",
-        "seed",
-        "jobs",
-        "passed",
-        "infeasible_suggestions_work",
-        "other",
-        "suggestions",
-        "mean_s",
-        "longest_s",
-    ]
-    others = 0
-    with options.out.open("w", newline="", encoding="utf-8") as file:
-        table = csv.writer(file, lineterminator="\n")
-        table.writerow(head)
-        for kind in options.machine or MACHINES:
-            rng = np.random.default_rng(options.seed)
-            ends: list[End] = []
-            for number in range(options.jobs):
-                job = random_job(rng, kind)
-                ends.append(measure(job))
-                if ends[-1].end not in (PASSED, WAY_OUT):
-                    print(f"{kind} {number}: {ends[-1].end}: {ends[-1].note}\n  {job!r}", flush=True)
-            count = Counter(end.end for end in ends)
-            offered = sum(end.note.count(",") + 1 for end in ends if end.end == WAY_OUT)
-            seconds = [end.seconds for end in ends]
-            good = count[PASSED] + count[WAY_OUT]
-            row = [kind, options.seed, len(ends), count[PASSED], count[WAY_OUT], len(ends) - good, offered]
-            row += [f"{np.mean(seconds):.2f}", f"{max(seconds):.2f}"]
-            table.writerow(row)
-            file.flush()
-            print(", ".join(f"{name} {value}" for name, value in zip(head, row, strict=True)), flush=True)
-            others += len(ends) - good
-    return 0 if others == 0 else 1
+    kinds = options.machine or list(MACHINES)
+    draws = {kind: np.random.default_rng(options.seed) for kind in kinds}
+    ends: dict[str, list[End]] = {kind: [] for kind in kinds}
+    rows: list[tuple[object, ...]] = []
+    until = monotonic() + 60 * options.minutes
+    for number in range(options.jobs):
+        if monotonic() > until:
+            break
+        for kind, rng in draws.items():
+            job = random_job(rng, kind)
+            end = measure(job)
+            ends[kind].append(end)
+            if end.end not in (PASSED, WAY_OUT):
+                print(f"{kind} {number}: {end.end}: {end.note}\n  {job!r}", flush=True)
+        rows = [counted(kind, options.seed, ends[kind]) for kind in kinds]
+        with options.out.open("w", newline="", encoding="utf-8") as file:
+            csv.writer(file, lineterminator="\n").writerows([HEAD, *rows])
+    for row in rows:
+        print(", ".join(f"{name} {value}" for name, value in zip(HEAD, row, strict=True)), flush=True)
+    return 0 if all(end.end in (PASSED, WAY_OUT) for each in ends.values() for end in each) else 1
 
 
 if __name__ == "__main__":
