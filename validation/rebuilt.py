@@ -33,6 +33,9 @@ ALLOWANCE = 0.01
 _SAME_PERIOD = 1e-3
 """How far a table's period may be off the cut length, relative to it, to be the table of this cut at all."""
 
+_ROUNDED = 1e-12
+"""Part of the slave's way that an advance may miss the pitch by for being computed; ten thousand cuts would show it."""
+
 _STEP = 1e-9
 """Step of the position at a join, relative to the cut length (a turn, for a slave in rad), that is rounding."""
 
@@ -171,6 +174,8 @@ def _closing(rebuilt: CamProfile, task: Task, cuts: int, wraps: int, run: int) -
     """Give what period and advance are off, the latter added up over a run, and steps at the joins."""
     machine, cut = task.machine, task.cut
     step = greatest_jump(rebuilt, 0)
+    lost = abs(rebuilt.advance - cuts * machine.pitch) / cuts
+    lost = lost if lost > _ROUNDED * position_scale(rebuilt, machine) else 0.0
     number = "in the target's number format"
     of = "" if cuts == 1 else f" of {cuts} cuts"
     zone = task.slave_at_sync_start + task.sync(np.linspace(0.0, cut.sync_zone, 33))
@@ -186,7 +191,7 @@ def _closing(rebuilt: CamProfile, task: Task, cuts: int, wraps: int, run: int) -
         ),
         _at_most(
             "closure",
-            run * abs(rebuilt.advance - cuts * machine.pitch) / cuts * lever,
+            run * lost * lever,
             cut.sync_tolerance,
             "m",
             None,

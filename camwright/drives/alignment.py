@@ -25,6 +25,10 @@ _EXACT = 1e-8
 """Misfit, as a part of what is allowed, that is rounding: beginnings below it are as good as each other."""
 _SAME = 1e-12
 """Part of the cut length within which two places are one."""
+_LEVELS = np.array([1.0, 2.0, 4.0, 8.0, 16.0, 32.0])
+"""Misfits at which the sides of a cam in counts are looked for, in units of what a count does."""
+_SNAP = 0.05
+"""Part of the beginnings that a count leaves open within which one is taken whose zone begins and ends on points."""
 _TOLD = 0.1
 """Misfit at the file's own zero, as a part of what is allowed, from which on another zero is told."""
 _ROUNDS = 60
@@ -79,21 +83,22 @@ def aligned(
         for part in np.array_split(begin, len(begin) // _CHUNK + 1):
             at = (part[:, None] + zone) * stretch
             off = rebuilt(at + in_zone * stretch, outside="repeat") - meant
-            if count > 0.0:
-                slip = np.diff(off, axis=1) * (lever / (in_zone[1] - in_zone[0]))
-            else:
-                slip = (rebuilt(at + inside * stretch, 1, outside="repeat") * stretch - slope) * speed
             position = 0.5 * np.ptp(off, axis=1) * lever / cut.sync_tolerance
+            if count > 0.0:  # a ratio is mostly rounding there
+                found.append(position)
+                continue
+            slip = (rebuilt(at + inside * stretch, 1, outside="repeat") * stretch - slope) * speed
             found.append(np.maximum(position, np.abs(slip).max(axis=1) * cut.sync_zone / cut.sync_tolerance))
         return np.concatenate(found)
 
-    step = chord if count > 0.0 else piece
-    slack = (
-        (count or grain) * lever / cut.sync_tolerance * cut.sync_zone / step
-    )  # a chord, or a ratio, off by its rounding
+    # a position, or a ratio, off by its rounding
+    slack = (count or grain * cut.sync_zone / piece) * lever / cut.sync_tolerance
     begins = _beginnings(rebuilt, stretch, zone, cut.sync_zone, cut.length)
     anchored = _anchored(begins, rebuilt.breaks / stretch, (zone, zone + cut.sync_zone), cut.length, tick)
-    begin = _best(begins, misfit, cut.length, max(_EXACT, slack), anchored)
+    if count > 0.0:
+        begin = _between_sides(begins, misfit(begins), cut.length, slack, anchored)
+    else:
+        begin = _best(begins, misfit, cut.length, max(_EXACT, slack), anchored)
     notes: tuple[str, ...] = ()
     here, there = misfit(np.array([0.0, begin])).tolist()
     if begin:  # even where the file's own zero is as good: figures must not depend on where a file begins
@@ -163,6 +168,50 @@ def _best(begins: FloatArray, misfit: Misfit, length: float, slack: float, ancho
     high = begins[(least + 1) % len(begins)] + (length if least == len(begins) - 1 else 0.0)
     refined = _golden(misfit, float(low), float(high))
     return float(begins[least]) if found[least] <= misfit(np.array([refined]))[0] else refined % length
+
+
+def _between_sides(
+    begins: FloatArray, found: FloatArray, length: float, slack: float, anchored: NDArray[np.bool_]
+) -> float:
+    """Find the beginning of a cam that is rounded to counts: between the sides on which the misfit rises beyond the rounding.
+
+    The higher a level, the better both places are known at which the misfit passes it; but the sides of a cam that is not symmetric rise
+    differently. So the middles at some levels are continued to where the sides begin: like cubes, as a limited jerk makes them.
+    """
+    least = int(found.argmin())
+    order = np.argsort((begins - begins[least]) % length)
+    away, ring = (begins[order] - begins[least]) % length, found[order]
+    ahead_at, ahead = np.append(away, length), np.append(ring, ring[0])
+    behind_at, behind = length - ahead_at[::-1], ahead[::-1]
+    middles, widths = [], []
+    for level in (float(found[least]) + slack * _LEVELS).tolist():
+        if level >= float(found.max()):
+            break
+        sides = [_passed(at, value, level) for at, value in ((ahead_at, ahead), (behind_at, behind))]
+        middles.append(0.5 * (sides[0] - sides[1]))
+        widths.append(sides[0] + sides[1])
+    middle, width = np.array(middles), np.array(widths)
+    if not len(middle):
+        return float(begins[least])
+    centre = float(middle[0])
+    if len(middle) == len(_LEVELS):
+        flat = max(0.0, 2.0 * float(width[-4]) - float(width[-1]))
+        columns = np.stack([np.ones_like(width), np.maximum(width - flat, 0.0)], axis=1)
+        centre = float(np.linalg.lstsq(columns * width[:, None] ** 2, middle * width**2, rcond=None)[0][0])
+    begin = (float(begins[least]) + centre) % length
+    sure = begins[anchored]
+    if len(sure):
+        off = np.abs((sure - begin + 0.5 * length) % length - 0.5 * length)
+        if off.min() <= _SNAP * float(width[0]):
+            return float(sure[int(off.argmin())])
+    return begin
+
+
+def _passed(at: FloatArray, value: FloatArray, level: float) -> float:
+    """Find the first place at which a function that begins below a level passes it."""
+    after = int(np.argmax(value > level))
+    share = (level - value[after - 1]) / (value[after] - value[after - 1])
+    return float(at[after - 1] + share * (at[after] - at[after - 1]))
 
 
 def _run(good: NDArray[np.bool_], at: int) -> tuple[int, int]:

@@ -17,6 +17,7 @@ from camwright.jobs.job import Job
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.tables.cam_table import CamTable
 from camwright.profiles.tables.target import Target
+from camwright.profiles.tables.targets import TARGETS
 from camwright.profiles.tables.text import read_text
 from camwright.studies.line_ramps import line_ramps
 from camwright.studies.remedies import solve_or_advise
@@ -159,7 +160,7 @@ def audit(
     (True, True)
     """
     step("reading")
-    found = running_cam(read_text(path), str(path), job, target, units, travel, slopes)
+    found = running_cam(read_text(path), str(path), job, target, units, travel, slopes, head=_head_beside(path))
     placed, cycle = found.job, found.cycle
     step("judging")
     judgement = found.judged()
@@ -183,6 +184,16 @@ def audit(
         _sampled(solution.profile, job),
         found.counted,
     )
+
+
+def _head_beside(path: Path) -> str:
+    """Read the text that camwright writes beside tables whose layout has no room for a head; nothing where there is none."""
+    for target in TARGETS.values():
+        for ending in target.endings[1:]:
+            beside = path.with_name(path.name.removesuffix(target.endings[0]) + ending)
+            if path.name.endswith(target.endings[0]) and beside.is_file():
+                return read_text(beside)
+    return ""
 
 
 def _sampled(cycle: CamProfile, job: Job) -> Sampled:

@@ -15,9 +15,11 @@ from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.tables.cam_table import CamTable
 from camwright.profiles.tables.count_grid import rounded_to, spacing_rounded_to, without_rounding
-from camwright.profiles.tables.target import Target
+from camwright.profiles.tables.target import Target, fits_head, no_cycle_in, units_in
 from camwright.profiles.tables.targets import detect, layout_of, read_table
 from camwright.validation.rebuilt import LEAST_WRAPS, RUN, TableJudgement, cuts_in, each_cut, judge_table, one_cycle
+
+_BESIDE = "the units are those of the text beside the table (--units says others)"
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,8 +67,12 @@ def running_cam(
     units: str | None = None,
     travel: str | None = None,
     slopes: str | None = None,
+    *,
+    head: str = "",
 ) -> RunningCam:
     """Rebuild the cam of a file's text as its drive does; arguments as of `camwright.drives.audit.audit`, messages begin with the place.
+
+    Where the layout has no room for a head, ``head`` is the text beside the table, if there is one.
 
     Raises
     ------
@@ -74,8 +80,17 @@ def running_cam(
         The text is not read, or is no cam of this job.
     """
     layout = detect(text, place) if target is None else layout_of(target)
+    what = no_cycle_in(text) or no_cycle_in(head)
+    if what:
+        raise InputError(
+            f"{place}: the table {what}; audit judges a cam's cycles. What camwright ramps, cutlist, family or export --speed-tables "
+            "writes is judged in its place between the others, when it is written"
+        )
     placed = replace(job, machine=_with_place(job.machine, text, place))
-    whole, cuts = _whole(with_slopes(read_table(layout, text, place), slopes), placed, place, units, travel)
+    read = with_slopes(read_table(layout, text, place), slopes)
+    if units is None and read.units is None and fits_head(read, head):
+        read = replace(read, units=units_in(head), notes=(_BESIDE,))
+    whole, cuts = _whole(read, placed, place, units, travel)
     table, counted = whole.table, without_rounding(whole.table)
     rebuilt = whole.units.to_si(layout.rebuild(table if counted is None else counted.table))
     one_cycle(rebuilt, job.cut, cuts)  # refuses another period

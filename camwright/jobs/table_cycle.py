@@ -19,6 +19,8 @@ _JUMP = 0.5
 """Part of the slave's range that one step must cover to be a jump."""
 _USUAL = 5.0
 """By how many times a jump exceeds the steps beside it."""
+_WIDEST = 0.2
+"""Part of the cycle up to which a step is one whose end may be missing: beyond, motion would be made up."""
 _MOST_OF = 0.5
 """Part of the pitch that a slave must run backwards to be mounted so."""
 _NEAR = 0.02
@@ -172,7 +174,7 @@ def _with_end(table: CamTable, job: Job, units: Units, asked: float | None) -> t
             table.periodic, table.notes, table.words,
         )  # fmt: skip
         return shorter, ("the last row is one step beyond the cycle and was left out",)
-    if abs(missing - step) > _NEAR * step:
+    if abs(missing - step) > _NEAR * step or step > _WIDEST * length:
         return table, ()
     travel = (job.machine.pitch if asked is None else asked) / units.slave.size
     meant = float(table.y[-1]) + 0.5 * float(table.y[-1] - table.y[-2] + table.y[1] - table.y[0])

@@ -52,7 +52,9 @@ def write(table: CamTable, header: Header) -> dict[str, str]:
     )
     rows = [",".join(map(repr, row)) for row in zip(*((column + 0.0).tolist() for column in columns), strict=True)]
     unit = Unit("rad", 1.0, "rad") if turned else Unit("mm", 1e-3)
-    metric = CamTable(columns[0], columns[1], columns[2], columns[3], table.laws, Units(Unit("mm", 1e-3), unit))
+    metric = CamTable(
+        columns[0], columns[1], columns[2], columns[3], table.laws, Units(Unit("mm", 1e-3), unit), table.periodic
+    )
     head = [f"# {line}" for line in header.lines(TARGET.title, metric)]
     lines = [*head, _TURNED if turned else _METRIC, *rows]
     return {f"{header.identifier}_cam.csv": "\n".join(lines) + "\n"}

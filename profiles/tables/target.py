@@ -8,6 +8,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
+import numpy as np
+
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.tables.cam_table import CamTable, Unit, Units
@@ -21,14 +23,20 @@ SAFETY_NOTE = (
     "Each time you import a cam from a file, check the integrity of the imported data."
 )
 
-_POINTS = re.compile(r"(?m)^[-+0-9., \t]{0,80}[/#(*<!-]{0,4} ?points: ([0-9]{1,7}); period: ")
+_LINE = r"(?m)^[-+0-9., \t]{0,80}[/#(*<!-]{0,4} ?"
+"""Where a line of a head begins: in a comment only, so that no name of a user's can pass for it."""
+_POINTS = re.compile(_LINE + r"points: ([0-9]{1,7}); period: (\S{1,30}) \S{1,20}; cam: (open|closed|appending)")
+_RUNS_ONCE = re.compile(_LINE + r"runs once, from cam: ")
+_ADDED = re.compile(_LINE + r"table: ([0-9]{1,2}) of ([0-9]{1,2}), times the line speed")
+_SAME = 1e-6
+"""Part of period and travel by which a table may miss what its head states."""
 _LONGEST = 24
 _DIGITS = 8
 _SIMPLE = re.compile(r"[a-z][a-z0-9]*(-[a-z0-9]+)*")
 _SUMMED = re.compile(rf"-[0-9a-f]{{{_DIGITS}}}$")
 _CONTROL = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029]+")
-_FACTS = re.compile(  # at the start of a comment only, so that no name of a user's can pass for it
-    r"(?m)^[-+0-9., \t]{0,80}[/#(*<!-]{0,4} ?camwright units: "
+_FACTS = re.compile(
+    _LINE + r"camwright units: "
     r"master (\S{1,20}) (\S{1,30}), slave (\S{1,20}) (\S{1,30}?)( rad)?; advance (\S{1,30})(?!\S)"
 )
 
@@ -111,6 +119,32 @@ def points_in(text: str) -> int | None:
     """Find the number of points that a head written by `Header.lines` states; ``None`` without one."""
     found = _POINTS.search(text)
     return int(found[1]) if found else None
+
+
+def fits_head(table: CamTable, head: str) -> bool:
+    """Whether a table is the one that a head describes: as many points over the same period, with the same advance."""
+    found, facts = _POINTS.search(head), _stated(head)
+    if found is None or facts is None or int(found[1]) != table.points:
+        return False
+    try:
+        period = float(found[2])
+    except ValueError:
+        return False
+    off = _SAME * float(np.ptp(table.y)) + (
+        1.0 if (table.y == np.rint(table.y)).all() else 0.0
+    )  # written in whole counts
+    return abs(period - table.period) <= _SAME * period and abs(facts[1] - table.advance) <= off
+
+
+def no_cycle_in(head: str) -> str:
+    """Say what a table is whose head states that it is no cycle of a cam; nothing where it is one."""
+    found = _POINTS.search(head)
+    if (found and found[3] == "open") or _RUNS_ONCE.search(head):
+        return "runs once, between rest and a cam or from one cam into another"
+    added = _ADDED.search(head)
+    if added:
+        return f"is number {added[1]} of 0 to {added[2]} that the controller adds, each times a power of the line speed"
+    return ""
 
 
 def _stated(text: str) -> tuple[Units, float] | None:

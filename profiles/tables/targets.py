@@ -85,6 +85,10 @@ _SIGNS: tuple[tuple[str, str], ...] = (
 _OWN = re.compile(r"(?m)^[-+0-9., \t]{0,80}[/#(*<!-]{0,4} ?camwright \S{1,40}: cam table for (.{1,100})$")
 
 
+_BESIDE = re.compile(r"camwright \S{1,40}: |MCCP\(")
+"""What a text beside a table begins with."""
+
+
 def target_of(name: str) -> Target:
     """Look up a target by its name, in any case.
 
@@ -141,6 +145,10 @@ def detect(text: str, place: str) -> Target:
         No layout is recognised. Two plain columns of numbers are taken for a table of positions: the drive may do
         something else with them, which a note says.
     """
+    if _BESIDE.match(text):
+        raise InputError(
+            f"{place}: this is the text beside a table, not the table; name the file beside it that holds the points"
+        )
     own = _OWN.search(text)
     for target in TARGETS.values():
         if own and own[1] == target.title:

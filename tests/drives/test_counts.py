@@ -93,6 +93,27 @@ def test_a_table_of_several_cuts_is_read_as_that(
     assert judged.passed
 
 
+@pytest.mark.parametrize("target", COUNTING)
+@pytest.mark.parametrize("units", ["mm,131072/rev", "mm,36001/rev", "0.01 mm,9.25 um", None])
+def test_an_audit_judges_counts_as_their_export_did(target: str, units: str | None) -> None:
+    """Three blades: the drift over the run, what rounding makes of differences, and the zero, with the units of the text beside."""
+    job = knife("1200 mm", 3)
+    result = written(job, target, units, force=True)
+    (name, text), (_, head) = result.files.items()
+    found = running_cam(text, name, job, head=head)
+    assert [(check.name, check.passed) for check in found.judged().checks] == [
+        (check.name, check.passed) for check in result.judgement.checks
+    ]
+    closure = {check.name: check.value for check in found.judged().checks}["closure"]
+    assert closure == pytest.approx(RUN * abs(result.drift), rel=1e-6, abs=1e-9)
+    assert "the units are those of the text beside the table (--units says others)" in found.notes
+    x = np.linspace(0.0, 0.6, 601)[:-1]
+    assert np.abs(found.cycle(x) - profile_of(job)(x)).max() < (2e-7 if units is None else 3e-4)
+    assert "the units are those" not in " ".join(
+        running_cam(text, name, job, head=head.replace("points: ", "points: 1")).notes
+    )
+
+
 def test_a_table_of_one_cut_is_one() -> None:
     job = knife("400 mm")
     straight = CamProfile.from_arrays([0.0, 0.6], [[0.0, 2 / 3]])

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from camwright.cli.main import main
+from camwright.drives.running_cam import running_cam
 from camwright.drives.speed_tables import SpeedTables, speed_tables
 from camwright.jobs.job import BUNDLED_JOB, Job, parse_job
 from camwright.profiles.errors import InputError
@@ -41,6 +42,10 @@ def test_files_are_the_tables_and_their_sum_passes(made: SpeedTables) -> None:
     for power, name in enumerate(names):
         table = read_table(target_of("twincat"), decode(made.files[name].encode(), name), name)
         assert f"-v{power}" in made.files[name]
+        with pytest.raises(
+            InputError, match=f"the table is number {power} of 0 to {len(names) - 1} that the controller adds"
+        ):
+            running_cam(made.files[name], name, job())
         x = np.array(table.x)
         assert np.array(table.y) * 1e-3 == pytest.approx(made.cam.tables[power](x * 1e-3), abs=1e-12)
     steps = made.files[next(name for name in made.files if name.endswith(".txt"))]

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from camwright.design.production.transition import RunningCam, transition_speed
+from camwright.drives.running_cam import running_cam
 from camwright.jobs.job import Job, load_job
 from camwright.production.changes import find_changes
 from camwright.production.common_place import placed_alike
@@ -171,6 +172,11 @@ def test_targets_that_close_a_cycle_by_themselves_do_not_take_a_transition() -> 
     exact, closing, scaled = found.tables
     assert exact.passed
     assert {"T001 to 002"} <= {name.partition("_K")[0].replace("_", " ") for name in exact.files}
+    name, text = next(each for each in exact.files.items() if each[0].startswith("T001"))
+    with pytest.raises(
+        InputError, match=r"the table runs once, .* or from one cam into another; audit judges a cam's cycles"
+    ):
+        running_cam(text, name, crank())
     assert not closing.passed
     assert closing.jump.velocity > 1e-3
     assert [fault.partition(":")[0] for fault in scaled.refused] == ["T001 to 002"]

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from camwright.drives.running_cam import running_cam
 from camwright.jobs.examples import example
 from camwright.jobs.job import Job, load_job
 from camwright.production.ramp_tables import KINDS, stretch_of, write_ramps
@@ -93,6 +94,8 @@ def test_tables_of_every_target_hand_over(name: str) -> None:
             assert bool(result.files) == result.passed
             for file in result.files:
                 assert file.startswith(kind)
+            if result.files:
+                refused_by_audit(list(result.files.items()), found.job)
     released = {kind: {each.target.name for each in tables.results[kind] if each.passed} for kind in KINDS}
     for kind in ("ramp_in", "ramp_out"):
         assert not released[kind] & CYCLIC
@@ -101,6 +104,18 @@ def test_tables_of_every_target_hand_over(name: str) -> None:
     if JOBS[name].machine.slave_unit == "m" and JOBS[name].task.straight:
         # the IDE of the one that is left out takes no cam that comes back below its start
         assert released["one_shot"] >= CYCLIC - ({"kollmorgen-kas"} if JOBS[name].machine.turns_back else set())
+
+
+def refused_by_audit(files: list[tuple[str, str]], job: Job) -> None:
+    """See that an audit, which judges cycles, names a table that runs once: by its own head or by that of the text beside it."""
+    (name, text), (beside, head) = [*files, ("", "")][:2]
+    with pytest.raises(
+        InputError, match="the table runs once, between rest and a cam or from one cam into another; audit judges"
+    ):
+        running_cam(text, name, job, head=head)
+    if beside:
+        with pytest.raises(InputError, match="this is the text beside a table, not the table"):
+            running_cam(head, beside, job)
 
 
 def test_a_table_that_hands_over_badly_is_withheld() -> None:
