@@ -19,7 +19,7 @@ from camwright.jobs.job import Job
 from camwright.profiles.errors import CamwrightError
 from camwright.profiles.machines import RotaryKnife
 from camwright.studies.envelope import Edge, envelope_answer
-from camwright.studies.reach import fails, stand_in
+from camwright.studies.reach import stand_in, verdict
 
 RESULTS = Path(__file__).parent / "results" / "envelopes.csv"
 
@@ -61,7 +61,7 @@ def wrong(job: Job, edge: Edge, random: np.random.Generator, *, checked: bool) -
         length, speed = left + part * (right - left), low + part * (high - low)
         for factor, possible in ((1 - ASIDE, True), (1 + ASIDE, False)):
             task = job.task.with_length(length).at_speed(factor * speed)
-            failed = fails(job, task, stand_in(job))
+            failed, _ = verdict(job, task, stand_in(job))
             limit = failed in ("speed", "acceleration", "jerk", "reversal", "sync_zone", "design")
             tried += 1
             if (not failed if checked else not limit) != possible:

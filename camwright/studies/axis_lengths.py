@@ -12,11 +12,17 @@ from camwright.jobs.job import Job
 from camwright.jobs.servos import servos_of
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import SolverError
+from camwright.studies.least_length import least_length
 from camwright.validation.bounds import minimum_length as least
-from camwright.validation.bounds.zone_search import ZoneSearch
 
-_FINE, _LENGTH_RESOLUTION, _ZONE_RESOLUTION = 8, 2e-4, 4e-3
-"""How finely sync zones and cut lengths are searched; see `camwright.validation.bounds.zone_search.ZoneSearch`."""
+_LENGTH_RESOLUTION = 2e-4
+"""Accuracy of a cut length, relative to the pitch."""
+
+_LEAST_ZONE = 4e-3
+"""Sync zone of a cut without a width, relative to the pitch."""
+
+_SOONER, _SHAPED, _STRICTER = 0.95, 0.8, 1.05
+"""Where lengths are expected: in sync, as a share of the linear return's; shaped, as a share of that; and the limits on the axis too."""
 
 
 @dataclass(frozen=True)
@@ -28,11 +34,12 @@ class AxisLengths:
     linear_return, poly_3_4_5
         With these returns, the first within the limit of speed, the second within all limits of the command.
     in_sync, shaped
-        With a servo-aware command within the limits, in sync itself in the whole sync zone, or shaped.
+        With a servo-aware command within the limits, in sync itself in the shear zone, or shaped.
     in_sync_axis_limits, shaped_axis_limits
-        The same if the axis, too, keeps the limits of speed and acceleration; in sync with the sync zone that is best without.
+        The same if the axis, too, keeps the limits of speed and acceleration.
 
-    The sync zone is the best one each time; ``None`` where no cut up to the pitch holds.
+    The sync zone is the best one each time; ``None`` where no cut up to the pitch holds. Of a servo-aware command that is the shear zone:
+    what is in sync in a longer zone is so there, too.
     """
 
     linear_return: float
@@ -55,37 +62,56 @@ def axis_lengths(job: Job) -> AxisLengths | None:
     InputError
         The shear zone leaves no room for a return, or the servo is unstable.
     """
-    machine, cut, limits = job.machine, replace(job.cut, shaped=False), job.limits
+    machine, cut = job.machine, replace(job.cut, shaped=False)
     if not machine.published or cut.sync_ratio != 1.0:
         return None
     servos = servos_of(job) if job.servo_aware else (job.servo,)
     pitch = machine.pitch
-    shear = max(
-        cut.shear_zone, _ZONE_RESOLUTION * pitch
-    )  # of a shaped command the sync zone is the shear zone; it has some width
+    shear = sync_zone_of(cut, pitch)
 
-    def search(command: Command, *, axis_limits: bool) -> ZoneSearch:
-        def excess(shape: Cut) -> float:
+    def shortest(
+        command: Command, near: float, least_of_all: float = 0.0, *, axis_limits: bool = False
+    ) -> float | None:
+        def missed(length: float) -> float:
             try:
-                holds = AxisProgramme(AxisProblem(job.task.with_cut(shape), command, servos, axis_limits)).reaches()
+                task = job.task.with_cut(in_shear_zone(cut, length, shear))
+                programme = AxisProgramme(AxisProblem(task, command, servos, axis_limits))
+                if len(servos) > 1:  # of many servos by how much takes ten times as long as whether
+                    return math.copysign(math.inf, -1.0 if programme.reaches() else 1.0)
+                return programme.missed(ratio=True)
             except SolverError:  # at the edge of what double precision resolves
                 return math.inf
-            return -math.inf if holds else math.inf
 
-        def lower(sync_zone: float) -> float:
-            if command == "shaped":  # a mean speed beyond the limit is all that forbids it
-                return max(shear, pitch * cut.line_speed / limits.speed) * (1 + _LENGTH_RESOLUTION)
-            return least.fastest_cut(pitch, cut.line_speed, limits, sync_zone)
+        ends = max(shortest_return(job, command, shear), least_of_all), pitch * (1.0 - _LENGTH_RESOLUTION)
+        return least_length(missed, near, ends, _LENGTH_RESOLUTION) if ends[0] < ends[1] else None
 
-        return ZoneSearch(cut, pitch, lower, excess, _FINE, _LENGTH_RESOLUTION, _ZONE_RESOLUTION)
-
-    best, zone = search("in_sync", axis_limits=False).find()
-    found = zone < pitch
+    linear = least.linear_return_to_tolerance(job.task.with_cut(cut), job.servo).length
+    in_sync = shortest("in_sync", _SOONER * linear)
+    shaped = shortest("shaped", _SHAPED * (in_sync or pitch))
+    strictly = _STRICTER * (in_sync or pitch), _STRICTER * (shaped or pitch)
     return AxisLengths(
-        linear_return=least.linear_return_to_tolerance(job.task.with_cut(cut), job.servo).length,
+        linear_return=linear,
         poly_3_4_5=least.quintic_to_tolerance(job.task.with_cut(cut), job.servo).length,
-        in_sync=best if found else None,
-        shaped=search("shaped", axis_limits=False).shorter(shear, pitch),
-        in_sync_axis_limits=search("in_sync", axis_limits=True).shorter(zone, pitch) if found else None,
-        shaped_axis_limits=search("shaped", axis_limits=True).shorter(shear, pitch),
+        in_sync=in_sync,
+        shaped=shaped,
+        in_sync_axis_limits=shortest("in_sync", strictly[0], in_sync, axis_limits=True) if in_sync else None,
+        shaped_axis_limits=shortest("shaped", strictly[1], shaped, axis_limits=True) if shaped else None,
     )
+
+
+def sync_zone_of(cut: Cut, pitch: float) -> float:
+    """Sync zone of a servo-aware command that can be shortest (m): the shear zone, which has some width."""
+    return max(cut.shear_zone, _LEAST_ZONE * pitch)
+
+
+def in_shear_zone(cut: Cut, length: float, shear: float) -> Cut:
+    """Cut of a length whose sync zone is its shear zone (m), which no longer one is better than."""
+    return replace(cut, length=length, sync_zone=shear, shear_zone_at=shear - cut.shear_zone, origin="return")
+
+
+def shortest_return(job: Job, command: Command, shear: float) -> float:
+    """Shortest cut length that the limits of a command allow at all beside a shear zone (m)."""
+    pitch, line_speed, limits = job.machine.pitch, job.cut.line_speed, job.limits
+    if command == "shaped":  # a mean speed beyond the limit is all that forbids it
+        return max(shear, pitch * line_speed / limits.speed) * (1 + _LENGTH_RESOLUTION)
+    return least.fastest_cut(pitch, line_speed, limits, shear)

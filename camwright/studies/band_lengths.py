@@ -11,15 +11,14 @@ from camwright.design.servo_aware.command_basis import Command
 from camwright.design.servo_aware.programme import AxisProgramme
 from camwright.jobs.job import Job
 from camwright.jobs.servos import servos_of
-from camwright.profiles.cut import Cut
 from camwright.profiles.errors import SolverError
-from camwright.studies.axis_lengths import AxisLengths
+from camwright.studies.axis_lengths import AxisLengths, in_shear_zone, shortest_return, sync_zone_of
 from camwright.studies.axis_study import shares_of
-from camwright.validation.bounds.minimum_length import fastest_cut, over_line_speeds
-from camwright.validation.bounds.zone_search import ZoneSearch
+from camwright.studies.least_length import least_length
+from camwright.validation.bounds.minimum_length import over_line_speeds
 
-_FINE, _LENGTH_RESOLUTION, _ZONE_RESOLUTION = 8, 1e-3, 3e-2
-"""How finely sync zones and cut lengths are searched; see `camwright.validation.bounds.zone_search.ZoneSearch`."""
+_LENGTH_RESOLUTION = 1e-3
+"""Accuracy of a cut length, relative to the pitch."""
 
 _LAW_SPEEDS = 13
 """Line speeds, evenly spread over the band, at which a return by a law is looked at."""
@@ -45,7 +44,7 @@ class BandLengths:
     linear_return, poly_3_4_5
         With these returns, the first within the limit of speed, the second within all limits of the command.
     in_sync, shaped
-        With a servo-aware command within the limits, which the axis keeps too; in sync itself in the whole sync zone, or shaped.
+        With a servo-aware command within the limits, which the axis keeps too; in sync itself in the shear zone, or shaped.
 
     The sync zone is the best one each time; ``None`` where no cut up to the pitch holds. The tolerance is of the position, as a check of
     the design has it; what minimises the sync error is designed there, other objectives ask for the ratio of the axis too.
@@ -86,44 +85,39 @@ def band_lengths(job: Job, single: AxisLengths | None) -> BandLengths | None:
         line_speeds=job.line_speeds,
         linear_return=over_line_speeds(task, job.servo, "linear_return", few),
         poly_3_4_5=over_line_speeds(task, job.servo, "poly_3_4_5", few),
-        in_sync=_servo_aware(job, "in_sync"),
-        shaped=_servo_aware(job, "shaped"),
+        in_sync=_servo_aware(job, "in_sync", single.in_sync_axis_limits),
+        shaped=_servo_aware(job, "shaped", single.shaped_axis_limits),
     )
 
 
-def _servo_aware(job: Job, command: Command) -> float | None:
-    """Shortest cut of a servo-aware command, at some line speeds first, then at all."""
+def _servo_aware(job: Job, command: Command, single: float | None) -> float | None:
+    """Shortest cut of a servo-aware command, at some line speeds first, from what it is at one of them, then at all."""
+    if single is None:
+        return None
     cut, pitch, servos, shares = (
         replace(job.cut, shaped=False),
         job.machine.pitch,
         servos_of(job),
         shares_of(job.slowest),
     )
-    some = thinned(shares, _LOOKED)
+    shear = sync_zone_of(cut, pitch)
 
-    def missed(shape: Cut, looked: tuple[float, ...] = some) -> float:
-        problem = AxisProblem(job.task.with_cut(shape), command, servos, True, shares=looked)
+    def missed(length: float, looked: tuple[float, ...]) -> float:
+        task = job.task.with_cut(in_shear_zone(cut, length, shear))
         try:
-            return AxisProgramme(problem).missed(ratio=False)
+            return AxisProgramme(AxisProblem(task, command, servos, True, shares=looked)).missed(ratio=False)
         except SolverError:  # at the edge of what double precision resolves
             return np.inf
 
-    def lower(sync_zone: float) -> float:
-        if command == "shaped":  # a mean speed beyond the limit is all that forbids it
-            return max(sync_zone, pitch * cut.line_speed / job.limits.speed) * (1 + _LENGTH_RESOLUTION)
-        return fastest_cut(pitch, cut.line_speed, job.limits, sync_zone)
-
-    shear = max(cut.shear_zone, _LENGTH_RESOLUTION * pitch)
-    search = ZoneSearch(cut, pitch, lower, missed, _FINE, _LENGTH_RESOLUTION, _ZONE_RESOLUTION)
-    if command == "shaped":  # its sync zone is the shear zone
-        best, zone = search.shorter(shear, pitch), shear
-    else:
-        best, zone = search.find()
-        best = None if zone == pitch else best
+    some = thinned(shares, _LOOKED)
+    ends = shortest_return(job, command, shear), pitch * (1.0 - _LENGTH_RESOLUTION)
+    if not ends[0] < ends[1]:
+        return None
+    best = least_length(lambda length: missed(length, some), single, ends, _LENGTH_RESOLUTION)
     for _ in range(_TRIES):
         if best is None or best >= pitch:
             return None
-        if missed(search.shape(best, zone), shares) <= 0.0:
+        if missed(best, shares) <= 0.0:
             return best
         best *= _LONGER
     return None

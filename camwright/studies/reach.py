@@ -20,16 +20,12 @@ from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
 from camwright.studies.axis_study import shares_of
-from camwright.validation.report import judge
+from camwright.studies.least_length import least_length
+from camwright.validation.report import ValidationReport, judge
+from camwright.validation.servo.response import greatest_sync_error
 
 ACCURACY, SERVO_AWARE_ACCURACY = 1e-4, 5e-3
 """Accuracy of an edge, relative to it; of servo-aware jobs, whose every step is a design of a second."""
-
-STRIDE = 0.9
-"""The edge of the perfect axis is left in steps of this factor until a design passes."""
-
-BESIDE, GROWTH = 2.0, 4.0
-"""First step from where an edge is expected, in accuracies of the edge, and the factor by which each further one is longer."""
 
 SLOWEST, LONGEST = 0.02, 4.0
 """Line speeds down to this share of the perfect axis' highest, and cut lengths up to this multiple of its shortest, are looked at."""
@@ -42,6 +38,9 @@ _INSIDE = 1e-6
 
 RAMP = "line_ramp"
 """What binds where no cam bears the ramps of the line: the check that would fail."""
+
+_UNSEEN = 1e-6
+"""Shares of the tolerance below this one are not told apart."""
 
 TOLERANCE, BAND, AXIS = "sync_tolerance", "sync_over_line_speeds", "axis_acceleration"
 """What binds where no servo-aware command brings the axis into the tolerance, none at every line speed of the job, none with the axis'
@@ -148,24 +147,38 @@ def stand_in(job: Job) -> MotionObjective:
     return motion_objective(job.machine, objective) or of_motion(objective)
 
 
-def fails(job: Job, task: Task, objective: MotionObjective) -> str:
-    """Design a task as the job would and judge it.
+Verdict = tuple[str, float]
+"""The first check that fails, or what makes a design impossible, empty where it passes; and by how much the sync error misses its
+tolerance, as the logarithm of a share: infinite where that is not what decides."""
 
-    Returns
-    -------
-    str
-        The first check that fails, or what makes a design impossible; empty where it passes.
-    """
+
+def verdict(job: Job, task: Task, objective: MotionObjective) -> Verdict:
+    """Design a task as the job would and judge it."""
     if job.servo_aware:
-        return "" if _reaches(job, task, shares_of(job.slowest), between_of(job)) else TOLERANCE
+        missed = _misses(job, task, shares_of(job.slowest), between_of(job))
+        return (TOLERANCE if missed > 0.0 else ""), missed
     try:
         solution = solve(task, objective, suggest=False, thorough=False)
     except InfeasibleError as error:
-        return RAMP if error.binding.startswith("line.") else error.binding
+        return (RAMP if error.binding.startswith("line.") else error.binding), math.inf
     except (InputError, SolverError):
-        return "design"
+        return "design", math.inf
     report = judge(solution.profile, task.with_machine(solution.machine), job.servo, servo_aware=job.servo_aware)
-    return next((check.name for check in report.checks if not check.passed), "")
+    failed = next((check.name for check in report.checks if not check.passed), "")
+    missed = math.log(max(_off_at_most(report), _UNSEEN * task.cut.sync_tolerance) / task.cut.sync_tolerance)
+    return failed, missed if (missed > 0.0) == bool(failed) else math.copysign(math.inf, 1.0 if failed else -1.0)
+
+
+def _off_at_most(report: ValidationReport) -> float:
+    """Greatest sync error that decides (m): in the shear zone, and at the end of the sync zone, where the axis must have settled, too."""
+    if report.servo is None:
+        return math.inf
+    cut, greatest = report.task.cut, report.servo.shear_zone_error
+    if cut.shear_zone_at + cut.shear_zone < cut.sync_zone:
+        end = cut.return_start + cut.length
+        last = greatest_sync_error(report.profile, report.task, report.loop, end - cut.shear_zone, end)
+        greatest = max(greatest, last)
+    return greatest
 
 
 def _kept(
@@ -177,17 +190,17 @@ def _kept(
     """
     if not job.servo_aware:
         objective = stand_in(job)
-        return _edge(lambda share: fails(job, at(share), objective), least, accuracy, near)
+        return _edge(lambda share: verdict(job, at(share), objective), least, accuracy, near)
     shares = shares_of(job.slowest)
     some = thinned(shares, _LOOKED)
-    found, failed = _edge(
-        lambda share: "" if _reaches(job, at(share), some) else TOLERANCE,
-        least,
-        max(accuracy, SERVO_AWARE_ACCURACY),
-        near,
-    )
+
+    def looked(share: float) -> Verdict:
+        missed = _misses(job, at(share), some)
+        return (TOLERANCE if missed > 0.0 else ""), missed
+
+    found, failed = _edge(looked, least, max(accuracy, SERVO_AWARE_ACCURACY), near)
     tries = _TRIES if some != shares or between_of(job) else 0
-    while tries and found is not None and not _reaches(job, at(found), shares, between_of(job)):
+    while tries and found is not None and _misses(job, at(found), shares, between_of(job)) > 0.0:
         tries -= 1
         found, failed = (found * _BACK if tries and found * _BACK > least else None), TOLERANCE
     if not failed:
@@ -195,12 +208,15 @@ def _kept(
     return found, binding_of(job, at(1.0 if found is None else found * (1.0 + SERVO_AWARE_ACCURACY)))
 
 
-def _reaches(job: Job, task: Task, shares: tuple[float, ...], between: tuple[Servo, ...] = ()) -> bool:
-    """Whether a servo-aware command within the limits brings the axis into the tolerance at line speeds, its own limits kept."""
-    return any(
-        _missed(AxisProgramme(_problem(job, task.with_limits(limits), shares, between)), ratio=_asks_ratio(job)) <= 0.0
-        for limits in motor_limits(task.machine, task.limits)
-    )
+def _misses(job: Job, task: Task, shares: tuple[float, ...], between: tuple[Servo, ...] = ()) -> float:
+    """By how much servo-aware commands within the limits miss the tolerance at line speeds, the axis' own limits kept."""
+    missed = math.inf
+    for limits in motor_limits(task.machine, task.limits):
+        programme = AxisProgramme(_problem(job, task.with_limits(limits), shares, between))
+        missed = min(missed, _missed(programme, ratio=_asks_ratio(job)))
+        if missed <= 0.0:
+            break
+    return missed
 
 
 def _asks_ratio(job: Job) -> bool:
@@ -230,7 +246,7 @@ def binding_of(job: Job, task: Task) -> str:
     missed = _missed(programme, ratio=_asks_ratio(job))
     if missed <= 0.0:
         return _axis_limit(job, task, programme.last)
-    if job.slowest < 1.0 and _reaches(job, task, (1.0,)):
+    if job.slowest < 1.0 and _misses(job, task, (1.0,)) <= 0.0:
         return BAND
     if (
         math.isinf(missed)
@@ -240,7 +256,7 @@ def binding_of(job: Job, task: Task) -> str:
         return "speed"
     if math.isinf(missed):
         blind = replace(job, servo_aware=False, cut=replace(job.cut, shaped=False))
-        return fails(blind, task.with_cut(replace(task.cut, shaped=False)), stand_in(job)) or TOLERANCE
+        return verdict(blind, task.with_cut(replace(task.cut, shaped=False)), stand_in(job))[0] or TOLERANCE
     error_alone = AxisProgramme(replace(free, shares=(1.0,)))
     return AXIS_RATIO if _asks_ratio(job) and _missed(error_alone, ratio=False) <= 0.0 else TOLERANCE
 
@@ -254,62 +270,28 @@ def _axis_limit(job: Job, task: Task, profile: CamProfile | None) -> str:
 
 
 def _edge(
-    failing: Callable[[float], str], least: float, accuracy: float, near: float | None = None
+    judged: Callable[[float], Verdict], least: float, accuracy: float, near: float | None = None
 ) -> tuple[float | None, str]:
-    """Find the greatest share of the perfect axis' edge that passes: enclosed from where it is expected, or from above, then bisected.
+    """Find the greatest share of the perfect axis' edge that passes, from where it is expected or from above.
 
     Returns
     -------
     (share, failed)
         The share, ``None`` if none passes, and what fails beyond it; nothing where the edge itself passes.
     """
-    top = 1.0 - _INSIDE
-    low, high, failed = 0.0, top, ""
-    stride, longer = STRIDE, 1.0
-    if near is not None:
-        stride, longer = 1.0 / (1.0 + BESIDE * accuracy), GROWTH
-        if near < top * stride:
-            low, high, failed = _upwards(failing, near, top, accuracy)
-    if not failed:
-        failed = failing(top)
-        if not failed:
-            return 1.0, ""
-        high = top
-    while not low:
-        tried = high * stride
-        stride = max(stride**longer, STRIDE)
-        if tried < least:
-            return None, failed
-        found = failing(tried)
-        if found:
-            high, failed = tried, found
-        else:
-            low = tried
-    while high / low - 1.0 > accuracy:
-        middle = math.sqrt(high * low)
-        found = failing(middle)
-        if found:
-            high, failed = middle, found
-        else:
-            low = middle
-    return low, failed
+    failures: dict[float, str] = {}
 
-
-def _upwards(failing: Callable[[float], str], near: float, top: float, accuracy: float) -> tuple[float, float, str]:
-    """Go up from a share in steps that grow until one fails.
-
-    Returns
-    -------
-    (low, high, failed)
-        The highest share that passes, 0 where the first fails; the share that fails, and what fails there, empty where all pass.
-    """
-    low, high, step = 0.0, near, BESIDE * accuracy
-    while high < top:
-        failed = failing(high)
+    def missed(longer: float) -> float:
+        failed, by = judged(1.0 / longer)
         if failed:
-            return low, high, failed
-        low, high, step = high, high * (1.0 + step), GROWTH * step
-    return low, top, ""
+            failures[longer] = failed
+        return by
+
+    first = 1.0 / (1.0 - _INSIDE)
+    found = least_length(missed, first if near is None else 1.0 / near, (first, 1.0 / least), accuracy)
+    if found is None:
+        return None, failures[max(failures)]
+    return (1.0 / found, failures[max(failures)]) if failures else (1.0, "")
 
 
 def placed_as(job: Job, task: Task) -> Job:

@@ -18,7 +18,7 @@ from camwright.profiles.objective import OBJECTIVES
 from camwright.studies.axis_study import beyond_reach, solve_job, sync_error
 from camwright.studies.covering import Uncovered
 from camwright.studies.family_bands import family_bands, placed_for_all
-from camwright.studies.reach import fails, stand_in
+from camwright.studies.reach import stand_in, verdict
 from camwright.studies.speed_band import SpeedBand
 from camwright.validation.report import ValidationReport, judge
 
@@ -129,7 +129,7 @@ def _hopeless(job: Job) -> bool:
     """
     if job.servo_aware:
         return beyond_reach(job)
-    return OBJECTIVES[job.objective].of == "motor" and bool(fails(job, job.task, stand_in(job)))
+    return OBJECTIVES[job.objective].of == "motor" and bool(verdict(job, job.task, stand_in(job))[0])
 
 
 def _passes(job: Job) -> bool:

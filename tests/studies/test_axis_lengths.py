@@ -14,6 +14,8 @@ import pytest
 from camwright import load_job
 from camwright.cli.main import main
 from camwright.design.optimise_axis import solve_axis
+from camwright.design.servo_aware.axis_problem import AxisProblem
+from camwright.design.servo_aware.programme import AxisProgramme
 from camwright.jobs.job import Job
 from camwright.profiles.errors import InfeasibleError
 from camwright.profiles.limits import Limits
@@ -86,6 +88,15 @@ def test_a_shaped_cut_of_that_length_is_designed_and_a_shorter_one_refused(limit
         else:
             with pytest.raises(InfeasibleError):
                 solve_axis(job.task.with_cut(cut), "peak_acceleration", "shaped", (job.servo,), suggest=False)
+
+
+def test_no_longer_sync_zone_holds_a_shorter_cut(limits: dict[str, Any]) -> None:
+    job, least = case_a(), limits["axis_minimum_cut_length_mm"]["in_sync"] * 1e-3
+    for zone in (0.041, 0.046, 0.06, 0.09):
+        cut = replace(job.cut, length=least - 1.5e-4, sync_zone=zone, shear_zone_at=zone - job.cut.shear_zone)
+        assert (
+            AxisProgramme(AxisProblem(job.task.with_cut(cut), "in_sync", (job.servo,), False)).missed(ratio=True) > 0.0
+        )
 
 
 def test_machines_that_the_equations_are_not_about_have_none() -> None:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from camwright.studies.envelope import FINE, FINEST, Edge, true_edge
-from camwright.studies.reach import BESIDE, _edge
+from camwright.studies.reach import Verdict, _edge
 
 LENGTHS = [1.0, 2.0, 3.0, 4.0]
 
@@ -80,25 +80,43 @@ def test_no_nodes_between_where_a_node_takes_too_long() -> None:
     assert [length for length, _ in edge] == LENGTHS
 
 
+Asked = Callable[[float], Verdict]
+
+
+def steep(share: float, form: str) -> Asked:
+    """Fail beyond a share, by how much in one form or another."""
+
+    def judged(at: float) -> Verdict:
+        off = {
+            "sign": math.copysign(math.inf, at - share),
+            "line": 30.0 * (at - share) / share,
+            "power": (at / share) ** 4 - 1.0,
+        }[form]
+        return ("settling", off) if at > share else ("", min(off, 0.0))
+
+    return judged
+
+
 @pytest.mark.parametrize("share", [0.03, 0.4, 0.875, 0.9999])
 @pytest.mark.parametrize("near", [None, 0.02, 0.4, 0.4001, 0.8, 0.999, 1.2])
-def test_an_edge_is_found_from_wherever_it_is_expected(share: float, near: float | None) -> None:
-    asked = 0
+@pytest.mark.parametrize("form", ["sign", "line", "power"])
+def test_an_edge_is_found_from_wherever_it_is_expected(share: float, near: float | None, form: str) -> None:
+    asked: list[float] = []
 
-    def failing(at: float) -> str:
-        nonlocal asked
-        asked += 1
-        return "settling" if at > share else ""
+    def judged(at: float) -> Verdict:
+        asked.append(at)
+        return steep(share, form)(at)
 
-    found, failed = _edge(failing, 0.02, 1e-3, near)
+    found, failed = _edge(judged, 0.02, 1e-3, near)
     assert failed == "settling"
     assert found is not None
     assert share / (1 + 1e-3) <= found <= share
-    if near is not None and near < 1 and abs(near / share - 1) < BESIDE * 1e-3:
-        assert asked <= 4
+    assert len(asked) <= 30
+    if form != "sign" and near is not None and near < 1 and abs(near / share - 1) < 1e-3:
+        assert len(asked) <= 6
 
 
 @pytest.mark.parametrize("near", [None, 0.3, 0.9999])
 def test_the_edge_of_the_perfect_axis_is_the_end(near: float | None) -> None:
-    assert _edge(lambda _: "", 0.02, 1e-3, near) == (1.0, "")
-    assert _edge(lambda _: "settling", 0.02, 1e-3, near) == (None, "settling")
+    assert _edge(lambda _: ("", -math.inf), 0.02, 1e-3, near) == (1.0, "")
+    assert _edge(lambda _: ("settling", math.inf), 0.02, 1e-3, near) == (None, "settling")
