@@ -111,6 +111,9 @@ def foreign() -> dict[str, str]:
         + "".join(f'"{k}";"{a}";"{b}";\n' for k, (a, b) in enumerate(comma)),
         "units": "Knife 3\nMaster\tSlave\n[mm]\t[mm]\n" + "".join(f"{a}\t{b}\n" for a, b in pairs),
         "program": f"' knife\nBASE(1)\nTABLE(10, {values})\nCAMBOX(10, 130, 1, 600, 0, 4)\n",
+        "computed": "n = 30\n"
+        "FOR p = 0 TO n\nTABLE(p, ((-SIN(PI * 2 * p / n) / (PI * 2)) + p / n) * 400)\nNEXT p\nCAMBOX(0, n, 1, 600, 0)\n",
+        "moves": "up = 100\nMOVELINK(50, up, up, 0, 1, 16)\nMOVELINK(200, 200, 0, 0, 1)\nFLEXLINK(300, -150, 300, 0, 0, 50, 50, 1, 3072)\n",
         "tcpou": '<?xml version="1.0"?>\n<TcPlcObject><POU><Declaration><![CDATA[PROGRAM A\nVAR p : ARRAY[1..6] OF '
         f"MC_MotionFunctionPoint; END_VAR]]></Declaration><ST><![CDATA[{points}]]></ST></POU></TcPlcObject>",
         "trace commas": "Zeit [ms];Soll [mm];Ist [mm]\n" + "".join(row.replace(",", ";", 1) for row in times),

@@ -19,6 +19,12 @@ _JUMP = 0.5
 """Part of the slave's range that one step must cover to be a jump."""
 _USUAL = 5.0
 """By how many times a jump exceeds the steps beside it."""
+_ALIKE = 1e-4
+"""Part by which two ratios may differ to be one."""
+_PARTS = 12
+"""Parts of a turn that a slave may be counted modulo of."""
+_EXACT = 1e-5
+"""Part of its travel that a slave, unwrapped by a modulus that the machine does not have, may miss."""
 _WIDEST = 0.2
 """Part of the cycle up to which a step is one whose end may be missing: beyond, motion would be made up."""
 _MOST_OF = 0.5
@@ -73,6 +79,7 @@ def whole_cycle(
         table, notes = _unwrapped(table, job, None, None, place)
         table, more = _forwards(table, job, None)
         notes += more
+    _require_master_first(table, job, place)
     found, assumed = units_of(table, units, job, place)
     if asked is not None and abs(table.advance * found.slave.size - asked) > job.cut.sync_tolerance:
         raise InputError(
@@ -80,6 +87,19 @@ def whole_cycle(
             f"{table.advance * found.slave.size:.10g} {job.machine.slave_unit} apart; leave --travel out"
         )
     return WholeCycle(table, found, (*notes, *assumed))
+
+
+def _require_master_first(table: CamTable, job: Job, place: str) -> None:
+    """Refuse columns without units of which the first runs over the pitch and the second over the cut length, as if they were swapped."""
+    swapped = job.machine.pitch / job.cut.length
+    known = table.units is not None or table.words != (None, None)
+    if known or not swapped > 0.0 or abs(swapped - 1.0) < _ALIKE or not table.advance > 0.0:
+        return
+    if abs(table.period / table.advance / swapped - 1.0) < _ALIKE and (np.diff(table.y) > 0.0).all():
+        raise InputError(
+            f"{place}: the first column runs over {table.period:.6g} and the second over {table.advance:.6g}, like the job's pitch and its "
+            "cut length: master and slave are swapped; name the columns with their units, as in x [mm],y [mm]"
+        )
 
 
 def _sizes(table: CamTable, job: Job, place: str, units: str | None) -> Units | None:
@@ -117,7 +137,7 @@ def _unwrapped(
     if units is not None:
         ways = [way for way in (asked, job.machine.pitch, job.machine.slave_turn) if way]
         sizes = [way / units.slave.size for way in ways]
-        fits = [size for size in sizes if abs(size - modulus) <= slack]
+        fits = [size for size in sizes if abs(size - modulus) <= slack] or _other_modulus(y, meant, slack, sizes)
         if not fits:
             turns = " or ".join(sorted({f"{size:.6g}{named}" for size in sizes}))
             raise InputError(
@@ -137,6 +157,18 @@ def _unwrapped(
         else f"the last row wraps: the slave starts anew there; it was unwrapped by {modulus:.6g}{named}"
     )
     return replace(table, y=y + turned), (note,)
+
+
+def _other_modulus(y: FloatArray, meant: FloatArray, slack: float, travels: list[float]) -> list[float]:
+    """Find a modulus that is no turn of the machine: a part of one, or a plain number; by it the slave must run on to its travel."""
+    size, turns = float(np.median(np.abs(meant))), float(np.sign(meant).sum())
+    tried = [travel / part for travel in travels for part in range(2, _PARTS + 1)] + [_plain(size, slack)]
+    return [
+        modulus
+        for modulus in tried
+        if (np.abs(np.abs(meant) - modulus) <= slack).all()
+        and any(abs(float(y[-1] - y[0]) + turns * modulus - travel) <= _EXACT * travel for travel in travels)
+    ]
 
 
 def _jumps(y: FloatArray) -> NDArray[np.intp]:

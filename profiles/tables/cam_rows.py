@@ -38,6 +38,13 @@ _CLOSEST = 1e-12
 """Least distance of two rows on the master as a part of the table's length: closer rows hold no derivatives."""
 
 
+_UNSIZED = frozenset(
+    {"%", "inc", "incr", "ink", "inkr", "inkremente", "cts", "count", "counts", "pulse", "pulses", "pls", "puu", "uu", "units", "steps",
+     "脉冲", "用户单位"}
+)  # fmt: skip
+"""Words for a unit whose size only the machine knows: counts of an encoder, user units, parts of a cycle."""
+
+
 @dataclass(frozen=True, eq=False)
 class CamRows:
     """Rows of a cam table.
@@ -200,7 +207,7 @@ def _where(sheet: Sheet) -> str:
 def _unit(sheet: Sheet, at: int, name: str, units: tuple[str, ...]) -> str | None:
     """Give a column's unit, one of those that it may have, or ``None`` if it has none."""
     column: Column = sheet.columns[at]
-    if column.unit is None:
+    if column.unit is None or column.unit.lower().strip(".") in _UNSIZED:
         return None
     if not column.known or column.unit not in units:
         raise InputError(

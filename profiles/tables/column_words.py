@@ -8,6 +8,7 @@ _UNIT_WORDS: dict[str, str] = {
     "m": "m", "mm": "mm", "cm": "cm", "um": "um", "in": "in", "inch": "in", "inches": "in", "ft": "ft",
     "meter": "m", "metre": "m", "millimeter": "mm", "millimetre": "mm", "micron": "um", "microns": "um",
     "米": "m", "毫米": "mm", "厘米": "cm", "微米": "um", "英寸": "in",
+    '"': "in", "″": "in", "zoll": "in",
     "rad": "rad", "radian": "rad", "radians": "rad", "弧度": "rad",
     "deg": "deg", "degree": "deg", "degrees": "deg", "°": "deg", "º": "deg", "grad": "deg", "度": "deg",
     "rev": "rev", "revs": "rev", "turn": "rev", "turns": "rev", "umdr": "rev", "转": "rev",

@@ -193,7 +193,11 @@ def read_sheet(
         first = next((k for k, (_, cells) in enumerate(split) if _is_row(cells, comma)), len(split))
     else:
         first = layout.above([cells for _, cells in split])
-    headings, rows = split[:first], split[first:]
+    headings = split[:first]
+    again = [_trimmed(cells) for _, cells in headings]
+    rows = [
+        (number, cells) for number, cells in split[first:] if _trimmed(cells) not in again
+    ]  # headings of a further page
     _require_no_groups(
         place, [] if rows else [(number, _cells(line, sign)) for number, line in lines for sign in SEPARATORS]
     )

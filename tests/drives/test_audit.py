@@ -279,13 +279,50 @@ def test_ends_that_files_have(kind: str, told: str, tmp_path: Path) -> None:
     assert result.pair("peak_acceleration")[0] == pytest.approx(plain.pair("peak_acceleration")[0], rel=0.02)
 
 
+ROWS = [(600 * k / 360, 1e3 * float(PROFILE(0.6 * k / 360))) for k in range(361)]
+
+
+def written(head: str, row: str, begin: float = 0.0, modulus: float = math.inf, size: float = 1.0) -> str:
+    return head + "".join(row.format(x=x / size, y=((y + begin) % modulus) / size) + "\n" for x, y in ROWS)
+
+
+PLAIN = written("x [mm],y [mm]\n", "{x:.6f},{y:.6f}")
+PAGES = "".join(f"{line}\n" + ("x [mm],y [mm]\n" if k % 50 == 49 else "") for k, line in enumerate(PLAIN.splitlines()))
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        (PAGES, ""),
+        (written('Master (");Slave (in)\n', "{x:.9f};{y:.9f}", size=25.4), ""),
+        (written("x [%],y [counts]\n", "{x:.6f},{y:.6f}"), "its advance, 400, is taken for the pitch"),
+        (written("Master,Slave [inc.]\n", "{x:.6f},{y:.6f}"), "its advance, 400, is taken for the pitch"),
+        (written("x [mm],y [mm]\n", "{x:.6f},{y:.6f}", 37.3, 250.0), "modulo 0.25 m and was unwrapped"),
+        (written("x [mm],y [mm]\n", "{x:.6f},{y:.6f}", 37.3, 400 / 3), "modulo 0.133333 m and was unwrapped"),
+        (written("x [mm],y [mm]\n", "{x:.6f},{y:.6f}", 37.3, 400.0), "modulo 0.4 m and was unwrapped"),
+    ],
+)
+def test_a_table_in_other_clothes_is_the_same_cam(text: str, told: str) -> None:
+    """Headings on each page, inches by their sign, counts and parts of a cycle, a slave modulo any length."""
+    plain, found = running_cam(PLAIN, "plain.csv", JOB), running_cam(text, "cam.csv", JOB)
+    x = np.linspace(0.0, 0.6, 1001)[:-1]
+    assert found.cycle(x) == pytest.approx(plain.cycle(x), abs=1e-8)
+    assert told in " | ".join(found.notes)
+
+
+def test_swapped_columns_without_names_are_refused() -> None:
+    with pytest.raises(
+        InputError,
+        match="the first column runs over 400 and the second over 600, like the job's pitch and its cut length",
+    ):
+        running_cam(written("", "{y:.6f} {x:.6f}"), "cam.txt", JOB)
+
+
 def test_a_jump_that_is_no_turn_is_refused(tmp_path: Path) -> None:
     x = np.linspace(0.0, 600.0, 121)
     y = 1e3 * PROFILE(x * 1e-3)
-    y[60:] -= 310.0
-    with pytest.raises(
-        InputError, match=r"the slave jumps by -0.308214 m at point 61, which is no whole turn of 0.4 m;"
-    ):
+    y[60:] = 0.97 * y[60:] - 310.0  # by that it does not run on to the pitch
+    with pytest.raises(InputError, match=r"the slave jumps by -0.31.* m at point 61, which is no whole turn of 0.4 m;"):
         audit(millimetres(tmp_path / "a.csv", x.tolist(), y.tolist()), JOB)
 
 

@@ -136,12 +136,12 @@ def _expected(steps: FloatArray, smooth: NDArray[np.bool_], jumps: NDArray[np.in
     beside = np.array([k for k in range(-_AROUND, _AROUND + 1) if k], dtype=np.float64)
     weights = np.linalg.pinv(np.stack([np.ones_like(beside), beside, beside**2], axis=1))[0]
     taps = np.concatenate([weights[:_AROUND], [0.0], weights[_AROUND:]])  # symmetric: a convolution reads it either way
-    by_parabola = np.convolve(steps, taps, mode="same")
-    whole = np.convolve(smooth.astype(float), (np.abs(taps) > 0.0).astype(float), mode="same") > 2 * _AROUND - 0.5
+    by_parabola = _folded(steps, taps)
+    whole = _folded(smooth.astype(float), (np.abs(taps) > 0.0).astype(float)) > 2 * _AROUND - 0.5
     sure = whole & smooth
     # without rows beside it all there is are the nearest steps
     # an axis turns over at the same places again and again, so what counts is how well the parabola does beside the jumps
-    beside_jumps = sure & (np.convolve(~smooth, np.ones(2 * _NEARBY + 1), mode="same") > 0.5)
+    beside_jumps = sure & (_folded((~smooth).astype(float), np.ones(2 * _NEARBY + 1)) > 0.5)
     judged = beside_jumps if beside_jumps.any() else sure
     doubt = (
         float(np.sqrt(np.mean((by_parabola - steps)[judged] ** 2))) if judged.any() else float(np.std(steps[smooth]))
@@ -152,6 +152,12 @@ def _expected(steps: FloatArray, smooth: NDArray[np.bool_], jumps: NDArray[np.in
         expected[number] = by_parabola[jump] if whole[jump] else float(np.mean(steps[near])) if near else 0.0
         doubt = doubt if whole[jump] or len(jumps) > 1 else max(doubt, float(np.ptp(steps[near])) if near else 0.0)
     return expected, doubt
+
+
+def _folded(signal: FloatArray, taps: FloatArray) -> FloatArray:
+    """Fold a signal with an odd number of taps around each row; as many values as rows, however few these are."""
+    half = len(taps) // 2
+    return np.asarray(np.convolve(signal, taps)[half : half + len(signal)])
 
 
 def _plainest(value: float, slack: float, unit: str, known: Sequence[float]) -> float:

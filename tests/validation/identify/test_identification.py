@@ -23,7 +23,7 @@ from camwright.profiles.servo import Servo, sample_plant
 from camwright.profiles.task import Task
 from camwright.profiles.trace import Trace
 from camwright.validation.identify.identification import identify
-from camwright.validation.identify.preparation import unwrapped
+from camwright.validation.identify.preparation import unwrapped, without_jumps
 from camwright.validation.identify.quality import require_usable
 
 FREE = Limits(math.inf, math.inf, math.inf)
@@ -349,6 +349,16 @@ def test_a_trace_without_jumps_is_left_alone() -> None:
     found = unwrapped(CUT_TRACE, "t")
     assert (found.command == CUT_TRACE.command).all()
     assert found.notes == ()
+
+
+@pytest.mark.parametrize("rows", [9, 12, 30, 60])
+def test_a_short_recording_with_a_jump_is_unwrapped(rows: int) -> None:
+    """Fewer rows than those beside a jump by which its step is estimated."""
+    straight = 1e-3 * np.arange(rows)
+    jumping = np.where(np.arange(rows) > rows // 2, straight - 1.0, straight)
+    found, modulus = without_jumps(jumping, "m", (1e-3, 0.0), "t")
+    assert modulus == 1.0
+    assert found == pytest.approx(straight, abs=1e-12)
 
 
 def test_a_jump_that_is_no_modulus_is_refused() -> None:
