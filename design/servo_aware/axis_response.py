@@ -24,7 +24,7 @@ from camwright.profiles.task import Task
 PHASES = 16
 SUBSTEPS = 8
 _STRIDE = PHASES // SUBSTEPS
-_NEWTON = 12
+_NEWTON, _NEWTON_ENDS = 12, 1e-11
 # Most samples of the past that are gathered at a time, and what a number of samples is rounded up to.
 _MOST_VALUES, _SHARED = 2**18, 32
 
@@ -86,6 +86,8 @@ class Axis:
                     - self.task.machine.tool(coordinate)
                     - sign * tolerance
                 )
+                if np.abs(off).max(initial=0.0) <= _NEWTON_ENDS * tolerance:
+                    break
                 deviation = deviation - off / self.task.machine.tool_ratio(coordinate + deviation)
             edges.append(deviation)
         return np.minimum(*edges), np.maximum(*edges)

@@ -8,6 +8,7 @@ from typing import Literal
 
 import numpy as np
 
+from camwright.design.servo_aware.splines import EvenSplines, lattice_sums, sums
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray, join
 from camwright.profiles.task import Task
 
@@ -45,6 +46,8 @@ class CommandBasis:
         Shapes ``(N + 3, n)`` and ``(N + 3,)`` for ``N`` intervals.
     sync
         Slave over master in the part that is not free; ``None`` if all is.
+    step
+        Distance of the knots (m) where it is the same everywhere and many servos ask, so that sums are made on a lattice of places; else 0.
     """
 
     length: float
@@ -53,6 +56,7 @@ class CommandBasis:
     matrix: FloatArray
     constant: FloatArray
     sync: CamProfile | None
+    step: float = 0.0
 
     @property
     def nodes(self) -> FloatArray:
@@ -171,6 +175,39 @@ class CommandBasis:
             table[:, :, spline : spline + intervals] += np.einsum("kpri,ip->rki", moments, self.pieces[:, :, spline])
         return self._of_unknowns(table), constant + table @ self.constant
 
+    def lattice(
+        self, places: FloatArray, regular: int, delay: float, sample: float, weights: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Several weighted sums at places most of which lie on a lattice that parts `step` evenly: as `sums`, in a fraction of the time.
+
+        Parameters
+        ----------
+        places
+            Master positions (m), shape ``(rows,)``.
+        regular
+            How many of them, the first ones, are the lattice, ascending.
+        delay, sample
+            How far behind a place its newest sample lies, and the distance of samples (m).
+        weights
+            Shape ``(samples, sums)``, newest sample first.
+        """
+        parts = round(self.step * (regular - 1) / float(places[regular - 1] - places[0]))
+        samples = delay + sample * np.arange(len(weights))
+        first = 0 if self.sync is None else _DEGREE
+        splines = EvenSplines(self.step, float(self.knots[first]), self.matrix.shape[1], self.length)
+        matrix = np.empty((len(places), weights.shape[1], splines.count))
+        lattice_sums((float(places[0]), parts), (delay, sample), weights, splines, matrix[:regular])
+        sums(places[regular:, None] - samples, weights, splines, matrix[regular:])
+        if self.sync is None:  # what is added to is a straight line
+            pull = self.pitch / self.length
+            return matrix, pull * (places[:, None] * weights.sum(axis=0) - samples @ weights)
+        return matrix, self._even(places[:, None] - samples, outside="repeat") @ weights
+
+    @cached_property
+    def _even(self) -> CamProfile:
+        """The command that the unknowns are added to."""
+        return self.profile(np.zeros(self.matrix.shape[1]))
+
     def _of_unknowns(self, table: FloatArray) -> FloatArray:
         """Turn rows over the coefficients into rows over the unknowns: ``table @ matrix``, whose columns hold a single 1 each, or two."""
         count = self.matrix.shape[1]
@@ -254,13 +291,14 @@ def command_basis(
         even = np.asarray(
             machine.pitch * (places - 1) / count, dtype=np.float64
         )  # the coefficients of a motion of even speed
-        return CommandBasis(cut.length, machine.pitch, knots, matrix, even, None)
+        return CommandBasis(cut.length, machine.pitch, knots, matrix, even, None, step if robust else 0.0)
     sync = task.sync
     nodes = _nodes(cut.return_zone, count, structure)
     placed = sync.shift(nodes[-1] - sync.start, task.height - float(sync(sync.start)))
     start = np.array([0.0, float(sync(sync.end, 1)), float(sync(sync.end, 2, side="left")) / 2])
     end = np.array([float(placed(placed.start)), float(sync(sync.start, 1)), float(sync(sync.start, 2)) / 2])
-    return CommandBasis(cut.length, machine.pitch, *clamped(nodes, start, end), placed)
+    step = cut.return_zone / count if robust and structure is None else 0.0
+    return CommandBasis(cut.length, machine.pitch, *clamped(nodes, start, end), placed, step)
 
 
 def clamped(nodes: FloatArray, start: FloatArray, end: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:

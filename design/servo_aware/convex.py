@@ -32,6 +32,7 @@ _HIGHS: dict[str, Any] = {
     "parallel": "off",
     "primal_feasibility_tolerance": _TOLERANCE,
     "dual_feasibility_tolerance": _TOLERANCE,
+    "simplex_iteration_limit": 10_000,  # ten times what a programme takes; where many vertices are equally good it has none of its own
 }
 # Roads to the vertex, tried in turn after the dual: where one ends with rows broken by rounding, another need not.
 _HIGHS_ROADS: tuple[dict[str, Any], ...] = ({}, {"presolve": "off"}, {"simplex_strategy": 4})
@@ -197,7 +198,11 @@ def _many(rows: Rows, cost: FloatArray, square: FloatArray) -> FloatArray | None
 def _linear(rows: Rows, cost: FloatArray) -> FloatArray | None:
     """Solve a linear programme; its answer is refined where it breaks rows by rounding."""
     status = ""
-    roads: list[_Road] = [_by_its_dual, *(partial(_by_simplex, options=options) for options in _HIGHS_ROADS)]
+    roads: list[_Road] = [
+        _by_its_dual,
+        _by_our_own,
+        *(partial(_by_simplex, options=options) for options in _HIGHS_ROADS),
+    ]
     for road in roads:
         found, factor = np.zeros(len(cost)), 1.0
         for _ in range(1 + _REFINEMENTS):
@@ -236,6 +241,16 @@ def _by_its_dual(
     if answer is None:  # no answer of a programme is too much of its dual, and the other way round
         return None, {_UNBOUNDED: _INFEASIBLE, _INFEASIBLE: _UNBOUNDED}.get(status, status)
     return answer["lam_a"], status
+
+
+def _by_our_own(
+    matrix: FloatArray, low: FloatArray, high: FloatArray, cost: FloatArray
+) -> tuple[FloatArray | None, str]:
+    """Ask our own simplex method, which does not go round among vertices that are equally good."""
+    found = dual_simplex(*Rows(matrix, low, high, np.zeros(len(low))).one_sided, cost)
+    if isinstance(found, NoPoint):
+        return None, _INFEASIBLE
+    return (None, _UNBOUNDED) if found is None else (found.x, "")
 
 
 def _by_simplex(

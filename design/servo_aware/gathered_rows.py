@@ -31,16 +31,18 @@ FEW, MORE = (6, 2), (12, 4)
 # Of several line speeds about so many have rows from the start, of those of a servo at a corner so many, and each so many-th has the axis'
 # own motion looked at.
 BEGUN, CORNERS_BEGUN, OWN = 11, 3, 4
-# Line speeds without rows are looked at where those with rows exceed their limit by less than this share of it, as are those that stayed
-# below that share of it when they were looked at last. Where one exceeds it, places above that share of it get rows.
-ASIDE, FAR, BESIDE = 0.05, 0.7, 0.9
-# Most line speeds of a servo that get rows in a round, and the share of the greatest excess that theirs has at least.
-MOST_SPEEDS, ALIKE = 16, 0.0
+# Line speeds that stayed below this share of their limit when they were looked at last are far from it. Where one exceeds it, places above
+# that share of it get rows.
+FAR, BESIDE = 0.7, 0.9
+# Most line speeds of a servo that get rows in a round.
+MOST_SPEEDS = 16
 # Between line speeds where a servo comes so near to its limit (share of it) the one in the middle is looked at, down to this step (share of
 # the band of line speeds).
 NEAR, FINEST = 0.05, 1 / 240
 # Share of the largest error of a servo from which on its line speeds are looked at in the end.
 NEAR_WORST = 0.95
+# Limits of an axis' own motion that keep so great a share of them free are far.
+FAR_OWN = 0.02
 # Most rows of the axis' own motion added in a round: it runs along its limits where the tool only touches its band.
 MOST_OWN = 24
 # Most servos between the corners that get rows in a round.
@@ -108,31 +110,27 @@ class GatheredRows:
     def _add_band(self, command: Tried, limit: float) -> bool:
         """Add rows where a servo exceeds a limit at its line speeds; whether there were any.
 
-        Those that were not far from the limit when they were looked at last come first, and of them those with rows; all others where these
-        nearly keep it, and line speeds between where all do.
+        Those that were far from the limit when they were looked at last are looked at where the others keep it, and line speeds between
+        where all do.
         """
         near = [[table for table in tables if table.last > FAR * limit] for tables in self._tables]
-        begun = [[table for table in tables if table.begun] for tables in near]
-        if self._add_over(begun, command, limit, ASIDE):
+        if self._add_over(near, command, limit) or self._add_over(self._tables, command, limit):
             return True
-        if self._add_over(near, command, limit, 0.0) or self._add_over(self._tables, command, limit, 0.0):
-            return True
-        return self._add_over([self._finer(tables, limit) for tables in self._tables], command, limit, 0.0)
+        return self._add_over([self._finer(tables, limit) for tables in self._tables], command, limit)
 
-    def _add_over(self, every: list[list[ZoneTable]], command: Tried, limit: float, share: float) -> bool:
-        """Add rows where line speeds exceed a limit, if one of them does by a share of it; whether one does."""
-        peaks = [np.array([table.peak(command) for table in tables]) for tables in every]
-        if max(float(each.max(initial=0.0)) for each in peaks) <= limit * (1.0 + share):
-            return False
-        for tables, each in zip(every, peaks, strict=True):
-            over = each - limit
+    def _add_over(self, every: list[list[ZoneTable]], command: Tried, limit: float) -> bool:
+        """Add rows where line speeds exceed a limit; whether one does."""
+        added = False
+        for tables in every:
+            over = np.array([table.peak(command) for table in tables]) - limit
             for number in np.argsort(-over, kind="stable")[:MOST_SPEEDS].tolist():
-                if over[number] <= max(0.0, ALIKE * over.max()):
+                if over[number] <= 0.0:
                     break
                 table = tables[number]
                 places = worst_places(np.abs(table.errors(command)) - BESIDE * limit, _most(self.problem))
                 self.bands.append(table.band_rows(places))
-        return True
+                added = True
+        return added
 
     def _finer(self, tables: list[ZoneTable], limit: float) -> list[ZoneTable]:
         """Take in line speeds beside those where a servo comes near to its limit, and give them."""
@@ -190,6 +188,7 @@ class OwnRows:
         self.due = True  # whether the last look added some, or there was none yet
         self._judged: CamProfile | None = None
         self._excess: dict[tuple[float, int], FloatArray] = {}
+        self._last: dict[tuple[float, int], float] = {}
 
     def keeps(self, profile: CamProfile) -> bool:
         """Whether the nominal axis keeps its limits at its line speeds, to the share that rows of it are drawn in by."""
@@ -201,25 +200,38 @@ class OwnRows:
         )
 
     def add_worst(self, profile: CamProfile) -> bool:
-        """Add rows where the nominal axis breaks a limit by half of what rows are drawn in by; whether there were any."""
-        before = len(self.rows)
-        for axis in thinned(self.problem.axes[0], OWN):
-            for order, (low, high) in self.problem.own_limits(axis).items():
-                if axis.keeps_within(profile, order, low, high):
-                    continue
-                excess = self._over(axis, profile, order)
-                worst = worst_places(excess.max(axis=0) - 0.5 * AXIS_MARGIN * high, MOST_OWN)
-                if len(worst):  # what is pressed down there rises a sample aside, so that gets rows too
-                    worst = np.unique((worst[:, None] + PHASES * np.arange(-1, 2)) % excess.shape[1])
-                    times = np.asarray(
-                        excess[:, worst].argmax(axis=0) * (axis.servo.sample_time / SUBSTEPS), dtype=np.float64
-                    )
-                    places = np.asarray(worst * (axis.sample / PHASES), dtype=np.float64)
-                    matrix, constant = axis.rows(self.problem.basis, places, times, order)
-                    room, ones = high * AXIS_MARGIN, np.ones(len(matrix))
-                    self.rows.append(AxisRows(matrix, constant, (low + room) * ones, (high - room) * ones))
-        self.due = len(self.rows) > before
+        """Add rows where the nominal axis breaks a limit by half of what rows are drawn in by; whether there were any.
+
+        Limits that were far when they were looked at last are looked at where the others are kept.
+        """
+        every = [
+            (axis, order) for axis in thinned(self.problem.axes[0], OWN) for order in self.problem.own_limits(axis)
+        ]
+        far = [each for each in every if self._last.get((each[0].share, each[1]), 0.0) < -FAR_OWN]
+        near = [each for each in every if each not in far]
+        # all of a kind get rows in a round
+        self.due = (
+            sum(self._add(profile, *each) for each in near) > 0 or sum(self._add(profile, *each) for each in far) > 0
+        )
         return self.due
+
+    def _add(self, profile: CamProfile, axis: Axis, order: int) -> bool:
+        """Add rows where an axis breaks a limit; whether there were any."""
+        low, high = self.problem.own_limits(axis)[order]
+        if axis.keeps_within(profile, order, low, high):
+            return False
+        excess = self._over(axis, profile, order)
+        worst = worst_places(excess.max(axis=0) - 0.5 * AXIS_MARGIN * high, MOST_OWN)
+        if not len(worst):
+            return False
+        # what is pressed down there rises a sample aside, so that gets rows too
+        worst = np.unique((worst[:, None] + PHASES * np.arange(-1, 2)) % excess.shape[1])
+        times = np.asarray(excess[:, worst].argmax(axis=0) * (axis.servo.sample_time / SUBSTEPS), dtype=np.float64)
+        places = np.asarray(worst * (axis.sample / PHASES), dtype=np.float64)
+        matrix, constant = axis.rows(self.problem.basis, places, times, order)
+        room, ones = high * AXIS_MARGIN, np.ones(len(matrix))
+        self.rows.append(AxisRows(matrix, constant, (low + room) * ones, (high - room) * ones))
+        return True
 
     def _over(self, axis: Axis, profile: CamProfile, order: int) -> FloatArray:
         """By how much the nominal axis breaks a limit over the cycle, by time after a sample and place; negative within it."""
@@ -231,6 +243,7 @@ class OwnRows:
             count = math.ceil(self.problem.task.cut.length / (axis.sample / PHASES))
             values = axis.on_grid(profile, 0, count, order)
             self._excess[key] = np.maximum(values - high, low - values)
+            self._last[key] = float(self._excess[key].max()) / high
         return self._excess[key]
 
 

@@ -23,10 +23,10 @@ _BOX = 1e3
 # might go round among them for ever. The answer's cost is off by less than that share of the greatest unknown.
 _SHIFT = 1e-8
 _GOLDEN = 0.6180339887498949
-# Rows that are looked at in a pass, those that are broken most, and exchanges among them before all are looked at again.
-_PASS, _EXCHANGES = 200, 40
+# Rows that are looked at in a pass, and how many of them are those that are broken most.
+_PASS, _WORST = 200, 60
 # Exchanges after which the inverse is made anew, and at most in all.
-_FRESH, _MOST = 60, 20_000
+_FRESH, _MOST = 100, 20_000
 # Shares of a row below this of its greatest are rounding; prices may fall below zero by so much for the sake of a greater share.
 _SMALL, _SLACK = 1e-9, 1e-10
 
@@ -133,44 +133,71 @@ class _State:
         numpy.linalg.LinAlgError
             Rows that bind are parallel by rounding, or there were too many exchanges.
         """
-        for _ in range(_MOST // _EXCHANGES):
+        most = _MOST
+        while most > 0:
             broken = self.of.matrix @ self.x - self.of.bound
             broken[self.active] = 0.0
+            share = broken / self.of.size
             rows = np.nonzero(broken > _ACCURATE)[0]
             if not len(rows):
                 if not self._since:
                     return None
                 self._renew()
                 continue
-            if len(rows) > _PASS:
-                rows = rows[np.argpartition(-broken[rows] / self.of.size[rows], _PASS)[:_PASS]]
+            if len(rows) > _WORST:
+                rows = rows[np.argpartition(-share[rows], _WORST)[:_WORST]]
+            rows = np.union1d(rows, np.linspace(0, len(broken) - 1, _PASS).astype(np.intp))
+            since = self._since
             proof = self._among(rows, broken[rows])
             if proof is not None:
                 return proof
+            most -= max(1, self._since - since)
+            if self._since >= _FRESH:
+                self._renew()
         raise np.linalg.LinAlgError("too many exchanges")
 
     def _among(self, rows: NDArray[np.intp], broken: FloatArray) -> NoPoint | None:
-        """Exchange some rows among those given, that which is broken most first."""
-        matrix, size = self.of.matrix[rows], self.of.size[rows]
-        for _ in range(_EXCHANGES):
-            worst = int((broken / size).argmax())
+        """Exchange some rows among those given: that which is broken most for how far the prices have to move for it.
+
+        Goldfarb and Forrest, *Steepest-edge simplex algorithms for linear programming* (Math. Programming 57, 1992).
+        """
+        from scipy.linalg.blas import dger
+
+        count = len(rows)
+        # the rows as sums of those that bind, and the inverse below them, so that an exchange is one product for both
+        table = np.concatenate([self.of.matrix[rows] @ self._inverse, self._inverse])
+        squares = np.einsum("ij,ij->i", table[:count], table[:count])
+        for _ in range(_FRESH):
+            worst = int((broken * np.abs(broken) / (1.0 + squares)).argmax())
             if broken[worst] <= _ACCURATE:
                 break
-            shares = matrix[worst] @ self._inverse  # the row as a sum of those that bind
+            shares = table[worst].copy()
             rising = np.nonzero(shares > _SMALL * np.abs(shares).max())[0]
             if not len(rising):
                 if self._since:  # looked at again without rounding
                     self._renew()
                     return None
                 return NoPoint(self._least(int(rows[worst]), shares))
-            prices = np.maximum(self.price[rising], 0.0)
-            near = prices / shares[rising] <= ((prices + _SLACK) / shares[rising]).min()
-            out = int(rising[near][shares[rising][near].argmax()])
-            broken = broken + matrix @ self._exchange(out, int(rows[worst]), shares, float(broken[worst]))
-            broken[worst] = 0.0
-            if self._since >= _FRESH:
-                self._renew()
-                break
+            prices, each = np.maximum(self.price[rising], 0.0), shares[rising]
+            near = prices / each <= ((prices + _SLACK) / each).min()
+            out = int(rising[near][each[near].argmax()])
+            column = table[:, out] / shares[out]
+            step = float(broken[worst])
+            aside = column[:count]
+            grown = aside * (aside * (float(shares @ shares) + 1.0) - 2.0 * (table[:count] @ shares))
+            squares = np.maximum(squares + grown, aside * aside)
+            # in place: what is made anew each time costs ten times as much
+            dger(-1.0, shares, column, a=table.T, overwrite_a=1)
+            table[:, out] = column
+            broken = broken - step * aside
+            broken[worst], squares[worst] = 0.0, 1.0
+            self.x = self.x - step * column[count:]
+            price = max(float(self.price[out]), 0.0) / shares[out]
+            self.price = self.price - price * shares
+            self.price[out] = price
+            self.active[out] = rows[worst]
+            self._since += 1
+        self._inverse = table[count:]
         return None
 
     def _least(self, row: int, shares: FloatArray) -> float:
@@ -182,20 +209,3 @@ class _State:
         off = of.matrix[row] - falling @ of.matrix[self.active]
         broken = float(falling @ of.bound[self.active]) - float(of.bound[row]) - _BOX * float(np.abs(off).sum())
         return broken / (1.0 - float(falling.sum())) - _ACCURATE
-
-    def _exchange(self, out: int, row: int, shares: FloatArray, broken: float) -> FloatArray:
-        """Let a row bind in the place of another; give the step of the point."""
-        from scipy.linalg.blas import dger
-
-        column = self._inverse[:, out] / shares[out]
-        step = -broken * column
-        price = max(float(self.price[out]), 0.0) / shares[out]
-        self.x = self.x + step
-        self.price = self.price - price * shares
-        self.price[out] = price
-        # in place: what is made anew each time costs ten times as much
-        dger(-1.0, shares, column, a=self._inverse.T, overwrite_a=1)
-        self._inverse[:, out] = column
-        self.active[out] = row
-        self._since += 1
-        return np.asarray(step)

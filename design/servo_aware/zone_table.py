@@ -44,13 +44,15 @@ class _Points:
     stride: int
 
 
-def _points(axis: Axis) -> _Points:
-    """Lay points over the shear zone of an axis: on a grid of sampling instants, and at the ends at all phases."""
+def _points(axis: Axis, knots: float) -> _Points:
+    """Lay points over the shear zone of an axis: on a grid of sampling instants (parts of a step of knots), and at its ends."""
     start, end = axis.shear_zone
     v, after = axis.task.cut.line_speed, np.arange(SUBSTEPS) * (axis.servo.sample_time / SUBSTEPS)
     step = axis.sample / PHASES
     most = MOST_INSTANTS if axis.share == 1.0 else SLOWER_INSTANTS
     stride = max(1, math.ceil((end - start) / (step * most)))
+    if knots:
+        step, stride = knots / math.ceil(knots / (step * stride)), 1
     first = math.ceil((start - axis.sample) / step)
     regular = np.arange(first, math.floor(end / step) + 1, stride) * step
     places = regular + v * after[:, None]
@@ -83,7 +85,8 @@ class ZoneTable:
     """Where one servo's axis is looked at in the shear zone: at points ``(place, time after a sampling instant)``.
 
     At the full line speed the points are those of the validation's phases; a servo that samples more often along the line is looked at
-    about as densely. The ends of the zone are among them.
+    about as densely, and so is each of many servos, on a lattice on which all splines of the command share one response. The ends of the
+    zone are among them.
 
     Parameters
     ----------
@@ -98,7 +101,7 @@ class ZoneTable:
         self.begun = False
         self.last = math.inf
         self._judged: tuple[Tried, FloatArray] | None = None
-        self._points = _points(axis)
+        self._points = _points(axis, basis.step)
 
     @cached_property
     def _ideal(self) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -144,20 +147,26 @@ class ZoneTable:
 
     @property
     def _short(self) -> bool:
-        """Whether the memory is so short that rows are made of all instants at once, and serve to judge commands as well."""
-        return memory(self.axis.servo.loop) * len(self._points.instants) <= MOST_SAMPLES
+        """Whether rows are so soon made of all instants at once that they serve to judge commands as well."""
+        return bool(self._basis.step) or memory(self.axis.servo.loop) * len(self._points.instants) <= MOST_SAMPLES
 
     @cached_property
     def _sums(self) -> tuple[FloatArray, FloatArray]:
         """State and reference at the instants as rows over the unknowns, shapes ``(instants, 4, n)`` and ``(instants, 4)``."""
-        return self._basis.sums(self._samples(slice(None)), self._weights)
+        if not self._basis.step:
+            return self._basis.sums(self._samples(slice(None)), self._weights)
+        points, servo = self._points, self.axis.servo
+        delay = self.axis.task.cut.line_speed * servo.delay
+        return self._basis.lattice(points.instants, points.count, delay, self.axis.sample, self._weights)
 
     def _states(self, command: Tried) -> FloatArray:
         """State and reference at the instants: by rows once there are any, or of the command, whose samples many of them share."""
-        if self.begun and self._short and command.coefficients is not None:
-            matrix, constant = self._sums
-            return np.asarray(matrix @ command.coefficients + constant)
         points, axis = self._points, self.axis
+        if (self.begun or self._basis.step) and self._short and command.coefficients is not None:
+            matrix, constant = self._sums
+            return np.asarray((matrix.reshape(-1, matrix.shape[2]) @ command.coefficients).reshape(-1, 4) + constant)
+        if self._basis.step:  # on that lattice none are shared
+            return np.asarray(command.profile(self._samples(slice(None)), outside="repeat") @ self._weights)
         past, step = memory(axis.servo.loop), axis.sample / PHASES
         ahead = shared(past)
         values = _on_grid(

@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import linprog
 
+from camwright.design.servo_aware import convex
 from camwright.design.servo_aware.convex import ACCEPTED, ConvexProgramme
 from camwright.profiles.errors import SolverError
 from camwright.profiles.polynomial.profile import FloatArray
@@ -69,6 +70,23 @@ def test_a_peak_is_the_least_magnitude() -> None:
     lopsided = ConvexProgramme(2)
     lopsided.add_peak(np.ones((2, 1)), np.array([-1.0, -4.0]), -0.5, 1.0)  # -t/2 <= z - 1, z - 4 <= t
     assert lopsided.solve(np.array([0.0, 1.0])) == pytest.approx([3.0, 2.0])
+
+
+@pytest.mark.parametrize("contradicted", [False, True])
+def test_where_highs_goes_round_without_end_our_own_method_answers(
+    monkeypatch: pytest.MonkeyPatch, *, contradicted: bool
+) -> None:
+    """HiGHS is told to end after no step at all, as it does after ten thousand among vertices that are equally good."""
+    monkeypatch.setitem(convex._HIGHS, "simplex_iteration_limit", 0)
+    programme = ConvexProgramme(3)
+    programme.add(np.eye(3), -1.0, 2.0)
+    programme.add(np.ones((1, 3)), -np.inf, -4.0 if contradicted else 1.0)
+    found = programme.solve(np.array([1.0, -1.0, 0.0]))
+    if contradicted:
+        assert found is None
+    else:
+        assert found is not None
+        assert found[:2] == pytest.approx([-1.0, 2.0])
 
 
 def test_rows_of_fewer_columns_leave_the_last_unknowns_out() -> None:

@@ -155,19 +155,26 @@ def test_a_refusal_says_for_which_part_of_the_band_there_is_a_cam() -> None:
 
 @pytest.mark.parametrize("acceleration", [100.0, 300.0])
 def test_prices_of_the_least_error_bound_the_peak_that_goes_with_it(acceleration: float) -> None:
-    """No command within a thousandth of the least error has a lower peak than the prices say: that one is designed here."""
+    """No command within a hundredth of the least error has a lower peak than the prices say: that one is designed here."""
     task = Task(KNIFE, replace(CUT, length=0.272), replace(LIMITS, acceleration=acceleration))
     problem = AxisProblem(task, "shaped", (PAPER,), False, shares=(1.0, 0.8, 0.5, 0.2))
     programme = AxisProgramme(problem)
-    assert programme.least_share_of_limit(2, 1e-3) == 0.0  # nothing is known yet
+    assert programme.least_share_of_limit(2, 1e-2) == 0.0  # nothing is known yet
     found = programme.solve("sync_error", None)
     assert found is not None
-    bound = programme.least_share_of_limit(2, 1e-3)
-    softer = programme.solve("peak_acceleration", found[1] * (1.0 + 1e-3) / (1.0 - programme.margin))
+    bound = programme.least_share_of_limit(2, 1e-2)
+    softer = programme.solve("peak_acceleration", found[1] * (1.0 + 1e-2) / (1.0 - programme.margin))
     assert softer is not None
     share = softer[1] / problem.limits[2][1]
     assert bound <= share + 1e-6
     assert (bound > 0.95) == (acceleration == 100.0)
+
+
+@pytest.mark.slow
+def test_a_cut_that_has_many_best_commands_is_judged_in_the_end() -> None:
+    """Nothing is missed at that one line speed, and thousands of vertices are equally good: HiGHS went round among them for minutes."""
+    task = Task(KNIFE, replace(CUT, length=0.266, line_speed=34.1739 / 60), LIMITS)
+    assert AxisProgramme(AxisProblem(task, "shaped", (PAPER,), True)).keeps()
 
 
 def test_rectangles_within_others_are_left_out() -> None:

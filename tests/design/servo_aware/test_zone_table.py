@@ -29,10 +29,10 @@ MACHINES: dict[str, tuple[Machine, Cut]] = {
 }
 
 
-def table(name: str, command: Command, share: float) -> tuple[ZoneTable, np.ndarray]:
+def table(name: str, command: Command, share: float, *, robust: bool = False) -> tuple[ZoneTable, np.ndarray]:
     """Make a table, and unknowns of a command near the motion of even speed."""
     machine, cut = MACHINES[name]
-    basis = command_basis(Task(machine, cut, FREE), command)
+    basis = command_basis(Task(machine, cut, FREE), command, robust=robust)
     travel = machine.pitch or cut.sync_zone
     unknowns = np.random.default_rng(4).normal(0.0, 0.01 * travel, size=(basis.matrix.shape[1],))
     return ZoneTable(Axis(Task(machine, cut, FREE), LATE.at_speed(share), share), basis), unknowns
@@ -41,8 +41,9 @@ def table(name: str, command: Command, share: float) -> tuple[ZoneTable, np.ndar
 @pytest.mark.parametrize("name", MACHINES)
 @pytest.mark.parametrize("command", ["in_sync", "shaped"])
 @pytest.mark.parametrize("share", [1.0, 0.13])
-def test_rows_and_profile_are_judged_alike(name: str, command: Command, share: float) -> None:
-    found, unknowns = table(name, command, share)
+@pytest.mark.parametrize("robust", [False, True])
+def test_rows_and_profile_are_judged_alike(name: str, command: Command, share: float, *, robust: bool) -> None:
+    found, unknowns = table(name, command, share, robust=robust)
     profile = found._basis.profile(unknowns)
     points = np.arange(0, len(found.places), 5)
     rows = found.band_rows(points)
@@ -66,8 +67,9 @@ def test_at_full_speed_its_points_are_those_of_all_phases(name: str, command: Co
 
 
 @pytest.mark.parametrize("command", ["in_sync", "shaped"])
-def test_a_slow_line_is_looked_at_where_it_matters(command: Command) -> None:
-    found, unknowns = table("tangential", command, 0.1)
+@pytest.mark.parametrize("robust", [False, True])
+def test_a_slow_line_is_looked_at_where_it_matters(command: Command, *, robust: bool) -> None:
+    found, unknowns = table("tangential", command, 0.1, robust=robust)
     profile = found._basis.profile(unknowns)
     every = float(np.abs(found.axis.zone_errors(profile)[2]).max())
     seen = float(np.abs(found.errors(Tried(profile))).max())
@@ -77,8 +79,9 @@ def test_a_slow_line_is_looked_at_where_it_matters(command: Command) -> None:
 
 @pytest.mark.parametrize("name", MACHINES)
 @pytest.mark.parametrize("command", ["in_sync", "shaped"])
-def test_rows_are_the_axis(name: str, command: Command) -> None:
-    found, unknowns = table(name, command, 0.4)
+@pytest.mark.parametrize("robust", [False, True])
+def test_rows_are_the_axis(name: str, command: Command, *, robust: bool) -> None:
+    found, unknowns = table(name, command, 0.4, robust=robust)
     points = np.arange(0, len(found.places), 7)
     rows = found.band_rows(points)
     matrix, constant = found.axis.rows(found._basis, found.places[points], found.times[points])
