@@ -24,12 +24,14 @@ from camwright.validation.bounds.path_dual import (
 )
 from camwright.validation.bounds.path_limits import least_square_limited
 from camwright.validation.bounds.path_task import PathTask
+from camwright.validation.bounds.path_tubes import least_square_in_tubes
 from camwright.validation.bounds.path_turns import Around, turning_square_around
 from camwright.validation.motion import greatest_magnitude
 from camwright.validation.motor import motor_torque, work_drawn
 
 CONVEX = "convex programme over the path, by its dual"
 PATH = "value function over the path, by a cone programme"
+TUBES = "convex programme over the path, in tubes"
 STANDING = "closed form, standing"
 FRICTION = "closed form, friction"
 SPEEDS = "closed form, change of speed"
@@ -41,6 +43,8 @@ PLACES = 2001
 """Places of the path at which the inertia is taken."""
 NEAR = 2e-3
 """Share of the mean square below which nothing is left to be proved."""
+LOOSE = 0.08
+"""Share of the mean square below which a bound that knows the jerk is asked too."""
 EDGE = 5e-3
 """Share by which a peak may lie above that of the zone to need no other bound."""
 PEAKS = (0.993, 0.98, 0.96, 0.93, 0.9, 0.86, 0.82, 0.76, 0.7, 0.6, 0.5)
@@ -203,6 +207,8 @@ def _least_square(path: PathTask, level: float) -> tuple[float, str]:
         seen = least_square(path, below)
         if seen > found:
             found, method = seen, STANDING if below < level and seen > 0.999 * below else PATH
+    if found < level * (1 - LOOSE) and math.isfinite(path.acceleration):
+        return max((found, method), (least_square_in_tubes(path, level), TUBES))
     return found, method
 
 

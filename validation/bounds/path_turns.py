@@ -4,7 +4,9 @@ Such a motion comes to rest from its first speed, on a way of its own, and in th
 two ways are is not known; but they, and what it must go back between them, take the time ``T`` together. So for any price ``μ`` of the
 time and every pair of lengths the two parts' dual values at that price (`camwright.validation.bounds.path_convex`) less ``μ`` times the
 time that is left for them are a bound, and the least of all pairs is one of every motion that turns. A part whose length lies between two
-is bounded by one that pays for its time up to the first of them, and for its torque up to the second.
+is bounded by one that pays for its time up to the first of them, and for its torque up to the second. What it must go between them, back
+or on, it goes from rest to rest: with ``σ = ∫ √(I/2) dq`` the squared torque is ``2 I σ̈²``, so that over ``Σ`` in a time ``t`` costs
+``24 I Σ² / t³`` with the least inertia, or takes ``t`` at the greatest speed.
 """
 
 from __future__ import annotations
@@ -19,16 +21,18 @@ from camwright.profiles.polynomial.profile import FloatArray
 from camwright.validation.bounds.path_convex import INTERVALS, PathDual
 from camwright.validation.bounds.path_task import PathTask
 
-RATIO = 1.3
-"""Ratio of neighbouring lengths of a part, stretched."""
+RATIOS = 1.3, 1.05
+"""Ratios of neighbouring lengths of a part, stretched, that are tried in turn while the level is not proved."""
 TURNS = 2
 """Pitches of the machine that a part is looked at; a longer one pays no time beyond."""
 PLACES = 2001
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 PRICES = 8
+"""Prices of time that are tried."""
 SEARCH = 15, 0.01
 """Steps of Newton's method, and the least share of one: what is missed makes the bound no greater."""
-"""Prices of time that are tried."""
+AT_ONCE = 1e-30
+"""Least time (s) that is divided by: what costs nothing takes none."""
 FIRST, LAST = -3.5, 1.5
 """Powers of e of the prices between which the best is sought, times that of a constant inertia."""
 
@@ -52,22 +56,32 @@ class Around:
 
 def turning_square_around(task: PathTask, around: Around, level: float) -> float:
     """Lower bound of the integral of the squared torque of every motion that turns; what is above the level is not told from it."""
+    best = 0.0
+    for ratio in RATIOS:
+        if best < level:
+            best = max(best, _in_lengths(task, around, level, ratio))
+    return best
+
+
+def _in_lengths(task: PathTask, around: Around, level: float, ratio: float) -> float:
+    """Bound with neighbouring lengths of a ratio."""
     room = 0.5 * (task.greatest * task.time + task.way)  # what it goes too far it must go back
     parts = [
-        _Part(inertia, around.pitch, speed, task.greatest, room, level)
+        _Part(inertia, around.pitch, speed, task.greatest, room, level, ratio)
         for inertia, speed in ((around.ahead, task.speeds[0]), (around.behind, task.speeds[1]))
     ]
     if any(part.hopeless for part in parts):
         return level
     one, other = (math.sqrt(energy) for energy in task.energies)
     unit = 2.0 * float(task.inertia.mean()) * (one + other) ** 2 / task.time**2
-    ways = parts[0].shortest[:, None] + parts[1].shortest
-    left = task.time - np.maximum(ways - task.way, 0.0) / task.greatest
+    soonest, cost = _between(task, around, parts[0].shortest, parts[1].shortest)
 
     def value(power: float) -> float:
         price = unit * math.exp(power)
         first, second = (part.at_price(price) for part in parts)
-        return float((first[:, None] + second - price * left).min())
+        time = np.maximum(soonest, (3.0 * cost / price) ** 0.25)
+        back = price * time + cost / np.maximum(time, AT_ONCE) ** 3
+        return float((first[:, None] + second + back - price * task.time).min())
 
     low, high = FIRST, LAST
     inner = [high - GOLDEN * (high - low), low + GOLDEN * (high - low)]
@@ -88,11 +102,28 @@ def turning_square_around(task: PathTask, around: Around, level: float) -> float
     return min(best, level)
 
 
+def _between(task: PathTask, around: Around, ahead: FloatArray, behind: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Least time, and cost times the third power of the time, of what is left to go between two parts, by their shortest lengths."""
+    far = TURNS * around.pitch
+    q = np.linspace(task.way - far, far, PLACES * TURNS)
+    root = np.sqrt(0.5 * np.interp(q % around.pitch, np.linspace(0.0, around.pitch, len(around.ahead)), around.ahead))
+    sigma = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(q) * (root[1:] + root[:-1]))])
+    longest = [np.append(lengths[1:], math.inf) for lengths in (ahead, behind)]
+
+    def crossed(from_: FloatArray, to: FloatArray, of: FloatArray) -> FloatArray:
+        return np.maximum(np.interp(to, q, of) - np.interp(from_, q, of)[:, None], 0.0)
+
+    ways = [crossed(task.way - behind, ahead, of).T for of in (q, sigma)]
+    on = [crossed(longest[0], task.way - longest[1], of) for of in (q, sigma)]
+    way, root_way = (np.maximum(*each) for each in zip(ways, on, strict=True))
+    return way / task.greatest, 24.0 * float(np.min(around.ahead)) * root_way**2
+
+
 class _Part:
     """The way from a speed to rest, of lengths that are tried."""
 
     def __init__(
-        self, inertia: FloatArray, pitch: float, speed: float, greatest: float, room: float, level: float
+        self, inertia: FloatArray, pitch: float, speed: float, greatest: float, room: float, level: float, ratio: float
     ) -> None:
         far = min(room, TURNS * pitch)
         q = np.linspace(0.0, far, PLACES * TURNS)
@@ -102,7 +133,7 @@ class _Part:
         least = 16.0 / 9.0 * whole.energies[0] ** 1.5 / level
         longest = float(s[-1]) + (room - far) * math.sqrt(2.0 / float(np.min(inertia)))
         self.hopeless = least >= longest
-        count = max(1, math.ceil(math.log(max(float(s[-1]) / least, 1.0 + 1e-9)) / math.log(RATIO)))
+        count = max(1, math.ceil(math.log(max(float(s[-1]) / least, 1.0 + 1e-9)) / math.log(ratio)))
         ends = np.append(np.geomspace(min(least, 0.999 * float(s[-1])), float(s[-1]), count + 1), longest)
         self.shortest = np.interp(ends[:-1], s, q)
         self._duals = []

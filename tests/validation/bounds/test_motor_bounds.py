@@ -32,6 +32,7 @@ from camwright.validation.bounds.path_dual import (
 )
 from camwright.validation.bounds.path_limits import least_square_limited
 from camwright.validation.bounds.path_task import PathTask
+from camwright.validation.bounds.path_tubes import least_square_in_tubes
 from camwright.validation.bounds.path_turns import Around, turning_square_around
 from camwright.validation.motor import measure_motor
 
@@ -186,7 +187,7 @@ def test_no_motion_that_turns_goes_below_its_bounds(seed: int) -> None:
         around = np.array([0.3, 1.3])
         square = float(np.trapezoid(torque**2, t))
         assert square >= turning_square(path, around)
-        if turned == 1 and seed < 4:
+        if turned == 1 and seed < 2:
             pitch = np.linspace(0.0, 2 * np.pi / 3.0, 2001)
             ways = Around(_inertia(pitch), _inertia(q[-1] - pitch), float(pitch[-1]))
             assert square >= turning_square_around(path, ways, 2 * square)
@@ -207,9 +208,8 @@ def test_a_turn_beyond_a_place_that_is_passed_slowly_only_costs_the_braking_befo
     assert turning_square(path, inertia) < 0.1 * found
 
 
-@pytest.mark.parametrize("seed", range(6))
-def test_motions_stay_within_the_reach_of_their_acceleration_and_jerk(seed: int) -> None:
-    """Random motions in time, of whose limits the reach is told no more than they use."""
+def _jerky(seed: int) -> tuple[PathTask, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Random motion in time, of whose limits its path is told what it uses: path, time, place, speed, acceleration."""
     rng = np.random.default_rng(seed)
     t = np.linspace(0.0, 1.0, 40_001)
     jerk = sum((rng.normal() * 8.0 * np.sin(k * np.pi * t + rng.uniform(0.0, 6.0)) for k in range(1, 5)), 0.0 * t)
@@ -218,8 +218,15 @@ def test_motions_stay_within_the_reach_of_their_acceleration_and_jerk(seed: int)
     u += 0.2 - u.min()
     q = cumulative_trapezoid(u, t, initial=0.0)
     limits = float(np.abs(a).max()), float(np.abs(jerk).max())
+    inertia = np.full(2001, 2.0)
+    path = PathTask(inertia, float(q[-1]), (u[0], u[-1]), 1.0, float(u.max()), *limits, (a[0], a[-1]))
+    return path, t, q, u, a
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_motions_stay_within_the_reach_of_their_acceleration_and_jerk(seed: int) -> None:
+    path, _, q, u, _ = _jerky(seed)
     places = np.linspace(0.0, q[-1], 2001)
-    path = PathTask(np.full(2001, 2.0), float(q[-1]), (u[0], u[-1]), 1.0, float(u.max()), *limits, (a[0], a[-1]))
     low, high = path.reach
     energy = np.interp(places, q, u) ** 2
     assert (low <= energy * (1 + 1e-6)).all()
@@ -228,6 +235,27 @@ def test_motions_stay_within_the_reach_of_their_acceleration_and_jerk(seed: int)
     assert (low >= free[0] - 1e-9).all()
     assert (high <= free[1] + 1e-9).all()
     assert float((high - low).sum()) < float((free[1] - free[0]).sum())
+
+
+@pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(1, 24))])
+def test_no_motion_within_its_jerk_goes_below_the_bound_in_tubes(seed: int) -> None:
+    """Random motions of a random inertia, its torque by its formula; the level is a little above the motion, or far."""
+    path, t, q, u, a = _jerky(seed)
+    wave, size = 2 * np.pi / q[-1] * (1 + seed % 3), 0.9 * (seed % 4) / 3
+    path = replace(path, inertia=1.0 + size * np.sin(wave * np.linspace(0.0, q[-1], 2001)))
+    torque = (1.0 + size * np.sin(wave * q)) * a + size * wave * np.cos(wave * q) * u**2 / 2
+    square = float(np.trapezoid(torque**2, t))
+    assert least_square_in_tubes(path, square * (1.01 + 0.3 * (seed % 2))) <= square
+
+
+def test_the_only_motion_within_a_jerk_is_the_bound_in_tubes() -> None:
+    """Jerk up, down and up again is the quickest: way ``v T + J T³/32``, integral of the squared acceleration ``J² T³/48``."""
+    v, time, jerk, inertia = 4.0, 1.0, 40.0, 0.6
+    way = v * time + jerk * time**3 / 32
+    path = PathTask(np.full(501, inertia), way, (v, v), time * (1 + 1e-6), 50.0, 100.0, jerk)
+    only = inertia**2 * jerk**2 * time**3 / 48
+    assert max(least_square_in_time(path), least_square_limited(path)) < 0.75 * only
+    assert 0.78 * only < least_square_in_tubes(path, only) <= only * (1 + 1e-4)
 
 
 def test_a_level_is_lowered_until_it_is_proved() -> None:
