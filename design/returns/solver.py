@@ -30,6 +30,7 @@ from camwright.design.returns.structure import (
 )
 from camwright.design.returns.touching import touching_motions
 from camwright.design.returns.transcription import (
+    LIMIT_MARGIN,
     Arc,
     ScaledMotion,
     Shape,
@@ -255,21 +256,39 @@ def _possible(problem: ScaledProblem) -> ScaledMotion | None:
 
 
 def _confirmed(problem: ScaledProblem) -> tuple[CamProfile | None, int]:
-    """Polish the optimum that a closed form tells; None if there is none, or if the programme comes to anything else.
+    """Polish the optimum that a closed form tells; None if there is none, or if it is not confirmed.
 
     A slave that keeps to a stroke of its own accord needs no limits of the position. Of quintics the limits are put at the nodes alone:
-    where they are not kept between, the motion is none.
+    where they are not kept between, the motion is none. A least peak needs no programme: it is one if any lesser leaves no motion.
     """
-    known = known_start(_unconfined(problem))
+    peak = OBJECTIVES[problem.objective].form == "peak"
+    known = known_start(_unconfined(_drawn_in(problem) if peak else problem))
     if known is None:
         return None, 0
     start, arcs = known
+    if peak:
+        return (_kept(start, problem) if _none_below(start.objective, problem) else None), 0
     shape = Shape(arcs, start.degree, True, problem.objective, at_nodes=start.degree > 1)
     motion, statistics = programme(shape, known=True).solve(problem, start)
     iterations = int(statistics["iter_count"])
     if statistics["success"] and abs(motion.objective - start.objective) <= CONFIRMED * start.objective:
         return _kept(motion, problem), iterations
     return None, iterations
+
+
+def _drawn_in(problem: ScaledProblem) -> ScaledProblem:
+    """Draw the limits in as the programme does."""
+    less = 1.0 - LIMIT_MARGIN
+    ratio, slope, jerk = problem.greatest_ratio * less, problem.greatest_slope * less, problem.greatest_jerk * less
+    return replace(problem, greatest_ratio=ratio, greatest_slope=slope, greatest_jerk=jerk)
+
+
+def _none_below(peak: float, problem: ScaledProblem) -> bool:
+    """Whether a peak lower by `CONFIRMED` would leave a rest-to-rest slave no motion that comes as far as it must."""
+    less = peak * (1 - CONFIRMED)
+    of_jerk = OBJECTIVES[problem.objective].order == 3
+    slope, jerk = (problem.greatest_slope, less) if of_jerk else (less, problem.greatest_jerk)
+    return greatest_reach(1.0, problem.greatest_ratio, slope, jerk) < problem.height
 
 
 def _quintic(problem: ScaledProblem) -> CamProfile:
