@@ -23,7 +23,7 @@ from camwright.validation.identify.fit import (
     TraceFit,
 )
 from camwright.validation.identify.level import with_level
-from camwright.validation.identify.preparation import unwrapped
+from camwright.validation.identify.preparation import geared, unwrapped
 from camwright.validation.identify.quality import require_usable
 from camwright.validation.identify.rounding import count_of, with_rounding
 
@@ -116,6 +116,7 @@ def identify(
     """
     trace = unwrapped(trace, place)
     require_usable(trace, place)
+    trace = geared(trace, place)
     counts = count_of(trace.command), count_of(trace.actual)
     asked = beyond or {}
     fit = replace(

@@ -1,10 +1,11 @@
-"""A recording made fit for a fit: a modulo axis unwrapped."""
+"""A recording made fit for a fit: a modulo axis unwrapped, a gear between command and axis taken off."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +30,13 @@ _FEW, _PLAIN = 4, 2e-6
 """A modulus so near to one that the machine has, or to a number of so few digits, is that one: a drum that people have ordered."""
 _ROUNDING = 1e-9
 """What rounding in the file may do to a modulus, as a part of it."""
+_TURNS = 6
+"""How often a modulus is measured by the command, each time a turn further on by the modulus found before."""
+_PERIODIC = 1e-5
+"""Doubt of a modulus measured by the command, as a part of it, beyond which the motion is not periodic."""
+_GEARED, _FOLLOWS, _PLAIN_GEAR, _TEETH = 0.15, 0.05, 1e-3, 24
+"""How far a ratio of actual position to command is from 1 to be a gear, what may be left of the actual position, how well a plain
+ratio is met, and what its two numbers come to at most."""
 _SHOWN = {"m": (1e3, "mm"), "rad": (180.0 / math.pi, "deg")}
 
 
@@ -59,9 +67,17 @@ def unwrapped(trace: Trace, place: str, known: Sequence[float] = (), known_maste
     command, first = without_jumps(trace.command, trace.unit, step, f"{place}: the command", known)
     both = known if first is None else (*known, first)  # the command has the less noise
     actual, second = without_jumps(trace.actual, trace.unit, step, f"{place}: the actual position", both)
+    if first is None and second is not None:
+        second = _by_command(trace, command, actual, second)
+        actual, second = without_jumps(
+            trace.actual, trace.unit, step, f"{place}: the actual position", (*known, second)
+        )
     told = [("command", first, trace.unit), ("actual position", second, trace.unit)]
-    if first is not None and first == second:  # both turn over by themselves, so whole turns between them mean nothing
-        actual = actual - first * round(float(np.mean(actual - command)) / first)
+    if second is not None and first in (
+        None,
+        second,
+    ):  # it turns over by itself, so whole turns between them mean nothing
+        actual = actual - second * round(float(np.mean(actual - command)) / second)
     master = trace.master
     if master is not None:
         master, third = without_jumps(master, trace.master_unit, step, f"{place}: the master", known_master)
@@ -72,6 +88,55 @@ def unwrapped(trace: Trace, place: str, known: Sequence[float] = (), known_maste
             factor, unit = _SHOWN[counted]
             notes.append(f"the {name} is recorded modulo {modulus * factor:.10g} {unit} and was unwrapped")
     return replace(trace, command=command, actual=actual, master=master, notes=tuple(notes))
+
+
+def geared(trace: Trace, place: str) -> Trace:
+    """Take off the gear of an axis that runs on: its position is in another ratio to the command than 1.
+
+    Where the command comes back there is none to be told from an axis that does not keep up.
+
+    Raises
+    ------
+    InputError
+        The ratio is that of no plain gear.
+    """
+    command, actual = trace.command, trace.actual
+    if len(command) < 2 * _AROUND or abs(float(command[-1] - command[0])) < 0.5 * float(np.ptp(command)):
+        return trace
+    columns = np.stack([command - command.mean(), np.gradient(command), np.ones_like(command)], axis=1)
+    found, *_ = np.linalg.lstsq(columns, actual, rcond=None)
+    ratio = float(found[0])
+    left = float(np.std(actual - columns @ found))
+    if not (ratio > 0.0 and abs(ratio - 1.0) > _GEARED and left <= _FOLLOWS * float(np.std(actual))):
+        return trace
+    gears = {Fraction(p, q) for p in range(1, _TEETH) for q in range(1, _TEETH - p + 1)}
+    near = [gear for gear in gears if abs(float(gear) / ratio - 1.0) <= _PLAIN_GEAR]
+    if not near and 0.5 < ratio < 2.0:
+        return trace  # an axis that does not keep up may look so; what the fit says of it is told
+    if not near:
+        raise InputError(
+            f"{place}: the actual position moves {ratio:.5g} times as far as the command; divide the column by the gear, or the unit, "
+            "between them"
+        )
+    plain = min(near, key=lambda gear: gear.numerator + gear.denominator)
+    note = f"the actual position moves {plain} times as far as the command: that gear was taken off"
+    return replace(trace, actual=actual / float(plain), notes=(*trace.notes, note))
+
+
+def _by_command(trace: Trace, command: FloatArray, actual: FloatArray, modulus: float) -> float:
+    """Measure the modulus of an actual position by a command that is recorded without: a turn later both are where they were.
+
+    The modulus found is given where the command does not run on, or not periodically.
+    """
+    if not (np.diff(command) > 0.0).all() or command[-1] - command[0] < 1.5 * modulus:
+        return modulus
+    error, better, doubt = actual - command, modulus, math.inf
+    for _ in range(_TURNS):  # what is compared lies a turn further on, so far as that is known
+        at = command[command <= command[-1] - better]
+        gained = np.interp(at + better, command, error) - error[: len(at)]
+        doubt = float(np.std(gained)) / math.sqrt(len(gained))
+        better = modulus - float(gained.mean())
+    return _plainest(better, _SURE * doubt, trace.unit, ()) if doubt < _PERIODIC * modulus else modulus
 
 
 def without_jumps(

@@ -7,6 +7,7 @@ import math
 import tomllib
 from collections.abc import Callable
 from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
@@ -23,7 +24,7 @@ from camwright.profiles.servo import Servo, sample_plant
 from camwright.profiles.task import Task
 from camwright.profiles.trace import Trace
 from camwright.validation.identify.identification import identify
-from camwright.validation.identify.preparation import unwrapped, without_jumps
+from camwright.validation.identify.preparation import geared, unwrapped, without_jumps
 from camwright.validation.identify.quality import require_usable
 
 FREE = Limits(math.inf, math.inf, math.inf)
@@ -359,6 +360,39 @@ def test_a_short_recording_with_a_jump_is_unwrapped(rows: int) -> None:
     found, modulus = without_jumps(jumping, "m", (1e-3, 0.0), "t")
     assert modulus == 1.0
     assert found == pytest.approx(straight, abs=1e-12)
+
+
+@pytest.mark.parametrize("modulus", [0.4, 0.4173519])
+def test_an_axis_that_is_recorded_modulo_alone_is_measured_by_its_command(modulus: float) -> None:
+    """Noise hides the last digits of a jump; a turn later command and axis are where they were."""
+    lag = 0.02 * np.sin(2.0 * np.pi * CUT_TRACE.command / modulus)
+    actual = CUT_TRACE.command - 0.01 - lag + np.random.default_rng(4).normal(0.0, 5e-6, len(lag))
+    found = unwrapped(replace(CUT_TRACE, actual=actual % modulus), "t")
+    assert np.ptp(found.actual - actual) < 1e-6
+    assert abs(np.mean(found.actual - actual)) < modulus
+
+
+@pytest.mark.parametrize("gear", ["3", "1/2", "7/3", "6/5"])
+def test_a_plain_gear_is_taken_off(gear: str) -> None:
+    ratio = float(Fraction(gear))
+    found = geared(replace(CUT_TRACE, actual=CUT_TRACE.actual * ratio + 0.3), "t")
+    assert found.notes[-1] == f"the actual position moves {gear} times as far as the command: that gear was taken off"
+    assert np.ptp(found.actual - CUT_TRACE.actual) < 1e-12
+    assert geared(CUT_TRACE, "t") is CUT_TRACE
+
+
+def test_a_ratio_that_is_no_gear_is_refused() -> None:
+    with pytest.raises(
+        InputError,
+        match=r"the actual position moves 25\.4.* times as far as the command; divide the column by the gear",
+    ):
+        geared(replace(CUT_TRACE, actual=25.4 * CUT_TRACE.actual), "t")
+
+
+def test_where_the_command_comes_back_no_gear_is_sought() -> None:
+    turn = np.sin(2.0 * np.pi * CUT_TRACE.times / CUT_TRACE.times[-1])
+    back = replace(CUT_TRACE, command=turn, actual=0.5 * turn)
+    assert geared(back, "t") is back
 
 
 def test_a_jump_that_is_no_modulus_is_refused() -> None:
