@@ -14,6 +14,9 @@ from pathlib import Path
 
 from camwright.profiles.errors import InputError
 
+_MANY = 100
+"""Files from which on the whole disk is synchronised at once: one by one, ten thousand take a minute."""
+
 _DEVICES = re.compile(r"(?i)(con|prn|aux|nul|conin\$|conout\$|(com|lpt)[0-9¹²³])( *\.|:|$)")
 
 
@@ -165,10 +168,13 @@ def write_files(directory: Path, files: Mapping[str, str | bytes]) -> list[Path]
 
 def flush(place: Path) -> None:
     """Bring a file, or every file of a folder, to the disk before its name stands for a finished one."""
-    for file in sorted(place.rglob("*")) if place.is_dir() else [place]:
-        if file.is_file():
-            with file.open("rb") as stream:
-                os.fsync(stream.fileno())
+    files = [file for file in sorted(place.rglob("*")) if file.is_file()] if place.is_dir() else [place]
+    if len(files) > _MANY and hasattr(os, "sync"):
+        os.sync()
+        return
+    for file in files:
+        with file.open("rb") as stream:
+            os.fsync(stream.fileno())
 
 
 def put(new: Path, target: Path) -> None:

@@ -107,12 +107,17 @@ def cam_role(name: str) -> str | None:
 
 def trace_role(name: str) -> str | None:
     """Say what a column of a recording is: ``time``, ``master``, ``command``, ``actual``, ``other``; ``None`` if its name does not tell."""
-    plain = name.strip().lower()
+    plain = name.strip().lower().rpartition("/")[2]  # some recorders write where a channel comes from before its name
     words = words_of(name)
     for role, names, beginnings in _TRACED:
         if plain in names or any(word.startswith(beginnings) for word in words):
             return role
     return None
+
+
+def is_position(name: str) -> bool:
+    """Whether a name says that its column is a position, not something else of command or axis."""
+    return any(word.startswith(("pos", "lage", "weg", "angle", "winkel", "位置")) for word in words_of(name))
 
 
 def is_measured(name: str) -> bool:

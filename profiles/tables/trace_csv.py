@@ -13,7 +13,7 @@ import numpy as np
 from camwright.profiles.errors import InputError
 from camwright.profiles.machines.machine import SlaveUnit
 from camwright.profiles.polynomial.profile import FloatArray
-from camwright.profiles.tables.column_words import is_measured, trace_role
+from camwright.profiles.tables.column_words import is_measured, is_position, trace_role
 from camwright.profiles.tables.delimited import Sheet, is_stamp, read_sheet
 from camwright.profiles.tables.scope_csv import is_scope, read_scope, used_rows
 from camwright.profiles.trace import Trace
@@ -139,6 +139,7 @@ def _roles(sheet: Sheet, master: bool) -> dict[str, list[int]]:
     for name in at:
         if len(at[name]) > 1 and not (name == "time" and scope):
             exact = [k for k in at[name] if sheet.columns[k].name.strip().lower() == name]
+            exact = exact or [k for k in at[name] if is_position(sheet.columns[k].name)]
             if len(exact) != 1:
                 both = " and ".join(repr(names[k]) for k in at[name][:2])
                 raise InputError(f"{where}: column {name} stands there twice; leave one out ({both})")

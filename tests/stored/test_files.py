@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from camwright import load_job
-from camwright.house.files import staged
+from camwright.house.files import staged, write_files
 from camwright.house.provenance import provenance
 from camwright.jobs.job import BUNDLED_JOB
 from camwright.profiles.errors import InputError
@@ -65,6 +65,17 @@ def test_nothing_is_left_when_the_work_fails(tmp_path: Path, failure: BaseExcept
     assert tree(tmp_path) == {}
     if isinstance(failure, OSError):
         assert "the files cannot be written: No space left on device; nothing was left there" in str(caught.value)
+
+
+def test_many_files_are_brought_to_the_disk_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    synced: list[str] = []
+    monkeypatch.setattr(os, "fsync", lambda _: synced.append("one"))
+    monkeypatch.setattr(os, "sync", lambda: synced.append("all"), raising=False)
+    for count, meant in ((3, ["one"] * 3), (300, ["all"])):
+        write_files(tmp_path / str(count), {f"{k}.txt": "x" for k in range(count)})
+        assert synced == meant
+        assert len(list((tmp_path / str(count)).iterdir())) == count
+        synced.clear()
 
 
 @pytest.mark.parametrize("call", [1, 2])

@@ -115,3 +115,22 @@ def test_the_master_is_read_where_it_is_asked_for() -> None:
     plain = read_trace_csv(text, "t")
     assert plain.master is None
     assert plain.actual.tolist() == [0.004, 0.008]
+
+
+def test_positions_are_found_among_what_else_is_commanded_and_fed_back() -> None:
+    """Channels as a recorder of a bus writes them, with where they come from before their names."""
+    names = [
+        "MotorCmdKd#0",
+        "MotorCmdPos#0",
+        "MotorCmdTor#0",
+        "MotorCmdVel#0",
+        "MotorFbPos#0",
+        "MotorFbTemp#0",
+        "t [ms]",
+    ]
+    head = ",".join(f"MotorTest/{name}" for name in names)
+    found = read_trace_csv(text(*(f"0.1,{n},0,0,{n - 0.5},24,{n}" for n in range(5)), header=head), "t.csv")
+    assert found.command == pytest.approx(1e-3 * np.arange(5))
+    assert found.actual == pytest.approx(1e-3 * np.arange(5) - 0.5e-3)
+    with pytest.raises(InputError, match="column time has no unit; write it in brackets"):
+        read_trace_csv(text("0.1,1,0,0,1,24,0", "0.1,1,0,0,1,24,1", header=head.replace(" [ms]", "")), "t.csv")
