@@ -19,8 +19,12 @@ from camwright.house.owned import Work, owned
 from camwright.house.picture_files import write_pictures
 from camwright.jobs.job import load_job
 from camwright.production.family import Family, family
-from camwright.production.family_answer import family_answer, family_files
+from camwright.production.family_answer import family_answer, family_files, family_record
 from camwright.profiles.errors import InputError
+from camwright.recipes.family_sheet import FAMILY_FILE, family_sheets
+from camwright.recipes.language import Language
+from camwright.recipes.manifest import MANIFEST_FILE, manifest_text
+from camwright.recipes.model import Origin
 from camwright.studies.covering import FOUND_TO
 from camwright.studies.family_bands import OVERLAP
 
@@ -50,6 +54,7 @@ def run(
     out: Annotated[
         Path | None, typer.Option("--out", metavar="DIR", help="Output directory; out/<name>-family if left out.")
     ] = None,
+    language: Annotated[Language, typer.Option("--language", help="Language of the sheet.")] = "en",
     no_figures: NoFigures = False,
     as_json: Json = False,
     quiet: Quiet = False,
@@ -62,7 +67,7 @@ def run(
     with voice.progress(_STEPS) as step:
         found = family(asked, names, share, step)
     directory = Path("out") / f"{asked.name}-family" if out is None else out
-    files = _written(found, directory, job_work("family", asked, job, out), figures=not no_figures)
+    files = write_family(found, directory, job_work("family", asked, job, out), language, figures=not no_figures)
 
     def data() -> dict[str, Any]:
         return {**family_answer(found), "files": [str(file) for file in files]}
@@ -83,14 +88,20 @@ def _share(text: str) -> float:
     return share
 
 
-def _written(found: Family, directory: Path, work: Work, *, figures: bool) -> list[Path]:
-    """Write the controller's files, and the tables of each target into a folder of its own."""
+def write_family(found: Family, directory: Path, work: Work, language: Language, *, figures: bool) -> list[Path]:
+    """Write the sheet and the controller's files, and the tables of each target into a folder of its own."""
+    record = family_record(found, language)
+    data = {name: text.encode() for name, text in {**family_files(found), FAMILY_FILE: to_json(record)}.items()}
+    data |= family_sheets(record)
+    tables = {f"{table.name}/{name}": text.encode() for table in found.tables for name, text in table.files.items()}
+    libraries = record["provenance"]["libraries"]
+    origin = Origin(record["provenance"]["camwright"], record["provenance"]["job_sha256"], libraries)
     with owned(directory, work, complain) as aside:
-        texts = {**family_files(found), "family.json": to_json({**family_answer(found), "profiles": _profiles(found)})}
-        for name, text in texts.items():
-            (aside / name).write_bytes(text.encode())
-        if figures:
-            write_pictures({"family": family_figure(found)}, aside)
+        for name, content in data.items():
+            (aside / name).write_bytes(content)
+        drawn = write_pictures({"family": family_figure(found)}, aside) if figures else []
+        listed = {**data, **tables, **{file.name: file.read_bytes() for file in drawn}}
+        (aside / MANIFEST_FILE).write_text(manifest_text(listed, origin), encoding="utf-8")
         files = final_paths(aside, directory)
     for table in found.tables:
         folder = directory / table.name
@@ -100,20 +111,6 @@ def _written(found: Family, directory: Path, work: Work, *, figures: bool) -> li
                     (aside / name).write_bytes(text.encode())
             files += [folder / name for name in sorted(table.files)]
     return files
-
-
-def _profiles(found: Family) -> dict[str, object]:
-    """Give the cams and transitions as pieces of polynomials, master and slave in SI units."""
-    cams = {cam.job.name: cam.solution.profile.to_dict() for cam in found.cams}
-    changes = [change for each in found.switchings for change in each.changes]
-    return {
-        "cams": cams,
-        "transitions": [
-            {"from": change.before, "to": change.after, "profile": each.profile.to_dict()}
-            for change in changes
-            for each in change.transitions
-        ],
-    }
 
 
 def _views(found: Family) -> list[RenderableType]:

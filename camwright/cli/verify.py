@@ -10,6 +10,7 @@ import typer
 from camwright.cli.options import Json, Quiet
 from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.house.output import Voice
+from camwright.recipes.family_verify import is_family
 from camwright.recipes.verify import Verified, examine, verify_answer
 
 if TYPE_CHECKING:
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def run(
-    directory: Annotated[Path, typer.Argument(metavar="DIR", help="A recipe folder.")],
+    directory: Annotated[Path, typer.Argument(metavar="DIR", help="The folder of a recipe, or of a family of cams.")],
     key: Annotated[
         Path | None,
         typer.Option("--key", metavar="PUB", help="Public key (PEM) of who must have signed it with recipe --sign."),
@@ -25,7 +26,7 @@ def run(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> int:
-    """Prove that a recipe folder is what was written, that its tables are the motion that it promises, and its sheet the cam's."""
+    """Prove that the folder of a recipe or a family is what was written, and its sheet the cams'; of a recipe the tables, too."""
     voice = Voice(as_json, quiet)
     with voice.progress(1) as step:
         step("checking")
@@ -37,7 +38,8 @@ def run(
 def _view(directory: Path, found: Verified) -> RenderableType:
     notes = [new_text(f"Note: {note.file}: {note.what}") for note in found.notes]
     if not found.faults:
-        head = f"{directory}: as it was written; its tables are the motion that it promises"
+        promised = "sheet says what its cams do" if is_family(directory) else "tables are the motion that it promises"
+        head = f"{directory}: as it was written; its {promised}"
         return stacked(new_text("\n- ".join((head, *found.proved))), *notes)
     table = new_table(title=new_text(f"{directory}: NOT as it was written"), title_justify="left")
     table.add_column("file")

@@ -8,7 +8,8 @@ from typing import Any
 from camwright.answers.measures import checks_answer
 from camwright.answers.objective import objective_unit
 from camwright.answers.speed_band import band_answer
-from camwright.house.provenance import camwright_version
+from camwright.house.provenance import camwright_version, provenance
+from camwright.jobs.numbers import job_numbers
 from camwright.production.changes import Change
 from camwright.production.family import Family
 from camwright.production.family_cams import FamilyCam
@@ -85,6 +86,28 @@ def _switching(each: Switching, *, holds_line: bool) -> dict[str, Any]:
             for name, change, checks in zip(("up", "down"), (up, down), each.checks, strict=True)
         },
         "passed": each.passed,
+    }
+
+
+def family_record(family: Family, language: str) -> dict[str, Any]:
+    """Contents of ``family.json``: the answer, and all that its sheet and its proof are made of."""
+    job = family.found.job
+    changes = [change for each in family.switchings for change in each.changes]
+    return {
+        **family_answer(family),
+        "hold_line_speed": family.found.holds_line,
+        "language": language,
+        "toml": job.text,
+        "si": job_numbers(job),
+        "provenance": provenance(job.sha256),
+        "profiles": {
+            "cams": {cam.job.name: cam.solution.profile.to_dict() for cam in family.cams},
+            "transitions": [
+                {"from": change.before, "to": change.after, "profile": each.profile.to_dict()}
+                for change in changes
+                for each in change.transitions
+            ],
+        },
     }
 
 

@@ -69,6 +69,11 @@ def switchings(family: FamilyCams) -> tuple[Switching, ...]:
     )
 
 
+def change_speeds(low: float, top: float) -> list[float]:
+    """List the line speeds at which a change is run, of those that both cams hold (m/s)."""
+    return [float(speed) for speed in np.linspace(low, top, _SPEEDS)]
+
+
 def _switching(family: FamilyCams, slower: FamilyCam, faster: FamilyCam) -> Switching:
     low, top = faster.line_speeds[0], slower.line_speeds[1]
     up, up_checks = _change(family, slower, faster, (low, top))
@@ -82,7 +87,7 @@ def _change(
     """Run one cam into another where that will do, else through a transition; and what the checks say of it."""
     one, other, top = _running(before, family), _running(after, family), line_speeds[1]
     pair = before.number, after.number
-    servos, speeds = servos_of(family.job), np.linspace(*line_speeds, _SPEEDS).tolist()
+    servos, speeds = servos_of(family.job), change_speeds(*line_speeds)
     tasks = before.job.task, after.job.task.at_speed(top)
     cams = ShiftCam(one.profile, one.zero), ShiftCam(other.profile, other.zero)
     jump = seam_jump(one.profile, one.zero, other.profile, other.zero, after.job.task, top)

@@ -75,7 +75,7 @@ def machine_facts(recipe: Recipe) -> list[Fact]:
     values = recipe.job.si["machine"]
     units = {each.key: _unit(each) for each in fields_of(MACHINES[values["kind"]])}
     order = dict.fromkeys(each.key for machine in MACHINES.values() for each in fields_of(machine))
-    facts = [Fact("kind", values["kind"], "word"), *_listed(values, {key: units[key] for key in order if key in units})]
+    facts = [Fact("kind", values["kind"], "word"), *listed(values, {key: units[key] for key in order if key in units})]
     return [replace(fact, group="machine") for fact in facts]
 
 
@@ -89,7 +89,7 @@ def _unit(each: MachineField) -> str:
 def product_facts(recipe: Recipe) -> list[Fact]:
     """List the product's numbers and what follows from them."""
     cut = recipe.job.si["cut"]
-    facts = [fact for fact in _listed(cut, PRODUCT) if fact.key != "shaped" or fact.value]  # the exception
+    facts = [fact for fact in listed(cut, PRODUCT) if fact.key != "shaped" or fact.value]  # the exception
     facts.insert(2, Fact("cuts", 60.0 * cut["line_speed"] / cut["length"]))
     unit = recipe.slave_unit
     return [*facts, Fact("slave_start", recipe.slave_start, unit), Fact("pitch", recipe.pitch, unit)]
@@ -110,7 +110,7 @@ def limit_facts(recipe: Recipe) -> list[Fact]:
 
 def servo_facts(recipe: Recipe) -> list[Fact]:
     """List the servo's parameters and the lead time that makes up for its lag."""
-    return [*_listed(recipe.job.si["servo"], SERVO), Fact("mean_lag", recipe.lead_time, "s")]
+    return [*listed(recipe.job.si["servo"], SERVO), Fact("mean_lag", recipe.lead_time, "s")]
 
 
 GROUPS = {
@@ -122,7 +122,8 @@ GROUPS = {
 """The parameters by group, under the heading's key."""
 
 
-def _listed(values: dict[str, Any], units: dict[str, str]) -> list[Fact]:
+def listed(values: dict[str, Any], units: dict[str, str]) -> list[Fact]:
+    """List those of some numbers that there are, by their units."""
     return [Fact(key, values[key], unit) for key, unit in units.items() if key in values]
 
 

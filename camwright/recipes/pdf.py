@@ -20,15 +20,19 @@ _TEMPLATE = Path(__file__).parent / "templates" / "recipe.typ"
 
 def recipe_pdf(recipe: Recipe) -> bytes:
     """Typeset a recipe; the same recipe gives the same bytes."""
+    words = catalogue_of(recipe.language, recipe.job.toml)
+    return typeset(sheet(recipe, words), recipe.provenance.camwright, figure_svg(recipe, words))
+
+
+def typeset(data: dict[str, Any], version: str, drawing: str = "") -> bytes:
+    """Typeset a sheet, made by a version of camwright, with its drawing (SVG)."""
     import typst
 
-    words = catalogue_of(recipe.language, recipe.job.toml)
-    data = _printable({**sheet(recipe, words), "version": recipe.provenance.camwright})
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder)
         shutil.copyfile(_TEMPLATE, place / "recipe.typ")
-        (place / "data.json").write_text(json.dumps(data), encoding="utf-8")
-        (place / "cam.svg").write_text(figure_svg(recipe, words), encoding="utf-8")
+        (place / "data.json").write_text(json.dumps(_printable({**data, "version": version})), encoding="utf-8")
+        (place / "cam.svg").write_text(drawing, encoding="utf-8")
         return bytes(
             typst.compile(
                 str(place / "recipe.typ"),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
 from functools import partial
@@ -17,8 +16,10 @@ from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.tables.cam_table import Units
 from camwright.profiles.tables.targets import TARGETS
 from camwright.recipes.expected import expected
+from camwright.recipes.family_verify import family_faults, is_family
+from camwright.recipes.folder import contents, sum_faults
 from camwright.recipes.html import recipe_html
-from camwright.recipes.manifest import MANIFEST_FILE, read_manifest, sha256
+from camwright.recipes.manifest import MANIFEST_FILE
 from camwright.recipes.model import Recipe, RecipeTable
 from camwright.recipes.pdf import recipe_pdf
 from camwright.recipes.ramp_faults import start_faults
@@ -32,11 +33,8 @@ from camwright.recipes.sheet_faults import sheet_faults
 from camwright.recipes.signature import SIGNATURE_FILE, is_signed
 from camwright.recipes.table_faults import Fault, check_faults, motion_faults, table_faults
 from camwright.recipes.xlsx import recipe_xlsx
-from camwright.stored.design_file import MOST_BYTES, StoredDesign
+from camwright.stored.design_file import StoredDesign
 from camwright.validation.rebuilt import RUN, judge_table
-
-_OF_THE_SYSTEM = ("thumbs.db", "ehthumbs.db", ".ds_store", "desktop.ini")
-"""Files that a desktop puts into folders by itself, by their names in small letters."""
 
 _PAGE = "recipe.html"
 _SHEETS: dict[str, Callable[[Recipe], bytes]] = {
@@ -72,7 +70,7 @@ def verify(directory: Path, key: Path | None = None) -> list[Fault]:
 
 
 def examine(directory: Path, key: Path | None = None) -> Verified:
-    """Check a recipe folder.
+    """Check a recipe folder, or that of a family (`camwright.recipes.family_verify`).
 
     Checksums of all files, none missing and none added; recipe.json by its schema; every table read by its target's reader, rebuilt
     as the target does, and judged, against the numbers in recipe.json. Where all this agrees, the values of the sheet are computed anew
@@ -90,22 +88,20 @@ def examine(directory: Path, key: Path | None = None) -> Verified:
     InputError
         The directory is no recipe, or cannot be read; the key is none.
     """
-    found = _files(directory)
-    if MANIFEST_FILE not in found and RECIPE_FILE not in found:
+    if is_family(directory):
+        if key is not None:
+            raise InputError(f"{directory}: a family of cams is not signed; verify it without --key")
+        faults, notes, proved = family_faults(directory)
+        return Verified(tuple(faults), tuple(notes), tuple(proved))
+    data, notes = contents(directory)
+    if MANIFEST_FILE not in data and RECIPE_FILE not in data:
         raise InputError(f"{directory}: not a recipe: neither {MANIFEST_FILE} nor {RECIPE_FILE} is in it")
-    data = {path: _bytes(directory / path) for path in sorted(found)}
-    notes = [
-        Fault(path, "put there by the desktop; no part of the recipe")
-        for path in sorted(data)
-        if Path(path).name.lower() in _OF_THE_SYSTEM and data[path] is not None
-    ]
-    for note in notes:
-        del data[note.file]
+    there = SIGNATURE_FILE in data
     signature = data.pop(SIGNATURE_FILE, None)
-    faults = list(_signature_faults(data, signature, SIGNATURE_FILE in found, key))
-    if SIGNATURE_FILE in found and key is None:
+    faults = list(_signature_faults(data, signature, there, key))
+    if there and key is None:
         notes.append(Fault(SIGNATURE_FILE, "signed, but the signature was not checked: name the public key with --key"))
-    faults += _sums(data)
+    faults += sum_faults(data)
     faults += _contents(data)
     content = data.get(RECIPE_FILE)
     if faults or content is None:
@@ -161,50 +157,6 @@ def _signature_faults(
         yield Fault(SIGNATURE_FILE, "missing: this recipe is not signed")
     elif signature is None or manifest is None or not is_signed(manifest, signature, key):
         yield Fault(SIGNATURE_FILE, f"not a signature of this {MANIFEST_FILE} by the owner of {key}")
-
-
-def _files(directory: Path) -> set[str]:
-    """Paths of everything in a folder that is not a plain directory."""
-    if not directory.is_dir():
-        raise InputError(f"{directory}: there is no such directory")
-    paths = set()
-    for root, folders, names in os.walk(directory):
-        links = [name for name in folders if (Path(root) / name).is_symlink()]
-        paths |= {(Path(root) / name).relative_to(directory).as_posix() for name in (*names, *links)}
-    return paths
-
-
-def _bytes(file: Path) -> bytes | None:
-    """Contents of a file; nothing for what is no plain file, too large, or cannot be read."""
-    if file.is_symlink() or not file.is_file():
-        return None
-    try:
-        return file.read_bytes() if file.stat().st_size <= MOST_BYTES else None
-    except OSError:
-        return None
-
-
-def _sums(data: dict[str, bytes | None]) -> Iterator[Fault]:
-    """Compare the folder with its manifest."""
-    manifest = data.get(MANIFEST_FILE)
-    if manifest is None:
-        yield Fault(MANIFEST_FILE, "missing, or not a readable file")
-        return
-    stored, faults = read_manifest(manifest)
-    for fault in faults:
-        yield Fault(MANIFEST_FILE, fault)
-    for path in sorted(stored.keys() | data.keys() - {MANIFEST_FILE}):
-        content = data.get(path)
-        if path not in stored:
-            yield Fault(path, "not in the manifest")
-        elif path not in data:
-            yield Fault(path, "missing")
-        elif content is None:
-            yield Fault(path, "not a readable file")
-        elif (found := sha256(content)) != stored[path][0]:
-            yield Fault(path, f"SHA-256 is {found}, the manifest has {stored[path][0]}")
-        elif len(content) != stored[path][1]:
-            yield Fault(path, f"{len(content)} bytes, the manifest has {stored[path][1]}")
 
 
 def _contents(data: dict[str, bytes | None]) -> list[Fault]:

@@ -5,21 +5,31 @@ from __future__ import annotations
 import itertools
 import json
 import re
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from camwright.cli.family import write_family
 from camwright.cli.main import main
+from camwright.house.json_text import to_json
+from camwright.house.owned import LIST, Work
 from camwright.jobs.examples import example
 from camwright.jobs.job import Job, parse_job
 from camwright.jobs.servos import servos_of
 from camwright.production.family import Family, family
-from camwright.production.family_answer import family_answer, family_files
+from camwright.production.family_answer import family_answer, family_files, family_record
 from camwright.production.family_cams import family_cams
 from camwright.production.switching import switchings
 from camwright.profiles.errors import InfeasibleError, InputError
+from camwright.recipes.catalogue import catalogue
+from camwright.recipes.family_sheet import family_sheet, family_sheets
+from camwright.recipes.language import LANGUAGES, Language
+from camwright.recipes.manifest import MANIFEST_FILE, manifest_text
+from camwright.recipes.model import Origin
+from camwright.recipes.verify import verify
 from camwright.stored.design_file import parse_design
 from camwright.studies.axis_study import solve_job
 from camwright.studies.covering import FOUND_TO
@@ -221,6 +231,9 @@ def test_the_command_writes_and_says_what_was_found(
         "family.json",
         "family.svg",
         "family.png",
+        "family.html",
+        "family.pdf",
+        "manifest.json",
     }
     assert expected <= {file.name for file in out.iterdir()}
     assert len(list((out / "csv").glob("F*.csv"))) == 2
@@ -232,13 +245,80 @@ def test_the_command_writes_and_says_what_was_found(
         assert answer["fewest"]
         assert {Path(file).name for file in answer["files"]} >= expected
         assert {key: value for key, value in answer.items() if key != "files"} == {
-            key: value for key, value in stored.items() if key != "profiles"
+            key: value for key, value in stored.items() if key in answer
         }
     else:
         assert "2 cams, the fewest, from 56 m/min to" in " ".join(shown.split())
         assert "the line must keep its speed until a change is over" in " ".join(shown.split())
         svg = (out / "family.svg").read_text()
         assert all(words in svg for words in ("cam 1", "cam 2", "sync tolerance", "between switching down and up"))
+
+
+@pytest.fixture(scope="module")
+def written(in_sync: Family, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Write that family, its sheet in German."""
+    out = tmp_path_factory.mktemp("family") / "out"
+    work = Work("family", in_sync.found.job.name, in_sync.found.job.sha256)
+    write_family(in_sync, out, work, "de", figures=False)
+    return out
+
+
+def test_the_folder_of_a_family_is_verified(written: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["verify", str(written)]) == 0
+    shown = " ".join(capsys.readouterr().out.split())
+    assert "2 changes, run anew, have the recorded checks" in shown
+    assert "2 cams, judged and run over their bands anew, have the recorded sync errors" in shown
+
+
+@pytest.mark.parametrize(
+    ("keys", "told"),
+    [
+        (("cams", 0, "worst_sync_error_m"), "cams.1.worst_sync_error_m"),
+        (("switching", 0, "transition", "down", "checks", 0, "value"), "switching.2-1.sync"),
+    ],
+)
+def test_a_family_that_says_what_its_cams_do_not_is_told(
+    written: Path, tmp_path: Path, keys: tuple[str | int, ...], told: str
+) -> None:
+    out = shutil.copytree(written, tmp_path / "family")
+    record = json.loads((out / "family.json").read_text())
+    place = record
+    for key in keys[:-1]:
+        place = place[key]
+    place[keys[-1]] *= 0.9
+    # the forger makes sheet and manifest anew: only the cams themselves contradict
+    (out / "family.json").write_text(to_json(record))
+    for name, content in family_sheets(record).items():
+        (out / name).write_bytes(content)
+    files = {path.relative_to(out).as_posix(): path.read_bytes() for path in out.rglob("*") if path.is_file()}
+    listed = {name: content for name, content in files.items() if Path(name).name not in (LIST, MANIFEST_FILE)}
+    origin = Origin(**{key: record["provenance"][key] for key in ("camwright", "job_sha256", "libraries")})
+    (out / "manifest.json").write_text(manifest_text(listed, origin))
+    (fault,) = verify(out)
+    assert (fault.file, fault.what.partition(":")[0]) == ("family.json", told)
+
+
+def test_a_changed_table_of_a_family_and_one_too_many_are_told(written: Path, tmp_path: Path) -> None:
+    out = shutil.copytree(written, tmp_path / "family")
+    table = next((out / "csv").glob("F001*"))
+    table.write_text(table.read_text().replace("0", "1", 1))
+    (out / "csv" / "other.csv").write_text("0")
+    assert {fault.file for fault in verify(out)} == {f"csv/{table.name}", "csv/other.csv"}
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_the_sheet_of_a_family_is_in_the_language_of_its_reader(in_sync: Family, language: Language) -> None:
+    words, english = catalogue(language), catalogue("en")
+    data = family_sheet(family_record(in_sync, language), words)
+    assert [section["heading"] for section in data["sections"]][:2] == [
+        words("section.family_cams"), words("section.switching"),
+    ]  # fmt: skip
+    known = {text for text in english.messages.values() if len(text) > 12 and "{" not in text}
+    assert language == "en" or [text for text in known if text in str(data)] == []
+    (each,) = in_sync.switchings
+    cells = str(data["sections"][1]["blocks"][0]["rows"])
+    for speed in (each.up, each.down):
+        assert f"{60 * speed:.3f}"[:-1].replace(".", words.units.decimal) in cells
 
 
 def test_a_family_whose_change_needs_a_standstill_is_not_released(in_sync: Family) -> None:
