@@ -34,10 +34,10 @@ def family_sheet(record: dict[str, Any], words: Catalogue) -> dict[str, Any]:
     name = visible(record["job"])
     fewest = "family.fewest" if record["fewest"] else "family.at_least"
     makers = (
-        ("section.family_cams", _cams),
-        ("section.switching", _switching),
-        ("section.change_checks", _changes),
-        ("section.family_steps", _steps),
+        ("heading.cams", _cams),
+        ("heading.switching", _switching),
+        ("heading.changes", _changes),
+        ("heading.steps", _steps),
         ("section.record", _record),
     )
     return {

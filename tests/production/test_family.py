@@ -311,7 +311,7 @@ def test_the_sheet_of_a_family_is_in_the_language_of_its_reader(in_sync: Family,
     words, english = catalogue(language), catalogue("en")
     data = family_sheet(family_record(in_sync, language), words)
     assert [section["heading"] for section in data["sections"]][:2] == [
-        words("section.family_cams"), words("section.switching"),
+        words("heading.cams"), words("heading.switching"),
     ]  # fmt: skip
     known = {text for text in english.messages.values() if len(text) > 12 and "{" not in text}
     assert language == "en" or [text for text in known if text in str(data)] == []
