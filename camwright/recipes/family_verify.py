@@ -101,7 +101,7 @@ def _cam_faults(record: dict[str, Any], designs: list[StoredDesign]) -> Iterator
         job, name = design.job, f"cams.{cam['cam']}"
         if list(job.line_speeds) != cam["band_m_per_s"]:
             yield f"{name}.band_m_per_s: {list(job.line_speeds)}, recorded {cam['band_m_per_s']}"
-        speeds = np.linspace(*cam["band_m_per_s"], SPEEDS)
+        speeds = np.linspace(cam["band_m_per_s"][0], cam["band_m_per_s"][1], SPEEDS)
         errors = line_speed_errors(design.profile, job.task, servos_of(job), speeds, PHASES).max(axis=1)
         tolerance = job.cut.sync_tolerance
         yield from differs(f"{name}.worst_sync_error_m", float(errors[0]), cam["worst_sync_error_m"], tolerance)

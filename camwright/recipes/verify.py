@@ -91,8 +91,8 @@ def examine(directory: Path, key: Path | None = None) -> Verified:
     if is_family(directory):
         if key is not None:
             raise InputError(f"{directory}: a family of cams is not signed; verify it without --key")
-        faults, notes, proved = family_faults(directory)
-        return Verified(tuple(faults), tuple(notes), tuple(proved))
+        wrong, told, sure = family_faults(directory)
+        return Verified(tuple(wrong), tuple(told), tuple(sure))
     data, notes = contents(directory)
     if MANIFEST_FILE not in data and RECIPE_FILE not in data:
         raise InputError(f"{directory}: not a recipe: neither {MANIFEST_FILE} nor {RECIPE_FILE} is in it")
