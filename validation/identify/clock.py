@@ -128,7 +128,9 @@ def _tried(fit: TraceFit, found: Minimum, ripple: float, noise: float) -> _Trial
     """Try sample times about that of the fit without clock, each at all phases."""
     others = tuple(name for name in found.names if name != "sample_time")
     middle, lasts = math.log(found.values["sample_time"]), float(fit.times[-1] - fit.times[0])
-    reach = min((_REACH + 0.5 * math.sqrt(ripple)) * found.errors["sample_time"], _WIDEST)
+    # the standard error knows the noise of the rows alone; a ripple that was left out pushes by no more than all of it
+    wider = math.sqrt(noise * len(fit.times) / found.cost)
+    reach = min((_REACH + math.sqrt(ripple)) * wider * found.errors["sample_time"], _WIDEST)
     nodes = np.linspace(middle - reach, middle + reach, _NODES)
     ridge = _ridge(fit, found, others, nodes)
     step = found.values["sample_time"]
