@@ -144,3 +144,14 @@ def test_teeth_of_the_clock_that_the_trace_cannot_tell_apart_are_all_in_the_inte
     assert mixed.errors["sample_time"] == pytest.approx(float(np.sqrt(weights @ apart**2)), rel=1e-2)
     alone = _mixed(fit, [best, tooth(6.1433e-3, 60.0)], noise).bounds["sample_time"]
     assert alone == pytest.approx(best.bounds["sample_time"], rel=1e-6)
+
+
+def test_the_doubt_of_a_corner_hardly_hangs_on_where_between_the_rows_it_lies() -> None:
+    def doubt(offset: float) -> float:
+        command = np.abs(TIMES - 1.0 - offset * 1e-3)
+        fit = TraceFit.of(Trace(0.0, 1e-3, command, command, "m"))
+        return fit.doubt(SimpleNamespace(values=VALUES))  # type: ignore[arg-type]
+
+    found = [doubt(offset) for offset in np.linspace(0.0, 1.0, 9)]
+    assert max(found) < 3.0 * min(found)
+    assert min(found) > 0.0  # every second row alone differed by hundreds
