@@ -93,7 +93,10 @@ def running_cam(
     whole, cuts = _whole(read, placed, place, units, travel)
     table, counted = whole.table, without_rounding(whole.table)
     rebuilt = whole.units.to_si(layout.rebuild(table if counted is None else counted.table))
-    one_cycle(rebuilt, job.cut, cuts)  # refuses another period
+    try:
+        one_cycle(rebuilt, job.cut, cuts)
+    except InputError as error:  # another period
+        raise InputError(*(f"{place}: {fault}" for fault in error.faults)) from error
     count = 0.0 if counted is None else counted.count * whole.units.slave.size
     grain = rounded_to(whole.table.y) * whole.units.slave.size
     tick = spacing_rounded_to(whole.table.x) * whole.units.master.size

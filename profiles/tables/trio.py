@@ -18,7 +18,7 @@ MOST_POINTS = 16_000
 _LINE = re.compile(r"TABLE\s*\((.*)\)", re.IGNORECASE)
 _TABLE = re.compile(r"TABLE\s*\(", re.IGNORECASE)
 _CAMBOX = re.compile(r"CAMBOX\s*\(([^()]*)\)(?:\s*AXIS\s*\([^()]*\))?", re.IGNORECASE)
-_INNER = re.compile(r".*\bTHEN\s+TABLE\s*\(.*", re.IGNORECASE)
+_INNER = re.compile(r".*\bTABLE\s*\([^()]*,.*", re.IGNORECASE)
 _PATTERN = 1 << 3
 """Option of CAMBOX: the multiplier is the address of a list of multipliers."""
 
@@ -61,7 +61,7 @@ def read(text: str, place: str) -> CamTable:
             raise refuse(
                 place,
                 line,
-                f"{shown(statement)} fills the table on a condition; leave the lines that are meant in the file",
+                f"{shown(statement)} fills the table on a condition or behind something else; leave the lines that are meant in the file",
             )
     if not values:
         raise refuse(place, None, "there is no line TABLE(address, value, …) in it")

@@ -108,6 +108,7 @@ def test_what_is_no_number_is_refused_with_its_line(program: str, text: str, mes
         ("FOR k = 0 TO 5\nTABLE(0, k)\nNEXT k\n", "line 2: the address 0 is filled twice"),
         ("FOR k = 0 TO 20000\nTABLE(k, k)\nNEXT k\n", "line 2: the table has more than 16000 values"),
         ("TABLE(0, 1, 2)\nIF a THEN TABLE(2, 3)\n", "line 2: .* fills the table on a condition"),
+        ("TABLE(0, 1, 2)\n10 TABLE(2, 3, 4)\n", "line 2: .* fills the table on a condition or behind something else"),
         ("TABLE(0, 1, 2)\nCAMBOX(0, 1, 2, 5, 1, 12)\n", "line 2: CAMBOX takes its multipliers from a list"),
         ("TABLE(0, 1, 2)\nCAMBOX(0, 0.5, 2, 5, 1)\n", "line 2: CAMBOX runs from 0 to 0.5, which are no addresses"),
     ],
