@@ -125,6 +125,8 @@ def judge_cell(target: str, text: str, table: CamTable, rng: random.Random) -> b
         bare = bare.partition("#")[0]  # the rest is a comment
     token = bare.replace("−", "-") if target == "csv" else bare  # spreadsheets write a minus so
     plain = token.replace(",", ".") if target in COMMA and token.count(",") == 1 else token
+    if target == "trio" and not PLAIN.fullmatch(plain):  # programs compute: the value must be that of the expression
+        plain = repr(float(eval(token, {"__builtins__": {}})))  # noqa: S307 - made above, of digits and signs
     assert PLAIN.fullmatch(plain), f"{target}: {token!r} was read as a number"
     value = float(np.float32(plain)) if target == "logix" else float(plain)
     if target == "csv":
