@@ -11,6 +11,8 @@ from camwright.profiles.polynomial.profile import FloatArray
 
 SHARES = np.linspace(0.0, 1.0, 33)
 """Places of every interval at which the torque is looked at."""
+MOST = 380
+"""Intervals of a motion at most: a table of 400 points holds them all."""
 ABOVE = (3e-4, 1e-4, 5e-5)
 """Shares by which a peak may lie above what the programme knows of it, in the rounds in which intervals are divided."""
 
@@ -28,6 +30,10 @@ def peaks(guess: Guess, pattern: Pattern, task: TorqueTask) -> FloatArray:
 
 
 def sharpened(guess: Guess, pattern: Pattern, task: TorqueTask, limit: float, above: float) -> Guess | None:
-    """Divide the intervals in which the torque goes beyond a limit by more than a share; None if there is none."""
-    beyond = peaks(guess, pattern, task) > limit * (1 + above)
-    return divide(guess, pattern, beyond) if beyond.any() else None
+    """Divide the intervals in which the torque goes beyond a limit by more than a share, no more than `MOST` leave; None if none is."""
+    greatest = peaks(guess, pattern, task)
+    room = (MOST - len(greatest)) // 2
+    worst = np.argsort(-greatest, kind="stable")[: max(room, 0)]
+    chosen = np.zeros(len(greatest), dtype=bool)
+    chosen[worst] = greatest[worst] > limit * (1 + above)
+    return divide(guess, pattern, chosen) if chosen.any() else None
