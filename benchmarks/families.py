@@ -1,21 +1,24 @@
 """Families of cams: how many there are, what is proved of it, and what independent simulations make of each cam and each change.
 
-Run it with ``python benchmarks/families.py``; it prints a table and ends with 1 where anything leaves the tolerance or a limit.
+Run it with ``python benchmarks/families.py``; it writes ``results/families.csv`` row by row and ends with 1 where anything leaves the
+tolerance or a limit, or a family is refused.
 """
 
 from __future__ import annotations
 
+import csv
 import sys
 import time
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
 from camwright.jobs.examples import example
 from camwright.jobs.job import Job, parse_job
 from camwright.jobs.servos import servos_of
-from camwright.production.family_cams import family_cams
-from camwright.production.switching import switchings
+from camwright.production.family_cams import FamilyCams, family_cams
+from camwright.production.switching import Switching, switchings
 from camwright.profiles.objective import ObjectiveName
 from camwright.validation.production.cam_change import CamChange, run_change
 from camwright.validation.production.motion_table import ShiftCam
@@ -29,11 +32,12 @@ CASES: tuple[tuple[float, float, bool, ObjectiveName], ...] = (
     (260, 0.1, True, "sync_error"),
     (266, 0.08, True, "peak_acceleration"),
     (290, 0.03, False, "sync_error"),
-    (280, 0.05, False, "sync_error"),
+    (290, 0.02, False, "sync_error"),
 )
 """Cut length and sync tolerance (mm), whether the command is shaped, and the objective."""
 
 SPEEDS, PHASES = 40, 64
+RESULTS = Path(__file__).parent / "results" / "families.csv"
 
 
 def job_of(length: float, tolerance: float, objective: ObjectiveName, *, shaped: bool) -> Job:
@@ -43,51 +47,84 @@ def job_of(length: float, tolerance: float, objective: ObjectiveName, *, shaped:
     return replace(job, cut=cut, objective=objective, servo_tolerance=None)
 
 
-def main() -> int:
-    """Print the table."""
-    bad = 0
-    print(
-        "cut [mm]  tolerance [mm]  command  objective          cams  at least  bands [m/min]; error [mm]; changes  CPU [s]"
-    )
-    for length, tolerance, shaped, objective in CASES:
-        begun = time.process_time()
-        found = family_cams(job_of(length, tolerance, objective, shaped=shaped))
-        between = switchings(found)
-        took = time.process_time() - begun
-        told = []
-        for cam in found.cams:
-            speeds = np.linspace(*cam.line_speeds, SPEEDS)
-            error = line_speed_errors(cam.solution.profile, cam.job.task, servos_of(cam.job), speeds, PHASES).max()
-            bad += not cam.passed or error > cam.job.cut.sync_tolerance * (1.0 + 1e-6)
-            low, top = (60 * each for each in cam.line_speeds)
-            told.append(f"{low:.2f}-{top:.2f} ({error * 1e3:.4f})")
-        for each in between:
-            worst = 0.0
-            for change in each.changes:
-                before, after = (found.cams[number - 1] for number in (change.before, change.after))
-                zero = after.running.zero
-                middle = ShiftCam(change.transitions[0].profile, zero) if change.transitions else None
-                run = run_change(
-                    CamChange(
-                        ShiftCam(before.solution.profile, before.running.zero),
-                        ShiftCam(after.solution.profile, zero),
-                        (before.job.task, after.job.task),
-                        middle,
-                    ),
-                    found.job.servo,
-                    [each.down, each.up],
-                    PHASES,
-                )
-                worst = max(worst, run.sync_error)
-            bad += not each.passed or worst > found.job.cut.sync_tolerance
-            told.append(f"{each.how} ({worst * 1e3:.4f})")
-        command = "shaped" if shaped else "in_sync"
-        print(
-            f"{length:8g}  {tolerance:14g}  {command:7}  {objective:17}  {len(found.cams):4}  {found.at_least:8}  "
-            f"{', '.join(told)}  {took:.1f}",
-            flush=True,
+def simulated_cams(found: FamilyCams) -> list[float]:
+    """Greatest sync error of each cam over its band (m)."""
+    return [
+        float(
+            line_speed_errors(
+                cam.solution.profile,
+                cam.job.task,
+                servos_of(cam.job),
+                np.linspace(*cam.line_speeds, SPEEDS),
+                PHASES,
+            ).max()
         )
-    return int(bad > 0)
+        for cam in found.cams
+    ]
+
+
+def simulated_changes(found: FamilyCams, between: tuple[Switching, ...]) -> list[float]:
+    """Greatest sync error of each pair of changes at both switching speeds (m)."""
+    errors = []
+    for each in between:
+        worst = 0.0
+        for change in each.changes:
+            before, after = (found.cams[number - 1] for number in (change.before, change.after))
+            zero = after.running.zero
+            middle = ShiftCam(change.transitions[0].profile, zero) if change.transitions else None
+            cams = ShiftCam(before.solution.profile, before.running.zero), ShiftCam(after.solution.profile, zero)
+            run = run_change(
+                CamChange(*cams, (before.job.task, after.job.task), middle),
+                found.job.servo,
+                [each.down, each.up],
+                PHASES,
+            )
+            worst = max(worst, run.sync_error)
+        errors.append(worst)
+    return errors
+
+
+def row_of(length: float, tolerance: float, objective: ObjectiveName, *, shaped: bool) -> dict[str, object]:
+    """Find a family and simulate it."""
+    begun = time.process_time()
+    found = family_cams(job_of(length, tolerance, objective, shaped=shaped))
+    between = switchings(found)
+    took = time.process_time() - begun
+    cams, changes = simulated_cams(found), simulated_changes(found, between)
+    held = all(each.passed for each in (*found.cams, *between))
+    kept = max([*cams, *changes]) <= found.job.cut.sync_tolerance * (1.0 + 1e-6)
+    bands = [f"{60 * low:.2f}-{60 * top:.2f}" for low, top in (cam.line_speeds for cam in found.cams)]
+    return {
+        "cut_mm": length,
+        "tolerance_mm": tolerance,
+        "command": "shaped" if shaped else "in_sync",
+        "objective": objective,
+        "cams": len(found.cams),
+        "at_least": found.at_least,
+        "bands_m_per_min": " ".join(bands),
+        "errors_mm": " ".join(f"{error * 1e3:.4f}" for error in cams),
+        "changes": " ".join(each.how for each in between),
+        "change_errors_mm": " ".join(f"{error * 1e3:.4f}" for error in changes),
+        "passed": int(held and kept),
+        "cpu_s": f"{took:.1f}",
+    }
+
+
+def main() -> int:
+    """Write the table."""
+    passed = True
+    with RESULTS.open("w", encoding="utf-8", newline="") as file:
+        table: csv.DictWriter[str] | None = None
+        for length, tolerance, shaped, objective in CASES:
+            row = row_of(length, tolerance, objective, shaped=shaped)
+            passed = passed and bool(row["passed"])
+            if table is None:
+                table = csv.DictWriter(file, list(row), lineterminator="\n")
+                table.writeheader()
+            table.writerow(row)
+            file.flush()
+            print(*(f"{name} {value}" for name, value in row.items()), sep=", ", flush=True)
+    return 0 if passed else 1
 
 
 if __name__ == "__main__":
