@@ -7,10 +7,14 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from camwright.drives.axis_path import axis_path
 from camwright.jobs.job import Job
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
-from camwright.validation.rebuilt import cuts_in
+from camwright.validation.rebuilt import cuts_in, each_cut, one_cycle
+from camwright.validation.servo.response import shear_zone_of
 
+Path = Callable[[FloatArray], FloatArray]
+"""Slave positions over the master positions of a file, its cycles repeated."""
 Misfit = Callable[[FloatArray], FloatArray]
 """How ill each of some beginnings fits, shape ``(n,)`` to ``(n,)``."""
 
@@ -31,6 +35,8 @@ _SNAP = 0.05
 """Part of the beginnings that a count leaves open within which one is taken whose zone begins and ends on points."""
 _TOLD = 0.1
 """Misfit at the file's own zero, as a part of what is allowed, from which on another zero is told."""
+_LINE_SPEEDS = 5
+"""Line speeds of the job's range at which the axis of a shaped cam is looked at: one alone leaves its place open by a millimetre."""
 _ROUNDS = 60
 """Steps of the golden section: the last is far below a nanometre."""
 
@@ -39,6 +45,8 @@ def aligned(
     rebuilt: CamProfile, job: Job, *, count: float = 0.0, grain: float = 0.0, tick: float = 0.0
 ) -> tuple[CamProfile, tuple[str, ...]]:
     """Begin the cycle where it fits the job's sync zone best, and put the slave's zero where the job has it.
+
+    A shaped command is not in sync itself: there it is the axis that is put into the shear zone.
 
     The zero is found from the cam alone: the beginnings tried are those at which an end of the zone falls on a point of
     the cam, so that the answer does not depend on where the file begins. Where many fit, as in a cam that stays in sync
@@ -64,27 +72,30 @@ def aligned(
     """
     task, cut, machine = job.task, job.cut, job.machine
     sync = task.sync
-    in_zone = np.linspace(0.0, cut.sync_zone, _IN_ZONE)
-    inside = np.clip(in_zone, _EDGE * cut.length, cut.sync_zone - _EDGE * cut.length)
-    meant, slope = sync(in_zone), sync(inside, 1)
-    zone = (cut.return_start + cut.return_zone) % cut.length
     cuts = cuts_in(rebuilt, cut)
     stretch = rebuilt.length / (cuts * cut.length)
-    chord, piece = cut.sync_zone / (_IN_ZONE - 1), 0.5 * cuts * cut.length / rebuilt.pieces
+    paths, zone, end = _seen(rebuilt, job, cuts, stretch)
+    width = end - zone
+    in_zone = np.linspace(0.0, width, _IN_ZONE)
+    inside = np.clip(in_zone, _EDGE * cut.length, width - _EDGE * cut.length)
+    before = cut.shear_zone_at if cut.shaped else 0.0
+    meant, slope = (sync(np.minimum(before + x, sync.end), order) for x, order in ((in_zone, 0), (inside, 1)))
+    chord, piece = width / (_IN_ZONE - 1), 0.5 * cuts * cut.length / rebuilt.pieces
     count = count or (
         grain if piece < chord else 0.0
     )  # the closer the points, the more their rounding shakes the ratio
     lever = float(np.abs(machine.tool_ratio(task.slave_at_sync_start + meant)).max())
-    speed = machine.tool_ratio(task.slave_at_sync_start + sync(inside)) / cut.sync_ratio
+    speed = machine.tool_ratio(task.slave_at_sync_start + sync(np.minimum(before + inside, sync.end))) / cut.sync_ratio
+    by_position = count > 0.0 or cut.shaped  # a ratio is mostly rounding in counts, and free in a shaped command
 
     def misfit(begin: FloatArray) -> FloatArray:
         """Error of the tool in the zone over the tolerance, and of its speed over what that allows; the greater."""
         found = []
         for part in np.array_split(begin, len(begin) // _CHUNK + 1):
             at = (part[:, None] + zone) * stretch
-            off = rebuilt(at + in_zone * stretch, outside="repeat") - meant
+            off = np.concatenate([path(at + in_zone * stretch) - meant for path in paths], axis=1)
             position = 0.5 * np.ptp(off, axis=1) * lever / cut.sync_tolerance
-            if count > 0.0:  # a ratio is mostly rounding there
+            if by_position:
                 found.append(position)
                 continue
             slip = (rebuilt(at + inside * stretch, 1, outside="repeat") * stretch - slope) * speed
@@ -92,26 +103,45 @@ def aligned(
         return np.concatenate(found)
 
     # a position, or a ratio, off by its rounding
-    slack = (count or grain * cut.sync_zone / piece) * lever / cut.sync_tolerance
-    begins = _beginnings(rebuilt, stretch, zone, cut.sync_zone, cut.length)
-    anchored = _anchored(begins, rebuilt.breaks / stretch, (zone, zone + cut.sync_zone), cut.length, tick)
+    slack = (count or grain * (1.0 if by_position else cut.sync_zone / piece)) * lever / cut.sync_tolerance
+    begins = _beginnings(rebuilt, stretch, zone, width, cut.length)
+    if cut.shaped:  # points say nothing of where the axis is in sync
+        anchored = np.zeros(len(begins), dtype=bool)
+    else:
+        anchored = _anchored(begins, rebuilt.breaks / stretch, (zone, end), cut.length, tick)
     if count > 0.0:
         begin = _between_sides(begins, misfit(begins), cut.length, slack, anchored)
     else:
         begin = _best(begins, misfit, cut.length, max(_EXACT, slack), anchored)
     notes: tuple[str, ...] = ()
     here, there = misfit(np.array([0.0, begin])).tolist()
+    met = 0.0
     if begin:  # even where the file's own zero is as good: figures must not depend on where a file begins
-        rebuilt = rebuilt.roll(begin * stretch)
-    if there + slack < here and here > _TOLD:
+        rebuilt, met = rebuilt.roll(begin * stretch), float(rebuilt(begin * stretch))
+    if there + slack < here and here > (1.0 if cut.shaped else _TOLD):
+        fits = "axis fits the shear" if cut.shaped else "cam fits the sync"
         note = (
             f"the file's master zero is not the job's: the job's cycle begins {begin * 1e3:.6g} mm into the file's, "
-            "where the cam fits the sync zone best ([output] origin says which zero is meant)"
+            f"where the {fits} zone best ([output] origin says which zero is meant)"
         )
         notes = (note,)
-    off = rebuilt((zone + in_zone) * stretch, outside="repeat") - meant
+    off = np.concatenate([path((begin + zone + in_zone) * stretch) - met - meant for path in paths])
     wanted = task.height if cut.origin == "return" else machine.pitch - float(sync(0.5 * cut.sync_zone))
     return rebuilt.shift(0.0, wanted - 0.5 * float(off.max() + off.min())), notes
+
+
+def _seen(rebuilt: CamProfile, job: Job, cuts: int, stretch: float) -> tuple[list[Path], float, float]:
+    """Give what is to be in sync, and between which master positions: the cam, or of a shaped one its axis at several line speeds."""
+    cut = job.cut
+    if cut.shaped:
+        start, end = shear_zone_of(cut)
+        cycle = each_cut(one_cycle(rebuilt, cut, cuts), job.task, cuts)[0]
+        paths = [
+            axis_path(cycle, job, v, stretch) for v in np.unique(np.geomspace(*job.line_speeds, _LINE_SPEEDS)).tolist()
+        ]
+        return paths, start % cut.length, start % cut.length + end - start
+    zone = (cut.return_start + cut.return_zone) % cut.length
+    return [lambda at: rebuilt(at, outside="repeat")], zone, zone + cut.sync_zone
 
 
 def _beginnings(rebuilt: CamProfile, stretch: float, zone: float, width: float, length: float) -> FloatArray:

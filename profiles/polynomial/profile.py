@@ -82,8 +82,8 @@ class CamProfile:
         if falls.any():
             i = int(falls.argmax())
             raise InputError(
-                f"a profile's breaks must increase: break {i + 1} ({self.breaks[i + 1]!r} m) does not lie beyond "
-                f"break {i} ({self.breaks[i]!r} m)"
+                f"a profile's breaks must increase: break {i + 1} ({float(self.breaks[i + 1])!r} m) does not lie beyond "
+                f"break {i} ({float(self.breaks[i])!r} m)"
             )
         self.breaks.setflags(write=False)
         self.coefficients.setflags(write=False)
@@ -401,8 +401,10 @@ class CamProfile:
                 f"the new start {start!r} m does not lie inside the profile, {self.start!r} to {self.end!r} m"
             )
         nearest = float(self.breaks[np.abs(self.breaks - start).argmin()])
-        if abs(nearest - start) <= 1e-12 * self.length and nearest < self.end:
-            start = nearest  # a break but for rounding: no sliver of a piece is left between
+        if (
+            abs(nearest - start) <= 1e-12 * self.length
+        ):  # a break but for rounding: no sliver of a piece is left between
+            start = nearest if nearest < self.end else self.start
         tail = self.restrict(start, self.end)
         if start > self.start:
             head = self.restrict(self.start, start).shift(self.length, self.advance)

@@ -18,6 +18,8 @@ _TELLS = 0.01
 """Part of the greatest second difference that the rounding may make up before it counts."""
 _STRIDES = 90
 """Parts of the cycle over which the cam's own second difference is seen through the rounding."""
+_ONE = 1e-9
+"""Part of the travel within which two positions are one."""
 _EVEN = 0.02
 """Part of a step by which the points may miss even spacing: the master is counted too."""
 _ROUNDS = 50
@@ -127,9 +129,11 @@ def _refined(ordered: FloatArray, rough: float) -> float | None:
 
 
 def _fits(y: FloatArray, steps: FloatArray, count: float) -> bool:
-    """Whether all positions lie on the grid."""
-    off = y[1:] - y[0] - count * np.cumsum(np.rint(steps / count))
-    return bool(np.abs(off).max() <= _OFF_GRID * count)
+    """Whether all positions lie on the grid, and no two that differ on one count of it, as those of points close together would."""
+    counts = np.rint(steps / count)
+    off = y[1:] - y[0] - count * np.cumsum(counts)
+    apart = np.abs(steps[counts == 0.0]).max(initial=0.0)
+    return bool(np.abs(off).max() <= _OFF_GRID * count and apart <= _ONE * np.ptp(y))
 
 
 def _bend(y: FloatArray, h: float) -> float:

@@ -5,12 +5,13 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from camwright import load_job
+from camwright import load_job, optimise
 from camwright.cli.main import main
 from camwright.drives.alignment import aligned
 from camwright.drives.audit import Audit, audit, audit_answer
@@ -363,6 +364,42 @@ def test_the_zero_of_a_carriage_does_not_matter_either(law: str) -> None:
             assert found.value == pytest.approx(wanted.value, rel=1e-9, abs=1e-11)
         grid = np.linspace(0.0, 0.999 * job.cut.length, 99)
         assert moved(grid) == pytest.approx(best(grid), abs=1e-9)
+
+
+@pytest.mark.parametrize("name", ["cross-cutter", "ramping-line", "flying-punch"])
+@pytest.mark.parametrize("target", ["codesys", "csv"])
+def test_a_table_of_ones_own_lies_where_it_was_written(name: str, target: str) -> None:
+    """Its points are few and stand where the motion asks for them: close together at switches, none in the sync zone."""
+    job, profile = designed(name)
+    (written,) = export(profile, job, [target])
+    found = running_cam(next(iter(written.files.values())), "cam", job)
+    assert found.judged().passed
+    assert not found.counted
+    x = np.linspace(0.0, 0.999 * job.cut.length, 301)
+    assert np.abs(found.cycle(x) - profile(x)).max() < 1e-8 * max(job.cut.length, job.machine.pitch)
+
+
+@cache
+def designed(name: str) -> tuple[Job, CamProfile]:
+    job = load_job(EXAMPLES / f"{name}.toml")
+    if name == "short-cut":
+        job = replace(job, servo_tolerance=None)
+    return job, optimise(job).profile
+
+
+def test_a_shaped_cam_is_put_where_its_axis_is_in_sync() -> None:
+    """The command of the short cut is nowhere in sync; the cam that fits it best there is one that fails."""
+    job, profile = designed("short-cut")
+    figures = []
+    for shift in (0.0, 0.0003, 0.1712, job.cut.length - 1e-4):
+        moved, notes = aligned(profile.roll(shift), job)
+        judged = judge_table(moved, job.task, job.servo)
+        assert judged.passed
+        assert any("where the axis fits the shear zone best" in note for note in notes) == (shift == 0.1712)
+        figures.append([float(check.value or 0.0) for check in judged.checks[1:]])
+    assert np.array(figures) == pytest.approx(
+        np.broadcast_to(figures[0], np.shape(figures)), rel=1e-4, abs=1e-3 * job.cut.sync_tolerance
+    )
 
 
 @pytest.mark.parametrize("digits", [3, 4, 6])

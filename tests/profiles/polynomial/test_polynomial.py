@@ -257,6 +257,12 @@ def test_repeat_strings_cycles_together(profile: CamProfile, cycles: int) -> Non
         )
 
 
+def test_roll_at_the_end_but_for_rounding_is_at_the_start() -> None:
+    profile = CamProfile.from_arrays([0.0, 0.3, 0.9], [[0.0, 1.0], [0.3, 1.0]])
+    rolled = profile.roll(float(np.nextafter(0.9, 0.0)))
+    assert rolled.breaks.tolist() == profile.breaks.tolist()
+
+
 @given(profiles(continuous=True), st.floats(0.0, 0.999))
 def test_roll_begins_elsewhere(profile: CamProfile, share: float) -> None:
     start = profile.start + share * profile.length

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from camwright.profiles.tables.cam_table import make_table
-from camwright.profiles.tables.count_grid import grid_of, without_rounding
+from camwright.profiles.tables.count_grid import grid_of, rounded_to, without_rounding
 
 
 def cam(points: int) -> tuple[np.ndarray, np.ndarray]:
@@ -23,6 +23,13 @@ def test_the_grid_is_found(turn: int, points: int) -> None:
     printed = np.round(counts / turn * 360.0, 6)
     assert grid_of(printed) == pytest.approx(360.0 / turn, rel=1e-6)
     assert grid_of(y * np.sqrt(2.0)) is None
+
+
+def test_points_that_stand_close_together_are_no_counts() -> None:
+    """Groups of points about places a tenth apart lie on a grid of tenths, to a twentieth; but points that differ are no one count."""
+    y = np.sort(np.concatenate([0.1 * k + np.linspace(-0.004, 0.004, 20) for k in range(5)]))
+    assert grid_of(y) is None or grid_of(y) < 0.001
+    assert rounded_to(y) < 0.001
 
 
 def test_the_rounding_is_taken_off() -> None:
