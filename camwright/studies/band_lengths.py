@@ -57,7 +57,7 @@ class BandLengths:
     shaped: float | None
 
 
-def band_lengths(job: Job, single: AxisLengths | None) -> BandLengths | None:
+def band_lengths(job: Job, single: AxisLengths | None, shortest: float | None = None) -> BandLengths | None:
     """Find how short a job's machine can cut with its axis in sync at all line speeds of the job.
 
     Parameters
@@ -66,6 +66,8 @@ def band_lengths(job: Job, single: AxisLengths | None) -> BandLengths | None:
         The job; the ranges of its servo count for the servo-aware commands.
     single
         The same at the job's line speed alone, where the ratio is asked for too.
+    shortest
+        Shortest cut (m) that the job's own design passes at, where that is known: the search begins there.
 
     Returns
     -------
@@ -85,13 +87,13 @@ def band_lengths(job: Job, single: AxisLengths | None) -> BandLengths | None:
         line_speeds=job.line_speeds,
         linear_return=over_line_speeds(task, job.servo, "linear_return", few),
         poly_3_4_5=over_line_speeds(task, job.servo, "poly_3_4_5", few),
-        in_sync=_servo_aware(job, "in_sync", single.in_sync_axis_limits),
-        shaped=_servo_aware(job, "shaped", single.shaped_axis_limits),
+        in_sync=_servo_aware(job, "in_sync", single.in_sync_axis_limits, shortest),
+        shaped=_servo_aware(job, "shaped", single.shaped_axis_limits, shortest),
     )
 
 
-def _servo_aware(job: Job, command: Command, single: float | None) -> float | None:
-    """Shortest cut of a servo-aware command, at some line speeds first, from what it is at one of them, then at all."""
+def _servo_aware(job: Job, command: Command, single: float | None, shortest: float | None) -> float | None:
+    """Shortest cut of a servo-aware command, at some line speeds first, from what it is at one of them or the job's own, then at all."""
     if single is None:
         return None
     cut, pitch, servos, shares = (
@@ -113,7 +115,8 @@ def _servo_aware(job: Job, command: Command, single: float | None) -> float | No
     ends = shortest_return(job, command, shear), pitch * (1.0 - _LENGTH_RESOLUTION)
     if not ends[0] < ends[1]:
         return None
-    best = least_length(lambda length: missed(length, some), single, ends, _LENGTH_RESOLUTION)
+    near = single if shortest is None or command != job.command else max(single, shortest)
+    best = least_length(lambda length: missed(length, some), near, ends, _LENGTH_RESOLUTION)
     for _ in range(_TRIES):
         if best is None or best >= pitch:
             return None

@@ -80,6 +80,6 @@ def limits(job: Job, step: Step = ignore) -> MachineLimits:
     step("finding minimum cut lengths with the axis in sync")
     axis = axis_lengths(job)
     step("finding them over the band of line speeds")
-    over_band = band_lengths(job, axis)
+    over_band = band_lengths(job, axis, within.min_cut_length if job.servo_aware else None)
     step("finding how hard the line may ramp")
     return MachineLimits(job, far, within, lengths, axis, over_band, designed_ramps(job))

@@ -185,18 +185,19 @@ class CommandBasis:
         places
             Master positions (m), shape ``(rows,)``.
         regular
-            How many of them, the first ones, are the lattice, ascending.
+            How many of them, the first ones, are the lattice, ascending; it may be none.
         delay, sample
             How far behind a place its newest sample lies, and the distance of samples (m).
         weights
             Shape ``(samples, sums)``, newest sample first.
         """
-        parts = round(self.step * (regular - 1) / float(places[regular - 1] - places[0]))
         samples = delay + sample * np.arange(len(weights))
         first = 0 if self.sync is None else _DEGREE
         splines = EvenSplines(self.step, float(self.knots[first]), self.matrix.shape[1], self.length)
         matrix = np.empty((len(places), weights.shape[1], splines.count))
-        lattice_sums((float(places[0]), parts), (delay, sample), weights, splines, matrix[:regular])
+        if regular:
+            parts = round(self.step * (regular - 1) / float(places[regular - 1] - places[0]))
+            lattice_sums((float(places[0]), parts), (delay, sample), weights, splines, matrix[:regular])
         sums(places[regular:, None] - samples, weights, splines, matrix[regular:])
         if self.sync is None:  # what is added to is a straight line
             pull = self.pitch / self.length

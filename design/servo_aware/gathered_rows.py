@@ -26,11 +26,11 @@ from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 # Limits of the axis' own speed and acceleration are drawn in by this share, for the same reason.
 AXIS_MARGIN = 1e-3
 # Places in the shear zone that have rows from the start, one for each sample in it, at least so many, and times after a sample: few where
-# rounds are cheap, more for the linear programmes of a single servo.
-FEW, MORE = (6, 2), (12, 4)
+# rounds are cheap, fewest for each of several servos, more for the linear programmes of a single one.
+FEWEST, FEW, MORE = (6, 1), (6, 2), (12, 4)
 # Of several line speeds about so many have rows from the start, of those of a servo at a corner so many, and each so many-th has the axis'
 # own motion looked at.
-BEGUN, CORNERS_BEGUN, OWN = 11, 3, 4
+BEGUN, CORNERS_BEGUN, OWN = 11, 1, 4
 # Line speeds that stayed below this share of their limit when they were looked at last are far from it. Where one exceeds it, places above
 # that share of it get rows.
 FAR, BESIDE = 0.7, 0.9
@@ -72,7 +72,7 @@ class GatheredRows:
         in_sync, mean = self.problem.command == "in_sync", not linear
         if in_sync and mean:
             return
-        first = FEW if in_sync or mean or self.problem.several else MORE
+        first = FEWEST if self.problem.several else FEW if in_sync or mean else MORE
         if not any(table.begun for table in self._tables[0]):
             for number, tables in enumerate(self._tables):
                 for table in thinned(tables, max(1, len(tables) // (CORNERS_BEGUN if number else BEGUN))):

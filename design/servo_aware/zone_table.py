@@ -155,9 +155,12 @@ class ZoneTable:
         """State and reference at the instants as rows over the unknowns, shapes ``(instants, 4, n)`` and ``(instants, 4)``."""
         if not self._basis.step:
             return self._basis.sums(self._samples(slice(None)), self._weights)
-        points, servo = self._points, self.axis.servo
-        delay = self.axis.task.cut.line_speed * servo.delay
-        return self._basis.lattice(points.instants, points.count, delay, self.axis.sample, self._weights)
+        return self._lattice(self._points.instants, self._points.count)
+
+    def _lattice(self, instants: FloatArray, regular: int) -> tuple[FloatArray, FloatArray]:
+        """State and reference at instants the first of which are a lattice, as `CommandBasis.lattice`."""
+        delay = self.axis.task.cut.line_speed * self.axis.servo.delay
+        return self._basis.lattice(instants, regular, delay, self.axis.sample, self._weights)
 
     def _states(self, command: Tried) -> FloatArray:
         """State and reference at the instants: by rows once there are any, or of the command, whose samples many of them share."""
@@ -219,6 +222,8 @@ class ZoneTable:
         instants, of = np.unique(self._points.of[points], return_inverse=True)
         if "_sums" in vars(self):
             matrix, constant = (part[instants] for part in self._sums)
+        elif self._basis.step:
+            matrix, constant = self._lattice(self._points.instants[instants], 0)
         else:  # the first rows may well tell that there is no answer to judge
             matrix, constant = self._basis.sums(self._samples(instants), self._weights)
         weights = self._combined[order][points]
