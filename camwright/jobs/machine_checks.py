@@ -32,9 +32,25 @@ def machine_conflicts(known: Known, machine: Machine | None) -> list[str]:
             words(fault, known.units) for fault in machine.zone_faults(cut, known.indirect.angles.get("cut.sync_zone"))
         ]
         pace = pace if faults else machine.sync_pace(cut)
+        faults += [] if faults else _too_long(known, machine.longest_cut(zone))
     if pace and line_speed and speed and pace * line_speed > speed * (1 + 1e-12):
         faults.append(_slow(known, pace, machine))
     return faults
+
+
+def _too_long(known: Known, longest: float) -> list[str]:
+    """Refuse a cut that no cam over the master is for."""
+    length, units = known.numbers.get("cut.length"), known.units
+    if length is None or length <= longest:
+        return []
+    return [
+        (
+            f"[cut] length = {typed(length, 'm', units=units)}: above {typed(longest, 'm', 6, units)}, the longest that a cam over the master "
+            f"is for on this machine with [cut] sync_zone = {typed(known.numbers['cut.sync_zone'], 'm', 6, units)}; cut shorter or lengthen "
+            "the sync zone; a machine that waits between cuts starts for each piece with the one-shot cam of camwright ramps, which does "
+            "not depend on the length"
+        )
+    ]
 
 
 def moved_by_nothing(machine: Machine, objective: ObjectiveName, *, with_curve: bool) -> list[str]:

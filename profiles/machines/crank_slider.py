@@ -27,6 +27,10 @@ _NOT_CHOSEN = (
 )
 
 
+_STROKES = 100.0
+"""Cut lengths up to this multiple of the stroke."""
+
+
 @dataclass(frozen=True)
 class CrankSlider(Machine):
     """A carriage driven by a crank and a rod (S3).
@@ -199,6 +203,10 @@ class CrankSlider(Machine):
             return ()
         least, greatest = _place_range(self, travel)
         return () if least < self.sync_at < greatest else (_misplaced(self, cut.sync_zone, travel),)
+
+    def longest_cut(self, sync_zone: float) -> float:
+        """Longest cut (m): beyond a hundred strokes a baseline turns the crank hundreds of times to and fro."""
+        return min(super().longest_cut(sync_zone), _STROKES * self.stroke)
 
     def sync_pace(self, cut: Cut) -> float:
         """Greatest crank speed over line speed in the sync zone (rad/m); where its place is free the least such, over its places.

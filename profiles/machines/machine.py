@@ -16,6 +16,10 @@ from camwright.profiles.polynomial.profile import CamProfile
 SlaveUnit = Literal["m", "rad"]
 
 
+LONGEST = 1000.0
+"""Cut lengths up to this multiple of the sync zone: rounding of the master is 2e-13 of the zone there."""
+
+
 @dataclass(frozen=True)
 class Machine(ABC):
     """A cutting machine: its slave, its tool and its drive train.
@@ -151,6 +155,10 @@ class Machine(ABC):
             There is nothing to place.
         """
         raise TypeError(f"the sync zone of a {self.kind} cannot be placed over {cut.sync_zone!r} m")
+
+    def longest_cut(self, sync_zone: float) -> float:
+        """Longest cut (m) that a cam over the master is for: beyond it rounding of the master is more than a motion near its end bears."""
+        return LONGEST * sync_zone
 
     def sync_pace(self, cut: Cut) -> float:
         """Greatest slave velocity over line speed in the sync zone; where its place is free the least such.

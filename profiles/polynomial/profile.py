@@ -350,7 +350,7 @@ class CamProfile:
             )
 
     def over(self, start: float, end: float) -> CamProfile:
-        """Put both ends exactly where they are but for rounding; the pieces stay what they are.
+        """Put both ends exactly where they are but for rounding; the pieces stay what they are, and those of no length fall away.
 
         Raises
         ------
@@ -362,7 +362,11 @@ class CamProfile:
                 f"a profile from {self.start!r} m to {self.end!r} m cannot be put over {start!r} m to {end!r} m: "
                 "its ends must be there but for rounding; scale it first"
             )
-        return CamProfile(np.concatenate([[start], self.breaks[1:-1], [end]]), self.coefficients.copy())
+        inner = self.breaks[1:-1]
+        first, last = int((inner <= start).sum()), self.pieces - int((inner >= end).sum())
+        return CamProfile(
+            np.concatenate([[start], inner[first : last - 1], [end]]), self.coefficients[first:last].copy()
+        )
 
     def restrict(self, start: float, end: float) -> CamProfile:
         """Cut out the part between two master positions inside the domain."""

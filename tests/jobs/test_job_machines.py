@@ -338,3 +338,23 @@ def test_a_machine_may_have_keys_of_other_tables(monkeypatch: pytest.MonkeyPatch
     assert (job.cut, job.limits) == (plain.cut, plain.limits)
     assert isinstance(job.machine, Named)
     assert (job.machine.length, job.machine.speed) == (7.0, 4.0)
+
+
+@pytest.mark.parametrize("length", ["201 m", "10 km", "1e6 m"])
+def test_a_cut_that_no_cam_is_for_is_refused_at_once(length: str) -> None:
+    text = TEXTS["paper-600"].replace('"600 mm"', '"200 m"')
+    assert parse_job(text, "job").cut.length == 200.0
+    with pytest.raises(
+        InputError, match=r"\[cut\] length = .* above 200000 mm, .*sync_zone = 200 mm; cut shorter or .*camwright ramps"
+    ):
+        parse_job(text.replace('"200 m"', f'"{length}"'), "job")
+
+
+def test_zones_of_nothing_and_a_crank_of_hundreds_of_turns_are_refused() -> None:
+    text = TEXTS["paper-600"].replace('"40 mm"', '"0.01 mm"')
+    with pytest.raises(InputError, match=r"\[cut\] length = 600 mm: above 500 mm, .*sync_zone = 0.5 mm"):
+        parse_job(text.replace('sync_zone = "200 mm"', 'sync_zone = "0.5 mm"'), "job")
+    crank = TEXTS["chasing-shear"].replace('"900 mm"', '"30 m"')
+    assert parse_job(crank, "job").cut.length == 30.0  # a hundred strokes of 300 mm
+    with pytest.raises(InputError, match="above 30000 mm"):
+        parse_job(crank.replace('"30 m"', '"31 m"'), "job")

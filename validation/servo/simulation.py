@@ -126,10 +126,10 @@ def slow_axis(
     more = len(servo.drive) > 2  # than the velocity is fed forward: the closed form does not know it
     if slow.tells and not more:
         return slow
-    if more and past + last - first > _MOST_SAMPLES:
+    if last - first > _MOST_SAMPLES:
         raise InputError(
-            f"a servo with feed-forward of acceleration or jerk is simulated sample by sample, and a cycle of {cut.period:.6g} s has "
-            f"{past + last - first:.0f} of them here, the limit is {_MOST_SAMPLES}; raise the line speed"
+            f"no closed form tells what the servo makes of this motion, and a cycle of {cut.period:.6g} s has {last - first:.0f} samples "
+            f"to simulate, the limit is {_MOST_SAMPLES}; raise the line speed or cut shorter"
         )
     if past + last - first > _MOST_SAMPLES:
         raise InputError(

@@ -439,6 +439,12 @@ def test_ends_are_put_where_they_belong_to_the_last_bit(profile: CamProfile, fir
             profile.over(*wrong)
 
 
+def test_pieces_beyond_an_end_that_is_moved_fall_away() -> None:
+    sliver = CamProfile.from_arrays([0.0, 1e-12, 1.0, 1.0 + 1e-12], [[0.0, 1.0], [1e-12, 2.0], [2.0, 3.0]])
+    placed = sliver.over(1e-12, 1.0)
+    assert (placed.breaks.tolist(), placed.coefficients.tolist()) == ([1e-12, 1.0], [[1e-12, 2.0]])
+
+
 def test_pieces_answer_by_their_number() -> None:
     profile = CamProfile.from_arrays([0.0, 1.0, 3.0], [[1.0, 1.0], [5.0, -1.0, 0.0, 2.0]])
     assert profile.holding(np.array([-1.0, 0.0, 1.0, 3.0])).tolist() == [0, 0, 1, 1]
