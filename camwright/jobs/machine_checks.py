@@ -45,10 +45,10 @@ def _too_long(known: Known, longest: float) -> list[str]:
         return []
     return [
         (
-            f"[cut] length = {typed(length, 'm', units=units)}: above {typed(longest, 'm', 6, units)}, the longest that a cam over the master "
-            f"is for on this machine with [cut] sync_zone = {typed(known.numbers['cut.sync_zone'], 'm', 6, units)}; cut shorter or lengthen "
-            "the sync zone; a machine that waits between cuts starts for each piece with the one-shot cam of camwright ramps, which does "
-            "not depend on the length"
+            f"[cut] length = {typed(length, 'm', units=units)}: above {typed(longest, 'm', 6, units)}, the longest that a cam over the "
+            f"master is for on this machine with [cut] sync_zone = {typed(known.numbers['cut.sync_zone'], 'm', 6, units)}; cut shorter "
+            "or lengthen the sync zone; a machine that waits between cuts starts for each piece with the one-shot cam of camwright "
+            "ramps, which does not depend on the length"
         )
     ]
 

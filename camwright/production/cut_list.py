@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -31,6 +32,9 @@ from camwright.studies.reach import stand_in
 from camwright.validation.production.line_ramp import line_ramp
 from camwright.validation.production.motion_table import ShiftCam, motion_table
 from camwright.validation.production.shift import Shift, ShiftRun, run_shift
+
+_ROUNDING = 1e-9
+"""Part by which two ways to the same time may differ."""
 
 _ALLOWED = 1e-3
 """Share by which a ramp may be harder than what is borne: what a solver's margin leaves."""
@@ -81,8 +85,9 @@ class ListPlan:
 
     @property
     def time_at_slowest(self) -> float:
-        """Time if the whole list ran at its slowest piece's speed (s)."""
-        return float(self.asked.gaps.sum() / self.highest.min())
+        """Time if the whole list ran at its slowest piece's speed (s); no rounding puts it below the plan's."""
+        alone = float(self.asked.gaps.sum() / self.highest.min())
+        return max(alone, self.line.time) if math.isclose(alone, self.line.time, rel_tol=_ROUNDING) else alone
 
     def ramped_too_hard(self, joints: FloatArray) -> NDArray[np.bool_]:
         """Say on which pieces the line ramps harder than their cam bears at its highest line speed.

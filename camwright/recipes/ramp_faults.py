@@ -10,11 +10,12 @@ import numpy as np
 from camwright.drives.export import Stretch, stored_count
 from camwright.production.ramp_tables import KINDS, stretch_of
 from camwright.production.ramps import Ramps
+from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.tables.cam_table import Units
 from camwright.profiles.tables.deviation import deviation
 from camwright.profiles.tables.targets import TARGETS
-from camwright.recipes.model import Recipe, RecipeTable
+from camwright.recipes.model import Profile, RampTables, Recipe, RecipeTable
 from camwright.recipes.ramp_tables import found_ramps, motions_of
 from camwright.recipes.recipe_file import RECIPE_FILE
 from camwright.recipes.table_faults import Fault, check_faults, motion_faults, table_faults
@@ -36,22 +37,33 @@ def start_faults(recipe: Recipe, design: StoredDesign, data: Mapping[str, bytes 
     data
         Contents of the folder's files by path.
     """
-    if not recipe.start_tables:
-        return  # the recipe was made before it held them, or the machine cannot start so
     found = found_ramps(design)
-    if found is None or [each.motion for each in recipe.start_tables] != list(KINDS):
+    wanted = [] if found is None else list(KINDS)
+    if [each.motion for each in recipe.start_tables] != wanted:
         yield Fault(RECIPE_FILE, "start_tables are not those of this cam")
+    if found is None or len(recipe.start_tables) != len(wanted):
         return
+    targets = _targets(recipe)
     for record, (kind, profile) in zip(recipe.start_tables, motions_of(found).items(), strict=True):
-        recorded = CamProfile.from_arrays(record.profile.breaks, record.profile.coefficients)
-        if not _is_same(profile, recorded):
+        if _targets(record) != targets:
+            yield Fault(RECIPE_FILE, f"start_tables.{kind} is not for the targets of the cam's own tables")
+        if not _is_same(profile, record.profile):
             yield Fault(RECIPE_FILE, f"start_tables.{kind}.profile is not the motion designed anew")
         judged = partial(_judged, found, stretch_of(found, kind, profile), profile)
         for table in record.tables:
             yield from table_faults(table, recipe.slave_unit, data, judged)
 
 
-def _is_same(profile: CamProfile, recorded: CamProfile) -> bool:
+def _targets(of: Recipe | RampTables) -> list[str]:
+    """Targets that have a table or cannot take it."""
+    return sorted([*(each.target for each in of.tables), *(each.target for each in of.refused)])
+
+
+def _is_same(profile: CamProfile, record: Profile) -> bool:
+    try:
+        recorded = CamProfile.from_arrays(record.breaks, record.coefficients)
+    except (InputError, ValueError):  # no profile at all
+        return False
     size = float(np.ptp(profile(profile.breaks))) or 1.0
     return (
         abs(profile.length - recorded.length) <= _SAME * profile.length

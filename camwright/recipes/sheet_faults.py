@@ -18,9 +18,6 @@ ROUNDING = 1e-9
 _SOUGHT = 1e-3
 """The same of what is found by search, to a tolerance of its own: line speeds and the working range."""
 
-_LATER = ("start_stop", "marks", "line_ramp")
-"""Values that recipes of earlier versions do not hold."""
-
 _LEFT_OUT = ("at", "source")
 """Of a check: of two equal peaks rounding says which is the greatest."""
 
@@ -39,10 +36,8 @@ def differs(name: str, found: float | None, recorded: float | None, scale: float
 def sheet_faults(recipe: Recipe, again: Expected) -> Iterator[str]:
     """Compare every value of a sheet with the one computed anew; each that differs, by its place in recipe.json."""
     for name, value in asdict(again).items():
-        if name in _LATER and not getattr(recipe, name):
-            continue  # the recipe was made before there was such a value
         share = _SOUGHT if name in ("speed_band", "working_range", "marks") else SAME
-        yield from _compared(name, value, asdict(recipe)[name], share)
+        yield from _leaf(name, value, asdict(recipe)[name], share, 1.0)
 
 
 def _compared(place: str, found: Any, recorded: Any, share: float) -> Iterator[str]:

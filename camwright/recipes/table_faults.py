@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 
 import numpy as np
@@ -39,6 +39,9 @@ class Fault:
     file: str
     what: str
 
+
+_STATED = ("title", "interpolation", "number_format", "evidence", "tested_on_controller", "steps")
+"""What a recipe holds of a target as the target states it."""
 
 Judged = Callable[[RecipeTable, CamProfile, Units], Iterator[str]]
 """Tells what is wrong with a rebuilt motion: the table, the motion in SI units, and the units of the table."""
@@ -142,10 +145,22 @@ def _point_faults(points: Points, read: CamTable) -> Iterator[str]:
     columns = {"master": read.x, "slave": read.y, "ratio": read.ratio, "ratio slope": read.ratio_slope}
     for (name, values), stored in zip(columns.items(), asdict(points).values(), strict=True):
         recorded = np.array([math.nan] * len(values) if stored is None else stored, dtype=float)
+        if len(recorded) != len(values):
+            yield f"{len(values)} points, {len(recorded)} recorded of the {name}"
+            continue
         same = (values == recorded) | (np.isnan(values) & np.isnan(recorded))
         if not same.all():
             i = int(np.argmin(same))
             yield f"point {i + 1}: {name} is {float(values[i])!r}, recorded {float(recorded[i])!r}"
+
+
+def target_faults(tables: Iterable[RecipeTable]) -> Iterator[Fault]:
+    """Compare what tables say of their targets with what this version states."""
+    for table in tables:
+        for name in _STATED:
+            stated, recorded = getattr(TARGETS[table.target], name), getattr(table, name)
+            if stated != recorded:
+                yield Fault(RECIPE_FILE, f"{name} of {table.target}: {stated!r}, recorded {recorded!r}")
 
 
 def _units(units: Units) -> str:

@@ -31,7 +31,7 @@ from camwright.recipes.recipe_file import (
 )
 from camwright.recipes.sheet_faults import sheet_faults
 from camwright.recipes.signature import SIGNATURE_FILE, is_signed
-from camwright.recipes.table_faults import Fault, check_faults, motion_faults, table_faults
+from camwright.recipes.table_faults import Fault, check_faults, motion_faults, table_faults, target_faults
 from camwright.recipes.xlsx import recipe_xlsx
 from camwright.stored.design_file import StoredDesign
 from camwright.validation.rebuilt import RUN, judge_table
@@ -116,6 +116,7 @@ def examine(directory: Path, key: Path | None = None) -> Verified:
         design = stored_design(recipe)
         faults += [Fault(RECIPE_FILE, what) for what in sheet_faults(recipe, expected(design))]
         faults += start_faults(recipe, design, data)
+        faults += target_faults((*recipe.tables, *(table for motion in recipe.start_tables for table in motion.tables)))
         remade = list(_remade(recipe, data))
         faults += [other for other in remade if other.file == _PAGE]
         notes += [other for other in remade if other.file != _PAGE]
@@ -208,6 +209,8 @@ def _own_faults(recipe: Recipe, design: StoredDesign, content: bytes) -> Iterato
         yield f"job.si{path} is {stored!r}, the job's text says {again!r}"
     if recipe.name != design.job.name:
         yield f"name is {recipe.name!r}, the job's text says {design.job.name!r}"
+    if not recipe.tables and not recipe.refused:
+        yield "tables and refused are empty: a recipe is for a target at least"
     sound = all(check.passed for check in recipe.checks) and all(table.released for table in recipe.tables)
     released = sound and bool(recipe.speed_band)
     if recipe.released is not released:

@@ -33,6 +33,30 @@ MOST_STEPS = 200
 Row = tuple[Any, FloatArray]
 """A sparse matrix over the unknowns, and what its product with them must not exceed."""
 
+Inner = tuple[Any, FloatArray, Any]
+"""The same for a Bernstein coefficient inside each interval, and how much the coefficients bend there: a polynomial stays below the
+coefficient by a share of that, which is what the mesh asks too much."""
+
+
+@dataclass(frozen=True, eq=False)
+class MeshAnswer:
+    """What a mesh has for an answer.
+
+    Parameters
+    ----------
+    motion
+        The motion.
+    dear
+        Share of the objective that each interval would save, to first order, if its coefficients inside did not count: multipliers times
+        bends, shape ``(n,)``.
+    exact
+        Whether the solver reached its tolerance, and not a looser one.
+    """
+
+    motion: ScaledMotion
+    dear: FloatArray
+    exact: bool
+
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
@@ -42,9 +66,12 @@ class Mesh:
     ----------
     lengths
         Lengths of the intervals, their sum 1, shape ``(n,)``.
+    unit
+        Acceleration in which those at the nodes and the bound of a peak are counted.
     """
 
     lengths: FloatArray
+    unit: float
 
     @property
     def size(self) -> int:
@@ -55,7 +82,8 @@ class Mesh:
         from scipy.sparse import csr_array
 
         n = len(self.lengths) + 1
-        return csr_array((np.ones(n), (np.arange(n), kind * n + np.arange(n))), shape=(n, self.size))
+        unit = 1.0 if kind else self.unit
+        return csr_array((np.full(n, unit), (np.arange(n), kind * n + np.arange(n))), shape=(n, self.size))
 
     @cached_property
     def a(self) -> Any:
@@ -83,6 +111,11 @@ class Mesh:
         middle = self.p[:-1] + self.times(0.5 * self.lengths, self.a[:-1])
         return (self.p[:-1], self.a[:-1]), (middle, 0.5 * (self.a[1:] + self.a[:-1])), (self.p[1:], self.a[1:])
 
+    @cached_property
+    def bend(self) -> Any:
+        """How far the middle coefficient of the ratio is from the mean of its neighbours."""
+        return self.times(0.25 * self.lengths, self.a[1:] - self.a[:-1])
+
     def times(self, factors: FloatArray, rows: Any) -> Any:
         """Multiply each row by a factor."""
         from scipy.sparse import diags_array
@@ -93,12 +126,18 @@ class Mesh:
         """Give rows of the bound of a peak."""
         from scipy.sparse import csr_array
 
-        return csr_array((np.ones(rows), (np.arange(rows), np.full(rows, self.size - 1))), shape=(rows, self.size))
+        return csr_array(
+            (np.full(rows, self.unit), (np.arange(rows), np.full(rows, self.size - 1))), shape=(rows, self.size)
+        )
 
 
 def solve_on_mesh(
-    problem: ScaledProblem, lengths: FloatArray, forms: tuple[Form, ...], peak: float | None = None
-) -> ScaledMotion | None:
+    problem: ScaledProblem,
+    lengths: FloatArray,
+    forms: tuple[Form, ...],
+    peak: float | None = None,
+    unit: float = 1.0,
+) -> MeshAnswer | None:
     """Solve for the accelerations at the nodes of a mesh.
 
     Parameters
@@ -111,21 +150,24 @@ def solve_on_mesh(
         What must not exceed 1, as factors of the scaled ratio ``q' + drift`` and of ``q''`` and ``q'''``.
     peak
         Greatest peak allowed of an objective that is one: then the mean square of the acceleration is made least within it.
+    unit
+        Acceleration of about the motion's own peak: the solver ends short of its tolerance where numbers are far from one.
 
     Returns
     -------
-    ScaledMotion or None
+    MeshAnswer or None
         ``None`` if the solver finds none on this mesh.
     """
     import clarabel
     from scipy.sparse import csc_array, triu, vstack
 
-    mesh = Mesh(lengths)
+    mesh = Mesh(lengths, unit)
     equal = list(_equalities(mesh, problem))
+    inner = [*_within_limits(mesh, problem), *_within_ramps(mesh, problem, forms), *_stroke(mesh, problem)]
     less = [
+        *((row, limit) for row, limit, _ in inner),
         *_limits(mesh, problem),
         *_ramps(mesh, problem, forms),
-        *_stroke(mesh, problem),
         *_peak(mesh, problem, peak),
     ]
     square, goal = _goal(mesh, problem, peak)
@@ -142,7 +184,14 @@ def solve_on_mesh(
     answer = clarabel.DefaultSolver(csc_array(triu(square)), goal, scaled, right / sizes, cones, settings).solve()
     if str(answer.status) not in ("Solved", "AlmostSolved"):
         return None
-    return ScaledMotion(lengths, np.array(answer.x)[: len(lengths) + 1], math.nan)
+    found, n = np.array(answer.x), len(lengths)
+    at, dear = count, np.zeros(n)
+    for _, _, bend in inner:
+        dear += np.array(answer.z[at : at + n]) / sizes[at : at + n] * np.abs(bend @ found)
+        at += n
+    motion = ScaledMotion(lengths, unit * found[: n + 1], math.nan)
+    dear /= max(abs(answer.obj_val), np.finfo(float).tiny)
+    return MeshAnswer(motion, dear, str(answer.status) == "Solved")
 
 
 def _equalities(mesh: Mesh, problem: ScaledProblem) -> Iterator[Row]:
@@ -156,38 +205,63 @@ def _equalities(mesh: Mesh, problem: ScaledProblem) -> Iterator[Row]:
 
 
 def _limits(mesh: Mesh, problem: ScaledProblem) -> Iterator[Row]:
-    """Give the limits of the line that keeps its speed; what the ends have is given."""
-    margin = MARGIN * max(problem.greatest_ratio, -problem.least_ratio)
-    middle = mesh.coefficients[1][0]
-    for sign, limit in ((1.0, problem.greatest_ratio), (-1.0, -problem.least_ratio)):
-        room = limit - margin if limit > margin else limit
+    """Give the limits of the line that keeps its speed at the nodes; what the ends have is given."""
+    for sign, room in _ratio_room(problem):
         yield sign * mesh.p[1:-1], np.full(len(mesh.lengths) - 1, room)
-        yield sign * middle, np.full(len(mesh.lengths), room)
     for sign in (1.0, -1.0):
         yield sign * mesh.a[1:-1], np.full(len(mesh.lengths) - 1, (1.0 - MARGIN) * problem.greatest_slope)
         yield sign * mesh.u, np.full(len(mesh.lengths), (1.0 - MARGIN) * problem.greatest_jerk)
 
 
+def _within_limits(mesh: Mesh, problem: ScaledProblem) -> Iterator[Inner]:
+    """Give the limit of the ratio inside the intervals."""
+    middle, bend = mesh.coefficients[1][0], mesh.bend
+    for sign, room in _ratio_room(problem):
+        yield sign * middle, np.full(len(mesh.lengths), room), bend
+
+
+def _ratio_room(problem: ScaledProblem) -> Iterator[tuple[float, float]]:
+    """Give the sign of each limit of the ratio, and the room to it."""
+    margin = MARGIN * max(problem.greatest_ratio, -problem.least_ratio)
+    for sign, limit in ((1.0, problem.greatest_ratio), (-1.0, -problem.least_ratio)):
+        yield sign, limit - margin if limit > margin else limit
+
+
 def _ramps(mesh: Mesh, problem: ScaledProblem, forms: tuple[Form, ...]) -> Iterator[Row]:
-    """Give what the line's ramps ask."""
+    """Give what the line's ramps ask at the nodes, from the right and, with the jerk, from the left."""
+    first, _, last = mesh.coefficients
     for form in forms:
-        room = np.full(len(mesh.lengths), 1.0 - MARGIN - form.ratio * problem.drift)
-        for ratio, slope in mesh.coefficients[form.jerk == 0.0 :]:  # without the jerk a node is asked once
-            yield form.ratio * ratio + form.slope * slope + form.jerk * mesh.u, room
+        for ratio, slope in (first, last)[form.jerk == 0.0 :]:  # without the jerk a node is asked once
+            yield form.ratio * ratio + form.slope * slope + form.jerk * mesh.u, _ramp_room(mesh, problem, form)
 
 
-def _stroke(mesh: Mesh, problem: ScaledProblem) -> Iterator[Row]:
+def _within_ramps(mesh: Mesh, problem: ScaledProblem, forms: tuple[Form, ...]) -> Iterator[Inner]:
+    """Give what they ask inside the intervals."""
+    ratio, slope = mesh.coefficients[1]
+    for form in forms:
+        rows = form.ratio * ratio + form.slope * slope + form.jerk * mesh.u
+        yield rows, _ramp_room(mesh, problem, form), form.ratio * mesh.bend
+
+
+def _ramp_room(mesh: Mesh, problem: ScaledProblem, form: Form) -> FloatArray:
+    return np.full(len(mesh.lengths), 1.0 - MARGIN - form.ratio * problem.drift)
+
+
+def _stroke(mesh: Mesh, problem: ScaledProblem) -> Iterator[Inner]:
     """Give the limits of the position, by its Bernstein coefficients of degree 3."""
     h, p, q = mesh.lengths, mesh.p, mesh.q
     x = np.concatenate([[0.0], np.cumsum(h)])
     inner = (
-        (q[1:], x[1:]),
-        (q[:-1] + mesh.times(h / 3, p[:-1]), x[:-1] + h / 3),
-        (q[1:] - mesh.times(h / 3, p[1:]), x[1:] - h / 3),
+        (q[1:], x[1:], 0.0),
+        (q[:-1] + mesh.times(h / 3, p[:-1]), x[:-1] + h / 3, 1.0),
+        (q[1:] - mesh.times(h / 3, p[1:]), x[1:] - h / 3, 1.0),
     )
+    bend = mesh.times(h**2 / 6.0, mesh.a[1:] + mesh.a[:-1])
     for sign, limit in ((1.0, problem.greatest_position), (-1.0, -problem.least_position)):
         if math.isfinite(limit):
-            yield from ((sign * row, limit - MARGIN - sign * problem.drift * at) for row, at in inner)
+            yield from (
+                (sign * row, limit - MARGIN - sign * problem.drift * at, share * bend) for row, at, share in inner
+            )
 
 
 def _measured(mesh: Mesh, problem: ScaledProblem) -> Any:
@@ -218,8 +292,8 @@ def _goal(mesh: Mesh, problem: ScaledProblem, peak: float | None) -> tuple[Any, 
         goal[-1] = 1.0
         return csr_array((mesh.size, mesh.size)), goal
     if of.form == "rms" and of.order == 3:
-        return (2.0 / 720.0) * mesh.u.T @ mesh.times(mesh.lengths, mesh.u), goal
+        return (2.0 / 720.0 / mesh.unit**2) * mesh.u.T @ mesh.times(mesh.lengths, mesh.u), goal
     first, last, third = mesh.a[:-1], mesh.a[1:], mesh.lengths / 3
     cross = first.T @ mesh.times(0.5 * third, last)
     mean = first.T @ mesh.times(third, first) + last.T @ mesh.times(third, last) + cross + cross.T
-    return (2.0 / 12.0) * mean, goal
+    return (2.0 / 12.0 / mesh.unit**2) * mean, goal

@@ -5,10 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from camwright.design.line.forms import Form, ramp_forms
-from camwright.design.line.programme import solve_on_mesh
+from camwright.design.line.programme import MeshAnswer, solve_on_mesh
 from camwright.design.returns.problem import ReturnProblem
 from camwright.design.returns.scaling import ScaledProblem, motion_scale, scale_problem, unscale_profile
 from camwright.design.returns.structure import subdivide, tidy
@@ -28,6 +27,9 @@ ROUNDS = 8
 
 STEP = 0.005
 """Part of the greatest jerk by which neighbours differ where a mesh is refined: there an arc ends."""
+
+COST = 1e-6
+"""Part of the objective that an interval may cost by what the mesh asks too much of it, or a mean square of the jerk by its steps."""
 
 SHORTEST = 1e-6
 """No interval is made shorter than this part of the return."""
@@ -66,13 +68,14 @@ def ramped_return(task: Task, problem: ReturnProblem, start: CamProfile | None, 
         return CamProfile.from_arrays([0.0, problem.length], [[0.0, problem.height / problem.length]])
     scaled = scale_problem(problem, scale)
     forms = tuple(_scaled(form, problem.length, scale) for form in ramp_forms(task))
-    motion = _refined(scaled, forms, _first_mesh(start, problem.length))
+    peak = 0.0 if start is None else max(abs(each.value) for each in start.extrema(2))
+    unit = peak * problem.length**2 / abs(scale) or 1.0
+    motion = _refined(scaled, forms, _first_mesh(start, problem.length), unit)
     if motion is None:
         return None
     if OBJECTIVES[problem.objective].form == "peak":
-        motion = _smoothest(
-            scaled, forms, motion, zone * problem.length ** OBJECTIVES[problem.objective].order / abs(scale)
-        )
+        zone *= problem.length ** OBJECTIVES[problem.objective].order / abs(scale)
+        motion = _smoothest(scaled, forms, motion, zone, unit)
     return unscale_profile(tidy(_joined(motion), scaled, corners=False).profile(), problem, scale)
 
 
@@ -98,27 +101,39 @@ def _first_mesh(start: CamProfile | None, length: float, count: int = FIRST) -> 
     return subdivide(arcs / arcs.sum(), count)
 
 
-def _refined(problem: ScaledProblem, forms: tuple[Form, ...], lengths: FloatArray) -> ScaledMotion | None:
+def _refined(problem: ScaledProblem, forms: tuple[Form, ...], lengths: FloatArray, unit: float) -> ScaledMotion | None:
     """Solve, and halve the intervals beside those places where the jerk steps, again and again; where there is no motion halve all."""
     best: ScaledMotion | None = None
     for _ in range(ROUNDS):
-        motion = solve_on_mesh(problem, lengths, forms)
-        if motion is None and best is not None:
+        answer = solve_on_mesh(problem, lengths, forms, unit=unit)
+        if answer is None and best is not None:
             break
-        best = motion
-        halved = np.ones(len(lengths), dtype=bool) if motion is None else _uneven(motion)
-        halved &= lengths > 2 * SHORTEST
-        if not halved.any() or len(lengths) + halved.sum() > MOST:
+        best = None if answer is None else answer.motion
+        worth = np.full(len(lengths), np.inf) if answer is None else _worth_halving(answer, problem)
+        worth[lengths <= 2 * SHORTEST] = 0.0
+        halved = np.argsort(-worth, kind="stable")[: min(int((worth > 1.0).sum()), MOST - len(lengths))]
+        if not len(halved):
             break
-        lengths = np.repeat(np.where(halved, 0.5 * lengths, lengths), 1 + halved)
+        times = np.ones(len(lengths), dtype=int)
+        times[halved] = 2
+        lengths = np.repeat(lengths / times, times)
     return best
 
 
-def _uneven(motion: ScaledMotion) -> NDArray[np.bool_]:
-    """Mark the intervals at whose ends the jerk steps."""
+def _worth_halving(answer: MeshAnswer, problem: ScaledProblem) -> FloatArray:
+    """How much each interval is worth halving: not where it is below 1.
+
+    The optimum's arcs end where the jerk steps. Where it changes all along, as on the exponentials of two limits that bind, a mean square
+    of it is dearer by the lengths times the squares of the steps. And the coefficients inside an interval cost what their multipliers say.
+    """
+    motion = answer.motion
     jerk = np.diff(motion.accelerations) / motion.lengths
-    steps = np.abs(np.diff(jerk)) > STEP * float(np.abs(jerk).max())
-    return np.asarray(np.append(False, steps) | np.append(steps, False))
+    steps = np.abs(np.diff(jerk, prepend=jerk[0], append=jerk[-1]))
+    if problem.objective == "rms_jerk":
+        stairs = motion.lengths * (steps[1:] ** 2 + steps[:-1] ** 2) / 24.0 / float(motion.lengths @ jerk**2) / COST
+    else:
+        stairs = np.maximum(steps[1:], steps[:-1]) / float(np.abs(jerk).max()) / STEP
+    return np.asarray(np.maximum(stairs, answer.dear / COST))
 
 
 def _joined(motion: ScaledMotion) -> ScaledMotion:
@@ -135,7 +150,9 @@ def _joined(motion: ScaledMotion) -> ScaledMotion:
     return ScaledMotion(np.diff(nodes[kept]), motion.accelerations[kept], motion.objective)
 
 
-def _smoothest(problem: ScaledProblem, forms: tuple[Form, ...], motion: ScaledMotion, zone: float) -> ScaledMotion:
+def _smoothest(
+    problem: ScaledProblem, forms: tuple[Form, ...], motion: ScaledMotion, zone: float, unit: float
+) -> ScaledMotion:
     """Of all returns of a least peak, or the sync zone's, take the one of least RMS acceleration; the given one if that fails."""
     measured = (
         motion.accelerations
@@ -143,4 +160,5 @@ def _smoothest(problem: ScaledProblem, forms: tuple[Form, ...], motion: ScaledMo
         else np.diff(motion.accelerations) / motion.lengths
     )
     peak = max(float(np.abs(measured).max()) * (1 + KEPT_PEAK), zone)
-    return solve_on_mesh(problem, motion.lengths, forms, peak) or motion
+    answer = solve_on_mesh(problem, motion.lengths, forms, peak, unit)
+    return answer.motion if answer is not None and answer.exact else motion

@@ -288,6 +288,15 @@ SHEET: dict[str, Callable[[dict], object]] = {
         0, 1e-3
     ),
     "start_tables are not those": lambda data: data["start_tables"].pop(),
+    "start_tables are not those of": lambda data: data.pop("start_tables"),
+    "start_tables.ramp_out is not for the targets": lambda data: data["start_tables"][1]["tables"].pop(),
+    "start_tables.one_shot.profile": lambda data: data["start_tables"][2]["profile"]["breaks"].pop(),
+    "start_stop: ": lambda data: data.update(start_stop=None),
+    "marks has 10 entries, recorded 0": lambda data: data["marks"].clear(),
+    "line_ramp: ": lambda data: data.update(line_ramp=None),
+    "line_ramp.by_speed has": lambda data: data["line_ramp"]["by_speed"].pop(),
+    "line_ramp.by_speed[0].": lambda data: data["line_ramp"]["by_speed"][0].update(stop=99.0),
+    "steps of csv": lambda data: data["tables"][2].update(steps=[]),
     "working_range.min_length.binding": lambda data: data["working_range"]["min_length"].update(binding="stroke"),
 }
 
@@ -307,6 +316,19 @@ def test_values_of_the_sheet_are_those_of_its_cam(folder: Path, place: str) -> N
     assert len(faults) == 1, faults
     assert faults[0].file == "recipe.json"
     assert faults[0].what.startswith(place)
+
+
+def test_points_that_are_left_out_are_told(folder: Path) -> None:
+    edit(folder, lambda data: data["tables"][2]["points"]["slave"].pop())
+    assert any("recorded of the slave" in fault.what for fault in verify(folder))
+
+
+def test_tables_of_starts_go_with_those_of_the_cam(folder: Path) -> None:
+    for file in (folder / "tables").iterdir():
+        file.unlink()
+    edit(folder, lambda data: data.update(tables=[]))
+    faults = [fault.what for fault in verify(folder)]
+    assert any(what.startswith("tables and refused are empty") for what in faults)
 
 
 def test_a_page_that_says_something_else_is_told(folder: Path) -> None:

@@ -146,12 +146,14 @@ def _on_mesh(
     unit = max(abs(each.value) for each in back.extrema(2)) * length**2 or 1.0
     nodes = _Nodes(_mesh((back.breaks - start) / length, intervals))
     equal = list(_ends(nodes, task, unit))
+    own = back.mean_square(of.order) * (length**of.order / unit) ** 2 if of.form == "rms" else 1.0
     less = [*_limits(nodes, task, unit, objective), *_asked(nodes, task, unit), *_hiding(nodes, task, unit, objective)]
     square, goal = _goal(nodes, objective)
+    square = square / own  # the solver ends short of its tolerance where numbers are far from one
     value = _by_highs(nodes, equal, less, goal) if exactly else _solved(nodes, equal, less, square, goal)
     if value is None:
         return math.nan
-    reached = math.sqrt(max(0.0, value)) if of.form == "rms" else value
+    reached = math.sqrt(max(0.0, value * own)) if of.form == "rms" else value
     return reached * unit / length**of.order * v**of.order * (1.0 - ACCURACY)
 
 
