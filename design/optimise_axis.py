@@ -33,7 +33,7 @@ from camwright.profiles.errors import (
 )
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import Machine
-from camwright.profiles.message import Message, Value
+from camwright.profiles.message import Message, Value, part_of
 from camwright.profiles.objective import OBJECTIVES, ObjectiveName, of_command
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import assemble
@@ -384,7 +384,7 @@ def _kept_part(problem: AxisProblem, settles: Callable[[tuple[float, ...]], bool
 
 def _percent(cut: Cut, tolerance: float) -> str:
     """Error of the ratio that goes with a tolerance."""
-    return f"{100 * RATIO * tolerance / cut.shear_zone:.3g} %" if cut.shear_zone else "any"
+    return part_of(RATIO * tolerance / cut.shear_zone).removesuffix(" of") if cut.shear_zone else "any"
 
 
 def _works(problem: AxisProblem) -> bool:

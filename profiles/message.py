@@ -91,3 +91,20 @@ class Message:
             return known[name].chosen or known[name].written(1.0, known[name].unit)
 
         return HOLE.sub(filled, self.text)
+
+
+MOST_PERCENT = 1000.0
+"""Greatest share that is told in per cent."""
+
+
+def part_of(share: float) -> str:
+    """Tell a share of what is named next: in per cent, as a multiple where that would be more than anyone reads.
+
+    Examples
+    --------
+    >>> part_of(0.125), part_of(241.0), part_of(12345.6)
+    ('12.5 % of', '241 times', '12346 times')
+    """
+    if 100.0 * share <= MOST_PERCENT:
+        return f"{100.0 * share:.3g} % of"
+    return f"{share:.3g} times" if share < MOST_PERCENT else f"{share:.0f} times"

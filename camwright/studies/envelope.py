@@ -177,7 +177,8 @@ def envelope_answer(job: Job, points: int, step: Step = ignore) -> EnvelopeAnswe
 
     def in_tolerance(length: float, near: float) -> float | None:
         accuracy = ACCURACY if length in lengths else BETWEEN
-        return highest_speed(at(length), fastest(length), None if math.isnan(near) else near, accuracy)[0]
+        a_little_less = near * (1.0 - 0.5 * accuracy)  # the line is as often on one side of the edge as on the other
+        return highest_speed(at(length), fastest(length), None if math.isnan(near) else a_little_less, accuracy)[0]
 
     perfect = true_edge(lambda length, _: fastest(length), lengths.tolist(), FINEST)
     within = true_edge(in_tolerance, lengths.tolist(), None if job.servo_aware or not job.machine.placed else FINE)

@@ -9,7 +9,7 @@ _STEEP = 50.0
 """What a share of the tolerance is taken to fall by, as a logarithm, while the cut length grows by a share of itself: first steps are laid
 by it."""
 
-_LEAST_STEP, _GREATEST_STEP, _GROWTH = 2.0, 0.025, 2.0
+_LEAST_STEP, _GREATEST_STEP, _GROWTH = 0.6, 0.025, 2.0
 """Bounds of these steps, in resolutions and as a share of the length, and by what each further one is longer."""
 
 _SPARE = 0.4
@@ -38,8 +38,8 @@ def least_length(
     Returns
     -------
     float or None
-        A length (m) that was looked at and holds, while one shorter by the resolution at most does not, or is the least of all; ``None``
-        where the longest fails.
+        A length (m) that was looked at and holds, while one shorter by the resolution does not, as was seen or as follows where the share
+        falls by no less than a share of the length; or the least of all. ``None`` where the longest fails.
     """
     (low, high), length, longer = ends, min(max(near, ends[0]), ends[1]), 1.0
     fails: tuple[float, float] | None = None
@@ -51,8 +51,8 @@ def least_length(
                 return None
             fails = length, found
         else:
-            if length <= low:
-                return low
+            if length <= low or found >= -resolution:
+                return length
             holds = length, found
         step = longer * max(min(abs(found) / _STEEP, _GREATEST_STEP), _LEAST_STEP * resolution)
         length = min(length * (1.0 + step), high) if found > 0.0 else max(length / (1.0 + step), low)
@@ -70,7 +70,7 @@ def _narrowed(
     before: tuple[float, float] | None = None
     moved: bool | None = None
     slow, spare = 0, _SPARE * resolution * holds[0]
-    while (width := holds[0] - fails[0]) > resolution * holds[0]:
+    while (width := holds[0] - fails[0]) > resolution * holds[0] and holds[1] < -resolution:
         length = 0.5 * (fails[0] + holds[0])
         if slow < _SLOW and width > 2.0 * spare:
             end, other = (fails, holds) if moved else (holds, fails)

@@ -291,7 +291,9 @@ def _edge(
     found = least_length(missed, first if near is None else 1.0 / near, (first, 1.0 / least), accuracy)
     if found is None:
         return None, failures[max(failures)]
-    return (1.0 / found, failures[max(failures)]) if failures else (1.0, "")
+    if found <= first:
+        return 1.0, ""
+    return 1.0 / found, failures[max(failures)] if failures else TOLERANCE  # unseen, it is near enough to its tolerance
 
 
 def placed_as(job: Job, task: Task) -> Job:

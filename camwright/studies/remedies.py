@@ -6,7 +6,6 @@ import tomllib
 from collections.abc import Iterator
 from copy import deepcopy
 from dataclasses import dataclass, replace
-from time import process_time
 from typing import Any
 
 from camwright.design.optimise import Solution
@@ -22,8 +21,9 @@ from camwright.studies.reach import stand_in, verdict
 from camwright.studies.speed_band import SpeedBand
 from camwright.validation.report import ValidationReport, judge
 
-SECONDS = 5.0
-"""Processor time after which no more changes are tried; the one that is being tried is finished."""
+MOST, LONG = 30, 3
+"""Designs after which no more changes are tried, and as how many one counts for the axis or of the motor, which takes longer: a count, so
+that the answer is the same on every machine."""
 
 _SLOWER = (1.0, 0.97, 0.9, 0.8, 0.65, 0.5, 0.35, 0.25, 0.15, 0.1, 0.05)
 _ZONES = (1.1, 0.9, 1.25, 0.75, 1.5, 0.5, 1.75, 2.0, 0.3)
@@ -81,17 +81,17 @@ class Remedy:
 
 
 class _Trial:
-    """A job whose changes are tried until time is up."""
+    """A job whose changes are tried, up to a number of designs."""
 
     def __init__(self, job: Job) -> None:
         self._data = tomllib.loads(job.text.removeprefix("\ufeff"))
-        self._end = process_time() + SECONDS
+        self._left = MOST
         band = self._data.get("objective", {}).get("line_speeds")
         self._slowest = str(band[0]) if isinstance(band, list) and len(band) == 2 else ""
 
     def works(self, remedy: Remedy) -> bool:
-        """Whether the job with a change is designed and passes every check; false where there is no time left to see."""
-        if process_time() > self._end:
+        """Whether the job with a change is designed and passes every check; false where no design is left to see."""
+        if self._left <= 0:
             return False
         data = deepcopy(self._data)
         if remedy.also:
@@ -103,7 +103,10 @@ class _Trial:
             table["servo_aware"] = True
         try:
             other = read_job(data, None, "job")
-            return not _hopeless(other) and _passes(other)
+            if _hopeless(other):
+                return False
+            self._left -= LONG if other.servo_aware or OBJECTIVES[other.objective].of == "motor" else 1
+            return _passes(other)
         except CamwrightError:
             return False
 
@@ -148,7 +151,7 @@ def remedies(job: Job, report: ValidationReport, band: SpeedBand) -> tuple[Remed
     """Try what may make a job pass of whose cam a check failed.
 
     A lower line speed, a wider tolerance, a command for the servo, in sync or shaped, least RMS jerk and another sync zone, each alone and
-    in this order; of a number the nearest of some values. What was not tried in `SECONDS` is not told.
+    in this order; of a number the nearest of some values. What was not tried in `MOST` designs is not told.
 
     Parameters
     ----------

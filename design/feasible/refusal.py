@@ -18,7 +18,7 @@ from camwright.design.feasible.feasibility import (
     with_limit,
 )
 from camwright.profiles.errors import InfeasibleError, Suggestion
-from camwright.profiles.message import Message, Value, rounded_to
+from camwright.profiles.message import MOST_PERCENT, Message, Value, part_of, rounded_to
 from camwright.profiles.motor import MotorCurve
 from camwright.profiles.task import Task
 
@@ -143,7 +143,11 @@ def _why(task: Task, binding: str, need: dict[str, float], torque: float) -> tup
         if math.isinf(torque):
             return None, "%", Message("{@motor} binds, the motor does not reach the speed that is needed")
         more = 100 * (torque - 1)
-        return more, "%", Message(f"{{@motor}} binds, {more:.3g} % more torque is needed at the speeds of the motion")
+        return (
+            more,
+            "%",
+            Message(f"{{@motor}} binds, {_told(torque, 'more')} torque is needed at the speeds of the motion"),
+        )
     slave = task.machine.slave_unit
     factor, unit = _UNITS[slave][binding]
     si = slave + _SI_POWERS[binding]
@@ -153,9 +157,14 @@ def _why(task: Task, binding: str, need: dict[str, float], torque: float) -> tup
     if not math.isfinite(needed):
         text = f"{_named(binding)} {{have}} binds, and no other value of it alone would do"
         return None, unit, Message(text, values[:1])
-    share = 100 * (needed / have - 1)
-    text = f"{_named(binding)} binds, {{needed}} is needed, {{have}} is given ({share:.3g} % too little)"
+    text = f"{_named(binding)} binds, {{needed}} is needed, {{have}} is given ({_told(needed / have, 'too little')})"
     return (needed - have) * factor, unit, Message(text, values)
+
+
+def _told(times: float, more: str) -> str:
+    """Tell by how much something must be more than it is: in per cent, as a multiple where these are too many."""
+    share = 100.0 * (times - 1.0)
+    return f"{share:.3g} % {more}" if share <= MOST_PERCENT else f"{part_of(times)} as much"
 
 
 def _suggestions(

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from camwright.studies.envelope import FINE, FINEST, Edge, true_edge
-from camwright.studies.reach import Verdict, _edge
+from camwright.studies.reach import TOLERANCE, Verdict, _edge
 
 LENGTHS = [1.0, 2.0, 3.0, 4.0]
 
@@ -108,7 +108,7 @@ def test_an_edge_is_found_from_wherever_it_is_expected(share: float, near: float
         return steep(share, form)(at)
 
     found, failed = _edge(judged, 0.02, 1e-3, near)
-    assert failed == "settling"
+    assert failed in ("settling", TOLERANCE)
     assert found is not None
     assert share / (1 + 1e-3) <= found <= share
     assert len(asked) <= 30

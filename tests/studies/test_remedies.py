@@ -93,8 +93,8 @@ def test_a_job_that_passes_needs_no_way_out() -> None:
     assert found(PAPER) == ()
 
 
-def test_without_time_nothing_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "SECONDS", -1.0)
+def test_without_designs_nothing_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "MOST", 0)
     assert found(LAZY) == ()
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from camwright.profiles.errors import InputError
 from camwright.profiles.machines.machine import SlaveUnit
+from camwright.profiles.message import part_of
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.task import Task
 from camwright.profiles.trace import Trace
@@ -320,9 +321,9 @@ def _require_the_cam(lie: _Lie, profile: CamProfile, place: str, no_master: bool
     if lie.left <= max(_LEFT * departs, _LEFT_OF_TRAVEL * travel) and abs(lie.drift) <= _SLIPPED * travel:
         return
     why = (
-        f"it drifts by {100 * abs(lie.drift) / travel:.3g} % of its travel each cut"
+        f"it drifts by {part_of(abs(lie.drift) / travel)} its travel each cut"
         if abs(lie.drift) > _SLIPPED * travel
-        else f"{100 * lie.left / max(departs, _LEFT_OF_TRAVEL * travel):.3g} % of what the cam is beyond a straight line is left over"
+        else f"{part_of(lie.left / max(departs, _LEFT_OF_TRAVEL * travel))} what the cam is beyond a straight line is left over"
     )
     ways = ["name the design that ran (--design) and its job"]
     if no_master:

@@ -122,3 +122,14 @@ def test_edge_keeps_to_its_tolerance() -> None:
     assert found is not None
     assert 2.0 * (1 - 3e-3) <= found <= 2.0
     assert rounded_to(found, 4, up=False) <= found
+
+
+@pytest.mark.parametrize(("acceleration", "told"), [(8.0, r"% too little"), (1e-3, r"times as much")])
+def test_what_is_needed_is_told_in_per_cent_or_as_a_multiple_never_as_a_power_of_ten(
+    acceleration: float, told: str
+) -> None:
+    cut = Cut(0.6, 80 / 60, 0.2, 0.04, 0.16, 1e-4)
+    task = Task(RotaryKnife(0.4), cut, Limits(200 / 60, acceleration, 3000.0))
+    with pytest.raises(InfeasibleError, match=told) as raised:
+        solve(task, "peak_acceleration", suggest=False)
+    assert "e+" not in str(raised.value)
