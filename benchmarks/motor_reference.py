@@ -2,9 +2,9 @@
 
 Pieces of constant jerk on even grids that are finer towards the ends, torque by Simpson's rule of the nodes and middles, friction smoothed,
 the motor's curve at the same points, IPOPT with exact derivatives. A programme is compiled once for a kind of job, whatever differs is a
-parameter. Starts are looked at on a coarse grid: the quintic bent by waves or made to wait on its way, for an open place on the crank from
-random places. The best of them are taken on to a fine grid, there also with what stands made to stand, and an open place is moved to
-where it is best. What is found counts with its torque measured exactly, and only where it keeps the limits.
+parameter. Starts are looked at on a coarse grid: the quintic bent by waves, or made to wait on its way and to run back; for an open
+place on the crank from random places. The best of them are taken on to a fine grid, there also with what stands made to stand, and an
+open place is moved to where it is best. What is found counts with its torque measured exactly, and only where it keeps the limits.
 """
 
 from __future__ import annotations
@@ -33,13 +33,17 @@ WITHIN = 1e-6
 """Share by which a limit may be exceeded."""
 RESIDUAL = 1e-8
 """Greatest gap between the pieces of a motion that counts, scaled."""
-TAKEN, MOVES, PLACES = 3, 16, 200
-"""Starts that are taken on to the fine grid; steps of the search for an open place; places that are started from."""
+TAKEN, MOVES, PLACES = 3, 12, 100
+"""Looks that are taken further; steps of the search for an open place; places that are started from."""
+NEAR, SAME = 0.05, 1e-3
+"""Share within which of the best a look is taken to the fine grid, and share within which two looks are the same."""
 SMOOTHED = 0.02
 """Power, scaled, at which a look rounds what is drawn off."""
+SHARPNESS = {COARSE: 30.0, FINE: 100.0}
+"""Steepness of the friction that is rounded off, over the speed as a share of the greatest."""
 CREEPING = 0.02
 """Share of the greatest speed below which a slave may as well stand."""
-COARSE_STEPS, FINE_STEPS = (8, 3, 1), (3, 1)
+COARSE_STEPS, FINE_STEPS = (8, 3, 1), (2,)
 """Nodes by which a slave is tried to stand longer or shorter."""
 TIGHTER, FURTHEST = 3, 0.05
 """Attempts at a motion that exceeds a limit between the grid's points; each draws the limits in by twice the excess, to this share."""
@@ -185,7 +189,7 @@ class Grid:
             "bend": pace**2 * a / torque,
             "square": pace**2 * u**2 / 2 / torque,
             "friction": machine.friction / torque,
-            "sharp": 100.0,
+            "sharp": SHARPNESS[self.shape.intervals],
             "smooth": smooth,
             "of_speed": a / u,
             "of_place": u / y,
@@ -306,13 +310,16 @@ class Grid:
         )
 
     def starts(self, rng: np.random.Generator, number: int) -> tuple[FloatArray, Standing]:
-        """One of many starts, and where it stands: the quintic, bent by waves, or waiting on its way."""
+        """One of many starts, and where it stands: the quintic, bent by waves, or waiting on its way, then running back."""
         y, standing = self.quintic(self.xi * self.length), None
         size = max(abs(self.task.height), 0.1 * abs(y).max())
         if number % 3 == 2:
-            begin, end = np.sort(rng.uniform(0.05, 0.95, 2))
-            part = float(rng.uniform())
-            y = np.interp(self.xi, [0.0, begin, end, 1.0], np.array([0.0, part, part, 1.0]) * self.task.height)
+            begin, end, turn = np.sort(rng.uniform(0.05, 0.95, 3))
+            part, back = rng.uniform(size=2)
+            if not self.task.reverses or rng.integers(2):
+                turn, back = end, 0.0
+            shares = np.array([0.0, part, part, part - 0.5 * back, 1.0])
+            y = np.interp(self.xi, [0.0, begin, end, turn, 1.0], shares * self.task.height)
             standing = (self.xi >= begin) & (self.xi <= end)
         elif number:
             for k in range(1, 5):
@@ -379,22 +386,23 @@ def reference(task: Task, objective: MotorObjective, rng: np.random.Generator, s
         nodes = grid.solve(start, smooth=1e-3, standing=waits if task.machine.friction else None)
         if nodes is not None:
             looks.append(looked_at(grid, nodes, waits if task.machine.friction else None))
-    best: Found | None = None
-    for look in distinct(sorted(looks, key=lambda look: look.value)):
-        there = look if task.machine.placed else moved(look)
-        for found in polished(waited(there, COARSE_STEPS)):
-            if best is None or found.value < best.value:
-                best = found
-    return best
+    taken = distinct(looks, math.inf)
+    if not task.machine.placed:
+        taken = [moved(look) for look in taken]
+    taken = distinct([waited(look, COARSE_STEPS) for look in taken], NEAR)
+    found = [motion for look in taken for motion in polished(look)]
+    return min(found, key=lambda motion: motion.value, default=None)
 
 
-def distinct(looks: list[Look]) -> Iterator[Look]:
-    """Give the best few of the sorted looks, none of which has the value of another."""
-    taken: list[float] = []
-    for look in looks:
-        if len(taken) < TAKEN and (not taken or look.value > taken[-1] * (1 + 1e-3)):
-            taken.append(look.value)
-            yield look
+def distinct(looks: list[Look], near: float) -> list[Look]:
+    """Take the best few of the looks, near the best of all, none of which has the value of another."""
+    taken: list[Look] = []
+    for look in sorted(looks, key=lambda look: look.value):
+        if not taken or (
+            taken[-1].value * (1 + SAME) < look.value < taken[0].value * (1 + near) and len(taken) < TAKEN
+        ):
+            taken.append(look)
+    return taken
 
 
 def value(cycle: CamProfile, task: Task, objective: MotorObjective) -> float:
@@ -434,19 +442,18 @@ def moved(look: Look) -> Look:
 def waited(look: Look, steps: tuple[int, ...]) -> Look:
     """Let the slave stand longer or shorter, earlier or later, by steps of so many nodes, as long as that is better."""
     for step in steps if look.standing is not None and look.standing.any() else ():
-        for _ in range(4):
-            begin, end = np.flatnonzero(look.standing)[[0, -1]]
-            others = []
-            for first, last in ((begin - step, end), (begin + step, end), (begin, end + step), (begin, end - step)):
-                if 0 < first < last < len(look.standing) - 1:
-                    standing = np.zeros(len(look.standing), bool)
-                    standing[first : last + 1] = True
-                    nodes = look.grid.solve(look.nodes, smooth=1e-4, standing=standing)
-                    others += [] if nodes is None else [looked_at(look.grid, nodes, standing)]
-            best = min(others, key=lambda other: other.value, default=look)
-            if best.value >= look.value:
-                break
-            look = best
+        for earlier, later in ((-step, 0), (step, 0), (0, step), (0, -step)):
+            for _ in range(4):
+                begin, end = np.flatnonzero(look.standing)[[0, -1]] + (earlier, later)
+                if not 0 < begin < end < len(look.standing) - 1:
+                    break
+                standing = np.zeros(len(look.standing), bool)
+                standing[begin : end + 1] = True
+                nodes = look.grid.solve(look.nodes, smooth=1e-4, standing=standing)
+                other = look if nodes is None else looked_at(look.grid, nodes, standing)
+                if other.value >= look.value:
+                    break
+                look = other
     return look
 
 
