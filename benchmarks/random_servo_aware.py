@@ -14,11 +14,13 @@ from __future__ import annotations
 
 import argparse
 import csv
+import math
 import sys
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from time import process_time
+from time import monotonic, process_time
 
 import numpy as np
 from random_machines import MACHINES, TO_SI, RandomJob, apply, random_job, spread
@@ -99,51 +101,61 @@ def designed(
     return ("passed", "") if difference <= AGREEMENT else ("differs", f"{difference:.1e} of the sync zone")
 
 
+def counted(kind: str, seed: int, ends: Sequence[str], seconds: Sequence[float]) -> dict[str, object]:
+    """Row of a machine."""
+    counts = Counter(ends)
+    return {
+        "machine": kind,
+        "seed": seed,
+        "jobs": len(ends),
+        "passed": counts["passed"],
+        "infeasible": counts["infeasible"],
+        "least_error_too_large": counts["least error too large"],
+        "refused": counts["refused"],
+        "other": len(ends) - sum(counts[name] for name in GOOD),
+        "median_s": f"{np.median(seconds):.2f}",
+        "longest_s": f"{max(seconds):.2f}",
+    }
+
+
 def main() -> int:
-    """Draw, design, count, write."""
+    """Draw, design, count; the machines take turns and the counts are written after each, so that a run may be ended early."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--jobs", type=int, default=60)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--machine", choices=list(MACHINES))
+    parser.add_argument("--minutes", type=float, default=math.inf, help="begin no round of jobs after so many")
     parser.add_argument("--out", type=Path, default=RESULTS / "random_servo_aware.csv")
     options = parser.parse_args()
-    rows, other = [], 0
     objectives: tuple[ObjectiveName, ...] = tuple(OBJECTIVES)
-    for kind in [options.machine] if options.machine else list(MACHINES):
-        rng = np.random.default_rng([options.seed, list(MACHINES).index(kind), 77])
-        counts: Counter[str] = Counter()
-        seconds = []
-        for number in range(options.jobs):
+    kinds = [options.machine] if options.machine else list(MACHINES)
+    draws = {kind: np.random.default_rng([options.seed, list(MACHINES).index(kind), 77]) for kind in kinds}
+    ends: dict[str, list[str]] = {kind: [] for kind in kinds}
+    seconds: dict[str, list[float]] = {kind: [] for kind in kinds}
+    rows: list[dict[str, object]] = []
+    until = monotonic() + 60 * options.minutes
+    for number in range(options.jobs):
+        if monotonic() > until:
+            break
+        for kind, rng in draws.items():
             job = random_job(rng, kind)
             servo = draw_servo(rng, job)
             command: Command = ("in_sync", "shaped")[int(rng.integers(2))]  # type: ignore[assignment]
             objective = objectives[int(rng.integers(len(objectives)))]
             begun = process_time()
             end, note = ended(job, servo, command, objective)
-            seconds.append(process_time() - begun)
-            counts[end] += 1
+            seconds[kind].append(process_time() - begun)
+            ends[kind].append(end)
             if end not in GOOD:
-                other += 1
                 print(f"{kind} {number} {command} {objective}: {end}: {note}", file=sys.stderr, flush=True)
-        row = {
-            "machine": kind,
-            "seed": options.seed,
-            "jobs": options.jobs,
-            "passed": counts["passed"],
-            "infeasible": counts["infeasible"],
-            "least_error_too_large": counts["least error too large"],
-            "refused": counts["refused"],
-            "other": options.jobs - sum(counts[name] for name in GOOD),
-            "median_s": f"{np.median(seconds):.2f}",
-            "longest_s": f"{max(seconds):.2f}",
-        }
-        rows.append(row)
+        rows = [counted(kind, options.seed, ends[kind], seconds[kind]) for kind in kinds]
+        with options.out.open("w", newline="", encoding="utf-8") as file:
+            table = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
+            table.writeheader()
+            table.writerows(rows)
+    for row in rows:
         print(", ".join(f"{name} {value}" for name, value in row.items()), flush=True)
-    with options.out.open("w", newline="", encoding="utf-8") as file:
-        table = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
-        table.writeheader()
-        table.writerows(rows)
-    return 1 if other else 0
+    return 1 if any(row["other"] for row in rows) else 0
 
 
 if __name__ == "__main__":
