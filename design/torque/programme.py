@@ -20,6 +20,7 @@ import numpy as np
 from camwright.design.line.forms import ramp_forms
 from camwright.design.returns.ipopt import QUIET
 from camwright.design.torque.task import Pattern, TorqueTask
+from camwright.design.torque.watch import MultiplierWatch
 from camwright.design.torque.zone import Zone, available_torque
 from camwright.profiles.objective import MOTION_OBJECTIVES
 from camwright.profiles.polynomial.profile import FloatArray
@@ -239,9 +240,9 @@ class TorqueProgramme:
             )
         self._rows = (sum(part.numel() for part in equations), sum(part.numel() for part in (*peaks, *jerk)))
         nlp = {"x": unknowns, "p": p, "f": cost, "g": ca.vertcat(*equations, *peaks, *jerk, between)}
-        self._solver = ca.nlpsol(
-            "camwright_torque", "ipopt", nlp, _OPTIONS | {"ipopt.tol": accuracy, "ipopt.max_iter": iterations}
-        )
+        self._watch = MultiplierWatch(sum(sizes), nlp["g"].numel(), p.numel())
+        options = {"ipopt.tol": accuracy, "ipopt.max_iter": iterations, "iteration_callback": self._watch}
+        self._solver = ca.nlpsol("camwright_torque", "ipopt", nlp, _OPTIONS | options)
 
     def _ramps(self, a: Any, v: Any, h: Any, mesh: Any) -> list[Any]:
         """Make what the line's ramps leave (`camwright.design.line.forms`) by Bernstein coefficients, times the lengths of the phases."""

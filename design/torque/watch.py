@@ -1,0 +1,44 @@
+"""A watch on IPOPT's multipliers: a programme whose limits cannot be met is ended when they run away.
+
+IPOPT itself looks at its unknowns only. Where a peak is asked for that the mesh cannot reach its multipliers grow without end, the
+factorisations then put off one pivot after the other and each takes seconds: minutes on a knife with friction and a cut of ten pitches.
+"""
+
+from __future__ import annotations
+
+import casadi as ca
+import numpy as np
+
+MOST_MULTIPLIER = 1e12
+"""Multiplier (scaled) beyond which a programme is held to have no answer."""
+
+
+class MultiplierWatch(ca.Callback):  # type: ignore[misc]  # CasADi has no types
+    """What IPOPT asks after every iteration whether to go on; as long as a solver uses it, it must be kept."""
+
+    def __init__(self, unknowns: int, rows: int, parameters: int) -> None:
+        """Make the watch of a programme of so many unknowns, constraints and parameters."""
+        ca.Callback.__init__(self)
+        self._sizes = {"x": unknowns, "f": 1, "g": rows, "lam_x": unknowns, "lam_g": rows, "lam_p": parameters}
+        self.construct("multiplier_watch", {})
+
+    def get_n_in(self) -> int:
+        """Count what the solver hands over: its outputs."""
+        return int(ca.nlpsol_n_out())
+
+    def get_n_out(self) -> int:
+        """Count the answers: whether to end."""
+        return 1
+
+    def get_name_in(self, number: int) -> str:
+        """Name an input."""
+        return str(ca.nlpsol_out(number))
+
+    def get_sparsity_in(self, number: int) -> ca.Sparsity:
+        """Give the shape of an input."""
+        return ca.Sparsity.dense(self._sizes[ca.nlpsol_out(number)])
+
+    def eval(self, given: list[ca.DM]) -> list[float]:
+        """Tell whether to end: where a multiplier of a constraint has run away."""
+        multipliers = np.asarray(given[self.index_in("lam_g")])
+        return [float(not np.abs(multipliers).max(initial=0.0) < MOST_MULTIPLIER)]
