@@ -20,7 +20,7 @@ import numpy as np
 from camwright.design.line.forms import ramp_forms
 from camwright.design.returns.ipopt import QUIET
 from camwright.design.torque.task import Pattern, TorqueTask
-from camwright.design.torque.watch import MultiplierWatch
+from camwright.design.torque.watch import WatchedSolver
 from camwright.design.torque.zone import Zone, available_torque
 from camwright.profiles.objective import MOTION_OBJECTIVES
 from camwright.profiles.polynomial.profile import FloatArray
@@ -240,9 +240,8 @@ class TorqueProgramme:
             )
         self._rows = (sum(part.numel() for part in equations), sum(part.numel() for part in (*peaks, *jerk)))
         nlp = {"x": unknowns, "p": p, "f": cost, "g": ca.vertcat(*equations, *peaks, *jerk, between)}
-        self._watch = MultiplierWatch(sum(sizes), nlp["g"].numel(), p.numel())
-        options = {"ipopt.tol": accuracy, "ipopt.max_iter": iterations, "iteration_callback": self._watch}
-        self._solver = ca.nlpsol("camwright_torque", "ipopt", nlp, _OPTIONS | options)
+        options = _OPTIONS | {"ipopt.tol": accuracy, "ipopt.max_iter": iterations}
+        self._watched = WatchedSolver.of("camwright_torque", nlp, options)
 
     def _ramps(self, a: Any, v: Any, h: Any, mesh: Any) -> list[Any]:
         """Make what the line's ramps leave (`camwright.design.line.forms`) by Bernstein coefficients, times the lengths of the phases."""
@@ -370,7 +369,7 @@ class TorqueProgramme:
         equal, above = self._rows
         low, high = self._paces()
         try:
-            answer = self._solver(
+            answer = self._watched.solver(
                 x0=start / self._layout.units,
                 p=parameters,
                 lbx=lower / self._layout.units,
@@ -380,7 +379,7 @@ class TorqueProgramme:
             )
         except RuntimeError:  # a number that is none, on the way or in the guess: no answer from this start
             return TorqueAnswer(guess, math.inf, math.inf, False, 0)
-        statistics = self._solver.stats()
+        statistics = self._watched.solver.stats()
         flat: FloatArray = np.asarray(answer["x"], dtype=np.float64).ravel() * self._layout.units
         history = statistics.get("iterations", {})
         residual = max(

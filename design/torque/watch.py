@@ -6,6 +6,10 @@ factorisations then put off one pivot after the other and each takes seconds: mi
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Self
+
 import casadi as ca
 import numpy as np
 
@@ -13,7 +17,21 @@ MOST_MULTIPLIER = 1e12
 """Multiplier (scaled) beyond which a programme is held to have no answer."""
 
 
-class MultiplierWatch(ca.Callback):  # type: ignore[misc]  # CasADi has no types
+@dataclass(frozen=True, eq=False)
+class WatchedSolver:
+    """IPOPT for a programme, and the watch that it needs as long as it lives."""
+
+    solver: ca.Function
+    watch: MultiplierWatch
+
+    @classmethod
+    def of(cls, name: str, nlp: dict[str, Any], options: dict[str, Any]) -> Self:
+        """Build the solver of a programme, as `casadi.nlpsol` does."""
+        watch = MultiplierWatch(nlp["x"].numel(), nlp["g"].numel(), nlp["p"].numel())
+        return cls(ca.nlpsol(name, "ipopt", nlp, options | {"iteration_callback": watch}), watch)
+
+
+class MultiplierWatch(ca.Callback):
     """What IPOPT asks after every iteration whether to go on; as long as a solver uses it, it must be kept."""
 
     def __init__(self, unknowns: int, rows: int, parameters: int) -> None:
@@ -38,7 +56,7 @@ class MultiplierWatch(ca.Callback):  # type: ignore[misc]  # CasADi has no types
         """Give the shape of an input."""
         return ca.Sparsity.dense(self._sizes[ca.nlpsol_out(number)])
 
-    def eval(self, given: list[ca.DM]) -> list[float]:
+    def eval(self, given: Sequence[ca.DM]) -> list[float]:
         """Tell whether to end: where a multiplier of a constraint has run away."""
         multipliers = np.asarray(given[self.index_in("lam_g")])
         return [float(not np.abs(multipliers).max(initial=0.0) < MOST_MULTIPLIER)]
