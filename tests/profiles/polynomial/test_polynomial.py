@@ -457,3 +457,10 @@ def test_pieces_answer_by_their_number() -> None:
     assert profile.within_degree(3).tolist() == [True, True]
     assert profile.mean_ratio == profile.advance / 3.0
     assert steps(profile.breaks, np.array([2.0, 7.0]))(np.array([0.5, 1.0, 2.0])).tolist() == [2.0, 7.0, 7.0]
+
+
+def test_a_roll_to_the_end_but_for_rounding_is_none() -> None:
+    profile = CamProfile.from_arrays([0.0, 0.3, 0.6], [[0.0, 1.0], [0.3, 0.5]])
+    rolled = profile.roll(np.nextafter(0.6, 0.0))
+    assert rolled.breaks.tolist() == profile.breaks.tolist()
+    assert rolled.repeat(3).length == pytest.approx(1.8)
