@@ -1,7 +1,8 @@
 """Random envelopes against designs: what is drawn as possible must design, what lies a percent beyond must not.
 
-``python benchmarks/envelopes.py [COUNT]``: paper-like knives with random cuts, limits and servos (100 unless said). For each, points 1 %
-inside and 1 % beyond both edges are designed: inside the perfect axis' edge a motion exists, inside the other every check passes too.
+``python benchmarks/envelopes.py [COUNT]``: paper-like knives and flying saws in turn, with random cuts, limits and servos (100 unless
+said). For each, points 1 % inside and 1 % beyond both edges are designed: inside the perfect axis' edge
+a motion exists, inside the other every check passes too.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from camwright.studies.envelope import Edge, envelope_answer
 from camwright.studies.reach import stand_in, verdict
 
 RESULTS = Path(__file__).parent / "results" / "envelopes.csv"
+SAW = Path(__file__).parents[1] / "examples" / "flying-saw.toml"
 
 SEED, LENGTHS, TRIED = 7, 7, 12
 """Seed of the jobs, cut lengths of a map, and places tried on each edge."""
@@ -30,8 +32,8 @@ ASIDE = 0.01
 """Share of the line speed inside and beyond an edge."""
 
 
-def drawn(job: Job, random: np.random.Generator) -> Job:
-    """Draw a job."""
+def drawn_knife(job: Job, random: np.random.Generator) -> Job:
+    """Draw a job of a knife."""
     pitch = random.uniform(0.3, 0.8)
     cut = replace(
         job.cut,
@@ -49,6 +51,22 @@ def drawn(job: Job, random: np.random.Generator) -> Job:
     return replace(job, machine=RotaryKnife(pitch), cut=cut, limits=limits, servo=servo)
 
 
+def drawn_saw(job: Job, random: np.random.Generator) -> Job:
+    """Draw a job of a flying saw: stroke and sync zone are the example's."""
+    cut = replace(
+        job.cut,
+        length=job.cut.length * random.uniform(0.7, 1.5),
+        line_speed=job.cut.line_speed * random.uniform(0.6, 1.3),
+        sync_tolerance=job.cut.sync_tolerance * float(random.choice((0.1, 0.3, 1.0))),
+    )
+    limits = replace(
+        job.limits,
+        acceleration=job.limits.acceleration * random.uniform(0.5, 3.0),
+        jerk=job.limits.jerk * random.uniform(0.5, 3.0),
+    )
+    return replace(job, cut=cut, limits=limits, servo=replace(job.servo, position_gain=random.uniform(15.0, 45.0)))
+
+
 def wrong(job: Job, edge: Edge, random: np.random.Generator, *, checked: bool) -> tuple[int, int]:
     """Count the places beside an edge that are drawn wrongly, and those that were tried."""
     found = tried = 0
@@ -62,7 +80,7 @@ def wrong(job: Job, edge: Edge, random: np.random.Generator, *, checked: bool) -
         for factor, possible in ((1 - ASIDE, True), (1 + ASIDE, False)):
             task = job.task.with_length(length).at_speed(factor * speed)
             failed, _ = verdict(job, task, stand_in(job))
-            limit = failed in ("speed", "acceleration", "jerk", "reversal", "sync_zone", "design")
+            limit = failed in ("speed", "acceleration", "jerk", "reversal", "stroke", "sync_zone", "design")
             tried += 1
             if (not failed if checked else not limit) != possible:
                 found += 1
@@ -75,11 +93,13 @@ def wrong(job: Job, edge: Edge, random: np.random.Generator, *, checked: bool) -
 def main() -> int:
     """Print what was tried and what was wrong; the rows are written after each envelope."""
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 100
-    random, base = np.random.default_rng(SEED), load_job()
+    random = np.random.default_rng(SEED)
+    drawers = ((drawn_knife, load_job()), (drawn_saw, load_job(SAW)))
     totals = {"perfect axis": [0, 0], "axis in tolerance": [0, 0]}
     began = time.process_time()
     for number in range(1, count + 1):
-        job = drawn(base, random)
+        draw, base = drawers[number % len(drawers)]
+        job = draw(base, random)
         try:
             answer = envelope_answer(job, LENGTHS)
         except CamwrightError as error:
