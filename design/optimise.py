@@ -145,7 +145,13 @@ def solve(task: Task, objective: CommandObjective, *, suggest: bool = True, thor
     require_feasible(task, suggest=suggest)
     require_moving(machine, objective)
     solution = _solve_steady(task.with_line(STEADY), objective, thorough)
-    return solution if keeps_ramp(solution.profile, task) else _solve_ramped(task, objective, solution, suggest)
+    if not keeps_ramp(solution.profile, task):
+        return _solve_ramped(task, objective, solution, suggest)
+    if task.line.ramps and objective == "rms_jerk" and task.machine.guide is not None:
+        # at the end of a stroke the jerk of the optimum steps at places that a grid of its own does not have
+        other = _solve_ramped(task, objective, solution, suggest)
+        return min(solution, other, key=lambda each: each.minimised)
+    return solution
 
 
 def _solve_steady(task: Task, objective: CommandObjective, thorough: bool) -> Solution:
