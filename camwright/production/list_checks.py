@@ -26,9 +26,6 @@ LEAST = 1e-6
 MOST_SAMPLES = 300_000_000
 """Most samples of servos that are run for a list: two weeks of production at 4 ms, or minutes of processor time."""
 
-_LONGEST = 50_000.0
-"""Greatest multiple of the sync zone that a gap may have: beyond, its motion is lost in rounding while the slave stands."""
-
 _MOST_FAULTS = 20
 
 
@@ -45,12 +42,13 @@ def require_room(job: Job, asked: CutList) -> None:
                 for line, gap in zip(short.tolist()[:_MOST_FAULTS], gaps, strict=False)
             )
         )
-    far = np.flatnonzero(asked.gaps > _LONGEST * zone)
+    longest = job.machine.longest_cut(zone)
+    far = np.flatnonzero(asked.gaps > longest)
     if len(far):
         raise InputError(
-            f"{asked.where(int(far[0]))}: a piece of {with_unit(float(asked.gaps[far[0]]), 'm', 4, units)} is over {_LONGEST:g} times the "
-            f"sync zone of {with_unit(zone, 'm', 4, units)}, so that the slave would stand; make it "
-            "on demand, with the one-shot cam of camwright ramps"
+            f"{asked.where(int(far[0]))}: a piece of {with_unit(float(asked.gaps[far[0]]), 'm', 4, units)} is longer than "
+            f"{with_unit(longest, 'm', 4, units)}, the longest that a cam is for with a sync zone of {with_unit(zone, 'm', 4, units)}; "
+            "make it on demand, with the one-shot cam of camwright ramps"
         )
     lengths = len(np.unique(asked.gaps))
     if lengths > MOST_CAMS:

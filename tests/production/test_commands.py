@@ -136,7 +136,7 @@ def test_tables_fit_a_narrow_terminal(order: str, capsys: pytest.CaptureFixture[
         ),
         (
             ["cutlist", JOB, "far.csv", *RAMP],
-            "far.csv, line 3: a piece of 1e9 mm is over 50000 times the sync zone of 200 mm",
+            "far.csv, line 3: a piece of 1e9 mm is longer than 200000 mm, the longest that a cam is for with a sync zone of 200 mm",
         ),
         (["cutlist", JOB, "order.csv", *RAMP, "--out", ""], "--out: the name is empty"),
         (
