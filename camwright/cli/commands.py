@@ -134,7 +134,7 @@ COMMANDS: dict[str, Command] = {
         "camwright recipe board.toml --targets codesys --revision B",
     ),
     "verify": Command(
-        "Prove that a recipe folder is what was written, that its tables are the motion that it promises, and its sheet the cam's.",
+        "Prove that the folder of a recipe or a family is what was written, and its sheet the cams'; of a recipe the tables, too.",
         SHEET,
         "camwright verify recipe",
     ),

@@ -62,8 +62,12 @@ written, and the answer says up to which speed all pass.
 
 Only targets with evidence for cams that are scaled while they run take part: `twincat`. A Trio controller can add the moves of
 other axes (ADDAX: technical reference manual), but the table multiplier of CAMBOX is read when the command is loaded, so a cut
-would run with the speed at its beginning; it is left out. PLCopen's MC_CombineAxes adds axes, not scaled cams. Of the others no
-such way was found in public documents.
+would run with the speed at its beginning; it is left out. PLCopen's MC_CombineAxes adds axes, not scaled cams. Logix refuses a
+second MAPC on a slave that is camming (error 23, illegal dynamic change) unless it waits for the end of the first (MOTION-RM002H,
+pages 171 to 181). CODESYS superimposes one distance on a cam (MC_MoveSuperImposed), and says of SMC_GetCamSlaveSetPosition, which
+reads a scaled cam, that it must not be called in every cycle (help of SM3_Basic). The old S7-300 technology CPU laid one cam over
+another (MC_CamInSuperImposed, A5E00251798), where two or three are needed; for the S7-1500T, which the target `siemens` writes for, none
+such was found, nor for the others.
 
 ## Auditing a cam
 
