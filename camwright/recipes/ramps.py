@@ -8,14 +8,11 @@ from camwright.house.numbers import converted, inside, shown, unit_shown
 from camwright.recipes.blocks import Block, table_block, text_block
 from camwright.recipes.catalogue import Catalogue
 from camwright.recipes.model import LineRampRecord, RampAt, Recipe
-from camwright.studies.line_ramps import LineRamps
+from camwright.studies.line_ramps import LEAST_RAMP, LineRamps
 from camwright.validation.production.line_ramp import Allowed
 
 _SHOWN = 5
 """Of the line speeds each of this number is on the sheet."""
-
-_LEAST = 1e-3
-"""Ramp (m/s²) below which none is told: what rounding leaves of a limit that is used up, and no line ramps so slowly."""
 
 
 def ramp_record(found: LineRamps) -> LineRampRecord:
@@ -65,7 +62,7 @@ def ramp_blocks(recipe: Recipe, words: Catalogue) -> list[Block]:
         binding=words.named("binding", found.binding),
     )  # fmt: skip
     blocks = [table_block(head, rows), text_block(plc, strong=True)]
-    if found.stop_length is not None and (found.stop is None or found.stop >= _LEAST):
+    if found.stop_length is not None:
         blocks.append(text_block(words("ramp.stop_length", length=shown(found.stop_length, "m", 4, words.units))))
     alone = ramp_text(found.by_acceleration_alone, words)
     blocks.append(text_block(words("ramp.alone", ramp=alone, unit=unit)))
@@ -75,7 +72,7 @@ def ramp_blocks(recipe: Recipe, words: Catalogue) -> list[Block]:
 
 
 def ramp_text(value: float | None, words: Catalogue) -> str:
-    """Write a ramp that is allowed, rounded to the safe side, none below `_LEAST`; nothing binds where there is none."""
+    """Write a ramp that is allowed, rounded to the safe side, none below `LEAST_RAMP`; nothing binds where there is none."""
     if value is None:
         return words("ramp.any")
-    return words.number(inside(converted(value, "m/s^2", words.units), 4, up=False), 4) if value >= _LEAST else "0"
+    return words.number(inside(converted(value, "m/s^2", words.units), 4, up=False), 4) if value >= LEAST_RAMP else "0"

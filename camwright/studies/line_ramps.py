@@ -19,6 +19,9 @@ from camwright.validation.production.line_ramp import (
 )
 from camwright.validation.production.ramped_servo import RampedSync, ramped_sync
 
+LEAST_RAMP = 1e-3
+"""Ramp (m/s²) below which none is told: what rounding leaves of a limit that is used up, and no line ramps so slowly."""
+
 
 @dataclass(frozen=True)
 class LineRamps:
@@ -47,9 +50,9 @@ class LineRamps:
 
     @property
     def stop_length(self) -> float | None:
-        """Material that passes while the line stops from the job's speed as hard as the cam allows (m); nothing if it may not brake."""
+        """Material that passes while the line stops from the job's speed as hard as the cam allows (m); nothing if it may hardly brake."""
         braking = self.up_to.braking.value
-        return self.job.cut.line_speed**2 / (2.0 * braking) if braking > 0.0 else None
+        return self.job.cut.line_speed**2 / (2.0 * braking) if braking >= LEAST_RAMP else None
 
 
 def line_ramps(profile: CamProfile, job: Job) -> LineRamps:

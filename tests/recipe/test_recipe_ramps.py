@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from camwright import load_job
+from camwright.cli.views.line_ramps import plc_words
 from camwright.design.optimise import solve
 from camwright.jobs.numbers import job_numbers
 from camwright.recipes.build import MadeRecipe
@@ -58,7 +59,14 @@ def test_a_cam_that_bears_no_ramp_says_so(made: MadeRecipe) -> None:
 
 def test_what_rounding_leaves_of_a_ramp_is_none(made: MadeRecipe) -> None:
     """A crank's jerk limit that is used up left 0.13 mm/s², and 935 m of material that run through."""
-    left = replace(ramp_record(FOUND), acceleration=1.398e-4, stop=1.336e-4, stop_length=935.4)
+    up_to = FOUND.up_to
+    speeding, braking = (
+        replace(each, value=value) for each, value in ((up_to.speeding, 1.398e-4), (up_to.braking, 1.336e-4))
+    )
+    found = replace(FOUND, up_to=replace(up_to, speeding=speeding, braking=braking))
+    assert found.stop_length is None
+    assert "ramps up to 0 m/s² (jerk), emergency stop up to 0 m/s²;" in plc_words(found)
+    left = ramp_record(found)
     _, plc, *others = ramp_blocks(replace(made.recipe, line_ramp=left), catalogue("en"))
     assert "ramps up to 0 m/s² (jerk), emergency stop up to 0 m/s²" in plc["text"]
     assert not [each for each in others if "935" in each["text"]]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.house.numbers import Units, converted, inside, number, unit_shown, with_unit
-from camwright.studies.line_ramps import LineRamps
+from camwright.studies.line_ramps import LEAST_RAMP, LineRamps
 from camwright.validation.production.line_ramp import Allowed
 
 if TYPE_CHECKING:
@@ -64,4 +64,6 @@ def ramp_words(allowed: Allowed, units: Units) -> str:
     """Write a ramp that is allowed without its unit, rounded to the safe side."""
     if math.isinf(allowed.value):
         return "any"
-    return number(inside(converted(allowed.value, "m/s^2", units), 4, up=False), 4) if allowed.value else "0"
+    if allowed.value < LEAST_RAMP:
+        return "0"
+    return number(inside(converted(allowed.value, "m/s^2", units), 4, up=False), 4)
