@@ -222,13 +222,15 @@ def _nodes(own: float, sure: float, top: float) -> FloatArray:
 
 
 def _with_extrema(scan: SpeedScan, speeds: FloatArray, rows: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Look closer where the worst value turns near the limit between two nodes, twice."""
+    """Look closer where the value of a check turns near the limit between two nodes, twice.
+
+    Of each check by itself: what one does between two nodes is not seen in the greatest of all where another rises.
+    """
     for _ in range(2):
-        worst = rows.max(axis=1)
-        inner = np.arange(1, len(worst) - 1)
-        rise, fall = worst[1:-1] - worst[:-2], worst[2:] - worst[1:-1]
-        near = (worst[1:-1] < _NEAR) & (worst[1:-1] > 1.0 / _NEAR)
-        turns = inner[(rise * fall <= 0.0) & near & ((worst[1:-1] > 1.0) == (rise <= 0.0))]
+        inner, within = np.arange(1, len(rows) - 1), rows[1:-1]
+        rise, fall = within - rows[:-2], rows[2:] - within
+        near = (within < _NEAR) & (within > 1.0 / _NEAR)
+        turns = inner[((rise * fall <= 0.0) & near & ((within > 1.0) == (rise <= 0.0))).any(axis=1)]
         if not len(turns):
             break
         speeds, rows = _merged(scan, speeds, rows, np.sqrt(speeds[turns, None] * speeds[turns[:, None] + [-1, 1]]))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib.util
 import sys
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import ModuleType
 
@@ -24,9 +24,10 @@ from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import baseline
 from camwright.profiles.servo import Servo, spectral_radius
 from camwright.profiles.task import Task
+from camwright.studies import speed_band as band_module
 from camwright.studies.axis_study import solve_job
 from camwright.studies.speed_band import ACCURACY, NO_END, SpeedBand, job_band, speed_band
-from camwright.studies.speed_scan import TOLERANCE
+from camwright.studies.speed_scan import NAMES, TOLERANCE
 from camwright.validation.report import judge
 from camwright.validation.servo.axis_motion import axis_peaks
 from camwright.validation.servo.creeping import command_error, creeping_axis, creeping_speeds
@@ -42,6 +43,29 @@ SHAPED = JOB.replace('"0.1 mm"', '"0.25 mm"').replace(
 
 def band_of(profile: CamProfile, job: Job) -> SpeedBand:
     return job_band(profile, job, judge(profile, job.task, job.servo, servo_aware=job.servo_aware))
+
+
+@dataclass(frozen=True)
+class Made:
+    """Checks of no cam: the sync error goes over the tolerance between two line speeds, while the axis comes near its limit."""
+
+    hump: float
+
+    def excess(self, speeds: np.ndarray, _: int) -> np.ndarray:
+        """Give values over limits, as `SpeedScan.excess`."""
+        found = np.zeros((len(speeds), len(NAMES)))
+        found[:, NAMES.index("shear_zone_error")] = 1.0007 - 0.5 * (speeds - self.hump) ** 2
+        found[:, NAMES.index("axis_acceleration")] = (speeds / 3.6951) ** 2
+        return found
+
+
+@pytest.mark.parametrize("hump", [3.552, 3.555, 3.56])
+def test_a_gap_that_opens_between_two_steps_is_found_while_another_check_rises(hump: float) -> None:
+    scan, speeds = Made(hump), np.array([3.2, 3.3, 3.39, 3.495, 3.605, 3.695])
+    rows = scan.excess(speeds, 64)
+    assert (rows <= 1.0).all()
+    found = band_module._with_extrema(scan, speeds, rows)[1]  # type: ignore[arg-type]
+    assert (found > 1.0).any()
 
 
 def edge(profile: CamProfile, job: Job, low: float, high: float) -> float:
