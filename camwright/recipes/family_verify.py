@@ -9,20 +9,27 @@ from typing import Any
 
 import numpy as np
 
+from camwright.answers.objective import objective_unit
+from camwright.answers.speed_band import band_answer
 from camwright.house.json_text import to_json
 from camwright.house.owned import LIST
-from camwright.house.provenance import camwright_version
+from camwright.house.provenance import camwright_version, provenance
+from camwright.jobs.job import parse_job
+from camwright.jobs.numbers import job_numbers
 from camwright.jobs.servos import servos_of
 from camwright.production.family_cams import PHASES, SPEEDS
 from camwright.production.switching import change_speeds
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import CamProfile
+from camwright.recipes.family_record import parse_family
 from camwright.recipes.family_sheet import FAMILY_FILE, PAGE, PRINT, family_sheets
 from camwright.recipes.folder import contents, sum_faults
 from camwright.recipes.recipe_file import RECIPE_FILE
 from camwright.recipes.sheet_faults import differs
 from camwright.recipes.table_faults import Fault
 from camwright.stored.design_file import StoredDesign, parse_design
+from camwright.studies.covering import FOUND_TO
+from camwright.studies.speed_band import job_band
 from camwright.validation.production.cam_change import CamChange, change_checks
 from camwright.validation.production.motion_table import ShiftCam
 from camwright.validation.production.transition import judge_transition
@@ -57,14 +64,26 @@ def family_faults(directory: Path) -> tuple[list[Fault], list[Fault], list[str]]
     content = data.get(FAMILY_FILE)
     if faults or content is None:
         return faults, notes, []
-    record = _record(content)
+    try:
+        record = _record(content)
+    except InputError as error:
+        return [Fault(FAMILY_FILE, what.removeprefix(f"{FAMILY_FILE}: ")) for what in error.faults], notes, []
     if record["provenance"]["camwright"] != camwright_version():
         what = f"made by camwright {record['provenance']['camwright']}: this version does not compute it anew"
         return [], [*notes, Fault(FAMILY_FILE, what)], [_sums_proved(len(data))]
+    missing = [name for cam in record["cams"] if (name := f"cam-{cam['cam']}.design.json") not in data]
+    if missing:
+        return [Fault(name, "missing: family.json has the cam") for name in missing], notes, []
     designs = [
         parse_design((data[f"cam-{cam['cam']}.design.json"] or b"").decode(), f"cam-{cam['cam']}.design.json")
         for cam in record["cams"]
     ]
+    faults = [
+        Fault(FAMILY_FILE, what)
+        for what in _said_twice(record, designs, {Path(path).parts[0] for path in data if len(Path(path).parts) > 1})
+    ]
+    if faults:
+        return faults, notes, []
     faults = [Fault(FAMILY_FILE, what) for what in (*_cam_faults(record, designs), *_change_faults(record, designs))]
     remade = family_sheets(record)
     if data.get(PAGE) != remade[PAGE]:
@@ -89,10 +108,40 @@ def _sums_proved(files: int) -> str:
 
 def _record(content: bytes) -> dict[str, Any]:
     """Read a family.json whose checksum is that of the manifest."""
-    record = json.loads(content)
+    record = parse_family(content)
     if to_json(record).encode() != content:
         raise InputError(f"{FAMILY_FILE}: its bytes are not those that were written")
-    return dict(record)
+    return record
+
+
+def _said_twice(record: dict[str, Any], designs: list[StoredDesign], folders: set[str]) -> Iterator[str]:
+    """Compare what follows from the job's text, from the designs, or from other values of the file."""
+    job = parse_job(record["toml"], f"{FAMILY_FILE}, toml")
+    origin = record["provenance"]
+    libraries, version = origin["libraries"], origin["schema_version"]
+    stated = {
+        "job": job.name,
+        "si": json.loads(to_json(job_numbers(job))),
+        "line_speeds_m_per_s": list(job.line_speeds),
+        "bands_found_to": FOUND_TO,
+        "provenance": {**provenance(job.sha256), "libraries": libraries, "schema_version": version},
+        "passed": all(each["passed"] for each in (*record["cams"], *record["switching"], *record["seams"].values())),
+    }
+    for key, value in stated.items():
+        if record[key] != value:
+            yield f"{key} is {record[key]!r}, by the job's text and the rest of the file it is {value!r}"
+    if [cam["cam"] for cam in record["cams"]] != list(range(1, len(designs) + 1)) or not designs:
+        yield "cams are not numbered from 1 on"
+    if not folders <= set(record["seams"]):
+        yield f"seams are of {sorted(record['seams'])}, tables are for {sorted(folders)}"
+    motions = {design.job.name: json.loads(to_json(design.profile.to_dict())) for design in designs}
+    if record["profiles"]["cams"] != motions:
+        yield "profiles.cams are not those of the designs"
+    pairs = [(each["slower"], each["faster"]) for each in record["switching"]]
+    if pairs != [(number, number + 1) for number in range(1, len(designs))]:
+        yield f"switching is between {pairs}, not from each cam to the next"
+    if len(record["cams"]) < record["at_least"] or record["fewest"] is not (len(record["cams"]) == record["at_least"]):
+        yield "cams, fewest and at_least do not agree"
 
 
 def _cam_faults(record: dict[str, Any], designs: list[StoredDesign]) -> Iterator[str]:
@@ -110,8 +159,23 @@ def _cam_faults(record: dict[str, Any], designs: list[StoredDesign]) -> Iterator
         )
         report = judge(design.profile, job.task, job.servo, servo_aware=True, slowest=job.slowest)
         failed = [check.name for check in report.checks if not check.passed]
-        if failed != cam["failed_checks"]:
-            yield f"{name}.failed_checks: {failed}, recorded {cam['failed_checks']}"
+        band = band_answer(job_band(design.profile, job, report))
+        found = {
+            "failed_checks": failed,
+            "sync_tolerance_m": tolerance,
+            "name": job.name,
+            "speed_band_binds": band["speed_band_binds"],
+        }
+        recorded, again = (np.array(each["speed_band"]) for each in (cam, band))
+        if recorded.shape != again.shape or not np.allclose(recorded, again, rtol=1e-6):
+            yield f"{name}.speed_band: {band['speed_band']}, recorded {cam['speed_band']}"
+        for key, value in found.items():
+            if cam[key] != value:
+                yield f"{name}.{key}: {value}, recorded {cam[key]}"
+        if (cam["objective"]["name"], cam["objective"]["unit"]) != (job.objective, objective_unit(job)):
+            yield f"{name}.objective: {job.objective} in {objective_unit(job)}, recorded {cam['objective']}"
+        if cam["passed"] and failed:
+            yield f"{name}.passed: False, recorded True"
 
 
 def _change_faults(record: dict[str, Any], designs: list[StoredDesign]) -> Iterator[str]:

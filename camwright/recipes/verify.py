@@ -117,7 +117,7 @@ def examine(directory: Path, key: Path | None = None) -> Verified:
         faults += [Fault(RECIPE_FILE, what) for what in sheet_faults(recipe, expected(design))]
         faults += start_faults(recipe, design, data)
         faults += target_faults((*recipe.tables, *(table for motion in recipe.start_tables for table in motion.tables)))
-        remade = list(_remade(recipe, data))
+        remade = [] if faults else list(_remade(recipe, data))
         faults += [other for other in remade if other.file == _PAGE]
         notes += [other for other in remade if other.file != _PAGE]
     proved = () if faults else tuple(_proved(recipe, len(data), made_by == own, notes, key))
@@ -207,6 +207,9 @@ def _own_faults(recipe: Recipe, design: StoredDesign, content: bytes) -> Iterato
     numbers = job_numbers(design.job)
     for path, stored, again in _differences(recipe.job.si, _lists(numbers)):
         yield f"job.si{path} is {stored!r}, the job's text says {again!r}"
+    if recipe.provenance.camwright == camwright_version():
+        for path in _missing(recipe.job.si, numbers):
+            yield f"job.si{path} is missing; the job's text has it"
     if recipe.name != design.job.name:
         yield f"name is {recipe.name!r}, the job's text says {design.job.name!r}"
     if not recipe.tables and not recipe.refused:
@@ -231,6 +234,16 @@ def _differences(stored: Any, again: Any, path: str = "") -> Iterator[tuple[str,
             yield from _differences(stored.get(key), again.get(key), f"{path}.{key}")
     elif stored != again:
         yield path, stored, again
+
+
+def _missing(stored: Any, again: Any, path: str = "") -> Iterator[str]:
+    """List the keys that values read again have and stored ones lack."""
+    if isinstance(stored, dict) and isinstance(again, dict):
+        for key in sorted(again):
+            if key in stored:
+                yield from _missing(stored[key], again[key], f"{path}.{key}")
+            else:
+                yield f"{path}.{key}"
 
 
 def verify_answer(found: Verified) -> dict[str, Any]:

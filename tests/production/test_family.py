@@ -270,6 +270,43 @@ def test_the_folder_of_a_family_is_verified(written: Path, capsys: pytest.Captur
     assert "2 cams, judged and run over their bands anew, have the recorded sync errors" in shown
 
 
+def forge(out: Path, record: dict) -> None:
+    """Write another family.json into a folder, and a manifest that agrees with it."""
+    (out / "family.json").write_text(to_json(record))
+    files = {path.relative_to(out).as_posix(): path.read_bytes() for path in out.rglob("*") if path.is_file()}
+    listed = {name: content for name, content in files.items() if Path(name).name not in (LIST, MANIFEST_FILE)}
+    origin = json.loads((out / MANIFEST_FILE).read_text())["provenance"]
+    (out / MANIFEST_FILE).write_text(
+        manifest_text(listed, Origin(**{key: origin[key] for key in ("camwright", "job_sha256", "libraries")}))
+    )
+
+
+def kinds(value: object, path: tuple[str | int, ...] = ()) -> dict[tuple[str, ...], tuple[str | int, ...]]:
+    """One place of each kind of key or item: of lists the first item stands for all."""
+    found: dict[tuple[str, ...], tuple[str | int, ...]] = {}
+    for key, each in value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ():
+        place = (*path, key)
+        found.setdefault(tuple("#" if isinstance(part, int) else part for part in place), place)
+        found = {**kinds(each, place), **found}
+    return found
+
+
+def test_nothing_of_a_family_can_be_left_out(written: Path, tmp_path: Path) -> None:
+    """Every kind of key and item is taken out once; which libraries made it is a statement that nobody can prove."""
+    out = shutil.copytree(written, tmp_path / "family")
+    text = (out / "family.json").read_text()
+    for kind, place in kinds(json.loads(text)).items():
+        if kind[:2] == ("provenance", "libraries") or (kind[0] == "profiles" and len(kind) > 3):
+            continue
+        record = json.loads(text)
+        parent = record
+        for key in place[:-1]:
+            parent = parent[key]
+        del parent[place[-1]]
+        forge(out, record)
+        assert any(fault.file == "family.json" for fault in verify(out)), kind
+
+
 @pytest.mark.parametrize(
     ("keys", "told"),
     [
@@ -287,13 +324,9 @@ def test_a_family_that_says_what_its_cams_do_not_is_told(
         place = place[key]
     place[keys[-1]] *= 0.9
     # the forger makes sheet and manifest anew: only the cams themselves contradict
-    (out / "family.json").write_text(to_json(record))
     for name, content in family_sheets(record).items():
         (out / name).write_bytes(content)
-    files = {path.relative_to(out).as_posix(): path.read_bytes() for path in out.rglob("*") if path.is_file()}
-    listed = {name: content for name, content in files.items() if Path(name).name not in (LIST, MANIFEST_FILE)}
-    origin = Origin(**{key: record["provenance"][key] for key in ("camwright", "job_sha256", "libraries")})
-    (out / "manifest.json").write_text(manifest_text(listed, origin))
+    forge(out, record)
     (fault,) = verify(out)
     assert (fault.file, fault.what.partition(":")[0]) == ("family.json", told)
 

@@ -342,6 +342,59 @@ def test_a_page_that_says_something_else_is_told(folder: Path) -> None:
     assert note.what.endswith("or was made with other versions of the typesetting libraries")
 
 
+def kinds(value: object, path: tuple[str | int, ...] = ()) -> dict[tuple[str, ...], tuple[str | int, ...]]:
+    """One place of each kind of key or item: of lists the first item stands for all."""
+    found: dict[tuple[str, ...], tuple[str | int, ...]] = {}
+    for key, each in value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ():
+        place = (*path, key)
+        found.setdefault(tuple("#" if isinstance(part, int) else part for part in place), place)
+        found = {**kinds(each, place), **found}
+    return found
+
+
+FREE = ("provenance", "libraries")
+"""What made it: a statement that nobody can prove."""
+
+
+def without_each(folder: Path, under: str) -> None:
+    """Take out each kind of key and item, and empty each object and list, the manifest written anew: each must be told."""
+    data = json.loads((folder / "recipe.json").read_text(encoding="utf-8"))
+    written = (folder / "recipe.json").read_bytes()
+    files = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file() and path.name != "manifest.json"}
+    origin = parse_recipe(json.dumps(data), "recipe.json").provenance
+    for kind, place in kinds(data).items():
+        if kind[0] != under or kind[:2] == FREE:
+            continue
+        for emptied in (False, True):
+            forged = json.loads(json.dumps(data))
+            parent = forged
+            for part in place[:-1]:
+                parent = parent[part]
+            if emptied and not (isinstance(parent[place[-1]], dict | list) and parent[place[-1]]):
+                continue
+            if emptied:
+                parent[place[-1]] = type(parent[place[-1]])()
+            else:
+                del parent[place[-1]]
+            files[folder / "recipe.json"] = canonical(forged).encode()
+            (folder / "recipe.json").write_bytes(files[folder / "recipe.json"])
+            named = {path.relative_to(folder).as_posix(): content for path, content in files.items()}
+            (folder / "manifest.json").write_bytes(manifest_text(named, origin).encode())
+            assert any(not fault.file.startswith("recipe.h") for fault in verify(folder)), (kind, emptied)
+    (folder / "recipe.json").write_bytes(written)
+
+
+@pytest.mark.parametrize("under", ["job", "speeds", "refused"])
+def test_nothing_can_be_left_out(folder: Path, under: str) -> None:
+    without_each(folder, under)
+
+
+@pytest.mark.slow
+def test_nothing_at_all_can_be_left_out(folder: Path) -> None:
+    for under in json.loads((folder / "recipe.json").read_text(encoding="utf-8")):
+        without_each(folder, under)
+
+
 def test_a_recipe_of_another_version_is_not_computed_anew(folder: Path) -> None:
     edit(folder, lambda data: data["provenance"].update(camwright="0.1.0"))
     found = examine(folder)

@@ -1,0 +1,180 @@
+"""What a family.json has: its keys and their types, none missing, none more."""
+
+from __future__ import annotations
+
+import json
+from typing import Annotated, Any, Literal
+
+from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
+from pydantic.dataclasses import dataclass
+
+from camwright.profiles.errors import InputError
+from camwright.recipes.family_sheet import FAMILY_FILE
+
+_STRICT = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
+_MOST_FAULTS = 20
+
+
+@dataclass(frozen=True, config=_STRICT)
+class ObjectiveRecord:
+    """What was made least, and its value."""
+
+    name: str
+    value: float | None
+    unit: str
+
+
+@dataclass(frozen=True, config=_STRICT)
+class FamilyCamRecord:
+    """A cam and what was found of it."""
+
+    cam: int
+    name: str
+    band_m_per_s: tuple[float, float]
+    objective: ObjectiveRecord
+    worst_sync_error_m: float
+    worst_of_all_servos_m: float
+    designed_sync_error_m: float | None
+    sync_tolerance_m: float
+    speed_band: list[tuple[float, float]]
+    speed_band_binds: list[str]
+    failed_checks: list[str]
+    passed: bool
+
+
+@dataclass(frozen=True, config=_STRICT)
+class CheckRecord:
+    """A check of a change."""
+
+    name: str
+    passed: bool
+    value: float | None
+    limit: float | None
+    unit: str
+    at: float | None
+    source: str
+
+
+@dataclass(frozen=True, config=_STRICT)
+class ChangeRecord:
+    """How it goes from one cam to the next."""
+
+    how: str
+    name: str | None
+    velocity_jump_m_per_s: float
+    acceleration_jump_m_per_s2: float
+    position_jump_m: float
+    checks: list[CheckRecord]
+
+
+@dataclass(frozen=True, config=_STRICT)
+class WaysRecord:
+    """Both ways between two cams."""
+
+    up: ChangeRecord
+    down: ChangeRecord
+
+
+@dataclass(frozen=True, config=_STRICT)
+class SwitchingRecord:
+    """Two neighbours and where the controller changes."""
+
+    slower: int
+    faster: int
+    up_m_per_s: float
+    down_m_per_s: float
+    both_hold_m_per_s: tuple[float, float]
+    how: str
+    hold_line_speed: bool
+    transition: WaysRecord
+    passed: bool
+
+
+@dataclass(frozen=True, config=_STRICT)
+class SeamsRecord:
+    """What was found at the seams of a target's tables."""
+
+    number_format: str
+    velocity_jump_m_per_s: float
+    acceleration_jump_m_per_s2: float
+    position_jump_m: float
+    passed: bool
+    withheld: dict[str, str]
+    refused: list[str]
+
+
+@dataclass(frozen=True, config=_STRICT)
+class OriginRecord:
+    """What made it of which job."""
+
+    camwright: str
+    job_sha256: str
+    libraries: dict[str, str]
+    schema_version: int
+
+
+@dataclass(frozen=True, config=_STRICT)
+class ProfileRecord:
+    """A profile."""
+
+    breaks: list[float]
+    coefficients: list[list[float]]
+
+
+@dataclass(frozen=True, config=_STRICT)
+class TransitionRecord:
+    """A designed cycle from one cam to another."""
+
+    before: Annotated[int, Field(alias="from")]
+    to: int
+    profile: ProfileRecord
+
+
+@dataclass(frozen=True, config=_STRICT)
+class ProfilesRecord:
+    """All motions."""
+
+    cams: dict[str, ProfileRecord]
+    transitions: list[TransitionRecord]
+
+
+@dataclass(frozen=True, config=_STRICT)
+class FamilyRecord:
+    """All of it."""
+
+    job: str
+    line_speeds_m_per_s: tuple[float, float]
+    overlap: float
+    cams: list[FamilyCamRecord]
+    fewest: bool
+    at_least: int
+    bands_found_to: float
+    switching: list[SwitchingRecord]
+    seams: dict[str, SeamsRecord]
+    passed: bool
+    hold_line_speed: bool
+    language: Literal["en", "de", "zh"]
+    toml: str
+    si: dict[str, Any]
+    provenance: OriginRecord
+    profiles: ProfilesRecord
+
+
+def parse_family(content: bytes) -> dict[str, Any]:
+    """Read a family.json.
+
+    Raises
+    ------
+    InputError
+        It is none of this version: each fault with its place in the file.
+    """
+    try:
+        TypeAdapter(FamilyRecord).validate_json(content)
+    except ValidationError as error:
+        raise InputError(
+            *(
+                f"{FAMILY_FILE}: {'.'.join(map(str, entry['loc'])) or 'the file'}: {entry['msg']}"
+                for entry in error.errors(include_url=False)[:_MOST_FAULTS]
+            )
+        ) from error
+    return dict(json.loads(content))
