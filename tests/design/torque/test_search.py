@@ -239,7 +239,7 @@ def test_no_place_on_the_crank_is_better(aim: CommandObjective) -> None:
     placed = place_by_objective(Task(free, SHEAR, TURNS), aim)
     assert placed is not None
     best = measure_motor(solve(placed.task, aim).profile, placed.task)
-    for degrees in (60, 75, 90, 105, 120, 135):
+    for degrees in (80, 85, 90, 95, 100, 105):  # beyond, no motion returns in time
         task = Task(replace(CRANK, sync_at=math.radians(degrees)), SHEAR, TURNS)
         other = measure_motor(solve(task, aim).profile, task)
         assert getattr(best, aim) <= getattr(other, aim) * (1 + 1e-4)
