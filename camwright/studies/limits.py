@@ -71,6 +71,8 @@ def limits(job: Job, step: Step = ignore) -> MachineLimits:
     >>> round(found.lengths.eq10 * 1e3, 1)                                        # mm
     232.9
     """
+    step("finding how hard the line may ramp")
+    ramps = designed_ramps(job)  # first, for it refuses at once what is too slow a line for a servo-aware design
     step("finding the highest line speed and the shortest cut")
     far = extremes(job.task)
     step("finding them with the axis in tolerance")
@@ -81,5 +83,4 @@ def limits(job: Job, step: Step = ignore) -> MachineLimits:
     axis = axis_lengths(job)
     step("finding them over the band of line speeds")
     over_band = band_lengths(job, axis, within.min_cut_length if job.servo_aware else None)
-    step("finding how hard the line may ramp")
-    return MachineLimits(job, far, within, lengths, axis, over_band, designed_ramps(job))
+    return MachineLimits(job, far, within, lengths, axis, over_band, ramps)
