@@ -10,18 +10,10 @@ from pydantic.dataclasses import dataclass
 
 from camwright.profiles.errors import InputError
 from camwright.recipes.family_sheet import FAMILY_FILE
+from camwright.recipes.model import Objective, RecipeCheck
 
 _STRICT = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
 _MOST_FAULTS = 20
-
-
-@dataclass(frozen=True, config=_STRICT)
-class ObjectiveRecord:
-    """What was made least, and its value."""
-
-    name: str
-    value: float | None
-    unit: str
 
 
 @dataclass(frozen=True, config=_STRICT)
@@ -31,7 +23,7 @@ class FamilyCamRecord:
     cam: int
     name: str
     band_m_per_s: tuple[float, float]
-    objective: ObjectiveRecord
+    objective: Objective
     worst_sync_error_m: float
     worst_of_all_servos_m: float
     designed_sync_error_m: float | None
@@ -43,19 +35,6 @@ class FamilyCamRecord:
 
 
 @dataclass(frozen=True, config=_STRICT)
-class CheckRecord:
-    """A check of a change."""
-
-    name: str
-    passed: bool
-    value: float | None
-    limit: float | None
-    unit: str
-    at: float | None
-    source: str
-
-
-@dataclass(frozen=True, config=_STRICT)
 class ChangeRecord:
     """How it goes from one cam to the next."""
 
@@ -64,7 +43,7 @@ class ChangeRecord:
     velocity_jump_m_per_s: float
     acceleration_jump_m_per_s2: float
     position_jump_m: float
-    checks: list[CheckRecord]
+    checks: list[RecipeCheck]
 
 
 @dataclass(frozen=True, config=_STRICT)
