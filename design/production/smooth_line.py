@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camwright.design.production.line_plan import fastest_line
+from camwright.design.returns.ipopt import QUIET
 from camwright.profiles.errors import InputError, SolverError
 from camwright.profiles.line_run import LineRun
 from camwright.profiles.polynomial.profile import FloatArray
@@ -21,10 +22,8 @@ from camwright.profiles.polynomial.profile import FloatArray
 MOST_CHANGES = 5000
 """Most changes of the highest speed along a list."""
 
-_OPTIONS: dict[str, Any] = {
-    "print_time": False,
-    "ipopt.print_level": 0,
-    "ipopt.sb": "yes",
+_OPTIONS: dict[str, Any] = QUIET | {
+    "ipopt.acceptable_iter": 15,
     "ipopt.mu_strategy": "adaptive",
     "ipopt.tol": 1e-7,
     "ipopt.constr_viol_tol": 1e-10,

@@ -8,8 +8,16 @@ from typing import Any
 
 from camwright.design.returns.transcription import Programme, Shape
 
-# An answer is one that meets the tolerances, not one that nearly does.
-QUIET: dict[str, Any] = {"print_time": False, "ipopt.print_level": 0, "ipopt.sb": "yes", "ipopt.acceptable_iter": 0}
+# An answer is one that meets the tolerances, not one that nearly does. CasADi's own remarks on a try that cannot succeed (arcs held on
+# limits that leave nothing to choose, a value that is no number) are for its status, not for standard error.
+QUIET: dict[str, Any] = {
+    "print_time": False,
+    "show_eval_warnings": False,
+    "inputs_check": False,
+    "ipopt.print_level": 0,
+    "ipopt.sb": "yes",
+    "ipopt.acceptable_iter": 0,
+}
 
 # A first look on the grid: convex, so any start will do; it need not be more exact than the grid.
 _GRID = {

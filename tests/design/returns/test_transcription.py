@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
+from camwright.design.returns.ipopt import programme
 from camwright.design.returns.scaling import ScaledProblem
 from camwright.design.returns.transcription import (
     Arc,
@@ -207,3 +208,15 @@ def test_limits_at_the_nodes_put_arcs_on_them_and_keep_the_jerk_continuous() -> 
 def test_arcs_that_leave_nothing_to_choose(arcs: tuple[Arc, ...], too_many: bool) -> None:
     assert Shape(arcs, 3, True, "rms_jerk").overdetermined is too_many
     assert not Shape(arcs, 3, False, "rms_jerk").overdetermined  # on a grid the arcs are not told
+
+
+def test_a_try_that_leaves_nothing_to_choose_ends_without_a_word_of_its_solver(
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    """Three stretches of constant speed, one held on its limit: one equation more than unknowns, of which CasADi warns on its own."""
+    shape = Shape(("cruise", "free", "cruise", "free", "cruise"), 3, True, "rms_jerk", at_nodes=True)
+    assert not shape.overdetermined  # but for the limit that is held
+    problem = ScaledProblem(1.0, 0.0, 0.0, 0.0, -9.0, 1.3, 1e4, 1e6, "rms_jerk")
+    start = ScaledMotion(np.full(5, 0.2), np.zeros(16), 0.0)
+    assert not programme(shape).solve(problem, start)[1]["success"]
+    assert capfd.readouterr() == ("", "")
