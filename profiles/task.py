@@ -18,8 +18,6 @@ class Task:
 
     Parameters
     ----------
-    machine
-        The machine.
     cut
         The cycle on the master.
     limits

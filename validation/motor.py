@@ -151,8 +151,6 @@ def work_drawn(torque: CamProfile, profile: CamProfile, machine: Machine) -> flo
     ----------
     torque, profile
         Torque at the motor (N·m) and slave over the same stretch of the master.
-    machine
-        The machine.
     """
     return _energies(torque, profile, machine)[0]
 

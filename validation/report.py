@@ -124,8 +124,6 @@ def judge(
         One cycle over the master period ``[0, x_c]`` (slave unit).
     task
         The machine, its sync zone placed, the cut that it is judged for, and the limits of the slave.
-    servo
-        The servo.
     servo_aware
         Whether to judge it as a servo-aware design: the axis, too, must keep the limits of speed, acceleration and reversal, and is in sync
         in the shear zone by design, so that there is no transition to judge.

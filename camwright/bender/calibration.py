@@ -47,10 +47,6 @@ class Calibration:
 
     Parameters
     ----------
-    springback
-        The table.
-    bends
-        The test bends.
     residuals
         Workpiece angle by the table minus the one measured (degrees), one a test bend.
     text

@@ -22,8 +22,6 @@ class SheetWords:
 
     Parameters
     ----------
-    language
-        The language.
     messages
         Messages by key, with ``{name}`` where a value belongs.
     notices

@@ -24,8 +24,6 @@ def die_styles(
 
     Parameters
     ----------
-    path
-        The file.
     units
         Its unit, whatever it says; ``None`` for its own.
     believed

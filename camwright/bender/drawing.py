@@ -79,10 +79,6 @@ class Drawing:
     ----------
     outlines
         Style by style, in the order of the drawing.
-    styles
-        The style of each outline.
-    unit
-        Unit of the drawing.
     size
         Width and height of what is bent (m).
     overlaps
@@ -91,8 +87,6 @@ class Drawing:
         Free ends that nearly meet.
     warnings
         What was left out, repaired, merged or not joined.
-    marks
-        Marks of bridges.
     bridge_width
         Width of the bridges that the file itself has (m); 0 where it has none.
     """
@@ -123,8 +117,6 @@ def read_drawing(path: Path, reading: Reading) -> Drawing:
 
     Parameters
     ----------
-    path
-        The file.
     reading
         How it is read.
 

@@ -71,8 +71,6 @@ def walk(document: Any, layers: Layers, left_out: Counter[str]) -> Iterator[Seen
     ----------
     document
         The ezdxf document.
-    layers
-        Its layers.
     left_out
         Counts what is not shown, by what it is and why.
     """

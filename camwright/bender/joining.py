@@ -68,8 +68,6 @@ class _Graph:
 
     Parameters
     ----------
-    node
-        Node of each end.
     meeting
         Ends at each node, in the order of the drawing.
     place, direction

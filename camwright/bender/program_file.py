@@ -57,8 +57,6 @@ class BentOutline:
 
     Parameters
     ----------
-    plan
-        Its bends.
     program
         The program as read back from its text.
     text

@@ -54,8 +54,6 @@ def transfer(text: str, flavour: Flavour, attributes: str | None, end: End | Non
 
     Parameters
     ----------
-    text
-        The program.
     flavour
         Of its control: ``"fagor"`` has a header ``%name,attributes,`` and an end of file, ``"iso"`` neither.
     attributes
@@ -86,8 +84,6 @@ def send(rows: Sequence[bytes], to: SerialLine, sent: Callable[[int], None]) -> 
     ----------
     rows
         The program, as `transfer` gives it.
-    to
-        The line.
     sent
         Told the number of rows sent so far.
 

@@ -182,8 +182,6 @@ def write_sheet(result: BentDrawing, directory: Path, figures: list[Path], langu
         Where the sheets go.
     figures
         Proof figures as SVG, one an outline; none leaves the figures out.
-    language
-        Language of the sheets.
     """
     data = sheet_data(result, language)
     _write_pdf(data, directory / "sheet.pdf", figures)

@@ -22,13 +22,6 @@ class BookFolder:
 
     While the book is being made it holds the folder ``.book`` with the journal and with what is being written; both are gone when it
     is complete.
-
-    Parameters
-    ----------
-    root
-        The folder.
-    book
-        The book.
     """
 
     def __init__(self, root: Path, book: Book) -> None:

@@ -54,8 +54,6 @@ class Combination:
         What is made least.
     first
         Whether it is the first of its cut length.
-    units
-        Units of the book.
     """
 
     number: int
@@ -88,8 +86,6 @@ class Book:
 
     Parameters
     ----------
-    name
-        Name of the job.
     toml
         Text of the job file.
     job_sha256
@@ -98,8 +94,6 @@ class Book:
         Cut lengths (m), ascending.
     line_speeds
         Line speeds (m/s), ascending.
-    objectives
-        Objectives.
     targets
         Names of the targets that tables are written for.
     versions

@@ -22,8 +22,6 @@ class Range:
 
     Parameters
     ----------
-    first
-        The first value.
     step
         What each is above the one before.
     count

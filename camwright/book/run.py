@@ -35,8 +35,6 @@ class BookAnswer:
 
     Parameters
     ----------
-    book
-        The book.
     counts
         How many combinations ended how.
     rate
@@ -86,8 +84,6 @@ def make_book(book: Book, root: Path, crew: Crew, *, resume: bool = False, told:
 
     Parameters
     ----------
-    book
-        The book.
     root
         Its folder; empty or missing, unless the book is resumed.
     crew

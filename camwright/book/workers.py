@@ -147,10 +147,6 @@ def make_all(book: Book, numbers: Iterable[int], crew: Crew) -> Generator[Made, 
 
     Parameters
     ----------
-    book
-        The book.
-    numbers
-        Numbers of the combinations.
     crew
         Who makes them.
 

@@ -83,8 +83,6 @@ def compare_objectives(asked: Job, directory: Path, work: Work, *, figures: bool
 
     Parameters
     ----------
-    asked
-        The job.
     directory
         Where the figure goes: ``tradeoff.svg`` and ``tradeoff.png``.
     work

@@ -42,8 +42,6 @@ class Exported:
 
     Parameters
     ----------
-    target
-        The target.
     table
         The table as it was read back from the file.
     units
@@ -139,8 +137,6 @@ def export(
         Number of points, for targets that leave a choice.
     force
         Write tables that were not released, too.
-    step
-        Told what begins now.
 
     Raises
     ------

@@ -64,8 +64,6 @@ class SpeedTables:
 
     Parameters
     ----------
-    target
-        The target.
     cam
         The tables that the drive makes of the files, in SI units.
     units

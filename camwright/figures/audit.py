@@ -58,11 +58,6 @@ def audit_figure(audit: Audit) -> Picture:
 
     Where the cam's acceleration is unbounded, its differences at the servo's sample time are drawn, and those of the
     optimum with them.
-
-    Parameters
-    ----------
-    audit
-        The cam and the optimum.
     """
     job = audit.job
     heading = head(job.name, f"a running cam ({audit.target.name}, {audit.table.points} points) beside the optimum")

@@ -52,8 +52,6 @@ def axis_figure(design: Design, runs: Mapping[str, ServoRun], ranges: RobustBand
 
     Parameters
     ----------
-    design
-        A servo-aware design.
     runs
         Simulated responses of profiles, by name.
     ranges

@@ -36,8 +36,6 @@ def zone_parts(cut: Cut, start: float, length: float) -> list[tuple[float, float
 
     Parameters
     ----------
-    cut
-        The cut.
     start
         Master position at which the zone begins (m), of any cycle.
     length

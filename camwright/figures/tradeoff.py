@@ -93,11 +93,6 @@ def tradeoff_figure(result: TradeOff) -> Picture:
     """Draw all profiles of a trade-off as points: peak acceleration over RMS torque, or RMS acceleration, and over peak jerk.
 
     Profiles of unbounded jerk stand beyond a line at the right edge; those of unbounded acceleration are named below.
-
-    Parameters
-    ----------
-    result
-        The trade-off.
     """
     bounded = [row for row in result.rows if row.values["peak_acceleration"] is not None]
     heating: CommandObjective = "rms_torque" if "rms_torque" in result.measures else "rms_acceleration"

@@ -36,8 +36,6 @@ def read_bytes(path: Path, what: str, limit: int) -> bytes:
 
     Parameters
     ----------
-    path
-        The file.
     what
         What messages call it, e.g. ``"job file"``.
     limit

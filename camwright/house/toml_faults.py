@@ -15,8 +15,6 @@ def toml_fault(text: str, error: Exception) -> str:
 
     Parameters
     ----------
-    text
-        The text.
     error
         What `tomllib` says of it.
 

@@ -66,8 +66,6 @@ class Job:
 
     Parameters
     ----------
-    name
-        What the job is called.
     machine
         The machine; a crank may leave the place of its sync zone to the design.
     cut
@@ -141,8 +139,6 @@ class Job:
 
         Parameters
         ----------
-        name
-            What the job is called.
         machine, cut, limits, servo
             Each one a table with the keys of a job file, or the object itself. A quantity is a text with a unit, or a number in SI
             units under a key that ends with the unit: ``length_m``, ``line_speed_m_per_s``, ``bandwidth_rad_per_s``, ``mass_kg``.
@@ -258,8 +254,6 @@ class Source:
 
     Parameters
     ----------
-    text
-        The text.
     job
         The job, without a source of its own.
     """

@@ -21,8 +21,6 @@ class JobKey:
     ----------
     table
         Table that it stands in, ``"machine"`` or ``"servo.tolerance"``; empty for the top of the file.
-    name
-        The key.
     machine
         Kind of the machine whose table has it; empty where every job has it.
     takes

@@ -116,8 +116,6 @@ def list_cam(number: int, job: Job, length: float, perfect: float, top: float, l
 
     Parameters
     ----------
-    number
-        Its number.
     job
         The list's job.
     length

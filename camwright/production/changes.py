@@ -51,8 +51,6 @@ class Transition:
         The cycle, counted like that of the cam it leads into.
     line_speed
         Highest line speed at which it keeps the limits (m/s).
-    checks
-        The checks on it.
     """
 
     profile: CamProfile

@@ -23,8 +23,6 @@ class PlacedAlike:
 
     Parameters
     ----------
-    job
-        The job, its sync zone placed.
     found
         The place and its cost; ``None`` where there was nothing to place: all lengths share a place already.
     """

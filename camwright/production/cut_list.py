@@ -49,10 +49,6 @@ class ListPlan:
 
     Parameters
     ----------
-    job
-        The job.
-    asked
-        The list.
     cams
         The cams that it needs, numbered from 1 in the order in which they are first needed.
     of
@@ -109,8 +105,6 @@ class ListStudy:
     ----------
     planned
         Cams, changes and the fastest line speed.
-    tables
-        The tables of each target.
     run
         What the job's servo makes of the list on this plan.
     """
@@ -166,12 +160,8 @@ def plan_list(job: Job, asked: CutList, line: LineRun | None = None, step: Step 
     job
         The job, `Line.acceleration` of its line known unless the line's speed is given; its line speed is that above which the line never
         runs.
-    asked
-        The list.
     line
         Speed of the line; the fastest plan if not given.
-    step
-        Told what begins now.
     runs
         How often a servo will run through it.
 

@@ -19,12 +19,8 @@ class Family:
 
     Parameters
     ----------
-    found
-        Its cams.
     switchings
         The changes between neighbours, from the slowest pair up.
-    tables
-        The tables of each target.
     """
 
     found: FamilyCams
@@ -52,8 +48,6 @@ def family(job: Job, names: Sequence[str], overlap: float = OVERLAP, step: Step 
         As in `camwright.production.family_cams.family_cams`.
     names
         Targets of the tables.
-    step
-        Told what begins now.
 
     Raises
     ------

@@ -114,8 +114,6 @@ def family_cams(job: Job, overlap: float = OVERLAP, step: Step = ignore, *, hold
         A servo-aware job with a range of line speeds.
     overlap
         Share of the line speed by which neighbouring bands overlap; more where the line's ramps ask for it.
-    step
-        Told what begins now.
     hold
         Whether the line is to keep its speed until a change is over, whatever its ramps.
 

@@ -27,8 +27,6 @@ def plan_line(line: Line, lengths: FloatArray, highest: FloatArray, steady: NDAr
 
     Parameters
     ----------
-    line
-        Its ramp, which is known, and its jerk.
     lengths, highest
         Lengths of the pieces (m) and highest speeds on them (m/s), shape ``(pieces,)``.
     steady

@@ -72,8 +72,6 @@ def require_simulable(time: float, job: Job, runs: int = 1) -> None:
     ----------
     time
         How long the list takes (s).
-    job
-        The job.
     runs
         How often a servo runs through it.
     """

@@ -23,8 +23,6 @@ def marks_answer(
 
     Parameters
     ----------
-    found
-        The marks.
     dead
         Dead time of the sensor, if offsets were given.
     wander

@@ -110,12 +110,8 @@ def marks(job: Job, delay: int = 0, step: Step = ignore) -> Marks:
 
     Parameters
     ----------
-    job
-        The job.
     delay
         Cuts between a cut and the first one that its error can correct.
-    step
-        Told what begins now.
 
     Raises
     ------

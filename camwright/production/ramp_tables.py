@@ -74,16 +74,10 @@ def write_ramps(
 
     Parameters
     ----------
-    found
-        The ramps.
-    names
-        Names of targets.
     accuracy
         What the rebuilt motion may be off.
     required
         Whether a target that can take none of the three is a fault.
-    step
-        Told what begins now.
 
     Raises
     ------

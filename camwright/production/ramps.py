@@ -48,8 +48,6 @@ class Ramps:
         The machine beside its park.
     aim
         What was made least.
-    ramp_in, ramp_out
-        Start and stop.
     arcs
         Least ways that start and stop need at the line speed, wherever the slave parks.
     fastest
@@ -162,8 +160,6 @@ def ramps(
 
     Parameters
     ----------
-    job
-        The job.
     park
         Slave coordinate at which the slave stands (slave unit); chosen if not given: opposite the sync zone, or where start and stop need
         the same acceleration; a carriage waits at home.
@@ -171,8 +167,6 @@ def ramps(
         What is made least: the peak of the acceleration, the heat of one start, or the master that it takes.
     latency
         Time from the sensor to the first set value that moves (s).
-    step
-        Told what begins now.
     cam
         The running cam, if it is known, with the sync zone of the job's machine placed; designed where it is needed.
 

@@ -140,14 +140,10 @@ def simulate_shift(
     job
         The job; where the line's speed is planned its ramp is known, where it is given and the job states no ramp the cams are to bear its
         hardest.
-    asked
-        The list.
     line
         Speed of the line; the fastest plan if not given.
     disturbances
         What goes wrong.
-    step
-        Told what begins now.
 
     Raises
     ------

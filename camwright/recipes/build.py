@@ -74,8 +74,6 @@ def make_recipe(
 
     Parameters
     ----------
-    design
-        A cam and its job.
     targets
         Names of the targets that tables are written for.
     language
@@ -86,8 +84,6 @@ def make_recipe(
         Revision, customer, author and date that stand on it.
     required
         Whether a target that cannot take the cam is a fault; else the recipe names it.
-    step
-        Told what begins now.
 
     Raises
     ------

@@ -26,8 +26,6 @@ class Catalogue:
 
     Parameters
     ----------
-    language
-        The language.
     messages
         Messages by key, with ``{name}`` where a value belongs.
     phrases

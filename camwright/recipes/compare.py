@@ -36,8 +36,6 @@ class Change:
     group
         ``"recipe"``, ``"machine"``, ``"product"``, ``"limits"``, ``"servo"``, ``"cam"``, ``"reached"``, ``"range"``, ``"speeds"``,
         ``"production"`` or ``"tables"``.
-    name
-        What differs.
     unit
         Unit of both values; ``""`` for words.
     before, after

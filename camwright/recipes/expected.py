@@ -59,15 +59,7 @@ class Expected:
 
 
 def expected(design: StoredDesign, step: Step = ignore) -> Expected:
-    """Work out what a sheet says of a cam.
-
-    Parameters
-    ----------
-    design
-        A cam and its job.
-    step
-        Told what begins now.
-    """
+    """Work out what a sheet says of a cam."""
     job, profile = design.job, design.profile
     step("checking")
     report = judge(profile, job.task, job.servo, servo_aware=job.servo_aware, slowest=job.slowest)

@@ -124,8 +124,6 @@ class Edge:
 
     Parameters
     ----------
-    value
-        The end.
     binding
         A limit, ``"reversal"``, ``"stroke"``, ``"sync_zone"``, ``"motor"``; ``"axis"`` where it leaves its tolerance; ``"none"`` where
         nothing ends the range, ``"not_found"`` where no end was found.
@@ -175,8 +173,6 @@ class StartStop:
         Highest line speed at which the slave can stand between two cuts (m/s); ``None`` where none was found.
     park
         Slave coordinate at which the slave stands (slave unit); like all below ``None`` where it cannot start and stop at the line speed.
-    ramp_in, ramp_out
-        Start and stop.
     one_shot_master
         Master that one piece on demand takes (m).
     least_arc
@@ -264,8 +260,6 @@ class RecipeTable:
         Its files, the one that holds the points first.
     master_unit, slave_unit
         Units of the points.
-    points
-        The points.
     position_error
         Greatest error of the rebuilt position, at the tool for a slave in rad (m).
     ratio_error
@@ -316,8 +310,6 @@ class RampTables:
 
     Parameters
     ----------
-    motion
-        Which of them.
     profile
         The motion, from zero on the master and the slave.
     tables
@@ -402,16 +394,12 @@ class Recipe:
         `RECIPE_VERSION`.
     kind
         Tells the file apart from others.
-    name
-        Name of the job.
     note
         What the user wants to be read, any text.
     language
         Language of PDF, HTML and XLSX.
     released
         Whether every check of the design and of every table passed.
-    job
-        The job.
     slave_unit
         ``"m"`` or ``"rad"``.
     slave_start
@@ -434,8 +422,6 @@ class Recipe:
         Line speeds at which this cam is released: parts with gaps between them, none for one that passes nowhere.
     working_range
         How far the machine can go.
-    tables
-        The tables.
     refused
         Targets that cannot take the cam.
     provenance

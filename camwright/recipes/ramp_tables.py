@@ -31,12 +31,8 @@ def start_tables(
 
     Parameters
     ----------
-    design
-        A cam and its job.
     targets
         Names of targets.
-    step
-        Told what begins now.
 
     Returns
     -------

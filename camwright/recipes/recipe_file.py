@@ -39,8 +39,6 @@ def parse_recipe(text: str, place: str) -> Recipe:
 
     Parameters
     ----------
-    text
-        The text.
     place
         What messages begin with.
 

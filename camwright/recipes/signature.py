@@ -44,8 +44,6 @@ def is_signed(data: bytes, signature: bytes, key: Path) -> bool:
     ----------
     data
         What was signed.
-    signature
-        The signature.
     key
         PEM file of the public key.
 

@@ -20,8 +20,6 @@ def at_speeds(profile: CamProfile, job: Job, report: ValidationReport) -> tuple[
 
     Parameters
     ----------
-    profile
-        One cycle.
     job
         The job, its machine with everything that the design chose.
     report

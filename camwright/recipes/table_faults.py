@@ -111,8 +111,6 @@ def motion_faults(table: RecipeTable, rebuilt: CamProfile, meant: CamProfile, jo
         What the recipe holds of it.
     rebuilt, meant
         The motion that the drive makes of it, and the one that was designed.
-    job
-        The job.
     begin
         Slave coordinate of the machine at its start (slave unit).
     """

@@ -78,8 +78,6 @@ def examine(directory: Path, key: Path | None = None) -> Verified:
 
     Parameters
     ----------
-    directory
-        The folder.
     key
         PEM file of the public key that it must be signed with; without one no signature is looked at.
 

@@ -33,8 +33,6 @@ def recipe_files(made: MadeRecipe, step: Step = ignore) -> dict[str, bytes]:
     ----------
     made
         The recipe and the texts of its tables.
-    step
-        Told what begins now.
     """
     content = made.recipe
     files = {RECIPE_FILE: recipe_text(content).encode()}
@@ -110,8 +108,6 @@ def write_folder(
     ----------
     files
         Contents by path.
-    directory
-        The folder.
     work
         The job; the recipe of another one of this name is not replaced while that still lies beside it.
     told

@@ -18,8 +18,6 @@ class Judged:
 
     Parameters
     ----------
-    profile
-        The cycle.
     job
         The job that it was judged by, its sync zone where the cycle has it.
     report
@@ -41,8 +39,6 @@ def validate(profile: CamProfile | str | Path, job: Job) -> ValidationReport:
     ----------
     profile
         The cycle, or a file that holds one: a ``design.json`` or a ``cam.csv``, camwright's or anyone's.
-    job
-        The job to judge it by.
 
     Raises
     ------

@@ -31,8 +31,6 @@ def save(design: Design, directory: str | Path) -> tuple[Path, ...]:
 
     Parameters
     ----------
-    design
-        The design.
     directory
         Where the files shall stand; made if it is missing.
 

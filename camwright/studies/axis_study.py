@@ -103,8 +103,6 @@ def solve_job(job: Job, *, suggest: bool = True, proved: bool = True) -> Solutio
 
     Parameters
     ----------
-    job
-        The job.
     suggest
         As in `camwright.design.optimise.solve`.
     proved

@@ -106,8 +106,6 @@ def compare(
         Its optimised cycle; the job is designed if it is not given.
     names
         Names of baselines, from `law_names`; all of them if not given.
-    step
-        Told what begins now.
 
     Raises
     ------

@@ -107,8 +107,6 @@ def optimise(job: Job, step: Step = ignore) -> Design:
 
     Parameters
     ----------
-    job
-        The job.
     step
         Told what begins now, for a display of progress.
 

@@ -50,12 +50,8 @@ class EnvelopeAnswer:
 
     Parameters
     ----------
-    job
-        The job.
     objective
         What was made least at every point.
-    envelope
-        The map.
     quintic, perfect, within
         Highest line speeds (m/s) over cut lengths (m): with the quintic return, with a perfect axis, and with the axis in
         tolerance, which is what `design` would pass, designed anew. Lines with nodes so close that what lies between is true
@@ -140,12 +136,8 @@ def envelope_answer(job: Job, points: int, step: Step = ignore) -> EnvelopeAnswe
 
     Parameters
     ----------
-    job
-        The job.
     points
         Number of cut lengths, beside the job's own and the pitch, and of line speeds.
-    step
-        Told what begins now.
 
     Raises
     ------

@@ -29,8 +29,6 @@ class FamilyBands:
 
     Parameters
     ----------
-    covering
-        The bands.
     overlap
         How neighbours overlap.
     holds_line

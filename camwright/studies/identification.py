@@ -65,8 +65,6 @@ def identify_file(
 
     Parameters
     ----------
-    path
-        The trace.
     velocity_feedforward
         Share of the command's velocity that is fed forward, if known.
     beyond

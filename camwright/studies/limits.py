@@ -23,8 +23,6 @@ class MachineLimits:
 
     Parameters
     ----------
-    job
-        The job.
     far
         Highest line speed at the job's cut length and shortest cut at its line speed that the limits of the command allow, and which
         limit binds there. The axis is not looked at.
@@ -52,13 +50,6 @@ class MachineLimits:
 
 def limits(job: Job, step: Step = ignore) -> MachineLimits:
     """Say how fast and how short the machine of a job can cut, and which limit binds.
-
-    Parameters
-    ----------
-    job
-        The job.
-    step
-        Told what begins now.
 
     Examples
     --------

@@ -23,8 +23,6 @@ class Measured:
     ----------
     name
         ``"optimised"`` or the name of a baseline.
-    profile
-        One cycle.
     motion
         Measures of the slave's motion at line speed (slave unit).
     tool
@@ -64,8 +62,6 @@ def measured(name: str, profile: CamProfile, job: Job) -> Measured:
     ----------
     name
         What it is called among the measured profiles.
-    profile
-        The cycle.
     job
         Its job, the place of the sync zone chosen.
     """

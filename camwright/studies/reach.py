@@ -98,8 +98,6 @@ def highest_speed(
 
     Parameters
     ----------
-    job
-        The job.
     perfect
         Highest line speed of the perfect axis (m/s), ``None`` where none works.
     near

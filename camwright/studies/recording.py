@@ -40,12 +40,8 @@ class RecordedRun:
     ----------
     job
         The job that it was judged by.
-    profile
-        The cam.
     run
         The recording in the job's coordinates.
-    cuts
-        Its cuts.
     total, command, axis
         The errors of the cuts told apart: of all, of the command against the design, of the axis against its command.
     expected

@@ -155,10 +155,6 @@ def remedies(job: Job, report: ValidationReport, band: SpeedBand) -> tuple[Remed
 
     Parameters
     ----------
-    job
-        The job.
-    report
-        The validation of its cam.
     band
         The line speeds at which that cam passes.
 

@@ -35,8 +35,6 @@ class ScrewCarriage:
 
     Parameters
     ----------
-    machine
-        The carriage on its screw.
     limits
         What it may reach: the greatest speed, acceleration and jerk of the crank's carriage (m).
     row

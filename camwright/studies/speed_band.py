@@ -126,8 +126,6 @@ def speed_band(
         What the cam is for, at the line speed of the job.
     servos
         The servo that is judged, then those at the corners of its ranges, which must keep the tolerance as well.
-    report
-        Its validation at that line speed.
     servo_aware
         As in `camwright.validation.report.judge`.
 

@@ -36,8 +36,6 @@ class Row:
         The objective that it is the optimum of, or the name of a baseline.
     kind
         Which of the two.
-    profile
-        One cycle.
     values
         Its measures by name, of the slave (its unit over s², s³) and at the motor (N·m, J per cycle); ``None`` stands for unbounded.
     within_limits
@@ -65,8 +63,6 @@ class TradeOff:
 
     Parameters
     ----------
-    job
-        The job.
     measures
         What was measured, in the order of the tables.
     rows
@@ -114,13 +110,6 @@ def trade_off(job: Job, step: Step = ignore) -> TradeOff:
 
     A crank whose sync zone is free has it where each objective wants it; the baselines have it where the job's own objective does, or, if
     the solver failed on that, the first one that it solved.
-
-    Parameters
-    ----------
-    job
-        The job.
-    step
-        Told what begins now.
 
     Raises
     ------

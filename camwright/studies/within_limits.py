@@ -22,10 +22,6 @@ def keeps_limits(profile: CamProfile, motion: MotionMeasures, job: Job) -> bool:
 
     Parameters
     ----------
-    profile
-        One cycle.
-    motion
-        Its measures.
     job
         The job, the place of the sync zone chosen.
     """

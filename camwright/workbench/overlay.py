@@ -31,8 +31,6 @@ def overlay(text: str, data: bytes, name: str, units: str | None = None, design:
     ----------
     text
         The job file's text.
-    data
-        The file.
     name
         What the file is called in messages.
     units

@@ -19,8 +19,6 @@ class Saved:
 
     Parameters
     ----------
-    folder
-        The folder.
     text
         The job that the page began with: its own file may be written over, like in any editor.
     """

@@ -44,8 +44,6 @@ class Demand:
 
     Parameters
     ----------
-    problem
-        The return.
     shares
         Shares of the limits of speed, acceleration and jerk that the sync zone uses.
     """

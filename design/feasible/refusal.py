@@ -56,8 +56,6 @@ def require_feasible(task: Task, *, suggest: bool = True) -> None:
 
     Parameters
     ----------
-    task
-        The job.
     suggest
         Whether to look for what would work.
 
@@ -77,8 +75,6 @@ def infeasible(
 
     Parameters
     ----------
-    task
-        The job.
     suggest
         Whether to look for what would work.
     load

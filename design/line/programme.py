@@ -44,8 +44,6 @@ class MeshAnswer:
 
     Parameters
     ----------
-    motion
-        The motion.
     dear
         Share of the objective that each interval would save, to first order, if its coefficients inside did not count: multipliers times
         bends, shape ``(n,)``.

@@ -85,8 +85,6 @@ class ChangeRows:
 
         Parameters
         ----------
-        servo
-            The servo.
         line_speed
             Line speed (m/s).
         """

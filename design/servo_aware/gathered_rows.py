@@ -86,8 +86,6 @@ class GatheredRows:
 
         Parameters
         ----------
-        command
-            The command.
         band
             Its band, as a share of the tolerance.
         ratio

@@ -59,8 +59,6 @@ def lattice_sums(
         How far behind a place its newest sample lies, and the distance of samples (m).
     weights
         Shape ``(samples, sums)``, newest sample first.
-    splines
-        The splines.
     found
         Where the sums go, shape ``(places, sums, splines)``.
     """

@@ -90,8 +90,6 @@ class ZoneTable:
 
     Parameters
     ----------
-    axis
-        The axis.
     basis
         The commands.
     """

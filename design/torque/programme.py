@@ -98,8 +98,6 @@ class TorqueAnswer:
         Largest KKT residual (scaled).
     success
         Whether the solver converged to numbers.
-    iterations
-        Its iterations.
     """
 
     guess: Guess

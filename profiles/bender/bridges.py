@@ -144,8 +144,6 @@ class _Room:
 
     Parameters
     ----------
-    plan, rule
-        Bends and bridges.
     ends
         Shape ``(m + 1,)``: where each side ends along the rule (m).
     low, high

@@ -28,12 +28,8 @@ def compensate(plan: BendPlan, springback: Springback, name: str) -> NcProgram:
 
     Parameters
     ----------
-    plan
-        The bends.
     springback
         The tables; `Springback.faults` should be empty for this plan.
-    name
-        Name of the program.
     """
     factors = springback.by_radius(plan.radii).tolist()
     places = plan.vertices.tolist()

@@ -53,8 +53,6 @@ def write_program(program: NcProgram, flavour: Flavour, numbering: Numbering, sp
 
     Parameters
     ----------
-    program
-        The program.
     flavour
         ``"fagor"`` or ``"iso"``.
     numbering

@@ -21,8 +21,6 @@ class NcProgram:
 
     Parameters
     ----------
-    name
-        Name of the program.
     feeds
         Shape ``(m + 1,)``: feeds in µm, before each bend and after the last. A feed of 0 is not written.
     bends

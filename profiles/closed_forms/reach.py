@@ -28,8 +28,6 @@ class DoubleS:
         Duration of each of the two phases of constant acceleration.
     cruise
         Duration of the phase of constant speed.
-    jerk
-        Jerk in the jerk phases.
     """
 
     ramp: float

@@ -208,8 +208,6 @@ class Machine(ABC):
 
         Parameters
         ----------
-        cut
-            The cut.
         angle
             The angle that the zone was given as (rad), if it was.
         """

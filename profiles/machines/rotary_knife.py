@@ -39,8 +39,6 @@ class RotaryKnife(Machine):
         Number of blades, evenly spaced.
     gear_ratio
         Motor turns per drum turn.
-    sync
-        Which speed of the blade is in sync.
     drum_inertia
         Inertia of drum, gear and motor at the drum (kg·m²).
     drum_friction

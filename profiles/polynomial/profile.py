@@ -248,8 +248,6 @@ class CamProfile:
 
         Parameters
         ----------
-        order
-            Order of the derivative.
         start, end
             Part of the domain to look at; all of it if not given. One-sided limits at breaks inside the part count.
 

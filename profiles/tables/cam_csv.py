@@ -27,8 +27,6 @@ def table_positions(profile: CamProfile, points: int) -> FloatArray:
 
     Parameters
     ----------
-    profile
-        One cycle.
     points
         Number of positions, both ends of the cycle included.
 
@@ -66,8 +64,6 @@ def write_cam_csv(profile: CamProfile, points: int, comments: Sequence[str], sla
 
     Parameters
     ----------
-    profile
-        One cycle.
     points
         Number of rows.
     comments

@@ -200,8 +200,6 @@ def sample_profile(profile: CamProfile, x: FloatArray, units: Units, law: PieceL
         One cycle, in SI units.
     x
         Shape ``(n,)``, master positions (m) from the start to the end of the cycle.
-    units
-        Units of the table.
     law
         Law of the pieces. With ``"quintic"`` a piece on which the profile is straight gets the law ``"line"``.
 

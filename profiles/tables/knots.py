@@ -91,8 +91,6 @@ def choose(
         One cycle, in SI units.
     target
         What the table is for.
-    units
-        Units of the table.
     accuracy
         What the rebuilt motion may be off.
     points
@@ -259,8 +257,6 @@ def table_units(
         What the table is for.
     profile
         One cycle, in SI units.
-    units
-        The user's units.
     asked
         Whether the user named them: they are obeyed, or refused.
     travel

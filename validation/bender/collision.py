@@ -76,8 +76,6 @@ class Collision:
         Number of the bend, from 0.
     side
         Side of the rule that is hit, from 0: the one before bend ``side``.
-    what
-        What it meets.
     """
 
     bend: int
@@ -94,8 +92,6 @@ def collisions(points: FloatArray, moulds: FloatArray, envelope: MouldEnvelope) 
         Shape ``(m + 2, 2)``: the bent rule (m).
     moulds
         Shape ``(m,)``: mould angles (rad), positive to the left.
-    envelope
-        The mould.
     """
     count = len(moulds)
     if count < 2:

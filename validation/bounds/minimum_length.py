@@ -174,8 +174,6 @@ def over_line_speeds(
     ----------
     task, servo
         As in `linear_return_to_tolerance`.
-    law
-        The return.
     shares
         Line speeds as shares of the cut's.
 

@@ -60,8 +60,6 @@ def motor_bound(profile: CamProfile, task: Task, objective: MotorObjective, moti
         One cycle over ``[0, x_c]``: what its return needs tells which motions need not be looked at.
     task
         The job.
-    objective
-        The objective.
     motion
         Bound of the RMS acceleration over the return, or for the peak torque of the peak acceleration; none where none is known.
     """

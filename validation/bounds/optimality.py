@@ -67,8 +67,6 @@ def lower_bound(profile: CamProfile, task: Task, objective: ObjectiveName) -> Bo
     ----------
     profile
         One cycle over ``[0, x_c]``. Where the bound is the dual's, its grid holds this profile's breaks; that makes it the sharper.
-    task
-        The job.
     objective
         ``"peak_acceleration"``, ``"rms_acceleration"``, ``"peak_jerk"`` or ``"rms_jerk"``; root mean squares over the return zone. Or
         ``"rms_torque"`` (over the whole cycle), ``"peak_torque"`` or ``"energy"`` at the motor, as `camwright.validation.motor`

@@ -112,8 +112,6 @@ def ramped_bound(profile: CamProfile, task: Task, objective: MotionObjective) ->
         One cycle over ``[0, x_c]``, whose breaks the mesh takes: that makes the bound the sharper.
     task
         Machine, its sync zone placed, cut, limits and line. The motor's curve and its torque are not looked at.
-    objective
-        The objective.
 
     Returns
     -------

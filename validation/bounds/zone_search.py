@@ -21,8 +21,6 @@ class _Edge:
 
     Parameters
     ----------
-    excess
-        The quantity.
     spare
         Room left beside a guess, for it to lie on the other side of the edge than the last place did.
     low, high

@@ -79,8 +79,6 @@ def with_clock(fit: TraceFit, found: Minimum) -> Minimum:
 
     Parameters
     ----------
-    fit
-        The trace.
     found
         The fit without clock, the sample time among its parameters.
 

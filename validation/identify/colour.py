@@ -23,8 +23,6 @@ def with_colour(fit: TraceFit, found: Minimum) -> Minimum:
 
     Parameters
     ----------
-    fit
-        The trace.
     found
         The fit.
     """

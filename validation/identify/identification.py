@@ -97,8 +97,6 @@ def identify(
 
     Parameters
     ----------
-    trace
-        The trace.
     place
         What messages begin with.
     velocity_feedforward

@@ -55,8 +55,6 @@ def with_rounding(fit: TraceFit, found: Minimum, command: float, actual: float) 
 
     Parameters
     ----------
-    fit
-        The trace.
     found
         The fit.
     command, actual

@@ -79,10 +79,6 @@ def run_change(change: CamChange, servo: Servo, line_speeds: Sequence[float], ph
 
     Parameters
     ----------
-    change
-        The change.
-    servo
-        The servo.
     line_speeds
         Line speeds, each by itself.
     phases
@@ -141,8 +137,6 @@ def change_checks(
 
     Parameters
     ----------
-    change
-        The change.
     servos
         The servo that is judged, then those at the corners of its ranges.
     line_speeds

@@ -80,8 +80,6 @@ def motion_table(
 
     Parameters
     ----------
-    cams
-        The cams.
     order
         Which one runs at each piece, shape ``(pieces,)``.
     pitch

@@ -124,8 +124,6 @@ def run_shift(shift: Shift, line: LineRun, servo: Servo, disturbance: Disturbanc
         What is run.
     line
         Line speed over time; it passes all the material of the shift.
-    servo
-        The servo.
     disturbance
         Noise and slip.
 

@@ -30,8 +30,6 @@ def gears_of(machine: Machine, unit: SlaveUnit, given: float | None) -> tuple[Ge
 
     Parameters
     ----------
-    machine
-        The machine.
     unit
         Unit of the recorded positions.
     given

@@ -41,8 +41,6 @@ def zeros_of(profile: CamProfile, master: FloatArray, line_speed: float, apart: 
 
     Parameters
     ----------
-    profile
-        The cam.
     master
         Master position of the rows (m).
     line_speed

@@ -94,8 +94,6 @@ def axis_checks(peaks: AxisPeaks, speed: float, acceleration: float, least_veloc
 
     Parameters
     ----------
-    peaks
-        The axis' motion.
     speed, acceleration
         Limits (slave unit/s, slave unit/s²).
     least_velocity

@@ -84,8 +84,6 @@ class Lifted:
 
     Parameters
     ----------
-    loops
-        The servos.
     orders
         The quantities: derivatives of the axis over time, 0 the position, 1 the velocity, 2 the acceleration.
     history
@@ -124,8 +122,6 @@ def lift_side_by_side(loops: Loops, past: int, orders: tuple[int, ...], size: in
 
     Parameters
     ----------
-    loops
-        The servos.
     past
         Samples that they remember, at least one.
     orders

@@ -41,8 +41,6 @@ def line_speed_errors(
         The servos as they are, dead time and lead included.
     line_speeds
         Line speeds above 0 (m/s), shape ``(n,)``.
-    phases
-        Sampling phases.
 
     Returns
     -------

@@ -83,8 +83,6 @@ def servo_response(profile: CamProfile, task: Task, servo: Servo, tolerance: flo
         One cycle over the master period ``[0, x_c]``.
     task
         The machine, which says what the ideal sync line is, and the cut.
-    servo
-        The servo.
     tolerance
         Sync error allowed for the settling length (m); the cut's sync tolerance if not given.
 
@@ -179,8 +177,6 @@ class _InSync:
         Master position, counted on and from the start of the sync zone (m).
     ideal, actual
         Slave coordinate on the line, and of the axis (slave unit).
-    ratio
-        Ratio of the axis.
     """
 
     machine: Machine

@@ -223,8 +223,6 @@ def simulate(profile: CamProfile, cut: Cut, servo: Servo) -> ServoRun:
         One cycle over the master period ``[0, x_c]`` (slave unit).
     cut
         Cut length, line speed and zones.
-    servo
-        The servo.
 
     Raises
     ------

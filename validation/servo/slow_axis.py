@@ -263,8 +263,6 @@ def decided(axis: SlowAxis, measure: Callable[[FloatArray, FloatArray], tuple[_F
 
     Parameters
     ----------
-    axis
-        The axis.
     measure
         Takes what `SlowAxis.at` gives; gives what is measured, and the master positions (m) that decided it.
     """
