@@ -1,15 +1,20 @@
-"""The parts of ``--json`` answers that several commands print: measures of profiles, checks, minimum cut lengths."""
+"""The parts of ``--json`` answers that several commands print: the objective, measures of profiles, checks, bands, lengths."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
+from camwright.jobs.job import Job
 from camwright.profiles.machines.machine import SlaveUnit
+from camwright.profiles.objective import OBJECTIVES
 from camwright.studies.comparison import Comparison
 from camwright.studies.cut_lengths import CutLengths
+from camwright.studies.design import Design
 from camwright.studies.measured import Measured
+from camwright.studies.speed_band import SpeedBand
 from camwright.validation.check import Check
 from camwright.validation.motion import MotionMeasures
 from camwright.validation.motor import MotorMeasures
@@ -95,3 +100,30 @@ def lengths_answer(lengths: CutLengths | None) -> dict[str, float | None]:
         "linear_return_to_tolerance": millimetres(lengths.linear_return.length),
         "optimised_to_tolerance": millimetres(lengths.optimised.length),
     }
+
+
+def band_answer(band: SpeedBand) -> dict[str, Any]:
+    """Write a band: its parts in m/s, and what binds at the lower and the upper end of each in turn; of no band what forbids it."""
+    binds = [name for pair in band.binds for name in pair] if band.parts else list(band.forbids)
+    return {"speed_band": [list(part) for part in band.parts], "speed_band_binds": binds}
+
+
+def objective_unit(job: Job) -> str:
+    """Name the unit of a job's objective."""
+    return OBJECTIVES[job.objective].unit(job.machine.slave_unit)
+
+
+def objective_answer(design: Design) -> dict[str, Any]:
+    """Write the objective of a design: name, value, unit, lower bound and gap, null where there is no bound."""
+    return {
+        "name": design.job.objective,
+        "value": design.objective,
+        "unit": objective_unit(design.job),
+        "lower_bound": None if math.isnan(design.bound.value) else design.bound.value,
+        "gap": design.gap,
+    }
+
+
+def agreement_answer(design: Design) -> dict[str, Any] | None:
+    """Write what several starts agree on; null where one was enough because the problem is convex."""
+    return None if design.solution.agreement is None else asdict(design.solution.agreement)

@@ -11,7 +11,7 @@ import threading
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from camwright.answers.objective import objective_unit
+from camwright.answers.measures import objective_unit
 from camwright.book.entry import Entry, Limit
 from camwright.book.plan import Book, Combination
 from camwright.design.feasible.extremes import fastest_line

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict
+from datetime import datetime
+from pathlib import Path
+from typing import Any
 
 from camwright.book.folder import MANIFEST, BookFolder
-from camwright.book.index_csv import csv_lines
 from camwright.book.index_html import html_pieces
-from camwright.book.index_xlsx import write_workbook
 from camwright.book.journal import Journal
 from camwright.book.plan import Book
 from camwright.book.rows import (
     COLUMNS,
     LIMIT_COLUMNS,
+    Cell,
     Counts,
     count,
     index_rows,
@@ -72,3 +76,74 @@ def _files(book: Book, journal: Journal, digests: dict[str, str]) -> Iterator[tu
         place = book.combination(entry.number).folder
         for name, digest in entry.files:
             yield f"{place}/{name}", digest
+
+
+def csv_lines(book: Book, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> Iterator[str]:
+    """Write rows line by line: comments with the origin, the columns' names with units, the rows; what is not there is empty.
+
+    No cell begins with a name of the user's, so none can pass for a formula.
+    """
+    yield f"# job: {book.name}\n"
+    yield f"# job_sha256: {book.job_sha256}\n"
+    for name, version in book.versions:
+        yield f"# {name}: {version}\n"
+    yield _line(columns)
+    for row in rows:
+        yield _line(row)
+
+
+def _line(row: Sequence[Cell]) -> str:
+    """Write one row."""
+    line = io.StringIO()
+    csv.writer(line, lineterminator="\n").writerow(["" if cell is None else cell for cell in row])
+    return line.getvalue()
+
+
+_NO_TIME = datetime(2000, 1, 1)
+# a workbook must state when it was made; this one says nothing, so that its bytes stay the same
+_WIDE = {"reason": 60, "failed_checks": 30, "folder": 44, "objective": 20, "name": 24, "value of": 80}
+
+
+def write_workbook(path: Path, book: Book, designs: Iterable[Sequence[Cell]], limits: Iterable[Sequence[Cell]]) -> None:
+    """Write the workbook row by row, so that its memory does not grow; texts are written as texts, whatever they hold."""
+    options = {
+        "constant_memory": True,
+        "strings_to_formulas": False,
+        "strings_to_numbers": False,
+        "strings_to_urls": False,
+        "tmpdir": str(path.parent),
+    }
+    from xlsxwriter import Workbook
+
+    workbook = Workbook(str(path), options)
+    workbook.set_properties({"created": _NO_TIME, "comments": f"camwright {dict(book.versions)['camwright']}"})
+    bold = workbook.add_format({"bold": True, "text_wrap": True, "valign": "top"})
+    about: list[tuple[str, Cell]] = [("job", book.name), ("job_sha256", book.job_sha256)]
+    about += [(key, _plain(value)) for key, value in book.parameters().items() if key != "job_sha256"]
+    _sheet(workbook, "designs", book.units.named(COLUMNS), designs, bold)
+    _sheet(workbook, "limits", book.units.named(LIMIT_COLUMNS), limits, bold)
+    _sheet(workbook, "about", ("name", "value of"), about, bold)
+    workbook.close()
+
+
+def _sheet(workbook: Any, name: str, columns: Sequence[str], rows: Iterable[Sequence[Cell]], bold: Any) -> None:
+    """Write a sheet: the columns' names, then the rows; the names stay in sight."""
+    sheet = workbook.add_worksheet(name)
+    for column, title in enumerate(columns):
+        sheet.set_column(column, column, _WIDE.get(title, 13))
+    sheet.freeze_panes(1, 0)
+    for column, title in enumerate(columns):
+        sheet.write_string(0, column, title, bold)
+    for number, row in enumerate(rows, start=1):
+        for column, cell in enumerate(row):
+            if isinstance(cell, str):
+                sheet.write_string(number, column, cell)
+            elif cell is not None:
+                sheet.write_number(number, column, cell)
+
+
+def _plain(value: object) -> str:
+    """Write a parameter as a text."""
+    if isinstance(value, dict):
+        return ", ".join(f"{name} {entry}" for name, entry in value.items())
+    return ", ".join(map(str, value)) if isinstance(value, list) else str(value)

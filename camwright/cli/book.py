@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import contextlib
+import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from camwright.book.cluster import cluster_crew
-from camwright.book.display import progress
 from camwright.book.plan import plan_book
-from camwright.book.run import BookAnswer, make_book
+from camwright.book.run import BookAnswer, Told, make_book, nothing
 from camwright.book.workers import default_jobs, local_crew
 from camwright.cli.options import CommonPlace, GivenJob, Json, Quiet, TableTargets
 from camwright.cli.views.files import files_view
@@ -91,3 +92,36 @@ def _view(answer: BookAnswer) -> RenderableType:
     made = counts.designs - answer.resumed
     speed = f"{made} made at {answer.rate:.3g} a second, {answer.resumed} done before"
     return stacked(table, new_text(f"{speed}; peak memory {answer.peak_rss / 2**20:.0f} MB"), files_view(answer.files))
+
+
+@contextlib.contextmanager
+def progress(total: int, *, quiet: bool) -> Iterator[Told]:
+    """Show a progress bar with rate and remaining time, if standard error is a terminal; gives what to tell it."""
+    if quiet or not sys.stderr.isatty():
+        yield nothing
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, ProgressColumn, Task, TimeRemainingColumn
+    from rich.text import Text
+
+    class Rate(ProgressColumn):
+        """Designs a second, over the last seconds."""
+
+        def render(self, task: Task) -> Text:
+            """Write the rate."""
+            return Text("" if task.speed is None else f"{task.speed:.1f} designs/s")
+
+    columns = (BarColumn(), MofNCompleteColumn(), Rate(), TimeRemainingColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as display:
+        task = display.add_task("", total=total)
+        begun = False
+
+        def told(done: int) -> None:
+            nonlocal begun
+            if begun:
+                display.update(task, completed=done)
+            else:  # what was done before is no measure of the speed
+                display.reset(task, completed=done, total=total)
+            begun = True
+
+        yield told

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from camwright.answers.check import check_answer
 from camwright.cli.options import Json, Quiet
 from camwright.cli.views.parts import new_text, stacked
 from camwright.house.numbers import typed, with_unit
@@ -17,10 +16,12 @@ from camwright.house.toml_file import MOST_BYTES
 from camwright.jobs.doubts import doubts
 from camwright.jobs.job import Job, load_job, parse_job
 from camwright.jobs.machine_words import machine_words
+from camwright.jobs.numbers import job_numbers
 from camwright.profiles.errors import InputError
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
+
 
 _Checked = Annotated[Path, typer.Argument(metavar="JOB", help="Job file (TOML); - reads standard input.")]
 
@@ -62,3 +63,15 @@ def _view(job: Job) -> RenderableType:
     if found.missing:
         notes.append(new_text("\n".join(["Optional and not given:", *(f"  {text}" for text in found.missing)])))
     return stacked(said, *notes)
+
+
+def check_answer(job: Job) -> dict[str, Any]:
+    """Answer of ``camwright check``: the job in SI numbers, and what is worth a second look."""
+    found = doubts(job)
+    return {
+        "job": job.name,
+        "sha256": job.sha256,
+        "si": job_numbers(job),
+        "warnings": list(found.warnings),
+        "missing": list(found.missing),
+    }

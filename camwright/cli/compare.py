@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
-from camwright.answers.compare import compare_answer
+from camwright.answers.measures import profiles_answer
 from camwright.cli.options import GivenJob, Json, NoFigures, Out, Quiet, final_paths, job_work, output_directory
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import stacked
@@ -19,7 +20,7 @@ from camwright.house.output import Voice, complain
 from camwright.house.owned import Work, owned
 from camwright.jobs.job import Job, load_job
 from camwright.profiles.errors import InputError
-from camwright.studies.comparison import compare, law_names, require_laws, with_screw
+from camwright.studies.comparison import Comparison, compare, law_names, require_laws, with_screw
 from camwright.studies.screw import require_screw
 from camwright.studies.tradeoff import step_count, trade_off, tradeoff_answer
 
@@ -107,3 +108,13 @@ def compare_objectives(asked: Job, directory: Path, work: Work, *, figures: bool
 
     voice.answer(lambda: tradeoff_answer(result, files), lambda: stacked(tradeoff_view(result), files_view(files)))
     return 0
+
+
+def compare_answer(comparison: Comparison, files: Sequence[Path]) -> dict[str, Any]:
+    """Answer of ``camwright compare``: the profiles sorted by the job's objective, those that break a limit last."""
+    return {
+        "job": comparison.job.name,
+        "sorted_by": comparison.job.objective,
+        "profiles": profiles_answer(comparison),
+        "files": [str(file) for file in files],
+    }

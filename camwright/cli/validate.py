@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from camwright.answers.validate import validate_answer
+from camwright.answers.axis import (
+    lead_answer,
+)
+from camwright.answers.line_ramps import line_ramps_answer
+from camwright.answers.measures import band_answer, checks_answer, report_answer
 from camwright.cli.options import Json, JudgedBy, Quiet
 from camwright.cli.views.checks import checks_view
 from camwright.cli.views.lead import lead_view
@@ -15,10 +20,11 @@ from camwright.cli.views.line_ramps import plc_words
 from camwright.cli.views.parts import new_text, stacked
 from camwright.cli.views.speed_band import band_view
 from camwright.house.output import Voice
-from camwright.jobs.job import load_job
+from camwright.jobs.job import Job, load_job
 from camwright.stored.judge import Judged, validate_file
 from camwright.studies.line_ramps import LineRamps, line_ramps
 from camwright.studies.speed_band import SpeedBand, job_band
+from camwright.validation.report import ValidationReport
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -62,3 +68,20 @@ def _view(found: Judged, band: SpeedBand, ramps: LineRamps, file: Path) -> Rende
         new_text(plc_words(ramps)),
         new_text(f"{file}: {verdict}"),
     )
+
+
+def validate_answer(
+    job: Job, file: Path, report: ValidationReport, band: SpeedBand, ramps: LineRamps, notes: Sequence[str]
+) -> dict[str, Any]:
+    """Answer of ``camwright validate``."""
+    return {
+        "job": job.name,
+        "file": str(file),
+        "notes": list(notes),
+        "profile": report_answer(report, job.machine.slave_unit),
+        "checks": checks_answer(report.checks),
+        "passed": report.passed,
+        **band_answer(band),
+        **lead_answer(job, report.length_errors),
+        "line_ramp": line_ramps_answer(ramps),
+    }

@@ -1,4 +1,4 @@
-"""What a job file writes as an angle by which the tool turns, as travel of the slave and the master."""
+"""What a job file writes as an angle by which the tool turns, or as a time, as travel of the slave and the master."""
 
 from __future__ import annotations
 
@@ -47,3 +47,10 @@ def _settle_shear_zone(known: Known, machine: Machine, cut: Cut) -> None:
     else:  # at the end of the sync zone
         end = machine.angle_of_master(cut.sync_zone, cut)
         numbers["cut.shear_zone"] = cut.sync_zone - machine.master_of_angle(end - angles["cut.shear_zone"], cut)
+
+
+def settle_times(known: Known) -> None:
+    """Turn the zones that are known as times into lengths, ``l = v t``, once the line speed is known."""
+    line_speed = known.numbers.get("cut.line_speed")
+    if line_speed is not None:
+        known.numbers.update({place: time * line_speed for place, time in known.indirect.times.items()})

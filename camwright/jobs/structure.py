@@ -14,12 +14,11 @@ from camwright.house.servo_table import ServoNumbers
 from camwright.house.setting_fields import Table, checked, number_field, quantity_field, whole_field
 from camwright.house.settings import read_settings
 from camwright.house.units import shown
-from camwright.jobs.angles import settle_angles
+from camwright.jobs.angles import settle_angles, settle_times
 from camwright.jobs.fields import Known, Spread, curve_field, slave_field, targets_field, zone_field
 from camwright.jobs.line_speeds import line_speeds_field
 from camwright.jobs.machine_tables import either_faults, either_of, machine_of, machine_tables, table_of
 from camwright.jobs.spread_fields import aware_only, number_spread, quantity_spread
-from camwright.jobs.times import settle_times
 from camwright.profiles.machines import MACHINES, Machine
 from camwright.profiles.machines.fields import Choice, fields_of
 from camwright.profiles.objective import ObjectiveName

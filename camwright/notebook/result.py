@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from camwright.answers.objective import objective_unit
+from camwright.answers.measures import objective_unit
 from camwright.figures.comparison import bars_figure
 from camwright.figures.profile import profile_figure
 from camwright.figures.servo import AXES, servo_figure

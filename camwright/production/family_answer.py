@@ -5,9 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from camwright.answers.measures import checks_answer
-from camwright.answers.objective import objective_unit
-from camwright.answers.speed_band import band_answer
+from camwright.answers.measures import band_answer, checks_answer, objective_unit
 from camwright.house.provenance import camwright_version, provenance
 from camwright.jobs.numbers import job_numbers
 from camwright.production.changes import Change

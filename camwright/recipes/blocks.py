@@ -1,7 +1,9 @@
-"""What a document is made of: blocks of plain texts that PDF and HTML know how to set."""
+"""What a document is made of: blocks of plain texts that PDF and HTML know how to set; what users wrote changes nothing around it."""
 
 from __future__ import annotations
 
+import unicodedata
+from collections.abc import Callable
 from typing import Any
 
 from camwright.house.numbers import Units, fine_length, in_print, shown
@@ -31,3 +33,31 @@ def length_text(value: float, unit: str, units: Units) -> str:
 def fixed_text(value: float | None, words: Catalogue) -> str:
     """Write a length like `length_text`, or that there is none."""
     return words("nothing") if value is None else length_text(value, "m", words.units)
+
+
+_SHORT = 60
+
+
+def visible(text: str) -> str:
+    r"""Write controls, marks of direction and the like as their code points; line ends stay.
+
+    Examples
+    --------
+    >>> visible("a\u202eb\x07")
+    'a⟨U+202E⟩b⟨U+0007⟩'
+    """
+    return spelled(text, lambda letter: unicodedata.category(letter)[0] != "C")
+
+
+def spelled(text: str, is_shown: Callable[[str], bool]) -> str:
+    """Write the characters that are not shown as their code points; line ends stay, all of one kind."""
+    if text.isascii() and text.isprintable():
+        return text
+    lines = text.replace("\r\n", "\n").replace("\r", "\n")
+    return "".join(x if x == "\n" or is_shown(x) else f"⟨U+{ord(x):04X}⟩" for x in lines)
+
+
+def shortened(text: str) -> str:
+    """Write a text on one line of at most 60 characters."""
+    line = " ".join(text.split())
+    return line if len(line) <= _SHORT else line[: _SHORT - 1] + "…"

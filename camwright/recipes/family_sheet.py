@@ -5,12 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 from camwright.house.numbers import converted, inside, number, shown, with_unit
-from camwright.recipes.blocks import Block, table_block, text_block
+from camwright.recipes.blocks import Block, shortened, table_block, text_block, visible
 from camwright.recipes.catalogue import Catalogue, catalogue_of
 from camwright.recipes.facts import PRODUCT, SERVO, fact_text, listed
 from camwright.recipes.html import page
 from camwright.recipes.pdf import typeset
-from camwright.recipes.user_text import shortened, visible
 
 FAMILY_FILE = "family.json"
 PAGE, PRINT = "family.html", "family.pdf"

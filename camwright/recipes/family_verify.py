@@ -9,8 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from camwright.answers.objective import objective_unit
-from camwright.answers.speed_band import band_answer
+from camwright.answers.measures import band_answer, objective_unit
 from camwright.house.json_text import to_json
 from camwright.house.owned import LIST
 from camwright.house.provenance import camwright_version, provenance

@@ -14,8 +14,10 @@ from camwright.house.numbers import (
 from camwright.recipes.blocks import (
     Block,
     length_text,
+    shortened,
     table_block,
     text_block,
+    visible,
 )
 from camwright.recipes.catalogue import Catalogue
 from camwright.recipes.facts import GROUPS, fact_text
@@ -31,7 +33,6 @@ from camwright.recipes.model import Edge, Recipe
 from camwright.recipes.production import mark_blocks, start_blocks
 from camwright.recipes.ramps import ramp_blocks
 from camwright.recipes.release import any_outside, boxed, marked, released_speeds, status_text, warnings
-from camwright.recipes.user_text import shortened, visible
 from camwright.recipes.working_range import LONGEST, NOT_FOUND
 
 

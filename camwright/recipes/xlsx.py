@@ -8,13 +8,13 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from camwright.house.numbers import converted, unit_shown
+from camwright.recipes.blocks import visible
 from camwright.recipes.catalogue import Catalogue, catalogue_of
 from camwright.recipes.facts import GROUPS, Fact, fact_text
 from camwright.recipes.model import Recipe, RecipeCheck, RecipeTable
 from camwright.recipes.production import mark_blocks, mark_cells, mark_head, start_blocks
 from camwright.recipes.release import released_at, status_text
 from camwright.recipes.sheet import objective_text, particular_rows, speed_columns
-from camwright.recipes.user_text import visible
 
 if TYPE_CHECKING:
     from xlsxwriter import Workbook

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 
 from camwright.answers.axis import axis_answer, robust_answer
-from camwright.answers.objective import agreement_answer, objective_answer
+from camwright.answers.measures import agreement_answer, objective_answer
 from camwright.house.provenance import SCHEMA_VERSION, provenance
 from camwright.jobs.numbers import job_numbers
 from camwright.studies.design import Design

@@ -18,7 +18,6 @@ from camwright.design.returns.scaling import (
     scale_problem,
     unscale_profile,
 )
-from camwright.design.returns.stroke import NARROW, ROUGH, least_peak_motion
 from camwright.design.returns.structure import (
     VANISHED,
     extreme_motion,
@@ -28,7 +27,7 @@ from camwright.design.returns.structure import (
     subdivide,
     tidy,
 )
-from camwright.design.returns.touching import touching_motions
+from camwright.design.returns.touching import NARROW, ROUGH, least_peak_motion, touching_motions
 from camwright.design.returns.transcription import (
     LIMIT_MARGIN,
     Arc,

@@ -11,7 +11,7 @@ import pytest
 from books import JOB, inline_crew
 
 from camwright.book import workers
-from camwright.book.display import progress
+from camwright.cli.book import progress
 from camwright.cli.main import main
 
 ASKED = ["book", str(JOB), "--length", "600:650:50", "--line-speed", "80"]

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from camwright.cli.simulate import pieces_text, shift_answer
 from camwright.jobs.job import load_job
 from camwright.production.cut_list import line_of
-from camwright.production.shift_answer import pieces_text, shift_answer
 from camwright.production.simulation import Disturbances, simulate_shift
 from camwright.profiles.cut_list import CutList, ListRow
 from camwright.profiles.errors import InputError

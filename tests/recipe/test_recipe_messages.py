@@ -16,8 +16,8 @@ from camwright.profiles.tables.targets import TARGETS
 from camwright.recipes.build import MadeRecipe
 from camwright.recipes.catalogue import catalogue
 from camwright.recipes.facts import PRODUCT, SERVO
-from camwright.recipes.fonts import has_glyph
 from camwright.recipes.language import LANGUAGES, Language
+from camwright.recipes.pdf import has_glyph
 from camwright.recipes.sheet import sheet
 
 ROOT = Path(__file__).parents[2]

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from rich.console import Console, RenderableType
 
-from camwright.answers.compare import compare_answer
+from camwright.cli.compare import compare_answer
 from camwright.cli.views.checks import checks_view
 from camwright.cli.views.profiles import profiles_view
 from camwright.jobs.job import Job, load_job, parse_job

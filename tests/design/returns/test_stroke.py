@@ -12,8 +12,7 @@ from camwright.design.optimise import solve
 from camwright.design.returns.problem import return_problem
 from camwright.design.returns.scaling import ScaledProblem, motion_scale, scale_problem
 from camwright.design.returns.solver import _kept, grid_objective
-from camwright.design.returns.stroke import least_peak_motion
-from camwright.design.returns.touching import touching_motions
+from camwright.design.returns.touching import least_peak_motion, touching_motions
 from camwright.profiles.cut import Cut
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import LinearCarriage
