@@ -18,6 +18,7 @@ from camwright.profiles.errors import InputError
 from camwright.profiles.tables.targets import TARGETS, target_of
 from camwright.recipes.build import STEPS, designed, make_recipe
 from camwright.recipes.compare import Change, compare_answer, compare_recipes, read_recipe
+from camwright.recipes.judgements import SHORT
 from camwright.recipes.language import Language
 from camwright.recipes.manifest import MANIFEST_FILE, sha256
 from camwright.recipes.model import Particulars, Recipe, RecipeCheck
@@ -131,7 +132,7 @@ def _make(
         "failed_checks": _failed(made.recipe),
         "files": [{"path": path, "sha256": sha256(data)} for path, data in sorted(files.items())],
     }
-    further = "" if made.recipe.released or stored is not None else f"camwright design {file} says what makes it pass"
+    further = "" if made.recipe.released else _way_out(made.recipe, file, stored is not None)
     voice.answer(lambda: answer, lambda: _recipe_view(made.recipe, answer, folder, job.units, further))
     return 0 if made.recipe.released else 1
 
@@ -142,6 +143,16 @@ def _failed(recipe: Recipe) -> list[str]:
     return own + [
         f"{table.target}: {check.name}" for table in recipe.tables for check in table.checks if not check.passed
     ]
+
+
+def _way_out(recipe: Recipe, file: Path, designed_before: bool) -> str:
+    """Say who tells what makes the cam pass, or without which tables it would be released."""
+    failed = {table.target for table in recipe.tables if not table.released}
+    if not recipe.speed_band or any(not check.passed for check in recipe.checks):
+        return "" if designed_before else f"camwright design {file} says what makes it pass"
+    if len(failed) < len(recipe.tables):
+        return f"without {', '.join(sorted(failed))} in --targets it is released: the cam and its other tables pass"
+    return "the cam passes; none of its tables does: name another target in --targets"
 
 
 def _targets(text: str) -> list[str]:
@@ -171,9 +182,9 @@ def _recipe_view(recipe: Recipe, answer: dict[str, Any], out: Path, units: Units
     """Show whether the cam is released and what failed, then the files."""
     table = new_table(title=f"{out}", title_justify="left")
     table.add_column("file")
-    table.add_column("SHA-256")
+    table.add_column(f"SHA-256, first {SHORT} digits")
     for file in answer["files"]:
-        table.add_row(new_text(file["path"]), file["sha256"])
+        table.add_row(new_text(file["path"]), file["sha256"][:SHORT])
     notes = [
         new_text(f"{refusal.target} cannot take this cam: {'; '.join(refusal.reasons)}") for refusal in recipe.refused
     ]

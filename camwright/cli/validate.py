@@ -58,7 +58,11 @@ def _view(found: Judged, band: SpeedBand, ramps: LineRamps, file: Path) -> Rende
     """Show the checks on a file, its line speeds and the verdict."""
     job, report = found.job, found.report
     failed = [check.name for check in report.checks if not check.passed]
-    verdict = f"{len(failed)} checks failed: {', '.join(failed)}" if failed else "every check passed"
+    verdict = (
+        f"{len(failed)} {'check' if len(failed) == 1 else 'checks'} failed: {', '.join(failed)}"
+        if failed
+        else "every check passed"
+    )
     told = [new_text(f"Note: {note}") for note in found.notes]
     return stacked(
         checks_view(report.checks, job.units),

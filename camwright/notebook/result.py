@@ -115,7 +115,11 @@ class Result(designing.Design):
     def _verdict(self) -> str:
         """Say which checks failed."""
         failed = [check.name.replace("_", " ") for check in self.report.checks if not check.passed]
-        words = f"{len(failed)} checks failed: {', '.join(failed)}" if failed else "every check passed"
+        words = (
+            f"{len(failed)} {'check' if len(failed) == 1 else 'checks'} failed: {', '.join(failed)}"
+            if failed
+            else "every check passed"
+        )
         return f"<p>{escape(words)}</p>"
 
 

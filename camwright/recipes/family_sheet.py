@@ -106,7 +106,7 @@ def _switching(record: dict[str, Any], words: Catalogue) -> list[Block]:
     rows = []
     for each in record["switching"]:
         up, down = _speed(each["up_m_per_s"], words, up=False), _speed(each["down_m_per_s"], words, up=True)
-        between = words("speeds.part", low=down, high=up)
+        between = words("speeds.span", low=down, high=up)
         for way, runs, then, at in (("up", "slower", "faster", up), ("down", "faster", "slower", down)):
             change = each["transition"][way]
             how = change["name"] or words(f"change.{change['how']}")

@@ -11,7 +11,10 @@ from camwright.jobs.numbers import stored_machine
 from camwright.recipes.blocks import Block, fixed_text, text_block
 from camwright.recipes.catalogue import Catalogue
 from camwright.recipes.model import AtSpeed, Recipe, RecipeTable
-from camwright.recipes.release import any_outside, marked
+from camwright.recipes.release import marked, outside_note
+
+_ROUNDING = 1e-12
+"""Share of its travel that is none of the slave's."""
 
 _FINEST = 0.001
 """What an error is at least said to be within: micrometres, and percent of the acceleration."""
@@ -25,7 +28,7 @@ def before(recipe: Recipe, words: Catalogue) -> list[Block]:
     values = {
         "origin": words.named("word", cut["origin"]),
         "start": shown(recipe.slave_start, unit, units=words.units),
-        "first": with_unit(recipe.profile.coefficients[0][0], unit, units=words.units),
+        "first": with_unit(_first(recipe), unit, units=words.units),
         "pitch": shown(recipe.pitch, unit, units=words.units),
         "line_speed": speed,
         "lead": shown(recipe.lead_time, "s", 4, words.units),
@@ -49,9 +52,15 @@ def before(recipe: Recipe, words: Catalogue) -> list[Block]:
         "run",
     )
     items = [words(f"before.{key}", **values) for key in keys]
-    if any_outside(recipe):
+    if outside_note((row.line_speed for row in recipe.speeds), recipe, words):
         items.append(words("before.outside"))
     return [{"kind": "checklist", "items": items}]
+
+
+def _first(recipe: Recipe) -> float:
+    """Take where the table has the slave at master zero; nothing for what rounding leaves of it."""
+    rows = recipe.profile.coefficients
+    return rows[0][0] if abs(rows[0][0]) > _ROUNDING * max(abs(row[0]) for row in rows) else 0.0
 
 
 def _at_full_speed(recipe: Recipe) -> AtSpeed:
@@ -67,7 +76,8 @@ def imports(recipe: Recipe, words: Catalogue) -> list[Block]:
         about.append(text_block(_table_words(table, words)))
         if not table.released:
             about.append(text_block(words("import.not_released"), strong=True))
-        about.append({"kind": "checklist", "items": [words.phrase(step) for step in table.steps]})
+        else:
+            about.append({"kind": "checklist", "items": [words.phrase(step) for step in table.steps]})
         blocks.append({"kind": "together", "blocks": about})
     if recipe.refused:
         blocks.append(text_block(words("import.refused", targets=", ".join(each.target for each in recipe.refused))))

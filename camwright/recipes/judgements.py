@@ -28,7 +28,7 @@ REACHED = (
 )
 """Checks that compare a quantity of the machine with its limit."""
 
-_SHORT = 16
+SHORT = 16
 """Digits of a checksum in print."""
 
 _BESIDE = 4
@@ -114,6 +114,6 @@ def _marked(text: str, check: RecipeCheck) -> str:
 def files(recipe: Recipe, words: Catalogue) -> list[Block]:
     """List the tables with the first digits of their checksums."""
     tables = [*recipe.tables, *(table for motion in recipe.start_tables for table in motion.tables)]
-    rows = [[file.path, file.sha256[:_SHORT]] for table in tables for file in table.files]
+    rows = [[file.path, file.sha256[:SHORT]] for table in tables for file in table.files]
     head = [words("column.file"), words("column.sha256")]
     return [*([table_block(head, rows, left=2)] if rows else []), text_block(words("files.note"))]

@@ -11,6 +11,7 @@ from camwright.profiles.ramp import Ramp
 from camwright.recipes.blocks import Block, table_block, text_block
 from camwright.recipes.catalogue import Catalogue
 from camwright.recipes.model import MarkEnds, MarksAt, RampRecord, Recipe, StartStop
+from camwright.recipes.release import marked, outside_note
 from camwright.stored.design_file import StoredDesign
 
 
@@ -93,6 +94,7 @@ def _table_blocks(recipe: Recipe, words: Catalogue) -> list[Block]:
     motions = recipe.start_tables
     if not motions:
         return []
+    written = any(table.files for record in motions for table in record.tables)
     cells: dict[str, list[str]] = {}
     reasons: dict[str, str] = {}
     for number, record in enumerate(motions):
@@ -106,8 +108,9 @@ def _table_blocks(recipe: Recipe, words: Catalogue) -> list[Block]:
     head = [words("start.target"), *(words(_MOTIONS[record.motion]) for record in motions)]
     why = [text_block(words("start.refused", target=target, reasons=reason)) for target, reason in reasons.items()]
     return [
-        table_block(head, [[target, *row] for target, row in cells.items()]),
+        table_block(head, [[target, *row] for target, row in cells.items()], widths=[0.8, *(1.0,) * len(motions)]),
         text_block(words("start.tables")),
+        *([text_block(words("start.files"))] if written else []),
         *why,
     ]
 
@@ -143,10 +146,17 @@ def mark_blocks(recipe: Recipe, words: Catalogue) -> list[Block]:
     if not recipe.marks:
         return []
     rows = [
-        [shown(row.line_speed, "m/s", 4, words.units), *(_mark_text(cell, words) for cell in mark_cells(row))]
+        [
+            marked(shown(row.line_speed, "m/s", 4, words.units), recipe, row.line_speed),
+            *(_mark_text(cell, words) for cell in mark_cells(row)),
+        ]
         for row in recipe.marks
     ]
-    return [table_block(mark_head(words), rows, widths=[0.9, *(1.0,) * 6]), text_block(words("marks.note"))]
+    return [
+        table_block(mark_head(words), rows, widths=[0.9, *(1.0,) * 6]),
+        *outside_note((row.line_speed for row in recipe.marks), recipe, words),
+        text_block(words("marks.note")),
+    ]
 
 
 def _mark_text(cell: float | str | None, words: Catalogue) -> str:

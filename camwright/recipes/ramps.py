@@ -8,6 +8,7 @@ from camwright.house.numbers import converted, inside, shown, unit_shown
 from camwright.recipes.blocks import Block, table_block, text_block
 from camwright.recipes.catalogue import Catalogue
 from camwright.recipes.model import LineRampRecord, RampAt, Recipe
+from camwright.recipes.release import marked, outside_note
 from camwright.studies.line_ramps import LEAST_RAMP, LineRamps
 from camwright.validation.production.line_ramp import Allowed
 
@@ -46,14 +47,15 @@ def ramp_blocks(recipe: Recipe, words: Catalogue) -> list[Block]:
         *(words(key, unit=unit_shown("m/s^2", words.units)) for key in ("column.ramp_up", "column.ramp_down")),
         words("column.binding"),
     ]
+    told = found.by_speed[_SHOWN - 1 :: _SHOWN]
     rows = [
         [
-            shown(each.line_speed, "m/s", 4, words.units),
+            marked(shown(each.line_speed, "m/s", 4, words.units), recipe, each.line_speed),
             ramp_text(each.acceleration, words),
             ramp_text(each.stop, words),
             words.named("binding", each.binding),
         ]
-        for each in found.by_speed[_SHOWN - 1 :: _SHOWN]
+        for each in told
     ]
     unit = unit_shown("m/s^2", words.units)
     speed = shown(recipe.job.si["cut"]["line_speed"], "m/s", units=words.units)
@@ -61,7 +63,8 @@ def ramp_blocks(recipe: Recipe, words: Catalogue) -> list[Block]:
         "ramp.plc", speed=speed, ramp=ramp_text(found.acceleration, words), stop=ramp_text(found.stop, words), unit=unit,
         binding=words.named("binding", found.binding),
     )  # fmt: skip
-    blocks = [table_block(head, rows), text_block(plc, strong=True)]
+    outside = outside_note((each.line_speed for each in told), recipe, words)
+    blocks = [table_block(head, rows, widths=[1.0] * 4), *outside, text_block(plc, strong=True)]
     if found.stop_length is not None:
         blocks.append(text_block(words("ramp.stop_length", length=shown(found.stop_length, "m", 4, words.units))))
     alone = ramp_text(found.by_acceleration_alone, words)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import reduce
 
 from camwright.house.numbers import converted, inside, shown, with_unit
+from camwright.recipes.blocks import Block, text_block
 from camwright.recipes.catalogue import Catalogue
-from camwright.recipes.model import Recipe
+from camwright.recipes.model import Recipe, SpeedPart
 
 _SAME = 1e-3
 """Part by which the end of a range may differ from the job's line speed that no one need be told."""
@@ -24,13 +26,20 @@ def status_text(recipe: Recipe, words: Catalogue) -> str:
 
 def released_speeds(recipe: Recipe, words: Catalogue) -> str:
     """Write the line speeds of a recipe (m/min), every end rounded to its inside."""
-    parts = [
-        words("speeds.part", low=_rounded(part.low, words, up=True), high=_rounded(part.high, words, up=False))
-        for part in recipe.speed_band
-    ]
+    parts = [_part(part, words) for part in recipe.speed_band]
     if not parts:
         return words("nothing")
     return reduce(lambda first, second: words("speeds.two", first=first, second=second), parts)
+
+
+def _part(part: SpeedPart, words: Catalogue) -> str:
+    """Write the ends of a part of a band, one where both are the same as they are written."""
+    low, high = (
+        inside(converted(end, "m/s", words.units), up=up) for end, up in ((part.low, True), (part.high, False))
+    )
+    if low >= high:
+        return words("speeds.alone", speed=shown(part.high, "m/s", units=words.units))
+    return words("speeds.part", low=words.number(low), high=words.number(high))
 
 
 def boxed(recipe: Recipe) -> bool:
@@ -42,8 +51,11 @@ def boxed(recipe: Recipe) -> bool:
 
 
 def warnings(recipe: Recipe, words: Catalogue) -> list[str]:
-    """List what a fitter must know of the speeds: what ends them, whether the job's own is among them, what is scrap on the way up."""
+    """List what a fitter must know: what failed; or what ends the speeds, whether the job's own is among them, and the scrap."""
     own, band = recipe.job.si["cut"]["line_speed"], recipe.speed_band
+    if not recipe.released:
+        failed = ", ".join(_failed(recipe, words))
+        return [words("release.failed", checks=failed)] if failed else []
     if not boxed(recipe):
         return []
     found = []
@@ -79,6 +91,17 @@ def warnings(recipe: Recipe, words: Catalogue) -> list[str]:
     return found
 
 
+def _failed(recipe: Recipe, words: Catalogue) -> list[str]:
+    """Name the checks that failed, those of a table with its target."""
+    own = [_check(check.name, words) for check in recipe.checks if not check.passed]
+    return own + [
+        f"{_check(check.name, words)} ({table.target})"
+        for table in recipe.tables
+        for check in table.checks
+        if not check.passed
+    ]
+
+
 def _gaps(recipe: Recipe) -> list[tuple[float, float]]:
     """List the ranges outside the release that starting and stopping passes (m/s)."""
     ends = [0.0, *(part.high for part in recipe.speed_band)]
@@ -94,9 +117,11 @@ def released_at(recipe: Recipe, line_speed: float) -> bool:
     return any(part.low <= line_speed <= part.high for part in recipe.speed_band)
 
 
-def any_outside(recipe: Recipe) -> bool:
-    """Whether any of the speeds that the recipe speaks of is outside the release."""
-    return any(not released_at(recipe, row.line_speed) for row in recipe.speeds)
+def outside_note(line_speeds: Iterable[float], recipe: Recipe, words: Catalogue) -> list[Block]:
+    """Say what the mark means, where one of these line speeds (m/s) has it."""
+    if all(released_at(recipe, line_speed) for line_speed in line_speeds):
+        return []
+    return [text_block(words("speeds.outside"), strong=True)]
 
 
 def marked(text: str, recipe: Recipe, line_speed: float) -> str:

@@ -32,7 +32,7 @@ from camwright.recipes.judgements import (
 from camwright.recipes.model import Edge, Recipe
 from camwright.recipes.production import mark_blocks, start_blocks
 from camwright.recipes.ramps import ramp_blocks
-from camwright.recipes.release import any_outside, boxed, marked, released_speeds, status_text, warnings
+from camwright.recipes.release import boxed, marked, outside_note, released_speeds, status_text, warnings
 from camwright.recipes.working_range import LONGEST, NOT_FOUND
 
 
@@ -167,7 +167,7 @@ def _speeds(recipe: Recipe, words: Catalogue) -> list[Block]:
         )
     return [
         table_block(head, rows, widths=[2.6, *(1.0 for _ in recipe.speeds)]),
-        *([text_block(words("speeds.outside"), strong=True)] if any_outside(recipe) else []),
+        *outside_note((row.line_speed for row in recipe.speeds), recipe, words),
         text_block(words("speeds.law")),
         text_block(words("speeds.lead", lead=shown(recipe.lead_time, "s", 4, words.units))),
     ]

@@ -140,7 +140,7 @@ def test_validate_ends_with_1_when_a_check_fails(tmp_path: Path, capsys: pytest.
     assert main(["validate", str(tmp_path / "cam.csv"), "--job", JOB]) == 1
     shown = capsys.readouterr().out
     assert "FAILED" in shown
-    assert re.search(r"checks failed: .*sync_ratio", shown)
+    assert re.search(r"checks? failed: .*sync_ratio", shown)
 
 
 def test_the_files_go_to_out_and_the_jobs_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import cast
 
 import pytest
 
@@ -70,3 +71,41 @@ def test_a_job_whose_own_speed_is_outside_says_so(made: MadeRecipe) -> None:
 def test_ends_are_rounded_to_the_inside(made: MadeRecipe) -> None:
     recipe = of(made, SpeedPart(1.0000049, 1.2999951, "settling", "settling"))
     assert "from 60.001 to 77.999 m/min" in status_text(recipe, catalogue("en"))
+
+
+def test_a_part_that_is_one_speed_is_told_as_one(made: MadeRecipe) -> None:
+    recipe = of(
+        made, SpeedPart(0.0, 0.5, "none", "settling"), SpeedPart(OWN - 1e-7, OWN + 1e-7, "shear_zone_error", "jerk")
+    )
+    for language, told in (
+        ("en", "from 0 to 30 and at 80 m/min"),
+        ("de", "von 0 bis 30 und bei 80 m/min"),
+        ("zh", "0 至 30 以及 恰为 80 m/min"),
+    ):
+        words = catalogue(cast("Language", language))
+        assert told in status_text(recipe, words)
+
+
+def test_speeds_outside_are_marked_in_every_table(made: MadeRecipe) -> None:
+    words = catalogue("en")
+    shown = sheet(of(made, SpeedPart(1.0, OWN, "shear_zone_error", "jerk")), words)
+    for key in ("section.line_ramp", "section.marks"):
+        blocks = next(each for each in shown["sections"] if each["key"] == key)["blocks"]
+        speeds = [row[0] for row in blocks[0]["rows"]]
+        assert [speed.startswith("✗ ") for speed in speeds] == [
+            float(speed.removeprefix("✗ ")) < 60.0 for speed in speeds
+        ]
+        assert any(speed.startswith("✗") for speed in speeds)
+        assert blocks[1]["text"] == words("speeds.outside")
+
+
+def test_what_failed_stands_beside_the_status(made: MadeRecipe) -> None:
+    words, recipe = catalogue("en"), made.recipe
+    table = recipe.tables[0]
+    failed = replace(
+        table, released=False, files=(), checks=(replace(table.checks[0], passed=False), *table.checks[1:])
+    )
+    withheld = replace(recipe, released=False, tables=(failed,))
+    assert warnings(withheld, words) == [f"Not passed: {words.named('check', table.checks[0].name)} ({table.target})."]
+    steps = next(each for each in sheet(withheld, words)["sections"] if each["key"] == "section.import")["blocks"][0]
+    assert "checklist" not in [each["kind"] for each in steps["blocks"]]  # there is no file to import
