@@ -119,15 +119,15 @@ def parse_range(text: str, option: str, kind: str, unit: str) -> Range:
     return Range(start, step if count > 1 else Fraction(0), count)
 
 
-def decimal(value: Fraction, digits: int = 15) -> str:
-    """Write an exact number with as many digits as it needs, at most so many.
+def decimal(value: Fraction) -> str:
+    """Write an exact number with as many digits as it needs, at most 15.
 
     Examples
     --------
     >>> decimal(Fraction(250)), decimal(Fraction(501, 2)), decimal(Fraction(50, 3))
     ('250', '250.5', '16.6666666666667')
     """
-    return f"{float(value):.{digits}g}"
+    return f"{float(value):.15g}"
 
 
 def distinct(values: Range, scale: Fraction) -> bool:

@@ -104,7 +104,7 @@ class Stretch:
     judge: Callable[[CamProfile, float], TableJudgement]
 
 
-def export(
+def export_possible(
     profile: CamProfile,
     job: Job,
     names: Sequence[str],
@@ -113,9 +113,10 @@ def export(
     accuracy: Accuracy | None = None,
     points: int | None = None,
     force: bool = False,
+    stretch: Stretch | None = None,
     step: Step = ignore,
-) -> list[Exported]:
-    """Write a cycle for drives.
+) -> tuple[list[Exported], dict[str, tuple[str, ...]]]:
+    """Write a cycle for drives, or a motion that is run once, and say of those that cannot take it why not.
 
     Every file is read back by the target's own reader, and the motion that the drive will make of it is judged over
     three wraps. A table that breaks a limit or the sync tolerance has no files, unless forced: then its head says so.
@@ -137,33 +138,19 @@ def export(
         Number of points, for targets that leave a choice.
     force
         Write tables that were not released, too.
+    stretch
+        The motion that is run once; the job's cycle if not given.
+
+    Returns
+    -------
+    (results, refused)
+        The tables; why not by the targets' names, all faults of each.
 
     Raises
     ------
     InputError
-        An unknown target, or one that cannot take the cam; all faults at once.
+        An unknown target.
     """
-    results, refused = export_possible(
-        profile, job, names, units=units, accuracy=accuracy, points=points, force=force, step=step
-    )
-    if refused:
-        raise InputError(*(f"{name}: {fault}" for name, faults in refused.items() for fault in faults))
-    return results
-
-
-def export_possible(
-    profile: CamProfile,
-    job: Job,
-    names: Sequence[str],
-    *,
-    units: Units | None = None,
-    accuracy: Accuracy | None = None,
-    points: int | None = None,
-    force: bool = False,
-    stretch: Stretch | None = None,
-    step: Step = ignore,
-) -> tuple[list[Exported], dict[str, tuple[str, ...]]]:
-    """Write a cycle for drives like `export`, or a motion that is run once, and say of those that cannot take it why not."""
     targets = [target_of(name) for name in dict.fromkeys(names)]
     wanted = _Wanted(units or default_units(job.machine), asked=units is not None)
     judge = _Judge(profile, job, stretch or _running(job))

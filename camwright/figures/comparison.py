@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from camwright.figures.panel import RIGHT, WIDTH, first_frame, head, page, upright
-from camwright.figures.strokes import LINES
+from camwright.figures.panel import RIGHT, WIDTH, first_frame, head, page, stroked
+from camwright.figures.strokes import LIMIT, LINES
 from camwright.figures.style import broken_note, title
 from camwright.house.numbers import converted, number, unit_shown
 from camwright.house.picture_files import write_pictures
@@ -141,7 +141,7 @@ def _panel(column: _Column, names: Sequence[str], ticks: Sequence[Tick], place: 
     low, high = -(len(names) - 0.4), 0.6
     if limit is not None and drawn:
         longest = max(longest, limit)
-        items.append(upright(limit, low, high, "limit of the drive"))
+        items.append(stroked(LIMIT, np.array([[limit, low], [limit, high]]), "limit of the drive"))
     for i, (name, value) in enumerate(zip(names, column.values, strict=True)):
         items += _bar(-float(i), name, value, column, _BROAD * longest)
     left, top, width = place

@@ -63,11 +63,6 @@ def across(value: float, start: float, end: float, label: str = "") -> Line:
     return stroked(LIMIT, np.array([[start, value], [end, value]]), label)
 
 
-def upright(place: float, low: float, high: float, label: str = "") -> Line:
-    """Mark a limit: a dotted line at a place."""
-    return stroked(LIMIT, np.array([[place, low], [place, high]]), label)
-
-
 def zone_bands(cut: Cut, units: Units) -> list[Band]:
     """Shade sync zone and shear zone of a cycle."""
     return [

@@ -113,12 +113,13 @@ def slave_field(straight: str, turning: str, example: str) -> tuple[BeforeValida
     return BeforeValidator(read), quantity_schema(words, [KINDS[straight].example, example])
 
 
-def zone_field(kind: str, *, zero: bool = False, timed: bool = True) -> tuple[BeforeValidator, WithJsonSchema]:
+def zone_field(*, zero: bool = False, timed: bool = True) -> tuple[BeforeValidator, WithJsonSchema]:
     """Make the parts of a length that may be written as an angle for machines that know what length it is, or as the time that it lasts.
 
     Angle and time are kept apart and the field is nothing: what length it is machine and line speed say. ``zero`` is whether none is
     allowed, ``timed`` whether a time is.
     """
+    length = KINDS["length"]
 
     def read(value: object, info: ValidationInfo) -> float | None:
         if timed and _is(value, "time", signed=True):
@@ -126,18 +127,16 @@ def zone_field(kind: str, *, zero: bool = False, timed: bool = True) -> tuple[Be
             known.indirect.times[known.path(cast(str, info.field_name))] = read_quantity(value, "time")
             return None
         if not _is(value, "angle", zero=zero):
-            return keep(read_quantity(value, kind, zero=zero), info)
+            return keep(read_quantity(value, "length", zero=zero), info)
         if cast(Known, info.context).machine is not None and not _by_angle(info):
-            raise refusal(
-                f'{shown(value)}: an angle, which only a {_knowing()} knows; write e.g. "{KINDS[kind].example}"'
-            )
+            raise refusal(f'{shown(value)}: an angle, which only a {_knowing()} knows; write e.g. "{length.example}"')
         _keep_angle(read_quantity(value, "angle", zero=zero), info)
         return None
 
     least = "zero or more" if zero else "greater than zero"
     lasting = f", or {KINDS['time'].name} that it lasts at the line speed" if timed else ""
-    words = f"{KINDS[kind].name}, of a {_knowing()} also {KINDS['angle'].name}{lasting}, {least}"
-    return BeforeValidator(read), quantity_schema(words, [KINDS[kind].example, "60 deg", *(["40 ms"] if timed else [])])
+    words = f"{length.name}, of a {_knowing()} also {KINDS['angle'].name}{lasting}, {least}"
+    return BeforeValidator(read), quantity_schema(words, [length.example, "60 deg", *(["40 ms"] if timed else [])])
 
 
 def _knowing() -> str:

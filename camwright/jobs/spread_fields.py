@@ -17,6 +17,7 @@ from camwright.profiles.errors import InputError
 PERCENT = re.compile(r"\s*([0-9]+\.?[0-9]*|\.[0-9]+)\s*%\s*")
 """A percentage; its number is the first group."""
 
+_MOST_DAMPING = 100.0
 _PERCENT_SCHEMA = {"type": "string", "pattern": r"^\s*([0-9]+\.?[0-9]*|\.[0-9]+)\s*%\s*$", "maxLength": 100}
 
 
@@ -40,28 +41,20 @@ def quantity_spread(kind: str, low: str, high: str, *, zero: bool = False) -> tu
     return _spread(end, KINDS[kind].name, f'["{low}", "{high}"]', item, [[low, high]])
 
 
-def number_spread(greatest: float, words: str, low: float, high: float) -> tuple[BeforeValidator, WithJsonSchema]:
-    """Make the parts of a range of a bare number, above zero: a percentage of the servo's own value, or two ends.
-
-    Parameters
-    ----------
-    greatest
-        Greatest number allowed.
-    words
-        What the number is, as messages call it.
-    low, high
-        Ends that messages tell to write.
-    """
+def damping_spread() -> tuple[BeforeValidator, WithJsonSchema]:
+    """Make the parts of a range of the damping ratio: a percentage of the servo's own value, or two ends."""
 
     def end(value: object) -> float:
         if isinstance(value, bool) or not isinstance(value, int | float):
-            raise InputError(f"{shown(value)}: not a number; write e.g. {low:g}")
-        if not 0.0 < value <= greatest:  # not a number is neither
-            raise InputError(f"{shown(value)}: {words} is above 0 and at most {greatest:g}; write e.g. {low:g}")
+            raise InputError(f"{shown(value)}: not a number; write e.g. 0.63")
+        if not 0.0 < value <= _MOST_DAMPING:  # not a number is neither
+            raise InputError(
+                f"{shown(value)}: the damping ratio is above 0 and at most {_MOST_DAMPING:g}; write e.g. 0.63"
+            )
         return float(value)
 
-    item = {"type": "number", "exclusiveMinimum": 0, "maximum": greatest}
-    return _spread(end, words, f"[{low:g}, {high:g}]", item, [[low, high]])
+    item = {"type": "number", "exclusiveMinimum": 0, "maximum": _MOST_DAMPING}
+    return _spread(end, "the damping ratio", "[0.63, 0.77]", item, [[0.63, 0.77]])
 
 
 def ends(spread: Spread | None, nominal: float) -> tuple[float, float]:

@@ -18,7 +18,7 @@ from camwright.jobs.angles import settle_angles, settle_times
 from camwright.jobs.fields import Known, Spread, curve_field, slave_field, targets_field, zone_field
 from camwright.jobs.line_speeds import line_speeds_field
 from camwright.jobs.machine_tables import either_faults, either_of, machine_of, machine_tables, table_of
-from camwright.jobs.spread_fields import aware_only, number_spread, quantity_spread
+from camwright.jobs.spread_fields import aware_only, damping_spread, quantity_spread
 from camwright.profiles.machines import MACHINES, Machine
 from camwright.profiles.machines.fields import Choice, fields_of
 from camwright.profiles.objective import ObjectiveName
@@ -62,11 +62,9 @@ class CutTable(Table):
 
     length: Annotated[float, *quantity_field("length")]
     line_speed: Annotated[float, *quantity_field("speed")]
-    sync_zone: Annotated[float | None, *zone_field("length")]
-    shear_zone: Annotated[
-        float | None, *zone_field("length", zero=True), Field(json_schema_extra={"default": "0 mm"})
-    ] = 0.0
-    shear_zone_at: Annotated[float | None, *zone_field("length", zero=True, timed=False)] = None
+    sync_zone: Annotated[float | None, *zone_field()]
+    shear_zone: Annotated[float | None, *zone_field(zero=True), Field(json_schema_extra={"default": "0 mm"})] = 0.0
+    shear_zone_at: Annotated[float | None, *zone_field(zero=True, timed=False)] = None
     sync_tolerance: Annotated[
         float, *quantity_field("length", example="0.1 mm"), Field(json_schema_extra={"default": "0.1 mm"})
     ] = 1e-4
@@ -96,7 +94,7 @@ class ServoToleranceTable(Table):
     _place = "servo.tolerance"
 
     bandwidth: Annotated[Spread | None, *quantity_spread("angular rate", "108 rad/s", "132 rad/s")] = None
-    damping: Annotated[Spread | None, *number_spread(100.0, "the damping ratio", 0.63, 0.77)] = None
+    damping: Annotated[Spread | None, *damping_spread()] = None
     position_gain: Annotated[Spread | None, *quantity_spread("gain", "33 1/s", "37 1/s")] = None
     sample_time: Annotated[Spread | None, *quantity_spread("time", "3.9 ms", "4.1 ms")] = None
     dead_time: Annotated[Spread | None, *quantity_spread("time", "0 ms", "1 ms", zero=True)] = None

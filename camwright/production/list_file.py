@@ -44,7 +44,7 @@ def read_cut_list(path: Path) -> CutList:
 
 def parse_cut_list(text: str, place: str) -> CutList:
     """Read a cut list from its text; as `read_cut_list`."""
-    layout = Layout(_is_list_cell, lambda lines: _above(lines, "length"))
+    layout = Layout(_is_list_cell, _above)
     sheet = read_sheet(text, place, role, LIST_HEADER, "cut list", layout)
     at = columns(sheet, ("length", "quantity", "kind"), needed=2, header=LIST_HEADER)
     unit = unit_of(sheet.columns[at["length"]])
@@ -128,10 +128,10 @@ def _is_list_cell(cell: str, comma: bool) -> bool:
     return known or cell.strip().lower() in PIECE_KINDS
 
 
-def _above(lines: Sequence[Sequence[str]], name: str) -> int:
-    """Count the lines above the rows: up to the heading that names a column, and a row of units below it."""
+def _above(lines: Sequence[Sequence[str]]) -> int:
+    """Count the lines above the rows: up to the heading that names the lengths, and a row of units below it."""
     for number, cells in enumerate(lines[:20]):
-        if any(role(cell) == name for cell in cells):
+        if any(role(cell) == "length" for cell in cells):
             return number + 1 + (1 if number + 1 < len(lines) and is_unit_row(lines[number + 1]) else 0)
     return 0
 

@@ -14,7 +14,6 @@ from camwright.house.provenance import camwright_version
 from camwright.production.ramps import Ramps, one_shot_cycle, waiting
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import CamProfile, join
-from camwright.profiles.tables.knots import Accuracy
 from camwright.profiles.tables.target import Header
 from camwright.profiles.tables.targets import target_of
 from camwright.validation.rebuilt import TableJudgement, judge_table
@@ -64,9 +63,7 @@ class RampTables:
         return names
 
 
-def write_ramps(
-    found: Ramps, names: Sequence[str], accuracy: Accuracy | None = None, *, required: bool = True, step: Step = ignore
-) -> RampTables:
+def write_ramps(found: Ramps, names: Sequence[str], *, required: bool = True, step: Step = ignore) -> RampTables:
     """Write start, stop and one-shot cam for targets.
 
     A drive runs one of them once, between the park and the running cam. So its table is judged in that place: with the others, as they
@@ -74,8 +71,6 @@ def write_ramps(
 
     Parameters
     ----------
-    accuracy
-        What the rebuilt motion may be off.
     required
         Whether a target that can take none of the three is a fault.
 
@@ -89,7 +84,7 @@ def write_ramps(
     for kind in KINDS:
         step(f"writing the {kind.replace('_', ' ')}")
         made, not_taken = export_possible(
-            profiles[kind], found.job, names, accuracy=accuracy, stretch=stretch_of(found, kind, profiles[kind])
+            profiles[kind], found.job, names, stretch=stretch_of(found, kind, profiles[kind])
         )
         results[kind], refused[kind] = tuple(made), not_taken
     hopeless = [name for name in names if required and all(name in refused[kind] for kind in KINDS)]

@@ -60,7 +60,7 @@ def _fault(where: tuple[int | str, ...], message: str) -> str:
     return f"{'.'.join(str(part) for part in where) or 'the file'}: {message}"
 
 
-def stored_design(recipe: Recipe, place: str = RECIPE_FILE) -> StoredDesign:
+def stored_design(recipe: Recipe) -> StoredDesign:
     """Read the design that a recipe holds: its profile, and its job from the stored text.
 
     Raises
@@ -76,7 +76,7 @@ def stored_design(recipe: Recipe, place: str = RECIPE_FILE) -> StoredDesign:
         "job": asdict(recipe.job),
         "provenance": asdict(recipe.provenance),
     }
-    return parse_design(json.dumps(design), place)
+    return parse_design(json.dumps(design), RECIPE_FILE)
 
 
 def recipe_schema() -> dict[str, Any]:

@@ -64,11 +64,6 @@ class Verified:
     proved: tuple[str, ...]
 
 
-def verify(directory: Path, key: Path | None = None) -> list[Fault]:
-    """Check a recipe folder; what is wrong, nothing for a recipe as it was written. As `examine`."""
-    return list(examine(directory, key).faults)
-
-
 def examine(directory: Path, key: Path | None = None) -> Verified:
     """Check a recipe folder, or that of a family (`camwright.recipes.family_verify`).
 

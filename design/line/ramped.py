@@ -79,14 +79,14 @@ def ramped_return(task: Task, problem: ReturnProblem, start: CamProfile | None, 
     return unscale_profile(tidy(_joined(motion), scaled, corners=False).profile(), problem, scale)
 
 
-def bears_ramp(task: Task, problem: ReturnProblem, start: CamProfile | None = None) -> bool:
+def bears_ramp(task: Task, problem: ReturnProblem) -> bool:
     """Tell whether a mesh has a return on which the line may ramp."""
     scale = motion_scale(problem)
     if abs(scale) <= NO_MOTION * problem.length:
         return all(form.ratio * problem.start_ratio <= 1.0 for form in ramp_forms(task))
     scaled = replace(scale_problem(problem, scale), objective="rms_acceleration")
     forms = tuple(_scaled(form, problem.length, scale) for form in ramp_forms(task))
-    return solve_on_mesh(scaled, _first_mesh(start, problem.length, 2 * FIRST), forms) is not None
+    return solve_on_mesh(scaled, _first_mesh(None, problem.length, 2 * FIRST), forms) is not None
 
 
 def _scaled(form: Form, length: float, scale: float) -> Form:

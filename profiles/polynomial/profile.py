@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cache
@@ -241,42 +240,26 @@ class CamProfile:
         value[-1] = 0.0 if order == 0 else table[0, 0] - ends[-1]
         return value if seam else value[:-1]
 
-    def extrema(
-        self, order: int = 0, start: float | None = None, end: float | None = None
-    ) -> tuple[Extremum, Extremum]:
+    def extrema(self, order: int = 0) -> tuple[Extremum, Extremum]:
         """Least and greatest value of a derivative, exactly: from the roots of the next derivative on each piece.
-
-        Parameters
-        ----------
-        start, end
-            Part of the domain to look at; all of it if not given. One-sided limits at breaks inside the part count.
 
         Returns
         -------
         (least, greatest)
-            Value (slave unit per m**order) and master position (m).
+            Value (slave unit per m**order) and master position (m); one-sided limits at breaks count.
         """
-        whole = start is None and end is None
-        if whole and order in self._peaks:
+        if order in self._peaks:
             return self._peaks[order]
-        first, last = self.start if start is None else start, self.end if end is None else end
-        left, right = np.maximum(first, self.breaks[:-1]), np.minimum(last, self.breaks[1:])
-        piece = np.nonzero((right > left) | ((right == left) & (first >= last)))[0]
-        if not len(piece):
-            return Extremum(math.inf, first), Extremum(-math.inf, first)
-        origin = self.breaks[piece]
-        a, b = left[piece] - origin, right[piece] - origin
-        where = np.column_stack([a, roots_between(self._derived(order + 1)[piece], a, b), b])
+        a, b = np.zeros(self.pieces), np.diff(self.breaks)
+        where = np.column_stack([a, roots_between(self._derived(order + 1), a, b), b])
         where = np.where(np.isnan(where), a[:, None], where)
-        values = self.on_pieces(piece[:, None], where, order)
+        values = self.on_pieces(np.arange(self.pieces)[:, None], where, order)
 
         def extremum(index: int) -> Extremum:
-            return Extremum(float(values.flat[index]), float(origin[index // where.shape[1]] + where.flat[index]))
+            return Extremum(float(values.flat[index]), float(self.breaks[index // where.shape[1]] + where.flat[index]))
 
-        found = extremum(int(values.argmin())), extremum(int(values.argmax()))
-        if whole:
-            self._peaks[order] = found
-        return found
+        self._peaks[order] = extremum(int(values.argmin())), extremum(int(values.argmax()))
+        return self._peaks[order]
 
     def roots(self, order: int = 0) -> FloatArray:
         """Master positions inside the pieces where a derivative is zero, ascending.

@@ -11,7 +11,7 @@ from camwright import load_job
 from camwright.recipes.build import designed, make_recipe
 from camwright.recipes.manifest import manifest_text
 from camwright.recipes.recipe_file import canonical, parse_recipe
-from camwright.recipes.verify import verify
+from camwright.recipes.verify import examine
 from camwright.recipes.write import recipe_files, write_folder
 
 
@@ -38,6 +38,6 @@ def test_a_recorded_value_is_kept_to_a_millionth(
     file.write_bytes(whole["recipe.json"])
     origin = parse_recipe(whole["recipe.json"].decode(), "recipe.json").provenance
     (tmp_path / "recipe" / "manifest.json").write_bytes(manifest_text(whole, origin).encode())
-    faults = [fault.what for fault in verify(tmp_path / "recipe")]
+    faults = [fault.what for fault in examine(tmp_path / "recipe").faults]
     assert any("check acceleration" in fault for fault in faults) is found
     assert len(faults) == found

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from camwright.cli.main import main
-from camwright.drives.export import Exported, export, export_report
+from camwright.drives.export import Exported, export_possible, export_report
 from camwright.drives.running_cam import running_cam
 from camwright.drives.several_cuts import cuts_of
 from camwright.house.owned import LIST
@@ -41,7 +41,7 @@ def profile_of(job: Job) -> CamProfile:
 
 def written(job: Job, target: str, units: str | None = None, **more: object) -> Exported:
     wanted = None if units is None else parse_units(units, job.task)
-    (result,) = export(profile_of(job), job, [target], units=wanted, **more)  # type: ignore[arg-type]
+    (result,) = export_possible(profile_of(job), job, [target], units=wanted, **more)[0]  # type: ignore[arg-type]
     return result
 
 
@@ -245,10 +245,10 @@ def test_counts_of_the_job_are_those_of_its_tables(tmp_path: Path, capsys: pytes
     text = knife("1200 mm", 3).text.replace("[output]", COUNTED)
     job = parse_job(text, "job.toml")
     assert parse_job(job.text, "again") == job
-    results = export(profile_of(job), job, ["trio", "csv", "technosoft"])
+    results = export_possible(profile_of(job), job, ["trio", "csv", "technosoft"])[0]
     assert [(result.cuts, result.passed) for result in results] == [(3, True), (1, True), (3, True)]
     assert last_value(results[0]) == 131_072
-    (asked,) = export(profile_of(job), job, ["trio"], units=parse_units("mm,36000/rev", job.task))
+    (asked,) = export_possible(profile_of(job), job, ["trio"], units=parse_units("mm,36000/rev", job.task))[0]
     assert last_value(asked) == 12_000  # an option outdoes the job
     (tmp_path / "job.toml").write_text(text, encoding="utf-8")
     folder = tmp_path / "recipe"

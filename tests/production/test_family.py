@@ -29,7 +29,7 @@ from camwright.recipes.family_sheet import family_sheet, family_sheets
 from camwright.recipes.language import LANGUAGES, Language
 from camwright.recipes.manifest import MANIFEST_FILE, manifest_text
 from camwright.recipes.model import Origin
-from camwright.recipes.verify import verify
+from camwright.recipes.verify import examine
 from camwright.stored.design_file import parse_design
 from camwright.studies.axis_study import solve_job
 from camwright.studies.covering import FOUND_TO
@@ -304,7 +304,7 @@ def test_nothing_of_a_family_can_be_left_out(written: Path, tmp_path: Path) -> N
             parent = parent[key]
         del parent[place[-1]]
         forge(out, record)
-        assert any(fault.file == "family.json" for fault in verify(out)), kind
+        assert any(fault.file == "family.json" for fault in examine(out).faults), kind
 
 
 @pytest.mark.parametrize(
@@ -327,7 +327,7 @@ def test_a_family_that_says_what_its_cams_do_not_is_told(
     for name, content in family_sheets(record).items():
         (out / name).write_bytes(content)
     forge(out, record)
-    (fault,) = verify(out)
+    (fault,) = examine(out).faults
     assert (fault.file, fault.what.partition(":")[0]) == ("family.json", told)
 
 
@@ -336,7 +336,7 @@ def test_a_changed_table_of_a_family_and_one_too_many_are_told(written: Path, tm
     table = next((out / "csv").glob("F001*"))
     table.write_text(table.read_text().replace("0", "1", 1))
     (out / "csv" / "other.csv").write_text("0")
-    assert {fault.file for fault in verify(out)} == {f"csv/{table.name}", "csv/other.csv"}
+    assert {fault.file for fault in examine(out).faults} == {f"csv/{table.name}", "csv/other.csv"}
 
 
 @pytest.mark.parametrize("language", LANGUAGES)

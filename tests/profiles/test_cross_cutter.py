@@ -121,7 +121,7 @@ def test_lengths_in_whole_millimetres_at_the_ends_of_the_hole_are_the_patents_ow
 
 def test_the_standstill_stands() -> None:
     cycle = CrossCut(L_K, L_S, 0.9).cycle()
-    low, high = cycle.extrema(0, 0.35, 0.55)
+    low, high = cycle.restrict(0.35, 0.55).extrema(0)
     assert low.value == high.value == pytest.approx(L_K / 2, abs=EXACT)
 
 

@@ -21,7 +21,7 @@ from camwright.jobs.job import load_job, parse_job
 from camwright.profiles.errors import InputError
 from camwright.profiles.tables.targets import TARGETS
 from camwright.recipes.compare import compare_recipes, position_difference, read_recipe
-from camwright.recipes.verify import verify
+from camwright.recipes.verify import examine
 
 Say = Callable[..., tuple[int, str, str]]
 
@@ -91,7 +91,7 @@ def test_all_files_of_an_older_recipe_are_replaced(say: Say, paper_job: Path, tm
     code, _, _ = say("recipe", paper_job, "--targets", "csv", "--out", out, "--note", "second")
     assert code == 0
     assert [path for path in contents(out) if path.startswith("tables/")] == ["tables/paper_600_cam.csv"]
-    assert verify(out) == []
+    assert examine(out).faults == ()
 
 
 def test_notes_and_photos_stay_and_changed_files_are_kept(
@@ -173,7 +173,7 @@ def test_a_failure_while_writing_leaves_the_old_recipe(
 def test_an_empty_directory_is_taken(say: Say, paper_job: Path, tmp_path: Path) -> None:
     (tmp_path / "empty").mkdir()
     assert say("recipe", paper_job, "--targets", "csv", "--out", tmp_path / "empty", "--quiet")[0] == 0
-    assert verify(tmp_path / "empty") == []
+    assert examine(tmp_path / "empty").faults == ()
 
 
 def test_all_targets(say: Say, paper_job: Path, tmp_path: Path) -> None:
@@ -182,7 +182,7 @@ def test_all_targets(say: Say, paper_job: Path, tmp_path: Path) -> None:
     recipe = read_recipe(out)
     assert {table.target for table in recipe.tables} | {each.target for each in recipe.refused} == set(TARGETS)
     assert code == (0 if recipe.released else 1)
-    assert verify(out) == []
+    assert examine(out).faults == ()
 
 
 def test_a_failed_check_is_not_released_and_ends_with_1(
@@ -202,7 +202,7 @@ def test_a_failed_check_is_not_released_and_ends_with_1(
     assert not recipe.released
     assert [table.files for table in recipe.tables] == [()]
     assert "NOT RELEASED: a check failed. Do not run this cam." in (out / "recipe.html").read_text(encoding="utf-8")
-    assert verify(out) == []
+    assert examine(out).faults == ()
 
 
 def test_an_infeasible_job_ends_with_3(say: Say, job_with: Callable[..., Path], tmp_path: Path) -> None:
@@ -311,7 +311,7 @@ def test_any_allowed_name_makes_a_sound_recipe(
         "recipe", job, "--targets", "codesys,twincat,logix", "--out", out, "--note", f"{name}\n*) (* //"
     )
     assert code == 0, complaint
-    assert verify(out) == []
+    assert examine(out).faults == ()
     assert read_recipe(out).name == name
     for path in contents(out):
         assert path.isascii()
@@ -340,7 +340,7 @@ def test_what_the_user_gives_stands_in_every_file(
         assert text.replace(" ", "") in pdf.replace(" ", "").replace("\n", "")
         assert text in page
         assert text in cells
-    assert verify(folder) == []
+    assert examine(folder).faults == ()
 
 
 def test_without_particulars_the_file_is_as_before_they_were_known(folder: Path) -> None:

@@ -17,7 +17,7 @@ from camwright.recipes.build import MadeRecipe
 from camwright.recipes.html import recipe_html
 from camwright.recipes.manifest import manifest_text
 from camwright.recipes.recipe_file import canonical, parse_recipe
-from camwright.recipes.verify import Fault, examine, verify
+from camwright.recipes.verify import Fault, examine
 from camwright.recipes.write import recipe_files, write_folder
 
 
@@ -48,12 +48,12 @@ def replace_in(file: Path, old: str, new: str) -> None:
 
 
 def test_a_recipe_as_it_was_written_has_no_fault(folder: Path) -> None:
-    assert verify(folder) == []
+    assert examine(folder).faults == ()
 
 
 def test_a_carriage_with_chords_has_no_fault(saw: MadeRecipe, tmp_path: Path) -> None:
     write_folder(recipe_files(saw), tmp_path / "saw")
-    assert verify(tmp_path / "saw") == []
+    assert examine(tmp_path / "saw").faults == ()
 
 
 def changed_bytes(folder: Path, count: int) -> None:
@@ -66,11 +66,11 @@ def changed_bytes(folder: Path, count: int) -> None:
         whole = file.read_bytes()
         at, flip = rng.randrange(len(whole)), rng.randrange(1, 256)
         file.write_bytes(whole[:at] + bytes([whole[at] ^ flip]) + whole[at + 1 :])
-        faults = verify(folder)
+        faults = examine(folder).faults
         path = file.relative_to(folder).as_posix()
         assert any(fault.file == path for fault in faults), (path, at, flip)
         file.write_bytes(whole)
-    assert verify(folder) == []
+    assert examine(folder).faults == ()
 
 
 def test_each_of_some_single_byte_changes_is_found(folder: Path) -> None:
@@ -98,21 +98,21 @@ def test_every_byte_of_the_manifest_counts(folder: Path) -> None:
 )
 def test_any_manifest_can_be_told_of(folder: Path, text: str) -> None:
     (folder / "manifest.json").write_text(text, encoding="utf-8")
-    assert any(fault.file == "manifest.json" for fault in verify(folder))
+    assert any(fault.file == "manifest.json" for fault in examine(folder).faults)
 
 
 def test_other_white_space_in_the_manifest_is_found(folder: Path) -> None:
     file = folder / "manifest.json"
     data = json.loads(file.read_text(encoding="utf-8"))
     file.write_text(json.dumps(data, indent=2) + "\n", encoding="utf-8")
-    assert Fault("manifest.json", "its bytes are not those that were written") in verify(folder)
+    assert Fault("manifest.json", "its bytes are not those that were written") in examine(folder).faults
 
 
 def test_missing_and_added_files_are_found(folder: Path) -> None:
     (folder / "recipe.pdf").unlink()
     (folder / "tables" / "other.st").write_text("x")
     (folder / "link").symlink_to(folder / "recipe.html")
-    faults = verify(folder)
+    faults = examine(folder).faults
     assert Fault("recipe.pdf", "missing") in faults
     assert Fault("tables/other.st", "not in the manifest") in faults
     assert any(fault.file == "link" for fault in faults)
@@ -122,24 +122,24 @@ def test_a_file_that_became_a_link_or_a_directory_is_found(folder: Path, tmp_pat
     shutil.copy(folder / "recipe.html", tmp_path / "copy.html")
     (folder / "recipe.html").unlink()
     (folder / "recipe.html").symlink_to(tmp_path / "copy.html")
-    assert Fault("recipe.html", "not a readable file") in verify(folder)
+    assert Fault("recipe.html", "not a readable file") in examine(folder).faults
 
 
 def test_without_manifest_or_recipe_the_rest_is_told(folder: Path) -> None:
     (folder / "manifest.json").unlink()
-    assert Fault("manifest.json", "missing, or not a readable file") in verify(folder)
+    assert Fault("manifest.json", "missing, or not a readable file") in examine(folder).faults
     rebuild(folder)
     (folder / "recipe.json").unlink()
-    assert Fault("recipe.json", "missing") in verify(folder)
+    assert Fault("recipe.json", "missing") in examine(folder).faults
 
 
 @pytest.mark.parametrize("place", ["nothing here", "file"])
 def test_what_is_no_recipe_is_refused(tmp_path: Path, place: str) -> None:
     (tmp_path / "file").write_text("x")
     with pytest.raises(InputError, match="there is no such directory"):
-        verify(tmp_path / place)
+        examine(tmp_path / place)
     with pytest.raises(InputError, match="not a recipe: neither manifest"):
-        verify(tmp_path)
+        examine(tmp_path)
 
 
 def test_a_changed_point_is_told_by_its_value_although_all_checksums_fit(folder: Path) -> None:
@@ -156,10 +156,10 @@ def test_a_changed_point_is_told_by_its_value_although_all_checksums_fit(folder:
                     entry["sha256"] = hashlib.sha256(file.read_bytes()).hexdigest()
 
     edit(folder, stay)
-    faults = [fault for fault in verify(folder) if fault.file == digest_of["path"]]
+    faults = [fault for fault in examine(folder).faults if fault.file == digest_of["path"]]
     assert any("is 100.1, recorded" in fault.what for fault in faults)
     assert any("check acceleration" in fault.what for fault in faults)
-    assert len(faults) == len(verify(folder))
+    assert len(faults) == len(examine(folder).faults)
 
 
 def test_a_changed_start_is_told_although_all_checksums_fit(folder: Path) -> None:
@@ -177,7 +177,7 @@ def test_a_changed_start_is_told_although_all_checksums_fit(folder: Path) -> Non
         table["points"]["slave"] = read_table(TARGETS["csv"], "".join(lines), file.name).y.tolist()
 
     edit(folder, stay)
-    faults = verify(folder)
+    faults = examine(folder).faults
     assert {fault.file for fault in faults} <= {"ramps/ramp_in_paper_600_cam.csv", "recipe.html"}
     assert any("position error" in fault.what for fault in faults)
 
@@ -201,7 +201,9 @@ def test_a_changed_start_is_told_although_all_checksums_fit(folder: Path) -> Non
 )
 def test_what_recipe_json_says_twice_must_agree(folder: Path, change: Callable[[dict], object], said: str) -> None:
     edit(folder, change)
-    assert any(fault.file == "recipe.json" and said in fault.what for fault in verify(folder)), verify(folder)
+    assert any(fault.file == "recipe.json" and said in fault.what for fault in examine(folder).faults), examine(
+        folder
+    ).faults
 
 
 def test_a_promise_that_the_table_does_not_keep_is_told(folder: Path) -> None:
@@ -211,7 +213,7 @@ def test_a_promise_that_the_table_does_not_keep_is_told(folder: Path) -> None:
         data["tables"][1]["points"]["slave"][3] += 1e-9
 
     edit(folder, better)
-    faults = verify(folder)
+    faults = examine(folder).faults
     assert {fault.file for fault in faults} == {"tables/paper_600_Cam.L5X"}
     assert any(
         fault.what.startswith("position error (m): ") and fault.what.endswith("recorded 1e-12") for fault in faults
@@ -224,14 +226,14 @@ def test_a_changed_profile_is_told_by_all_tables(folder: Path) -> None:
         data["profile"]["coefficients"][2][3] *= 1.001
 
     edit(folder, bend)
-    assert len({fault.file for fault in verify(folder)}) == 3
+    assert len({fault.file for fault in examine(folder).faults}) == 3
 
 
 def test_a_table_that_cannot_be_read_is_told(folder: Path) -> None:
     file = next((folder / "tables").glob("*.csv"))
     file.write_bytes(b"x [mm],y [mm]\n0,\x00\n")
     rebuild(folder)
-    faults = [fault for fault in verify(folder) if fault.file == f"tables/{file.name}"]
+    faults = [fault for fault in examine(folder).faults if fault.file == f"tables/{file.name}"]
     assert any("SHA-256" in fault.what for fault in faults)
     assert any("control character" in fault.what for fault in faults)
 
@@ -251,7 +253,7 @@ def test_tables_that_the_recipe_has_must_be_there(folder: Path) -> None:
     """Tables taken out of the folder and of the manifest, as someone would who wants it to pass."""
     shutil.rmtree(folder / "tables")
     rebuild(folder)
-    faults = verify(folder)
+    faults = examine(folder).faults
     assert len(faults) == 4
     assert {fault.what for fault in faults} == {"missing, or not a readable file: recipe.json has it"}
 
@@ -260,7 +262,7 @@ def test_a_released_table_has_files(folder: Path) -> None:
     (file,) = (folder / "tables").glob("*_cam.csv")
     file.unlink()
     edit(folder, lambda data: data["tables"][2].update(files=[]))
-    assert verify(folder) == [Fault("recipe.json", "the table for csv is released and has no file")]
+    assert examine(folder).faults == (Fault("recipe.json", "the table for csv is released and has no file"),)
 
 
 SHEET: dict[str, Callable[[dict], object]] = {
@@ -312,7 +314,7 @@ def test_values_of_the_sheet_are_those_of_its_cam(folder: Path, place: str) -> N
     recipe = parse_recipe((folder / "recipe.json").read_text(encoding="utf-8"), "recipe.json")
     (folder / "recipe.html").write_text(recipe_html(recipe), encoding="utf-8", newline="")
     rebuild(folder)
-    faults = verify(folder)
+    faults = examine(folder).faults
     assert len(faults) == 1, faults
     assert faults[0].file == "recipe.json"
     assert faults[0].what.startswith(place)
@@ -320,14 +322,14 @@ def test_values_of_the_sheet_are_those_of_its_cam(folder: Path, place: str) -> N
 
 def test_points_that_are_left_out_are_told(folder: Path) -> None:
     edit(folder, lambda data: data["tables"][2]["points"]["slave"].pop())
-    assert any("recorded of the slave" in fault.what for fault in verify(folder))
+    assert any("recorded of the slave" in fault.what for fault in examine(folder).faults)
 
 
 def test_tables_of_starts_go_with_those_of_the_cam(folder: Path) -> None:
     for file in (folder / "tables").iterdir():
         file.unlink()
     edit(folder, lambda data: data.update(tables=[]))
-    faults = [fault.what for fault in verify(folder)]
+    faults = [fault.what for fault in examine(folder).faults]
     assert any(what.startswith("tables and refused are empty") for what in faults)
 
 
@@ -380,7 +382,7 @@ def without_each(folder: Path, under: str) -> None:
             (folder / "recipe.json").write_bytes(files[folder / "recipe.json"])
             named = {path.relative_to(folder).as_posix(): content for path, content in files.items()}
             (folder / "manifest.json").write_bytes(manifest_text(named, origin).encode())
-            assert any(not fault.file.startswith("recipe.h") for fault in verify(folder)), (kind, emptied)
+            assert any(not fault.file.startswith("recipe.h") for fault in examine(folder).faults), (kind, emptied)
     (folder / "recipe.json").write_bytes(written)
 
 
@@ -411,4 +413,4 @@ def test_files_of_the_desktop_are_named_and_no_fault(folder: Path) -> None:
     assert [note.file for note in found.notes] == [".DS_Store", "Thumbs.db", "tables/.DS_Store", "tables/desktop.ini"]
     (folder / "tables" / "Thumbs.db").symlink_to(folder / "recipe.html")
     (folder / "my thumbs.db").write_bytes(b"")
-    assert [fault.file for fault in verify(folder)] == ["my thumbs.db", "tables/Thumbs.db"]
+    assert [fault.file for fault in examine(folder).faults] == ["my thumbs.db", "tables/Thumbs.db"]

@@ -18,8 +18,8 @@ from camwright.validation.servo.axis_motion import AxisPeaks, axis_checks, great
 from camwright.validation.servo.lifting import SUBSTEPS, follow, lift
 from camwright.validation.servo.simulation import memory
 
-PHASES = 64
-"""Sampling phases at which a change is run."""
+PHASES, CORNER_PHASES = 64, 16
+"""Sampling phases at which a change is run with the servo that is judged, and with those at the corners of its ranges."""
 
 AFTER = 3
 """Cycles that are looked at from the change on, the first of them the transition's."""
@@ -130,9 +130,7 @@ def _run(change: CamChange, servo: Servo, line_speed: float, phases: int) -> Cha
     return ChangeRun(error, greatest_peaks(peaks))
 
 
-def change_checks(
-    change: CamChange, servos: Sequence[Servo], line_speeds: Sequence[float], corner_phases: int = 16
-) -> list[Check]:
+def change_checks(change: CamChange, servos: Sequence[Servo], line_speeds: Sequence[float]) -> list[Check]:
     """Check a change: the sync error of every servo, and the axis' own motion with the first.
 
     Parameters
@@ -141,13 +139,11 @@ def change_checks(
         The servo that is judged, then those at the corners of its ranges.
     line_speeds
         Line speeds at which it is made (m/s).
-    corner_phases
-        Sampling phases of the servos at the corners.
     """
     task = change.tasks[1]
     own = run_change(change, servos[0], line_speeds)
     worst = max(
-        [own.sync_error, *(run_change(change, servo, line_speeds, corner_phases).sync_error for servo in servos[1:])]
+        [own.sync_error, *(run_change(change, servo, line_speeds, CORNER_PHASES).sync_error for servo in servos[1:])]
     )
     tolerance, limits = task.cut.sync_tolerance, task.limits
     how = f"servo run through the change at {len(line_speeds)} line speeds, {PHASES} sampling phases"
