@@ -11,7 +11,7 @@ from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.task import Task
 from camwright.validation.bounds.bent_peaks import least_bent_acceleration, least_bent_jerk
 from camwright.validation.bounds.bound import NONE, Bound
-from camwright.validation.bounds.constant_inertia import drawn, peak_with_friction, square_with_friction
+from camwright.validation.bounds.constant_inertia import ROUNDING, drawn, peak_with_friction, square_with_friction
 from camwright.validation.bounds.mean_square import mean_square_bound
 from camwright.validation.bounds.path_convex import least_square_in_time
 from camwright.validation.bounds.path_dual import (
@@ -45,6 +45,8 @@ NEAR = 2e-3
 """Share of the mean square below which nothing is left to be proved."""
 LOOSE = 0.08
 """Share of the mean square below which a bound that knows the jerk is asked too."""
+KNOWN = 0.02
+"""Share of the energy within which a closed form is good enough."""
 EDGE = 5e-3
 """Share by which a peak may lie above that of the zone to need no other bound."""
 PEAKS = (0.993, 0.98, 0.96, 0.93, 0.9, 0.86, 0.82, 0.76, 0.7, 0.6, 0.5)
@@ -66,13 +68,14 @@ def motor_bound(profile: CamProfile, task: Task, objective: MotorObjective, moti
     machine = task.machine
     if not machine.moves_something:
         return Bound(math.nan, NONE)
-    if machine.constant_inertia and task.straight:
-        return _constant(profile, task, objective, motion)
-    if machine.constant_inertia and objective != "energy":
-        return _bent_constant(profile, task, objective, motion)
-    if machine.friction > 0 or task.height <= 0:
-        return Bound(math.nan, NONE)
-    return _along_path(profile, task, objective)
+    if not machine.constant_inertia:
+        return _along_path(profile, task, objective)
+    if objective != "energy":
+        return (_constant if task.straight else _bent_constant)(profile, task, objective, motion)
+    known = Bound(drawn(task), FRICTION if machine.friction else SPEEDS) if task.straight else Bound(0.0, PATH)
+    if task.height <= 0 or known.value >= work_drawn(motor_torque(profile, task), profile, machine) * (1 - KNOWN):
+        return known
+    return max(known, _along_path(profile, task, objective), key=lambda bound: bound.value)
 
 
 def bent_bound(profile: CamProfile, task: Task, objective: MotionObjective) -> Bound:
@@ -94,14 +97,14 @@ def _path(task: Task, inertia: FloatArray) -> PathTask:
     v, sync, limits = task.cut.line_speed, task.sync, task.limits
     speeds, slopes = ((float(sync(sync.end, k)) * v**k, float(sync(sync.start, k)) * v**k) for k in (1, 2))
     time = task.cut.return_zone / v
-    return PathTask(inertia, task.height, speeds, time, limits.speed, limits.acceleration, limits.jerk, slopes)
+    reach = limits.speed, limits.acceleration, limits.jerk
+    return PathTask(inertia, task.height, speeds, time, *reach, slopes, task.machine.friction)
 
 
 def _constant(profile: CamProfile, task: Task, objective: MotorObjective, motion: Bound) -> Bound:
+    """Bound of a torque where inertia and ratio in sync are constant."""
     machine, cut = task.machine, task.cut
     inertia, friction = float(machine.inertia(task.slave_at_sync_start)), machine.friction
-    if objective == "energy":
-        return Bound(drawn(task), SPEEDS if not friction else FRICTION)
     if objective == "peak_torque":
         if not friction:
             return Bound(inertia * motion.value / machine.motor_ratio, motion.method)
@@ -147,7 +150,7 @@ def _zone_square(torque: CamProfile, task: Task) -> float:
 
 
 def _along_path(profile: CamProfile, task: Task, objective: MotorObjective) -> Bound:
-    """Bound where the inertia or the ratio in sync changes along the way, for a slave that goes one way and has no friction."""
+    """Bound along the path, for a slave that goes one way round, of any inertia and with friction."""
     machine = task.machine
     q = task.slave_at_sync_end + np.linspace(0.0, task.height, PLACES)
     path = _path(task, np.asarray(machine.inertia(q)) + 0.0 * q)
@@ -157,9 +160,12 @@ def _along_path(profile: CamProfile, task: Task, objective: MotorObjective) -> B
     if objective == "energy":
         zone = _zone_energy(profile, torque, task)
         found = work_drawn(torque, profile, machine) - zone
-        # a motion that turns must come from rest to the last speed
-        turning = path.energies[1] if turns else math.inf
-        return Bound(zone + (min(least_drawn(path, found), turning) if found > 0 else 0.0), PATH)
+        # a motion that turns must come from rest to the last speed; it has rolled as far as friction lets it
+        first, last = path.energies
+        rubbed = path.friction * path.way
+        turning = last + max(rubbed - first, 0.0) if turns else math.inf
+        back = min(least_drawn(path, found), turning) if found > 0 else 0.0
+        return Bound(zone + max(back, (rubbed + last - first) * (1 - ROUNDING)), PATH)
     zone = _zone_peak(profile, task)
     greatest = greatest_magnitude(torque, 0).value
     if greatest <= zone * (1 + EDGE):

@@ -7,6 +7,9 @@ tube any function ``φ(s, z)`` and any ``λ`` with ``φ_s + λ (I/2) z^(-2/3) >=
 the time ``T`` from below by ``φ(start) - φ(end) - λ T``. The best such spline is a cone programme. Where it breaks its inequality between
 the points at which it was asked for, the bound is lowered by what that can cost at most. The lesser of level and bound holds for all
 motions. Energy and peak have tubes and inequalities of their own.
+
+Friction ``F`` takes ``F dq`` of what is drawn, and nothing while the slave stands: then ``φ_q - F φ_E`` stands for ``φ_q``. The bounds of
+the squared torque and the peak are those without friction.
 """
 
 from __future__ import annotations
@@ -135,8 +138,9 @@ def _softest_turn(task: PathTask) -> float:
 def drawn_tube(task: PathTask, level: float) -> Tube:
     """Tube of the motions that draw less energy than a level."""
     first, last = task.energies
-    count = len(task.inertia)
-    return _within_reach(task, np.full(count, max(last - level, 0.0)), np.full(count, first + level))
+    rubbed = task.friction * np.linspace(0.0, task.way, len(task.inertia))
+    low = last - level + task.friction * task.way - rubbed
+    return _within_reach(task, np.maximum(low, 0.0), np.maximum(first + level - rubbed, 0.0))
 
 
 def peak_tube(task: PathTask, level: float) -> Tube:
@@ -197,11 +201,13 @@ def _bound(task: PathTask, tube: Tube, kind: str, level: float, least: float) ->
         weights = _best(spline, x, y, kind, level)
         if weights is None:
             break
-        broken = _broken(spline, far_x, far_y, weights, kind, level)
+        broken, beyond = _broken(spline, far_x, far_y, weights, kind, level)
         # a motion passes each place once, at the worst energy at most
         worst_there = np.maximum(broken.reshape(LOOKED[1], LOOKED[0]).max(axis=0), 0.0)
         cost = float(np.trapezoid(worst_there, far_x[: LOOKED[0]])) * spline.whole
-        value = max(value, float(ends @ weights) - cost)
+        # a φ_E from -1 - b to b is put into its range: b E is taken off, and the rest divided
+        first, last = task.energies
+        value = max(value, (float(ends @ weights) - cost + beyond * (last - first)) / (1.0 + 2.0 * beyond))
         if cost <= SMALL * unit or value + cost < least or value >= (0.0 if kind == "peak" else level):
             break
         worst = np.argsort(broken)[-MORE:]
@@ -233,6 +239,10 @@ class _Spline:
         """Inertia at shares of the path."""
         return np.interp(x * self.whole, self._s, self._task.inertia)
 
+    def rubbed(self, x: FloatArray) -> FloatArray:
+        """Energy that friction takes per stretched length, at shares of the path."""
+        return self._task.friction * np.sqrt(self.inertia(x) / 2)
+
     def rows(self, x: FloatArray, energy: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Give derivatives over ``s`` and over the kinetic energy, a row for each place; the column of ``λ`` is zero."""
         bottom, top = self._range
@@ -252,7 +262,8 @@ class _Spline:
         sheet = weights[:-1].reshape(KNOTS[0] + 3, KNOTS[1] + 3)
         by_s = (_values(self._knots[0], x, 1) @ sheet * _values(self._knots[1], y, 0)).sum(axis=1) / self.whole
         by_energy = (_values(self._knots[0], x, 0) @ sheet * _values(self._knots[1], y, 1)).sum(axis=1) * dy
-        return by_s + weights[-1] * self.inertia(x) / 2 / np.sqrt(energy), by_energy
+        by_s = by_s + weights[-1] * self.inertia(x) / 2 / np.sqrt(energy)
+        return by_s - self.rubbed(x) * by_energy, by_energy
 
     def ends(self) -> FloatArray:
         """Give what the bound is made of: the spline at the start less that at the end, less ``λ`` times the time."""
@@ -284,25 +295,22 @@ def _products(along: FloatArray, across: FloatArray) -> FloatArray:
 
 
 def _parts(spline: _Spline, x: FloatArray, energy: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Linear part ``φ_s + λ (I/2) E^(-1/2)`` and ``φ_E``, a row for each place."""
+    """Linear part ``φ_s - F √(I/2) φ_E + λ (I/2) E^(-1/2)`` and ``φ_E``, a row for each place."""
     by_s, by_energy = spline.rows(x, energy)
     by_s[:, -1] = spline.inertia(x) / 2 / np.sqrt(energy)
-    return by_s, by_energy
+    return by_s - spline.rubbed(x)[:, None] * by_energy, by_energy
 
 
 def _broken(
     spline: _Spline, x: FloatArray, energy: FloatArray, weights: FloatArray, kind: str, level: float
-) -> FloatArray:
-    """By how much the inequality is broken at places, per stretched length."""
+) -> tuple[FloatArray, float]:
+    """By how much the inequality is broken at places, per stretched length; for energy drawn also how far ``φ_E`` leaves its range."""
     linear, slope = spline.values(x, energy, weights)
     if kind == "square":  # φ_z² 9/64 with φ_z = φ_E 4/3 z^(1/3)
-        return np.asarray(0.25 * slope**2 * np.sqrt(energy) - linear)
-    root = np.sqrt(spline.inertia(x) / 2)
+        return np.asarray(0.25 * slope**2 * np.sqrt(energy) - linear), 0.0
     if kind == "peak":
-        return np.asarray(level * root * np.abs(slope) - linear)
-    # a unit of energy that φ_E leaves beyond its range costs at most that share of what can be drawn or given back
-    beyond = np.maximum(np.maximum(slope, -1.0 - slope), 0.0)
-    return np.asarray(np.maximum(-linear, 0.0) + 4.0 * level / spline.whole * beyond)
+        return np.asarray(level * np.sqrt(spline.inertia(x) / 2) * np.abs(slope) - linear), 0.0
+    return -linear, max(float(slope.max()), -1.0 - float(slope.min()), 0.0)
 
 
 def _best(spline: _Spline, x: FloatArray, energy: FloatArray, kind: str, level: float) -> FloatArray | None:

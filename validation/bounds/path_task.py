@@ -35,6 +35,8 @@ class PathTask:
         Greatest acceleration and jerk allowed, either way.
     slopes
         Accelerations at the ends; they count where the jerk is limited.
+    friction
+        Force or torque against the motion while it moves; only the energy drawn knows it.
     """
 
     inertia: FloatArray
@@ -45,6 +47,7 @@ class PathTask:
     acceleration: float = math.inf
     jerk: float = math.inf
     slopes: tuple[float, float] = (0.0, 0.0)
+    friction: float = 0.0
 
     @cached_property
     def stretched(self) -> FloatArray:

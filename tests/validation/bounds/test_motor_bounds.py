@@ -93,6 +93,38 @@ def test_energy_of_a_slave_that_must_slow_down_is_what_it_takes_to_be_fast_again
     assert 0.9 * exact < found <= exact * (1 + 1e-9)
 
 
+def test_energy_with_friction_is_what_braking_first_and_rolling_on_leaves_to_be_drawn() -> None:
+    """Nothing wastes more time than the kinetic energy ``g - F q`` all the way: rolling, ``T = (I / F) (u - w)``, and then a jump."""
+    inertia, friction, way, first = 2.0, 1.0, 6.0, 2.6
+    last = math.sqrt(first**2 - 2 * friction * way / inertia)
+    rubs = replace(EVEN, friction=friction, time=inertia / friction * (first - last))
+    exact = 9.0 - 0.5 * inertia * last**2
+    assert exact > friction * way
+    found = least_drawn(rubs, 1.03 * exact)
+    assert 0.95 * exact < found <= exact * (1 + 1e-9)
+    assert least_drawn(replace(rubs, time=2.4), 6.3) == pytest.approx(
+        friction * way, rel=5e-3
+    )  # it rolls to less than that
+
+
+@pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(1, 20))])
+def test_no_motion_that_rubs_draws_less_than_its_bound(seed: int) -> None:
+    """Random motions of a random inertia in time, their torque by its formula; the level is a little above the motion, or far."""
+    _, t, q, u, a = _jerky(seed)
+    wave, size, friction = 2 * np.pi / q[-1], 0.8 * (seed % 4) / 3, float(np.abs(a).max()) * (0.1 + 0.2 * (seed % 3))
+    inertia = 1.0 + size * np.sin(wave * np.linspace(0.0, q[-1], 2001))
+    path = PathTask(inertia, float(q[-1]), (u[0], u[-1]), 1.0, float(u.max()), friction=friction)
+    torque = (1.0 + size * np.sin(wave * q)) * a + size * wave * np.cos(wave * q) * u**2 / 2 + friction
+    power = float(np.trapezoid(np.maximum(torque * u, 0.0), t))
+    assert least_drawn(path, (1.02 + 0.3 * (seed % 2)) * power) <= power * (1 + 1e-6)
+
+
+def test_the_energy_of_a_knife_in_horizontal_sync_that_rubs_is_bounded() -> None:
+    knife = replace(KNIFE, sync="horizontal", drum_friction=2.0)
+    value, bound, _ = _checked(knife, replace(SHEET, length=0.9), KNIVES, "energy")
+    assert bound > 0.9 * value
+
+
 def test_a_peak_below_what_the_way_asks_is_proved_to_be_too_low() -> None:
     """Slower over the straight line: two even torques, h = a T² / 4."""
     slow = replace(EVEN, time=2.4)
