@@ -1,11 +1,18 @@
-"""Where something begins to work: the edge between a value that does and one that does not, by halving."""
+"""Where something begins to work: the edge between a value that does and one that does not, by halving or by how much is missed."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 _MOST = 200
 """Halvings at most; between two floats of usual size there are fewer before they are neighbours."""
+
+_SPARE = 0.4
+"""Room left beside a guess, in resolutions, for it to lie on the other side of the edge than the last length did."""
+
+_SLOW = 3
+"""After so many guesses in a row that leave more than half of a range its middle is looked at."""
 
 
 def halved(
@@ -43,3 +50,54 @@ def halved(
             break
         good, bad = (middle, bad) if works(middle) else (good, middle)
     return good, bad
+
+
+def narrowed(
+    missed: Callable[[float], float], fails: tuple[float, float], holds: tuple[float, float], resolution: float
+) -> tuple[float, float]:
+    """Narrow the interval between a value that fails and a greater one that holds, by how much each misses.
+
+    Looked at is where a straight line reaches zero, and the middle where that leaves more than half again and again or only signs are
+    known. The line goes through both ends, or through an end and the value that it moved from where it moved twice: it is bent least there.
+
+    Parameters
+    ----------
+    missed
+        By how much it is missed at a value: at most zero where it holds, infinite where no more is known.
+    fails, holds
+        The ends, and what they miss.
+    resolution
+        Accuracy of the value, relative to it; and by how much no more need be kept.
+
+    Returns
+    -------
+    (value, missed)
+        The end that holds, of what is left.
+    """
+    before: tuple[float, float] | None = None
+    moved: bool | None = None
+    slow, spare = 0, _SPARE * resolution * holds[0]
+    while (width := holds[0] - fails[0]) > resolution * holds[0] and holds[1] < -resolution:
+        length = 0.5 * (fails[0] + holds[0])
+        if slow < _SLOW and width > 2.0 * spare:
+            end, other = (fails, holds) if moved else (holds, fails)
+            zero = zero_between(end, before) or zero_between(end, other)
+            if zero is not None:
+                zero += spare if moved or moved is None else -spare
+                length = min(max(zero, fails[0] + spare), holds[0] - spare)
+        found = missed(length)
+        before = (fails if found > 0.0 else holds) if moved == (found > 0.0) else None
+        moved = found > 0.0
+        if moved:
+            fails = length, found
+        else:
+            holds = length, found
+        slow = slow + 1 if holds[0] - fails[0] > 0.5 * width else 0
+    return holds
+
+
+def zero_between(one: tuple[float, float], other: tuple[float, float] | None) -> float | None:
+    """Where the line through two points reaches zero, if it falls."""
+    if other is None or not math.isfinite(one[1] - other[1]) or (one[1] - other[1]) * (one[0] - other[0]) >= 0.0:
+        return None
+    return one[0] - one[1] * (one[0] - other[0]) / (one[1] - other[1])

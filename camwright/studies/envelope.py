@@ -167,10 +167,18 @@ def envelope_answer(job: Job, points: int, step: Step = ignore) -> EnvelopeAnswe
     def fastest(length: float) -> float | None:
         return max_line_speed(at(length).task)
 
-    def in_tolerance(length: float, near: float) -> float | None:
-        accuracy = ACCURACY if length in lengths else BETWEEN
-        a_little_less = near * (1.0 - 0.5 * accuracy)  # the line is as often on one side of the edge as on the other
-        return highest_speed(at(length), fastest(length), None if math.isnan(near) else a_little_less, accuracy)[0]
+    found_within: dict[float, float | None] = {}
+
+    def in_tolerance(length: float, expected: float) -> float | None:
+        """Begin at the perfect axis' edge where that is the edge of the next shorter length too, or is about what is expected."""
+        top, accuracy = fastest(length), ACCURACY if length in lengths else BETWEEN
+        shorter = max((each for each in found_within if each < length), default=None)
+        at_top = shorter is not None and found_within[shorter] == fastest(shorter)
+        near = None
+        if not (at_top or math.isnan(expected) or top is None or expected >= (1.0 - STRAIGHT) * top):
+            near = expected * (1.0 - 0.5 * accuracy)  # the line is as often on one side of the edge as on the other
+        found_within[length] = highest_speed(at(length), top, near, accuracy)[0]
+        return found_within[length]
 
     perfect = true_edge(lambda length, _: fastest(length), lengths.tolist(), FINEST)
     within = true_edge(in_tolerance, lengths.tolist(), None if job.servo_aware or not job.machine.placed else FINE)

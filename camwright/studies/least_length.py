@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 
+from camwright.profiles.halving import narrowed, zero_between
+
 _STEEP = 50.0
-"""What a share of the tolerance is taken to fall by, as a logarithm, while the cut length grows by a share of itself: first steps are laid
-by it."""
+"""What a share of the tolerance is taken to fall by, as a logarithm, while the cut length grows by a share of itself: the first step is
+laid by it, further ones by what it was seen to fall by."""
 
 _LEAST_STEP, _GREATEST_STEP, _GROWTH = 0.6, 0.025, 2.0
-"""Bounds of these steps, in resolutions and as a share of the length, and by what each further one is longer."""
+"""Bounds of these steps, in resolutions and as a share of the length, and by what each further one may and must be longer."""
 
-_SPARE = 0.4
-"""Room left beside a guess, in resolutions, for it to lie on the other side of the edge than the last length did."""
-
-_SLOW = 3
-"""After so many guesses in a row that leave more than half of a range its middle is looked at."""
+_BEYOND = 1.1
+"""Steps go so much farther than to where the share would be zero, to the other side of the edge."""
 
 
 def least_length(
@@ -44,7 +42,9 @@ def least_length(
     (low, high), length, longer = ends, min(max(near, ends[0]), ends[1]), 1.0
     fails: tuple[float, float] | None = None
     holds: tuple[float, float] | None = None
+    steep = _STEEP
     while fails is None or holds is None:
+        before = fails or holds
         found = missed(length)
         if found > 0.0:
             if length >= high:
@@ -54,43 +54,10 @@ def least_length(
             if length <= low or found >= -resolution:
                 return length
             holds = length, found
-        step = longer * max(min(abs(found) / _STEEP, _GREATEST_STEP), _LEAST_STEP * resolution)
+        zero = zero_between((length, found), before)
+        if zero is not None:
+            steep = abs(found) * length / (_BEYOND * max(abs(zero - length), _LEAST_STEP * resolution * length))
+        step = max(min(abs(found) / steep, longer * _GREATEST_STEP), longer * _LEAST_STEP * resolution)
         length = min(length * (1.0 + step), high) if found > 0.0 else max(length / (1.0 + step), low)
         longer *= _GROWTH
-    return _narrowed(missed, fails, holds, resolution)
-
-
-def _narrowed(
-    missed: Callable[[float], float], fails: tuple[float, float], holds: tuple[float, float], resolution: float
-) -> float:
-    """Look where a straight line reaches zero, at the middle where that leaves more than half again and again or only signs are known.
-
-    The line goes through both ends, or through an end and the length that it moved from, where it moved twice: it is bent least there.
-    """
-    before: tuple[float, float] | None = None
-    moved: bool | None = None
-    slow, spare = 0, _SPARE * resolution * holds[0]
-    while (width := holds[0] - fails[0]) > resolution * holds[0] and holds[1] < -resolution:
-        length = 0.5 * (fails[0] + holds[0])
-        if slow < _SLOW and width > 2.0 * spare:
-            end, other = (fails, holds) if moved else (holds, fails)
-            zero = _zero(end, before) or _zero(end, other)
-            if zero is not None:
-                zero += spare if moved or moved is None else -spare
-                length = min(max(zero, fails[0] + spare), holds[0] - spare)
-        found = missed(length)
-        before = (fails if found > 0.0 else holds) if moved == (found > 0.0) else None
-        moved = found > 0.0
-        if moved:
-            fails = length, found
-        else:
-            holds = length, found
-        slow = slow + 1 if holds[0] - fails[0] > 0.5 * width else 0
-    return holds[0]
-
-
-def _zero(one: tuple[float, float], other: tuple[float, float] | None) -> float | None:
-    """Where the line through two points reaches zero, if it falls."""
-    if other is None or not math.isfinite(one[1] - other[1]) or (one[1] - other[1]) * (one[0] - other[0]) >= 0.0:
-        return None
-    return one[0] - one[1] * (one[0] - other[0]) / (one[1] - other[1])
+    return narrowed(missed, fails, holds, resolution)[0]

@@ -13,6 +13,7 @@ from camwright.profiles.closed_forms.reach import greatest_reach
 from camwright.profiles.closed_forms.transfer import (
     Bounds,
     State,
+    Transfer,
     farthest,
     nearest,
 )
@@ -79,13 +80,27 @@ def possible_motion(problem: ScaledProblem) -> tuple[FloatArray, FloatArray] | N
     """
     if problem.confined:
         return _within_stroke(problem)
+    ends = _farthest_and_nearest(problem)
+    if ends is None:
+        return None
+    far, near = ends
+    share = _share(near.distance, far.distance, problem.height)
+    return None if share is None else _mean(near.corners(), far.corners(), share)
+
+
+def spare(problem: ScaledProblem) -> float:
+    """How much farther than it must, and less far, a return without a stroke could go at least; minus infinity if none meets its ends."""
+    ends = _farthest_and_nearest(problem)
+    if ends is None:
+        return -math.inf
+    return min(ends[0].distance - problem.height, problem.height - ends[1].distance)
+
+
+def _farthest_and_nearest(problem: ScaledProblem) -> tuple[Transfer, Transfer] | None:
     start, end = State(0.0, problem.start_slope), State(problem.end_ratio, problem.end_slope)
     bounds = Bounds(problem.least_ratio, problem.greatest_ratio, problem.greatest_slope, problem.greatest_jerk)
     far, near = farthest(1.0, start, end, bounds), nearest(1.0, start, end, bounds)
-    if far is None or near is None:
-        return None
-    share = _share(near.distance, far.distance, problem.height)
-    return None if share is None else _mean(near.corners(), far.corners(), share)
+    return None if far is None or near is None else (far, near)
 
 
 def possible_rms(problem: ReturnProblem) -> float:

@@ -10,7 +10,8 @@ import numpy as np
 
 from camwright.design.returns.closed_starts import known_start
 from camwright.design.returns.ipopt import SolveStatus, programme
-from camwright.design.returns.possible import possible_motion
+from camwright.design.returns.least_peaks import NARROW, ROUGH, least_peak_motion
+from camwright.design.returns.possible import possible_motion, spare
 from camwright.design.returns.problem import ReturnProblem
 from camwright.design.returns.scaling import (
     ScaledProblem,
@@ -27,7 +28,7 @@ from camwright.design.returns.structure import (
     subdivide,
     tidy,
 )
-from camwright.design.returns.touching import NARROW, ROUGH, least_peak_motion, touching_motions
+from camwright.design.returns.touching import touching_motions
 from camwright.design.returns.transcription import (
     LIMIT_MARGIN,
     Arc,
@@ -383,7 +384,9 @@ def _beyond(profile: CamProfile, problem: ScaledProblem) -> float:
 
 
 def _room(problem: ScaledProblem) -> float:
-    """Share by which the limits could move a rest-to-rest slave further than its height."""
+    """Share by which the limits could move a slave further than its height; where it is not at rest at its ends, or less far."""
+    if not problem.rest_to_rest:
+        return spare(problem) / max(abs(problem.height), NO_MOTION)
     far = greatest_reach(1.0, problem.greatest_ratio, problem.greatest_slope, problem.greatest_jerk)
     return far / problem.height - 1.0
 
@@ -411,7 +414,7 @@ def _grids(problem: ScaledProblem, witness: ScaledMotion | None) -> Iterator[tup
     degree = _degree(problem)
     arcs = None if witness is None else witness.lengths[witness.lengths > VANISHED]
     arcs = None if arcs is None else arcs / arcs.sum()
-    little = problem.rest_to_rest and not problem.confined and _room(problem) <= LITTLE_ROOM
+    little = not problem.confined and _room(problem) <= LITTLE_ROOM
     coarse, fine = (np.full(count, 1.0 / count) for count in (COARSE[degree], FINE[degree]))
     if problem.confined and arcs is not None:
         if degree == 1:
@@ -423,7 +426,8 @@ def _grids(problem: ScaledProblem, witness: ScaledMotion | None) -> Iterator[tup
             yield subdivide(arcs, FINE[degree]), 0.0, False
         return
     if degree == 1:
-        yield coarse, 0.0, True
+        if arcs is None or not little:
+            yield coarse, 0.0, True
         if arcs is not None:
             yield subdivide(arcs, COARSE[degree]), 0.0, True
         yield coarse, WIDER, True

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -9,13 +10,15 @@ import pytest
 from scipy.optimize import linprog
 
 from camwright.design.optimise import solve
+from camwright.design.returns.least_peaks import least_peak_motion
+from camwright.design.returns.possible import spare
 from camwright.design.returns.problem import return_problem
 from camwright.design.returns.scaling import ScaledProblem, motion_scale, scale_problem
 from camwright.design.returns.solver import _kept, grid_objective
-from camwright.design.returns.touching import least_peak_motion, touching_motions
+from camwright.design.returns.touching import touching_motions
 from camwright.profiles.cut import Cut
 from camwright.profiles.limits import Limits
-from camwright.profiles.machines import LinearCarriage
+from camwright.profiles.machines import LinearCarriage, RotaryKnife
 from camwright.profiles.objective import MotionObjective
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.profiles.task import Task
@@ -168,3 +171,25 @@ def test_a_way_back_without_a_forward_part_is_no_way_to_a_lower_peak() -> None:
     bound = lower_bound(found.profile, Task(saw, cut, limits), "peak_jerk")
     assert found.status.name == "OPTIMAL"
     assert bound.value <= found.minimised <= 1.01 * bound.value
+
+
+@pytest.mark.parametrize(("length", "speed"), [(0.25, 0.65), (0.5, 0.65), (0.7, 0.65), (0.7, 2.5)])
+@pytest.mark.parametrize(("objective", "order"), [("peak_acceleration", 2), ("peak_jerk", 3)])
+def test_between_ends_that_are_no_rests_it_is_that_of_a_grid(
+    length: float, speed: float, objective: MotionObjective, order: int
+) -> None:
+    knife = RotaryKnife(0.8, blades=2, sync="horizontal")
+    cut = Cut(length, speed, 0.0869, 0.01, 0.05, 2e-4)
+    problem = return_problem(Task(knife, cut, Limits(200 / 60, 60.0, 5000.0)), objective)
+    scale = motion_scale(problem)
+    asked = scale_problem(problem, scale)
+    motion = least_peak_motion(asked)
+    assert motion is not None
+    profile = _kept(motion, asked)
+    assert profile is not None  # it keeps every limit
+    value = max(abs(extremum.value) for extremum in profile.extrema(order))
+    on_grid = grid_objective(problem) * problem.length**order / abs(scale)
+    assert value <= on_grid * (1 + 1e-9)
+    assert value >= 0.85 * on_grid
+    lower = {"greatest_slope": 0.999 * value} if order == 2 else {"greatest_jerk": 0.999 * value}
+    assert not math.isfinite(spare(replace(asked, **lower))) or spare(replace(asked, **lower)) < 0.0
