@@ -147,7 +147,8 @@ def _verdict(design: Design) -> str:
 
 def _head(design: Design) -> list[str]:
     """Say how the design ended: objective and bound, what was chosen, how well several starts agree."""
-    solution, measure = design.solution, design.job.units.measure(objective_unit(design.job))
+    solution, of = design.solution, objective_unit(design.job)
+    measure = design.job.units.shown["m"] if of == "m" else design.job.units.measure(of)
     factor, unit = measure.factor, measure.printed
     bound = (
         "no lower bound is known"

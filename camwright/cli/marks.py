@@ -108,7 +108,8 @@ def _view(
     """Show the ranges at the job's line speed and below, the loop, and the dead time."""
     units = found.job.units
     here = new_table(
-        title=f"A print mark at {with_unit(found.here.line_speed, 'm/s', units=units)}", title_justify="left"
+        title=f"A print mark at {with_unit(found.here.line_speed, 'm/s', units=units)} ({unit_shown('m', units)})",
+        title_justify="left",
     )
     for name in ("what the controller does", "earliest", "latest", "by acceleration alone"):
         here.add_column(name, justify="left" if name.startswith("what") else "right")

@@ -20,7 +20,7 @@ from camwright.figures.panel import (
     wide_frame,
 )
 from camwright.figures.strokes import COMMAND
-from camwright.figures.style import title
+from camwright.figures.style import broken_note, marked
 from camwright.house.numbers import Units, converted, number, unit_shown, with_unit
 from camwright.house.pictures import Area, Frame, Item, Picture, Tick
 from camwright.profiles.polynomial.profile import FloatArray
@@ -62,11 +62,14 @@ def axis_figure(design: Design, runs: Mapping[str, ServoRun], ranges: RobustBand
     around = _AROUND * (cut.shear_zone or 0.2 * cut.sync_zone)
     part = max(0.0, shear[0] - around), min(cut.sync_zone, shear[1] + around)
     heading = head(job.name, f"the axis at {with_unit(cut.line_speed, 'm/s', units=job.units)}")
+    heading += broken_note(design.comparison[name] for name in AXES if name in runs)
     top = first_frame(heading) + 24.0
     frames = [_meeting(design, runs["optimised"], part, top), _errors(design, runs, part, top + _PANEL + _GAP)]
     if ranges is not None:
         frames.append(_ranges(design, ranges, part, top + 2 * (_PANEL + _GAP)))
-    legend: list[Item] = [profile_line(name, NOTHING, f"axis, {title(name)}") for name in AXES if name in runs]
+    legend: list[Item] = [
+        profile_line(name, NOTHING, f"axis, {marked(design.comparison[name])}") for name in AXES if name in runs
+    ]
     legend += [
         stroked(COMMAND, NOTHING, "command, optimised"),
         across(0.0, 0.0, 1.0, "sync tolerance"),

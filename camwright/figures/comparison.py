@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,8 @@ from camwright.figures.style import broken_note, title
 from camwright.house.numbers import converted, number, unit_shown
 from camwright.house.picture_files import write_pictures
 from camwright.house.pictures import Bar, Frame, Item, Note, Picture, Tick
+from camwright.house.pictures import ticks as spread_ticks
+from camwright.house.svg import text_width
 from camwright.profiles.objective import OBJECTIVES
 from camwright.studies.comparison import Comparison
 from camwright.studies.measured import Measured
@@ -31,6 +34,9 @@ _LEFT, _GAP, _ROW, _HEADING = 156.0, 12.0, 22.0, 36.0
 
 _HALF = 0.33
 """Half the height of a bar, as a part of its row."""
+
+_CLEAR = 4.0
+"""Room between two numbers of a scale (pt)."""
 
 _BROAD = 1.55
 """Width of a column, as a multiple of its longest bar: numbers stand beside the bars."""
@@ -108,7 +114,10 @@ def _columns(comparison: Comparison) -> list[_Column]:
     ]
     if job.objective == "sync_error":
         errors = scaled([row.value("sync_error") for row in rows], length)
-        columns.append(_Column(f"sync error\n({millimetres})", errors, job.cut.sync_tolerance * length))
+        worst = "worst sync\nerror" if rows[0].worst_error is not None else "sync error\n"
+        columns.append(
+            _Column(f"{worst} ({millimetres})".replace("\n ", "\n"), errors, job.cut.sync_tolerance * length)
+        )
     torques = [row.motor.rms_torque for row in rows]
     if any(torque is not None for torque in torques):
         columns.insert(2, _Column("RMS torque\n(N·m)", torques, None))
@@ -148,8 +157,21 @@ def _panel(column: _Column, names: Sequence[str], ticks: Sequence[Tick], place: 
     return Frame(
         left, top, width, _ROW * (len(names) + 0.2), np.array([0.0, low]), np.array([_BROAD * longest, high]), items,
         "" if drawn or limit is None else f"limit {number(limit)}: off scale", "", column.heading,
-        yticks=ticks, numbers=True, edges=False,
+        xticks=_xticks(_BROAD * longest, width), yticks=ticks, numbers=True, edges=False,
     )  # fmt: skip
+
+
+def _xticks(high: float, width: float) -> list[Tick]:
+    """Choose ticks from zero whose numbers stand clear of each other and of those of the next column."""
+    chosen: list[Tick] = []
+    for most, share in ((3, 1.0), (3, 0.8), (2, 0.8), (2, 0.6)):
+        values, texts = spread_ticks(0.0, share * high, most)
+        chosen = [Tick(value, text) for value, text in zip(values, texts, strict=True)]
+        ends = [(value / high * width, 0.5 * text_width(text)) for value, text in zip(values, texts, strict=True)]
+        apart = all(there + half + _CLEAR <= then - beside for (there, half), (then, beside) in pairwise(ends))
+        if apart and sum(ends[-1]) <= width:
+            break
+    return chosen
 
 
 def _bar(at: float, name: str, value: float | None, column: _Column, width: float) -> list[Item]:

@@ -76,6 +76,7 @@ def servo_figure(comparison: Comparison, runs: Mapping[str, ServoRun]) -> Pictur
         f"\nω = {servo.bandwidth:g} rad/s, ζ = {servo.damping:g}, K = {servo.position_gain:g} 1/s, "
         f"ΔT = {with_unit(servo.sample_time, 's')}, α = {servo.velocity_feedforward:g}"
     )
+    heading += _worst_note(comparison)
     heading += broken_note(comparison[name] for name in AXES)
     top = first_frame(heading) + _HEADING
     upper = _meetings(comparison, runs, top)
@@ -92,6 +93,13 @@ def servo_figure(comparison: Comparison, runs: Mapping[str, ServoRun]) -> Pictur
         band(0.0, 1.0, "shear zone", units),
     ]
     return page(heading, [*upper, *lower], legend)
+
+
+def _worst_note(comparison: Comparison) -> str:
+    """Say what the worst servo of the job's ranges makes of them, which is not drawn: a line of the heading, where there are ranges."""
+    units, rows = comparison.job.units, [comparison[name] for name in AXES]
+    told = [f"{marked(row)} {with_unit(row.worst_error, 'm', 4, units)}" for row in rows if row.worst_error is not None]
+    return f"\nworst servo of its ranges, in the shear zone: {', '.join(told)}" if told else ""
 
 
 def _meetings(comparison: Comparison, runs: Mapping[str, ServoRun], top: float) -> list[Frame]:

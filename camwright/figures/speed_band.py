@@ -16,7 +16,7 @@ from camwright.figures.panel import (
     wide_frame,
 )
 from camwright.figures.strokes import GREY, Stroke
-from camwright.figures.style import title
+from camwright.figures.style import broken_note, marked
 from camwright.house.numbers import unit_shown, with_unit
 from camwright.house.pictures import APART, Band, Item, Line, Picture, Tick
 from camwright.jobs.servos import servos_of
@@ -61,12 +61,13 @@ def speed_band_figure(design: Design) -> Picture:
     servos = servos_of(job)
     curves: list[Line] = []
     for name in SHOWN:
+        called = marked(design.comparison[name])
         errors = line_speed_errors(design.comparison[name].profile, job.task, servos, speeds) * length
         floored = np.log10(np.maximum(errors, _DEEPEST * tolerance))
-        curves.append(profile_line(name, np.stack([speeds * speed, floored[0]], axis=1), title(name)))
+        curves.append(profile_line(name, np.stack([speeds * speed, floored[0]], axis=1), called))
         if len(servos) > 1:
             worst = np.stack([speeds * speed, floored.max(axis=0)], axis=1)
-            curves.append(thin_line(name, worst, f"{title(name)}, worst servo of its ranges"))
+            curves.append(thin_line(name, worst, f"{called}, worst servo of its ranges"))
     alone = cam_for_one_speed(job)
     if alone is not None:
         errors = line_speed_errors(*alone, servos[:1], speeds)[0] * length
@@ -85,7 +86,7 @@ def speed_band_figure(design: Design) -> Picture:
         Line(np.array([[own, low], [own, high]]), GREY, 1.1, "line speed of the job"),
     ]
     items: list[Item] = [*bands, *marks, *reversed(curves)]
-    heading = head(job.name, "one cam at every line speed")
+    heading = head(job.name, "one cam at every line speed") + broken_note(design.comparison[name] for name in SHOWN)
     frame = wide_frame(
         first_frame(heading),
         _PANEL,

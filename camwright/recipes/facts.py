@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from camwright.house.numbers import with_unit
+from camwright.house.numbers import shown, unit_shown, with_unit
 from camwright.house.units import KINDS
 from camwright.profiles.machines import MACHINES
 from camwright.profiles.machines.fields import Choice, MachineField, Quantity, fields_of
@@ -28,12 +28,15 @@ class Fact:
         SI unit of a number; ``"curve"`` for pairs of motor speed and torque.
     group
         ``"machine"`` for what the machine says of itself, whose words other parameters may have too.
+    ends
+        Ends of the range that the job gives of it.
     """
 
     key: str
     value: Any
     unit: str = "1"
     group: str = ""
+    ends: tuple[float, float] | None = None
 
     @property
     def name(self) -> str:
@@ -110,7 +113,13 @@ def limit_facts(recipe: Recipe) -> list[Fact]:
 
 def servo_facts(recipe: Recipe) -> list[Fact]:
     """List the servo's parameters and the lead time that makes up for its lag."""
-    return [*listed(recipe.job.si["servo"], SERVO), Fact("mean_lag", recipe.lead_time, "s")]
+    return [*servo_rows(recipe.job.si), Fact("mean_lag", recipe.lead_time, "s")]
+
+
+def servo_rows(si: dict[str, Any]) -> list[Fact]:
+    """List the servo's parameters of a job's numbers, with the ranges that it gives."""
+    ranges = {key: tuple(ends) for key, ends in (si.get("servo_tolerance") or {}).items() if ends[0] != ends[1]}
+    return [replace(fact, ends=ranges.get(fact.key)) for fact in listed(si["servo"], SERVO)]
 
 
 GROUPS = {
@@ -138,7 +147,11 @@ def fact_text(fact: Fact, words: Catalogue) -> str:
         return words.named("word", value)
     if fact.unit == "curve":
         return _curve_text(value, words)
-    return with_unit(value, fact.unit, units=words.units)
+    if fact.ends is None:
+        return with_unit(value, fact.unit, units=words.units)
+    low, middle, high = (shown(each, fact.unit, units=words.units) for each in (fact.ends[0], value, fact.ends[1]))
+    unit = "" if fact.unit == "1" else f" {unit_shown(fact.unit, words.units)}"
+    return f"{middle} ({words('speeds.span', low=low, high=high)}){unit}"
 
 
 def _curve_text(points: Iterable[Iterable[float]], words: Catalogue) -> str:

@@ -7,7 +7,7 @@ from typing import Any
 from camwright.house.numbers import converted, inside, number, shown, with_unit
 from camwright.recipes.blocks import Block, shortened, table_block, text_block, visible
 from camwright.recipes.catalogue import Catalogue, catalogue_of
-from camwright.recipes.facts import PRODUCT, SERVO, fact_text, listed
+from camwright.recipes.facts import PRODUCT, fact_text, listed, servo_rows
 from camwright.recipes.html import page
 from camwright.recipes.pdf import typeset
 
@@ -31,7 +31,6 @@ def family_sheet(record: dict[str, Any], words: Catalogue) -> dict[str, Any]:
     span = words("speeds.part", low=_speed(low, words, up=True), high=_speed(high, words, up=False))
     passed, several = record["passed"], len(record["cams"]) > 1
     name = visible(record["job"])
-    fewest = "family.fewest" if record["fewest"] else "family.at_least"
     makers = (
         ("heading.cams", _cams),
         ("heading.switching", _switching),
@@ -49,15 +48,14 @@ def family_sheet(record: dict[str, Any], words: Catalogue) -> dict[str, Any]:
         "boxed": record["hold_line_speed"] and several,
         "warnings": [words("family.holds_line" if record["hold_line_speed"] else "family.ramps")] if several else [],
         "head": [
-            [words("family.cams"), words(fewest, cams=str(len(record["cams"])), least=str(record["at_least"]))],
-            [words("family.overlap"), f"{words.number(100.0 * record['overlap'])} %"],
+            *_counted(record, words),
             [words("head.objective"), words.named("word", record["cams"][0]["objective"]["name"])],
             [words("head.camwright"), f"camwright {record['provenance']['camwright']}"],
             [words("head.job_sha256"), record["provenance"]["job_sha256"]],
         ],
         "groups": [
             [_group("section.product", listed(record["si"]["cut"], PRODUCT), words)],
-            [_group("section.servo", listed(record["si"]["servo"], SERVO), words)],
+            [_group("section.servo", servo_rows(record["si"]), words)],
         ],
         "page": words("page"),
         "sections": [
@@ -66,6 +64,15 @@ def family_sheet(record: dict[str, Any], words: Catalogue) -> dict[str, Any]:
             if (blocks := make(record, words))
         ],
     }
+
+
+def _counted(record: dict[str, Any], words: Catalogue) -> list[list[str]]:
+    """Say how many cams there are, whether fewer would do, and how far their bands overlap; of one cam there is nothing to say."""
+    cams = str(len(record["cams"]))
+    if len(record["cams"]) == 1:
+        return [[words("family.cams"), cams]]
+    fewest = words("family.fewest" if record["fewest"] else "family.at_least", cams=cams, least=str(record["at_least"]))
+    return [[words("family.cams"), fewest], [words("family.overlap"), f"{words.number(100.0 * record['overlap'])} %"]]
 
 
 def _group(heading: str, facts: list[Any], words: Catalogue) -> Block:
@@ -157,7 +164,11 @@ def _steps(record: dict[str, Any], words: Catalogue) -> list[Block]:
 
 
 def _record(record: dict[str, Any], words: Catalogue) -> list[Block]:
+    length = shown(record["si"]["cut"]["length"], "m", units=words.units)
     rows = []
+    for cam in record["cams"]:
+        middle = shown(sum(cam["band_m_per_s"]) / 2.0, "m/s", 4, words.units)
+        rows.append([words("record.cam_length", cam=str(cam["cam"]), speed=middle), length])
     for each in record["switching"]:
         for way, pair, up in (("up", ("slower", "faster"), False), ("down", ("faster", "slower"), True)):
             told = " → ".join(str(each[cam]) for cam in pair)

@@ -153,7 +153,7 @@ def _production(page: _Page, recipe: Recipe, words: Catalogue) -> None:
 
 
 def _value(fact: Fact, words: Catalogue) -> tuple[Cell, str]:
-    if isinstance(fact.value, bool | str) or fact.value is None or fact.unit == "curve":
+    if isinstance(fact.value, bool | str) or fact.value is None or fact.unit == "curve" or fact.ends:
         return fact_text(fact, words), ""
     return converted(fact.value, fact.unit, words.units), unit_shown(fact.unit, words.units)
 

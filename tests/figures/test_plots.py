@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from camwright.figures.comparison import bars_figure, comparison_figure
+from camwright.figures.comparison import _xticks, bars_figure, comparison_figure
 from camwright.figures.design import design_figures
 from camwright.figures.profile import profile_figure
 from camwright.figures.servo import AXES, servo_figure
@@ -280,3 +281,20 @@ def test_an_inch_job_is_drawn_in_inches() -> None:
     assert band.frames[0].xlabel == "line speed (ft/min)"
     widths = [item.high[0] for item in bars.frames[0].items if isinstance(item, Bar)]
     assert widths[0] == pytest.approx(inch.objective / 0.3048, rel=1e-6)
+
+
+@pytest.mark.parametrize("high", [0.33, 1.0, 6.2, 31.0, 100.6, 155.0, 21_103.0, 31_000.0, 987_654.0])
+def test_numbers_below_bars_stand_clear_of_each_other_and_of_the_next_column(high: float) -> None:
+    """Seven columns leave 49 pt to each."""
+    chosen = _xticks(high, 60.0)
+    assert chosen[0].value == 0.0
+    ends = [(tick.value / high * 60.0, 0.5 * text_width(tick.text)) for tick in chosen]
+    assert all(at + half < then - beside for (at, half), (then, beside) in pairwise(ends))
+    assert sum(ends[-1]) <= 60.0
+    assert len(chosen) > 1 or high > 1e5
+
+
+def test_a_baseline_that_breaks_a_limit_is_marked_over_the_line_speed(paper: Design) -> None:
+    picture = speed_band_figure(paper)
+    assert "linear return †" in {item.label for item in picture.legend}
+    assert "† breaks a limit of the job" in picture.title

@@ -354,6 +354,21 @@ def test_the_sheet_of_a_family_is_in_the_language_of_its_reader(in_sync: Family,
         assert f"{60 * speed:.3f}"[:-1].replace(".", words.units.decimal) in cells
 
 
+def test_a_family_of_one_cam_has_nothing_to_say_of_others(in_sync: Family) -> None:
+    record = family_record(in_sync, "en")
+    record |= {"cams": record["cams"][:1], "switching": []}
+    record["si"]["servo_tolerance"] = {"bandwidth": [108.0, 132.0], "damping": [0.7, 0.7]}
+    data = family_sheet(record, catalogue("en"))
+    assert ["Cams", "1"] in data["head"]
+    assert "overlap" not in str(data["head"]).lower()
+    servo = next(group for column in data["groups"] for group in column if group["heading"] == "Servo")
+    assert ["Bandwidth of the velocity loop", "120 (108 to 132) rad/s"] in servo["rows"]
+    assert ["Damping of the velocity loop", "0.7"] in servo["rows"]
+    (signed,) = next(each for each in data["sections"] if each["key"] == "section.record")["blocks"]
+    assert len(signed["rows"]) == 1
+    assert signed["rows"][0][0].startswith("Cut length of cam 1 at ")
+
+
 def test_a_family_whose_change_needs_a_standstill_is_not_released(in_sync: Family) -> None:
     (each,) = in_sync.switchings
     stopped = replace(each, changes=(each.changes[0], replace(each.changes[1], how="stop")))

@@ -17,6 +17,7 @@ from camwright.profiles.servo_tolerance import ServoTolerance
 from camwright.studies.axis_study import solve_job
 from camwright.studies.comparison import Comparison, compare
 from camwright.studies.design import optimise
+from camwright.validation.check import Check
 from camwright.validation.report import judge
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -67,7 +68,14 @@ def test_the_worst_servo_stands_beside_the_error_where_the_job_has_ranges() -> N
         assert row.worst_error is not None
         assert row.worst_error >= row.response.shear_zone_error * (1 - 1e-9)
         assert row.value("sync_error") == row.worst_error
-    assert "worst servo" in text_of(profiles_view(comparison), 80)
+    shown = text_of(profiles_view(comparison), 80)
+    assert "worst servo" in shown
+    beyond = {row.name for row in comparison.rows if (row.worst_error or 0.0) > job.cut.sync_tolerance}
+    assert beyond
+    assert "‡ beyond the sync tolerance of 0.1 mm" in shown
+    assert shown.count(" ‡ │") == len(beyond) + sum(
+        row.response.shear_zone_error > job.cut.sync_tolerance for row in comparison.rows
+    )
 
 
 @pytest.mark.parametrize("width", [80, 100, 160])
@@ -83,6 +91,15 @@ def test_every_name_and_number_can_be_read(width: int) -> None:
     assert "…" not in shown
     assert all(f"{check.name} " in shown for check in report.checks)
     assert max(map(len, shown.splitlines())) <= width
+
+
+def test_what_passed_just_beyond_its_limit_is_marked() -> None:
+    kept = Check("axis_speed", True, 3.3337, 3.3333, "m/s", None, "S1")
+    shown = text_of(checks_view([kept], PAPER.units), 80)
+    assert "3.3337 *" in shown
+    assert "* beyond the limit by no more than" in shown
+    for plain in (replace(kept, value=3.3), replace(kept, passed=False), replace(kept, value=33.0)):
+        assert "*" not in text_of(checks_view([plain], PAPER.units), 80)
 
 
 def test_a_proof_measures_nothing_that_it_does_not_need(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -33,6 +33,9 @@ def lead_view(job: Job, errors: Sequence[LengthError]) -> RenderableType:
         table.add_row(
             f"{100 * error.share:g} %",
             f"{error.line_speed * speed.factor:.4g}",
-            *(f"{value * length.factor:z.4f}" for value in (error.offset, error.offset_with_lead, error.variation)),
+            *(
+                f"{value * length.factor:z.4f}".replace("-", "−")
+                for value in (error.offset, error.offset_with_lead, error.variation)
+            ),
         )
     return table

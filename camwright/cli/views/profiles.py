@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 from camwright.cli.views.parts import fitting, new_table, new_text, stacked
 from camwright.cli.views.whole_table import WholeTable
-from camwright.house.numbers import Shown, number, shown, unit_shown
+from camwright.house.numbers import Shown, number, shown, unit_shown, with_unit
+from camwright.jobs.job import Job
 from camwright.profiles.objective import OBJECTIVES
 from camwright.studies.comparison import Comparison
 
@@ -21,7 +22,7 @@ _WIDE = 130
 _MOST = 4
 """Columns beside the name that a terminal of 80 columns shows."""
 
-_BROKEN = "†"
+_BROKEN, _BEYOND = "†", "‡"
 
 
 def profiles_view(comparison: Comparison) -> RenderableType:
@@ -32,6 +33,9 @@ def profiles_view(comparison: Comparison) -> RenderableType:
     notes = []
     if any(not row.within_limits for row in comparison.rows):
         notes.append(new_text(f"{_BROKEN} breaks a limit of the job"))
+    if any(_BEYOND in cell for _, cells in groups[-1] for cell in cells):
+        tolerance = with_unit(comparison.job.cut.sync_tolerance, "m", units=comparison.job.units)
+        notes.append(new_text(f"{_BEYOND} beyond the sync tolerance of {tolerance}"))
     if comparison.screw is not None:
         notes.append(new_text(comparison.screw.sentence))
     return stacked(fitting(wide, narrow, _WIDE), *notes)
@@ -98,11 +102,17 @@ def _servo(comparison: Comparison) -> list[Column]:
         (f"crossing\n{unit}", [shown(row.response.crossing, "m", 4, units) for row in rows]),
         (f"settling\n{unit}", [shown(row.response.settling, "m", 4, units) for row in rows]),
         (f"following\n{unit}", [shown(row.response.peak_following_error, "m", 4, units) for row in rows]),
-        (f"sync error\n{unit}", [shown(row.response.shear_zone_error, "m", 4, units) for row in rows]),
+        (f"sync error\n{unit}", [_error(row.response.shear_zone_error, comparison.job) for row in rows]),
     ]
     if any(row.worst_error is not None for row in rows):
-        columns.append((f"worst servo\n{unit}", [shown(row.worst_error, "m", 4, units) for row in rows]))
+        columns.append((f"worst servo\n{unit}", [_error(row.worst_error, comparison.job) for row in rows]))
     return columns
+
+
+def _error(error: float | None, job: Job) -> str:
+    """Write a sync error in the shear zone, marked if it is beyond the tolerance."""
+    beyond = error is not None and error > job.cut.sync_tolerance
+    return shown(error, "m", 4, job.units) + (f" {_BEYOND}" if beyond else "")
 
 
 def _in(value: float | None, unit: Shown) -> str:
