@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import asdict
+from pathlib import Path
 from typing import Any
 
 from camwright.jobs.job import Job
@@ -82,6 +83,11 @@ def measures_answer(
 def report_answer(report: ValidationReport, unit: SlaveUnit) -> dict[str, Any]:
     """Measures of the profile that was judged."""
     return measures_answer(report.motion, report.tool, report.motor, report.servo, unit)
+
+
+def with_files(answer: dict[str, Any], files: Sequence[Path]) -> dict[str, Any]:
+    """Add the paths of the files that were written."""
+    return {**answer, "files": [str(file) for file in files]}
 
 
 def checks_answer(checks: Sequence[Check]) -> list[dict[str, Any]]:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import hashlib
 import os
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from camwright.book.entry import Entry
 from camwright.book.plan import Book
-from camwright.house.files import flush, put
+from camwright.house.files import fill, flush, put
 from camwright.profiles.errors import InputError
 
 MANIFEST = "book.json"
@@ -69,15 +69,14 @@ class BookFolder:
         """Remove what is being written."""
         shutil.rmtree(self._aside, ignore_errors=True)
 
-    def place(self, entry: Entry, texts: dict[str, str]) -> None:
+    def place(self, entry: Entry, texts: Mapping[str, str]) -> None:
         """Put the files of a combination into their place, all at once."""
         if not texts:
             return
         target = self.root / self._book.combination(entry.number).folder
         aside = self._aside / str(entry.number)
         aside.mkdir()
-        for name, text in texts.items():
-            (aside / name).write_bytes(text.encode())
+        fill(aside, texts)
         put(aside, target)  # a folder stands there where the journal did not come to know of it
 
     def write(self, name: str, pieces: Iterator[str]) -> str:

@@ -28,7 +28,7 @@ from camwright.cli.options import Json, Quiet
 from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.house.files import is_device_name
 from camwright.house.output import Voice, complain
-from camwright.house.owned import Work, owned
+from camwright.house.owned import Work, owned, write_owned
 from camwright.house.progress import Step
 from camwright.profiles.bender.bridges import BridgeRule
 from camwright.profiles.errors import InputError
@@ -261,10 +261,7 @@ def _calibrate(measurements: Path, bender: BenderJob, out: Path | None, voice: V
     directory = Path("out") / measurements.stem if out is None else out
     texts = {f"{measurements.stem}.toml": result.text, f"{measurements.stem}-residuals.csv": residuals_text(result)}
     work = Work("bend --calibrate", measurements.stem, hashlib.sha256(measurements.read_bytes()).hexdigest())
-    with owned(directory, work, complain) as aside:
-        for name, text in texts.items():
-            (aside / name).write_bytes(text.encode())
-    files = [directory / name for name in texts]
+    files = write_owned(directory, work, texts, complain)
     voice.answer(lambda: calibration_answer(result, files), lambda: _calibration_view(result, files))
     return 0
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from camwright.answers.measures import with_files
 from camwright.cli.options import (
     CommonPlace,
     GivenJob,
@@ -20,9 +21,11 @@ from camwright.cli.options import (
 )
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import new_table, new_text, stacked
+from camwright.cli.views.seams import seams_view
 from camwright.drives.options import chosen_targets
 from camwright.figures.line_plan import line_plan_figure
-from camwright.house.numbers import converted, number, unit_shown, with_unit
+from camwright.house.files import fill
+from camwright.house.numbers import converted, unit_shown, with_unit
 from camwright.house.output import Voice, complain
 from camwright.house.owned import Work, owned
 from camwright.jobs.job import load_job
@@ -82,31 +85,23 @@ def run(
     directory = Path("out") / f"{given.name}-cutlist" if out is None else out
     files = _written(study, directory, job_work("cutlist", given, job, out), figures=not no_figures)
 
-    def data() -> dict[str, Any]:
-        common = {} if place is None else {"common_place": place.answer()}
-        return {**list_answer(study), **common, "files": [str(file) for file in files]}
-
+    common = {} if place is None else {"common_place": place.answer()}
     said = [] if place is None else [new_text(place.words())]
-    voice.answer(data, lambda: stacked(*_views(study), *said, files_view(files)))
+    voice.answer(
+        lambda: with_files({**list_answer(study), **common}, files),
+        lambda: stacked(*_views(study), *said, files_view(files)),
+    )
     return 0 if study.passed else 1
 
 
 def _written(study: ListStudy, directory: Path, work: Work, *, figures: bool) -> list[Path]:
     """Write the tables of each target into a folder of its own, and beside them what the controller needs to run the list."""
     with owned(directory, work, complain) as aside:
-        for name, text in list_files(study).items():
-            (aside / name).write_bytes(text.encode())
+        fill(aside, list_files(study))
         if figures:
             line_plan_figure(study, aside)
         files = final_paths(aside, directory)
-    for table in study.tables:
-        folder = directory / table.name
-        if table.files or folder.exists():  # older tables of what is withheld now go
-            with owned(folder, work, complain) as aside:
-                for name, text in table.files.items():
-                    (aside / name).write_bytes(text.encode())
-            files += [folder / name for name in sorted(table.files)]
-    return files
+    return files + [file for table in study.tables for file in table.write(directory, work, complain)]
 
 
 def _views(study: ListStudy) -> list[RenderableType]:
@@ -143,34 +138,7 @@ def _views(study: ListStudy) -> list[RenderableType]:
     for change in made[:_MOST_SHOWN]:
         at = f"{converted(change.line_speed, 'm/s', units):.5g}"
         changes.add_row(str(change.before), str(change.after), _HOW[change.how], at, str(change.times))
-    return [cams, *([changes] if made else []), _seams(study), new_text(_said(study, len(made)))]
-
-
-def _seams(study: ListStudy) -> RenderableType:
-    """Show what was found at the seams of each target's tables."""
-    seams = new_table(title="Seams of the tables as read back", title_justify="left")
-    units = study.planned.job.units
-    speed, acceleration = (
-        f"velocity jump\n{unit_shown('m/s', units)}",
-        f"acceleration jump\n{unit_shown('m/s^2', units)}",
-    )
-    for name in ("target", "numbers", speed, acceleration, ""):
-        seams.add_column(name, justify="right" if "jump" in name else "left")
-    for table in study.tables:
-        told = [
-            *(f"cam {cam} withheld: {why}" for cam, why in table.withheld.items()),
-            *table.refused,
-            *([] if table.within else ["more than two tables may be off"]),
-        ]
-        verdict = new_text("; ".join(told), "bold red") if told else new_text("passed", "green")
-        seams.add_row(
-            table.name,
-            table.number_format,
-            number(converted(table.jump.velocity, "m/s", units)),
-            number(converted(table.jump.acceleration, "m/s^2", units)),
-            verdict,
-        )
-    return seams
+    return [cams, *([changes] if made else []), seams_view(study.tables, units), new_text(_said(study, len(made)))]
 
 
 def _said(study: ListStudy, changes: int) -> str:

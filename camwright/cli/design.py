@@ -32,6 +32,7 @@ from camwright.cli.views.parts import new_text, stacked
 from camwright.cli.views.profiles import profiles_view
 from camwright.cli.views.speed_band import band_view
 from camwright.figures.design import design_figures
+from camwright.house.files import fill
 from camwright.house.numbers import number, with_unit
 from camwright.house.output import Voice, complain
 from camwright.house.owned import owned
@@ -71,8 +72,7 @@ def run(
         texts = design_files(result)
         step("writing files")
         with owned(directory, job_work("design", asked, job, out), complain) as aside:
-            for name, text in texts.items():
-                (aside / name).write_bytes(text.encode())
+            fill(aside, texts)
             if not no_figures and not brief:
                 design_figures(result, aside)
             files = final_paths(aside, directory)

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from camwright.answers.measures import with_files
 from camwright.cli.options import GivenJob, Json, NoFigures, Out, Quiet, final_paths, job_work, output_directory
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import new_table, stacked
 from camwright.figures.envelope import envelope_figure
+from camwright.house.files import fill
 from camwright.house.numbers import converted, unit_shown
 from camwright.house.output import Voice, complain
 from camwright.house.owned import owned
@@ -38,16 +40,12 @@ def run(
         answer = envelope_answer(asked, points, step)
     texts = answer.files()
     with owned(directory, job_work("envelope", asked, job, out), complain) as aside:
-        for name, text in texts.items():
-            (aside / name).write_bytes(text.encode())
+        fill(aside, texts)
         if not no_figures:
             envelope_figure(answer, aside)
         files = final_paths(aside, directory)
 
-    def data() -> dict[str, Any]:
-        return {**answer.to_dict(), "files": [str(file) for file in files]}
-
-    voice.answer(data, lambda: stacked(_view(answer), files_view(files)))
+    voice.answer(lambda: with_files(answer.to_dict(), files), lambda: stacked(_view(answer), files_view(files)))
     return 0
 
 

@@ -17,7 +17,7 @@ from camwright.drives.speed_tables import named, speed_tables, speed_tables_answ
 from camwright.drives.table_files import TableFiles, export
 from camwright.house.files import read_text
 from camwright.house.output import Voice, complain
-from camwright.house.owned import Work, owned
+from camwright.house.owned import Work, write_owned
 from camwright.jobs.job import Job
 from camwright.jobs.table_units import parse_units
 from camwright.profiles.errors import InputError
@@ -102,9 +102,7 @@ def _by_speed(job: Job, names: Sequence[str], directory: Path, voice: Voice) -> 
             found.append(speed_tables(job, target))
     texts = {name: text for each in found for name, text in each.files.items()}
     if texts:
-        with owned(directory, Work("export", job.name, job.sha256, adds=True), complain) as aside:
-            for name, text in texts.items():
-                (aside / name).write_bytes(text.encode())
+        write_owned(directory, Work("export", job.name, job.sha256, adds=True), texts, complain)
     files = [directory / name for name in sorted(texts)]
     voice.answer(lambda: speed_tables_answer(found), lambda: speed_tables_view(found, files, job.units))
     return 0 if all(each.passed for each in found) else 1

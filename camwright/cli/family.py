@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from camwright.answers.measures import with_files
 from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, TableTargets, final_paths, job_work
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import new_table, new_text, stacked
+from camwright.cli.views.seams import seams_view
 from camwright.drives.options import chosen_targets
 from camwright.figures.family import family_figure
+from camwright.house.files import fill
 from camwright.house.json_text import to_json
 from camwright.house.numbers import converted, number, unit_shown, with_unit
 from camwright.house.output import Voice, complain
@@ -69,10 +72,7 @@ def run(
     directory = Path("out") / f"{asked.name}-family" if out is None else out
     files = write_family(found, directory, job_work("family", asked, job, out), language, figures=not no_figures)
 
-    def data() -> dict[str, Any]:
-        return {**family_answer(found), "files": [str(file) for file in files]}
-
-    voice.answer(data, lambda: stacked(*_views(found), files_view(files)))
+    voice.answer(lambda: with_files(family_answer(found), files), lambda: stacked(*_views(found), files_view(files)))
     return 0 if found.passed else 1
 
 
@@ -97,20 +97,12 @@ def write_family(found: Family, directory: Path, work: Work, language: Language,
     libraries = record["provenance"]["libraries"]
     origin = Origin(record["provenance"]["camwright"], record["provenance"]["job_sha256"], libraries)
     with owned(directory, work, complain) as aside:
-        for name, content in data.items():
-            (aside / name).write_bytes(content)
+        fill(aside, data)
         drawn = write_pictures({"family": family_figure(found)}, aside) if figures else []
         listed = {**data, **tables, **{file.name: file.read_bytes() for file in drawn}}
         (aside / MANIFEST_FILE).write_text(manifest_text(listed, origin), encoding="utf-8")
         files = final_paths(aside, directory)
-    for table in found.tables:
-        folder = directory / table.name
-        if table.files or folder.exists():  # older tables of what is withheld now go
-            with owned(folder, work, complain) as aside:
-                for name, text in table.files.items():
-                    (aside / name).write_bytes(text.encode())
-            files += [folder / name for name in sorted(table.files)]
-    return files
+    return files + [file for table in found.tables for file in table.write(directory, work, complain)]
 
 
 def _views(found: Family) -> list[RenderableType]:
@@ -132,7 +124,12 @@ def _views(found: Family) -> list[RenderableType]:
             number(converted(max(cam.errors), "m", units)),
             new_text(f"FAILED: {', '.join(failed)}", "bold red") if failed else new_text("passed", "green"),
         )
-    return [cams, *([_switching_view(found)] if found.switchings else []), _seams(found), new_text(_said(found))]
+    return [
+        cams,
+        *([_switching_view(found)] if found.switchings else []),
+        seams_view(found.tables, units),
+        new_text(_said(found)),
+    ]
 
 
 def _count(found: Family) -> str:
@@ -161,29 +158,6 @@ def _switching_view(found: Family) -> RenderableType:
             new_text("passed", "green") if each.passed else new_text(f"FAILED: {', '.join(failed)}", "bold red"),
         )
     return table
-
-
-def _seams(found: Family) -> RenderableType:
-    """Show what was found at the seams of each target's tables."""
-    seams = new_table(title="Seams of the tables as read back", title_justify="left")
-    units = found.found.job.units
-    speed, acceleration = (unit_shown(unit, units) for unit in ("m/s", "m/s^2"))
-    for name in ("target", "numbers", f"velocity jump\n{speed}", f"acceleration jump\n{acceleration}", ""):
-        seams.add_column(name, justify="right" if "jump" in name else "left")
-    for table in found.tables:
-        told = [
-            *(f"cam {cam} withheld: {why}" for cam, why in table.withheld.items()),
-            *table.refused,
-            *([] if table.within else ["more than two tables may be off"]),
-        ]
-        seams.add_row(
-            table.name,
-            table.number_format,
-            number(converted(table.jump.velocity, "m/s", units)),
-            number(converted(table.jump.acceleration, "m/s^2", units)),
-            new_text("; ".join(told), "bold red") if told else new_text("passed", "green"),
-        )
-    return seams
 
 
 def _said(found: Family) -> str:

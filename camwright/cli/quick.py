@@ -12,7 +12,7 @@ from camwright.cli.options import Json, Quiet
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import new_table, stacked
 from camwright.house.output import Voice, complain
-from camwright.house.owned import Work, owned
+from camwright.house.owned import Work, write_owned
 from camwright.studies.quick import QuickAnswer, quick_answer, quick_cam_text, read_cross_cut
 
 if TYPE_CHECKING:
@@ -42,8 +42,7 @@ def run(
         file = out / "cam.csv"
         text = quick_cam_text(cut)
         work = Work("quick", "cross-cutter", hashlib.sha256(text.encode()).hexdigest())
-        with owned(out, work, complain) as aside:
-            (aside / file.name).write_bytes(text.encode())
+        write_owned(out, work, {file.name: text}, complain)
 
     def data() -> dict[str, Any]:
         return answer.to_dict() if file is None else {**answer.to_dict(), "files": [str(file)]}

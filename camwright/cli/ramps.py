@@ -17,6 +17,7 @@ from camwright.drives.export import export_answer
 from camwright.drives.options import chosen_targets, parse_targets
 from camwright.drives.withheld import copy_aside, remove
 from camwright.figures.ramps import AIMS, ramps_figure
+from camwright.house.files import fill
 from camwright.house.json_text import to_json
 from camwright.house.numbers import number, with_unit
 from camwright.house.output import Voice, complain
@@ -112,8 +113,7 @@ def _write(found: Ramps, tables: RampTables, directory: Path, work: Work, *, fig
     }
     kept = [new for names in older.values() for new in names.values()]
     with owned(directory, work, complain, kept) as aside:
-        for name, text in texts.items():
-            (aside / name).write_bytes(text.encode())
+        fill(aside, texts)
         if figures:
             write_pictures({"ramps": ramps_figure(found)}, aside)
         copy_aside(directory, aside, older)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 import typer
 
+from camwright.answers.measures import with_files
 from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, final_paths, job_work, option_quantity
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import new_table, new_text, stacked
@@ -110,10 +111,7 @@ def run(
             shift_figure(study, aside)
         files = final_paths(aside, directory)
 
-    def data() -> dict[str, Any]:
-        return {**shift_answer(study), "files": [str(file) for file in files]}
-
-    voice.answer(data, lambda: stacked(*_views(study), files_view(files)))
+    voice.answer(lambda: with_files(shift_answer(study), files), lambda: stacked(*_views(study), files_view(files)))
     return 0
 
 

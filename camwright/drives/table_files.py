@@ -11,6 +11,7 @@ from typing import Protocol
 from camwright.drives.export import Exported, export_possible, export_report
 from camwright.drives.options import parse_targets
 from camwright.drives.withheld import copy_aside, older_tables, remove
+from camwright.house.files import fill
 from camwright.house.json_text import to_json
 from camwright.house.owned import Work, owned
 from camwright.house.progress import Step, ignore
@@ -120,8 +121,7 @@ def export(
         [new for names in older.values() for new in names.values()],
     )
     with owned(place, work, told, kept) as aside:
-        for name, text in texts.items():
-            (aside / name).write_bytes(text.encode())
+        fill(aside, texts)
         copy_aside(place, aside, older)
     remove(place, older)
     return TableFiles(tuple(results), refused, older, tuple(place / name for name in texts))

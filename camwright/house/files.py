@@ -159,9 +159,14 @@ def staged(directory: Path, settle: Callable[[Path], Changes] = no_changes) -> I
 def write_files(directory: Path, files: Mapping[str, str | bytes]) -> list[Path]:
     """Write files by name into a directory, all or none as `staged` has it; texts in UTF-8. Gives their paths."""
     with staged(directory) as aside:
-        for name, content in files.items():
-            (aside / name).write_bytes(content.encode() if isinstance(content, str) else content)
+        fill(aside, files)
     return [directory / name for name in sorted(files)]
+
+
+def fill(folder: Path, files: Mapping[str, str | bytes]) -> None:
+    """Write files by name into a folder that lies aside; texts in UTF-8."""
+    for name, content in files.items():
+        (folder / name).write_bytes(content.encode() if isinstance(content, str) else content)
 
 
 def flush(place: Path) -> None:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from camwright.house.files import Changes, require_plain, staged
+from camwright.house.files import Changes, fill, require_plain, staged
 from camwright.profiles.errors import InputError
 
 LIST = ".camwright.json"
@@ -120,6 +120,15 @@ def owned(
         yield aside
     for note in notes:
         told(note)
+
+
+def write_owned(
+    directory: Path, work: Work, files: Mapping[str, str | bytes], told: Callable[[str], None] = _silent
+) -> list[Path]:
+    """Write files by name into a directory as `owned` has it; texts in UTF-8. Gives their paths."""
+    with owned(directory, work, told) as aside:
+        fill(aside, files)
+    return [directory / name for name in files]
 
 
 def _settled(new: Path, directory: Path, work: Work, unlisted: frozenset[str], notes: list[str]) -> Changes:

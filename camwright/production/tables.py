@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from pathlib import Path
 
 from camwright.drives.export import export_possible, read_back
+from camwright.house.owned import Work, write_owned
 from camwright.house.provenance import camwright_version
 from camwright.jobs.table_units import default_units
 from camwright.production.cams import ListCam
@@ -56,6 +58,11 @@ class TargetSeams:
     def passed(self) -> bool:
         """Whether all tables are released and meet."""
         return self.within and not self.withheld and not self.refused
+
+    def write(self, directory: Path, work: Work, told: Callable[[str], None]) -> list[Path]:
+        """Write the tables into a folder of the target's own, where older ones of what is withheld now go; gives their paths."""
+        folder = directory / self.name
+        return sorted(write_owned(folder, work, self.files, told)) if self.files or folder.exists() else []
 
 
 def transition_name(change: Change, number: int = 0) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from pathlib import Path
 
-from camwright.house.owned import Work, owned
+from camwright.house.owned import Work, write_owned
 from camwright.stored.design_text import design_text
 from camwright.stored.profile_files import cam_text
 from camwright.studies.design import Design
@@ -58,8 +58,5 @@ def save(design: Design, directory: str | Path) -> tuple[Path, ...]:
     >>> [file.name for file in files], read_design(files[0]).job == result.job
     (['design.json', 'cam.csv'], True)
     """
-    texts = design_files(design)
-    with owned(Path(directory), Work("design", design.job.name, design.job.sha256), _warn) as aside:
-        for name, text in texts.items():
-            (aside / name).write_bytes(text.encode())
-    return tuple(Path(directory) / name for name in texts)
+    work = Work("design", design.job.name, design.job.sha256)
+    return tuple(write_owned(Path(directory), work, design_files(design), _warn))

@@ -1,0 +1,35 @@
+"""What is shown of the seams between tables."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from camwright.cli.views.parts import new_table, new_text
+from camwright.house.numbers import Units, converted, number, unit_shown
+from camwright.production.tables import TargetSeams
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+
+def seams_view(tables: Sequence[TargetSeams], units: Units) -> RenderableType:
+    """Show what was found at the seams of each target's tables."""
+    seams = new_table(title="Seams of the tables as read back", title_justify="left")
+    speed, acceleration = (unit_shown(unit, units) for unit in ("m/s", "m/s^2"))
+    for name in ("target", "numbers", f"velocity jump\n{speed}", f"acceleration jump\n{acceleration}", ""):
+        seams.add_column(name, justify="right" if "jump" in name else "left")
+    for table in tables:
+        told = [
+            *(f"cam {cam} withheld: {why}" for cam, why in table.withheld.items()),
+            *table.refused,
+            *([] if table.within else ["more than two tables may be off"]),
+        ]
+        seams.add_row(
+            table.name,
+            table.number_format,
+            number(converted(table.jump.velocity, "m/s", units)),
+            number(converted(table.jump.acceleration, "m/s^2", units)),
+            new_text("; ".join(told), "bold red") if told else new_text("passed", "green"),
+        )
+    return seams
