@@ -6,12 +6,9 @@ import json
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Literal, get_args
 
+from camwright.house.language import Language, filled
 from camwright.profiles.notice import Notice, Number
-
-SheetLanguage = Literal["en", "de", "zh"]
-LANGUAGES: tuple[SheetLanguage, ...] = get_args(SheetLanguage)
 
 _MESSAGES = Path(__file__).parent / "messages"
 
@@ -28,16 +25,13 @@ class SheetWords:
         What is said for the templates of notices, which are English.
     """
 
-    language: SheetLanguage
+    language: Language
     messages: dict[str, str]
     notices: dict[str, str]
 
     def __call__(self, key: str, **values: str) -> str:
         """Give a message, its values filled in."""
-        text = self.messages[key]
-        for name, value in values.items():
-            text = text.replace(f"{{{name}}}", value)
-        return text
+        return filled(self.messages[key], values)
 
     def said(self, told: str) -> str:
         """Say a notice in the language; what is none, such as the words of a library, stays as it is."""
@@ -56,12 +50,12 @@ class SheetWords:
 
 
 @cache
-def sheet_words(language: SheetLanguage) -> SheetWords:
+def sheet_words(language: Language) -> SheetWords:
     """Read the messages of a language."""
     messages = json.loads((_MESSAGES / f"{language}.json").read_text(encoding="utf-8"))
     return SheetWords(language, messages, {} if language == "en" else _notices(language))
 
 
-def _notices(language: SheetLanguage) -> dict[str, str]:
+def _notices(language: Language) -> dict[str, str]:
     entries = json.loads((_MESSAGES / "notices.json").read_text(encoding="utf-8"))
     return {english: said[language] for english, said in entries.items()}

@@ -12,10 +12,11 @@ import numpy as np
 
 from camwright.bender.answer import BentDrawing
 from camwright.bender.bend_list import BendRow, BridgeRow, bend_rows, bridge_rows
-from camwright.bender.catalogue import SheetLanguage, SheetWords, sheet_words
+from camwright.bender.catalogue import SheetWords, sheet_words
 from camwright.bender.job import BenderJob
 from camwright.bender.program_file import ROUNDING, BentOutline
 from camwright.house.fonts import font_folders
+from camwright.house.language import Language
 from camwright.house.provenance import camwright_version
 from camwright.profiles.bender.division import EqualSides, EqualSteps
 
@@ -26,7 +27,7 @@ _MOST_LINES = 12
 """Lines with a collision that a program's table names."""
 
 
-def sheet_data(result: BentDrawing, language: SheetLanguage) -> dict[str, Any]:
+def sheet_data(result: BentDrawing, language: Language) -> dict[str, Any]:
     """Gather everything the sheet shows, as texts ready to print."""
     job, table, words = result.job, result.job.springback, sheet_words(language)
     number = words.number
@@ -171,7 +172,7 @@ def _bridge_row(row: BridgeRow, words: SheetWords) -> list[str]:
     ]
 
 
-def write_sheet(result: BentDrawing, directory: Path, figures: list[Path], language: SheetLanguage) -> None:
+def write_sheet(result: BentDrawing, directory: Path, figures: list[Path], language: Language) -> None:
     """Write ``sheet.pdf`` and ``sheet.html``.
 
     Parameters

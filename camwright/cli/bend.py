@@ -16,7 +16,7 @@ import typer
 from camwright.bender.answer import BentDrawing, answer, calibration_answer, check_words, size_words
 from camwright.bender.bend_list import csv_text
 from camwright.bender.calibration import Calibration, calibrate, residuals_text
-from camwright.bender.catalogue import SheetLanguage, sheet_words
+from camwright.bender.catalogue import sheet_words
 from camwright.bender.drawing import Reading, read_drawing
 from camwright.bender.dxf_styles import style_choice
 from camwright.bender.figures import draw
@@ -27,6 +27,7 @@ from camwright.bender.sheet import write_sheet
 from camwright.cli.options import Json, Quiet
 from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.house.files import is_device_name
+from camwright.house.language import Language
 from camwright.house.output import Voice, complain
 from camwright.house.owned import Work, owned, write_owned
 from camwright.house.progress import Step
@@ -71,7 +72,7 @@ def run(
         str | None, typer.Option("--start", metavar="X,Y", help="Begin at the vertex nearest to this place (mm).")
     ] = None,
     reverse: Annotated[bool, typer.Option("--reverse", help="Bend each outline from its other end.")] = False,
-    language: Annotated[SheetLanguage, typer.Option("--language", help="Language of the bending sheet.")] = "en",
+    language: Annotated[Language, typer.Option("--language", help="Language of the bending sheet.")] = "en",
     bridges: Annotated[
         str | None,
         typer.Option(
@@ -236,7 +237,7 @@ def _bent(
 
 
 def _write(
-    result: BentDrawing, names: list[str], directory: Path, work: Work, *, language: SheetLanguage | None, step: Step
+    result: BentDrawing, names: list[str], directory: Path, work: Work, *, language: Language | None, step: Step
 ) -> list[Path]:
     """Write programs and bend lists, and in a language figures and sheets: all or none."""
     step("writing files")

@@ -16,6 +16,7 @@ from camwright.drives.options import chosen_targets
 from camwright.figures.family import family_figure
 from camwright.house.files import fill
 from camwright.house.json_text import to_json
+from camwright.house.language import Language
 from camwright.house.numbers import converted, number, unit_shown, with_unit
 from camwright.house.output import Voice, complain
 from camwright.house.owned import Work, owned
@@ -25,7 +26,6 @@ from camwright.production.family import Family, family
 from camwright.production.family_answer import family_answer, family_files, family_record
 from camwright.profiles.errors import InputError
 from camwright.recipes.family_sheet import FAMILY_FILE, family_sheets
-from camwright.recipes.language import Language
 from camwright.recipes.manifest import MANIFEST_FILE, manifest_text
 from camwright.recipes.model import Origin
 from camwright.studies.covering import FOUND_TO

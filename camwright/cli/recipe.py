@@ -10,6 +10,7 @@ import typer
 from camwright.cli.options import Json, Quiet
 from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.house.files import read_text, require_replaceable
+from camwright.house.language import Language
 from camwright.house.numbers import Units, number, with_unit
 from camwright.house.output import Voice, complain
 from camwright.house.owned import Work
@@ -19,7 +20,6 @@ from camwright.profiles.tables.targets import TARGETS, target_of
 from camwright.recipes.build import STEPS, designed, make_recipe
 from camwright.recipes.compare import Change, compare_answer, compare_recipes, read_recipe
 from camwright.recipes.judgements import SHORT
-from camwright.recipes.language import Language
 from camwright.recipes.manifest import MANIFEST_FILE, sha256
 from camwright.recipes.model import Particulars, Recipe, RecipeCheck
 from camwright.recipes.signature import SIGNATURE_FILE, require_private_key, signed

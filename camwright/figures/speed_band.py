@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from camwright.figures.strokes import GREY, Stroke
 from camwright.figures.style import broken_note, marked
 from camwright.house.numbers import unit_shown, with_unit
 from camwright.house.pictures import APART, Band, Item, Line, Picture, Tick
+from camwright.jobs.job import Job
 from camwright.jobs.servos import servos_of
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.studies.axis_study import cam_for_one_speed
@@ -28,14 +30,14 @@ from camwright.validation.servo.line_speeds import line_speed_errors
 SHOWN = ("optimised", "linear_return")
 """Profiles whose error is drawn."""
 
-_POINTS = 121
-_SLOWEST = 0.02
+POINTS = 121
+SLOWEST = 0.02
 """Share of the highest speed drawn at which the curves begin."""
 
 _BEYOND = 1.15
 """Factor on the highest released speed, or the job's, up to which is drawn."""
 
-_DEEPEST = 1e-3
+DEEPEST = 1e-3
 """Least part of the tolerance that is drawn: below it is rounding and no drive resolves it."""
 
 _PANEL = 168.0
@@ -56,14 +58,14 @@ def speed_band_figure(design: Design) -> Picture:
     job, band, units = design.job, design.band, design.job.units
     length, speed = units.shown["m"].factor, units.shown["m/s"].factor
     top = _BEYOND * max([job.cut.line_speed, *(high for _, high in band.parts)])
-    speeds: FloatArray = np.unique([*np.linspace(_SLOWEST * top, top, _POINTS), job.cut.line_speed])
+    speeds: FloatArray = np.unique([*np.linspace(SLOWEST * top, top, POINTS), job.cut.line_speed])
     tolerance = job.cut.sync_tolerance * length
     servos = servos_of(job)
     curves: list[Line] = []
     for name in SHOWN:
         called = marked(design.comparison[name])
         errors = line_speed_errors(design.comparison[name].profile, job.task, servos, speeds) * length
-        floored = np.log10(np.maximum(errors, _DEEPEST * tolerance))
+        floored = np.log10(np.maximum(errors, DEEPEST * tolerance))
         curves.append(profile_line(name, np.stack([speeds * speed, floored[0]], axis=1), called))
         if len(servos) > 1:
             worst = np.stack([speeds * speed, floored.max(axis=0)], axis=1)
@@ -71,22 +73,41 @@ def speed_band_figure(design: Design) -> Picture:
     alone = cam_for_one_speed(job)
     if alone is not None:
         errors = line_speed_errors(*alone, servos[:1], speeds)[0] * length
-        points = np.stack([speeds * speed, np.log10(np.maximum(errors, _DEEPEST * tolerance))], axis=1)
+        points = np.stack([speeds * speed, np.log10(np.maximum(errors, DEEPEST * tolerance))], axis=1)
         own_speed = with_unit(job.cut.line_speed, "m/s", units=units)
         curves.append(Line(points, _ALONE.colour, _ALONE.width, f"designed for {own_speed} alone", _ALONE.dash))
-    low = math.log10(0.7 * _DEEPEST * tolerance)
-    high = max(math.log10(tolerance), *(float(line.points[:, 1].max()) for line in curves)) + 0.15
     bands = [
         Band(start * speed, end * speed, "green", "every check of the optimised cam passes")
         for start, end in band.parts
     ]
+    heading = head(job.name, "one cam at every line speed") + broken_note(design.comparison[name] for name in SHOWN)
+    return over_speeds(job, heading, top, curves, bands)
+
+
+def over_speeds(job: Job, heading: str, top: float, curves: Sequence[Line], bands: Sequence[Band]) -> Picture:
+    """Draw the sync error over the line speed by powers of ten, with the tolerance and the job's own line speed.
+
+    Parameters
+    ----------
+    heading
+        Above the figure.
+    top
+        Highest line speed drawn (m/s).
+    curves
+        Logarithms of the errors over the line speed, in the units shown.
+    bands
+        Line speeds that are shaded.
+    """
+    units, speed = job.units, job.units.shown["m/s"].factor
+    tolerance = job.cut.sync_tolerance * units.shown["m"].factor
+    low = math.log10(0.7 * DEEPEST * tolerance)
+    high = max(math.log10(tolerance), *(float(line.points[:, 1].max()) for line in curves)) + 0.15
     own = job.cut.line_speed * speed
     marks = [
         across(math.log10(tolerance), 0.0, top * speed, "sync tolerance"),
         Line(np.array([[own, low], [own, high]]), GREY, 1.1, "line speed of the job"),
     ]
     items: list[Item] = [*bands, *marks, *reversed(curves)]
-    heading = head(job.name, "one cam at every line speed") + broken_note(design.comparison[name] for name in SHOWN)
     frame = wide_frame(
         first_frame(heading),
         _PANEL,

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from camwright.drives.export import export_possible
+from camwright.house.language import Language
 from camwright.house.progress import Step, ignore
 from camwright.house.provenance import provenance
 from camwright.jobs.job import Job
@@ -13,7 +14,6 @@ from camwright.jobs.numbers import job_numbers
 from camwright.profiles.errors import InputError
 from camwright.recipes.expected import STEPS as EXPECTED_STEPS
 from camwright.recipes.expected import expected, sound
-from camwright.recipes.language import Language
 from camwright.recipes.model import (
     RECIPE_VERSION,
     JobRecord,

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
+from camwright.house.language import LANGUAGES, Language, filled
 from camwright.house.numbers import METRIC, Units, in_print, number, unit_shown, units_of
-from camwright.recipes.language import LANGUAGES, Language
 
 DECIMAL: dict[Language, str] = {"en": ".", "de": ",", "zh": "."}
 """What stands before decimals."""
@@ -41,10 +41,7 @@ class Catalogue:
 
     def __call__(self, key: str, **values: str) -> str:
         """Give a message, its values filled in."""
-        text = self.messages[key]
-        for name, value in values.items():
-            text = text.replace(f"{{{name}}}", value)
-        return text
+        return filled(self.messages[key], values)
 
     def number(self, value: float | None, digits: int = 5) -> str:
         """Write a number in the unit that it is in, with so many significant digits."""
@@ -79,14 +76,8 @@ def catalogue_of(language: Language, job: str) -> Catalogue:
 
 def _in_units(text: str, units: Units) -> str:
     """Put the names of units into a message."""
-    names = {
-        "{length_unit}": unit_shown("m", units),
-        "{speed_unit}": unit_shown("m/s", units),
-        "{feed}": _FEED[units.name],
-    }
-    for hole, name in names.items():
-        text = text.replace(hole, name)
-    return text
+    names = {"length_unit": unit_shown("m", units), "speed_unit": unit_shown("m/s", units), "feed": _FEED[units.name]}
+    return filled(text, names)
 
 
 def _read(file: Path) -> dict[str, str]:

@@ -7,7 +7,7 @@ from typing import Any, Final, Literal
 from pydantic import ConfigDict
 from pydantic.dataclasses import dataclass
 
-from camwright.recipes.language import Language
+from camwright.house.language import Language
 
 RECIPE_VERSION: Final = 1
 """Version of the layout of recipe.json; it changes when an older reader would misread the file."""

@@ -7,12 +7,12 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from camwright.house.files import replaced, require_replaceable
+from camwright.house.language import Language
 from camwright.house.owned import Work, free_name, require_no_rival
 from camwright.house.progress import Step, ignore
 from camwright.profiles.errors import InputError
 from camwright.recipes.build import NO_PARTICULARS, MadeRecipe, make_recipe
 from camwright.recipes.html import recipe_html
-from camwright.recipes.language import Language
 from camwright.recipes.manifest import MANIFEST_FILE, job_of_manifest, manifest_text, read_manifest, sha256
 from camwright.recipes.model import Particulars, Recipe
 from camwright.recipes.pdf import recipe_pdf

@@ -9,9 +9,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from camwright.house.language import LANGUAGES, Language
 from camwright.profiles.errors import InputError
 from camwright.profiles.tables.targets import TARGETS, target_of
-from camwright.recipes.language import LANGUAGES, Language
 from camwright.workbench.runner import JOB_FILE
 
 _OUT = ("--out", "out")

@@ -19,13 +19,13 @@ from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
 from camwright.answers.error import error_answer
+from camwright.house.language import LANGUAGES
 from camwright.jobs.job import parse_job
 from camwright.jobs.keys import job_keys
 from camwright.jobs.wording import error_words
 from camwright.profiles.errors import CamwrightError, InputError
 from camwright.profiles.returns import baseline_names
 from camwright.profiles.tables.targets import TARGETS
-from camwright.recipes.language import LANGUAGES
 from camwright.workbench.calls import (
     NAMES,
     Call,

@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 
+from camwright.house.language import Language
 from camwright.jobs.keys import JobKey, job_keys
 from camwright.recipes.catalogue import DECIMAL, catalogue
-from camwright.recipes.language import Language
 from camwright.workbench.files import PAGE
 
 _SHARED = ("check.", "word.", "binding.")

@@ -12,10 +12,11 @@ import pytest
 from fontTools.ttLib import TTFont
 from pypdf import PdfReader
 
-from camwright.bender.catalogue import LANGUAGES, SheetLanguage, sheet_words
+from camwright.bender.catalogue import sheet_words
 from camwright.bender.program_file import COLLISIONS
 from camwright.cli.main import main
 from camwright.house.fonts import font_files
+from camwright.house.language import LANGUAGES, Language
 from camwright.profiles.notice import Notice, Number
 
 Make = Callable[..., Path]
@@ -74,7 +75,7 @@ def test_the_fonts_show_every_message():
         ("zh", ["弯刀作业单", "刀条长度", "427.871 mm", "已接受的碰撞", "6 个，宽 4 mm", "手工"]),
     ],
 )
-def test_a_sheet_in_each_language(tmp_path: Path, language: SheetLanguage, words: list[str]):
+def test_a_sheet_in_each_language(tmp_path: Path, language: Language, words: list[str]):
     drawing = tmp_path / f"{LONG}.dxf"
     shutil.copy(EXAMPLE, drawing)
     more = ("--language", language, "--bridges", "4@100", "--accept-collisions", "--quiet", "--out", tmp_path / "out")

@@ -12,12 +12,12 @@ import pytest
 from camwright import load_job
 from camwright.cli import book as book_command
 from camwright.cli.main import main
+from camwright.house.language import LANGUAGES
 from camwright.jobs.structure import job_schema
 from camwright.profiles.machines import MACHINES
 from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.tables.targets import TARGETS
 from camwright.recipes.catalogue import catalogue
-from camwright.recipes.language import LANGUAGES
 from tests.book.books import inline_crew
 from tests.cli.added.pendulum_shear import PendulumShear
 

@@ -15,6 +15,7 @@ import pytest
 from camwright.cli.family import write_family
 from camwright.cli.main import main
 from camwright.house.json_text import to_json
+from camwright.house.language import LANGUAGES, Language
 from camwright.house.owned import LIST, Work
 from camwright.jobs.examples import example
 from camwright.jobs.job import Job, parse_job
@@ -26,7 +27,6 @@ from camwright.production.switching import switchings
 from camwright.profiles.errors import InfeasibleError, InputError
 from camwright.recipes.catalogue import catalogue
 from camwright.recipes.family_sheet import family_sheet, family_sheets
-from camwright.recipes.language import LANGUAGES, Language
 from camwright.recipes.manifest import MANIFEST_FILE, manifest_text
 from camwright.recipes.model import Origin
 from camwright.recipes.verify import examine

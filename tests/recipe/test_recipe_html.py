@@ -9,11 +9,11 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 
+from camwright.house.language import LANGUAGES, Language
 from camwright.recipes.build import MadeRecipe
 from camwright.recipes.catalogue import catalogue
 from camwright.recipes.figure import figure_svg
 from camwright.recipes.html import recipe_html
-from camwright.recipes.language import LANGUAGES, Language
 
 VOID = {"meta", "link", "br", "hr", "img", "input"}
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from camwright import load_job
+from camwright.house.language import LANGUAGES, Language
 from camwright.jobs.numbers import job_numbers
 from camwright.profiles.machines import MACHINES
 from camwright.profiles.machines.fields import fields_of
@@ -16,7 +17,6 @@ from camwright.profiles.tables.targets import TARGETS
 from camwright.recipes.build import MadeRecipe
 from camwright.recipes.catalogue import catalogue
 from camwright.recipes.facts import PRODUCT, SERVO
-from camwright.recipes.language import LANGUAGES, Language
 from camwright.recipes.pdf import has_glyph
 from camwright.recipes.sheet import sheet
 

@@ -11,9 +11,9 @@ from typing import Any
 
 import pytest
 
+from camwright.house.language import LANGUAGES
 from camwright.recipes.build import MadeRecipe
 from camwright.recipes.html import recipe_html
-from camwright.recipes.language import LANGUAGES
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 

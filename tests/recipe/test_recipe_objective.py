@@ -10,10 +10,10 @@ import pytest
 from camwright import Design, optimise
 from camwright.book.plan import plan_book
 from camwright.figures.profile import profile_figure
+from camwright.house.language import Language
 from camwright.jobs.job import BUNDLED_JOB, parse_job
 from camwright.recipes.build import MadeRecipe, make_recipe
 from camwright.recipes.catalogue import catalogue
-from camwright.recipes.language import Language
 from camwright.recipes.sheet import sheet
 from camwright.recipes.xlsx import recipe_xlsx
 from camwright.stored.design_file import StoredDesign

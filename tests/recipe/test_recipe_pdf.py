@@ -13,10 +13,10 @@ from typing import Any
 import pypdf
 import pytest
 
+from camwright.house.language import LANGUAGES, Language
 from camwright.jobs.job import parse_job
 from camwright.recipes.build import MadeRecipe, designed, make_recipe
 from camwright.recipes.catalogue import catalogue
-from camwright.recipes.language import LANGUAGES, Language
 from camwright.recipes.pdf import recipe_pdf
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from camwright.house.language import LANGUAGES
 from camwright.jobs.examples import example
 from camwright.jobs.job import load_job, parse_job
 from camwright.production.marks import marks
@@ -13,7 +14,6 @@ from camwright.production.ramps import ramps
 from camwright.recipes.build import MadeRecipe, designed
 from camwright.recipes.catalogue import catalogue
 from camwright.recipes.compare import compare_recipes
-from camwright.recipes.language import LANGUAGES
 from camwright.recipes.production import mark_blocks, marks_of, start_blocks, start_stop
 from camwright.recipes.recipe_file import parse_recipe
 from camwright.recipes.sheet import sheet

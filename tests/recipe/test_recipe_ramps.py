@@ -10,11 +10,11 @@ import pytest
 from camwright import load_job
 from camwright.cli.views.line_ramps import plc_words
 from camwright.design.optimise import solve
+from camwright.house.language import LANGUAGES, Language
 from camwright.jobs.numbers import job_numbers
 from camwright.recipes.build import MadeRecipe
 from camwright.recipes.catalogue import catalogue
 from camwright.recipes.facts import limit_facts
-from camwright.recipes.language import LANGUAGES, Language
 from camwright.recipes.model import JobRecord
 from camwright.recipes.ramps import ramp_blocks, ramp_record
 from camwright.studies.line_ramps import line_ramps

@@ -7,9 +7,9 @@ from typing import cast
 
 import pytest
 
+from camwright.house.language import Language
 from camwright.recipes.build import MadeRecipe
 from camwright.recipes.catalogue import catalogue
-from camwright.recipes.language import Language
 from camwright.recipes.model import Recipe, SpeedPart
 from camwright.recipes.release import boxed, marked, status_text, warnings
 from camwright.recipes.sheet import sheet

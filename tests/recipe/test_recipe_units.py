@@ -11,13 +11,13 @@ import pypdf
 import pytest
 from inch_job import JOB
 
+from camwright.house.language import LANGUAGES
 from camwright.house.numbers import INCH, METRIC
 from camwright.jobs.job import parse_job
 from camwright.recipes.build import MadeRecipe, designed, make_recipe
 from camwright.recipes.catalogue import DECIMAL, catalogue
 from camwright.recipes.compare import compare_recipes
 from camwright.recipes.html import recipe_html
-from camwright.recipes.language import LANGUAGES
 from camwright.recipes.pdf import recipe_pdf
 from camwright.recipes.xlsx import recipe_xlsx
 

@@ -9,8 +9,8 @@ from dataclasses import replace
 import openpyxl
 import pytest
 
+from camwright.house.language import LANGUAGES, Language
 from camwright.recipes.build import MadeRecipe
-from camwright.recipes.language import LANGUAGES, Language
 from camwright.recipes.xlsx import recipe_xlsx
 
 
