@@ -160,6 +160,12 @@ def read_builder(text: str, place: str) -> CamTable:
         segment = call.arguments[0] if call.arguments else None
         if not (isinstance(segment, Call) and segment.name == "poly5" and len(segment.arguments) == 2):
             raise refuse(place, call.line, "Append is read with one SMCB.Poly5(left, right) only")
+        if segment.named:
+            raise refuse(
+                place,
+                call.line,
+                "the bounds of a segment are given by name; give left and right in this order without names",
+            )
         left, right = (_bound(value, place, call.line) for value in segment.arguments)
         if right is None:
             raise refuse(place, call.line, "the right bound of a segment must be a SMCB.Bound(…)")
@@ -179,6 +185,10 @@ def _bound(value: Value, place: str, line: int) -> tuple[float, ...] | None:
         return None
     if not (isinstance(value, Call) and value.name == "bound" and 1 <= len(value.arguments) <= 4):
         raise refuse(place, line, "a segment's bound must be SMCB.Bound(X, Y, V, A) or SMCB.BoundImplicit()")
+    if value.named:
+        raise refuse(
+            place, line, "the values of a bound are given by name; give X, Y, V, A in this order without names"
+        )
     given = [number_of(argument, "a bound's value", place, line) for argument in value.arguments]
     return tuple(given + [0.0] * (4 - len(given)))
 

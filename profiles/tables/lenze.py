@@ -43,8 +43,10 @@ def read(text: str, place: str) -> CamTable:
             continue
         if len(cells) not in (2, 3):
             raise refuse(place, number, f"the line has {len(cells)} values, not x, y and at most an acceleration")
+        if x and forward is not (len(cells) == 3):
+            raise refuse(place, number, f"the line has {len(cells)} values, those above it {3 if forward else 2}")
         values = [real(cell, place, number, comma=True) for cell in cells]
-        forward = forward or len(values) == 3
+        forward = len(values) == 3
         x.append(values[0])
         y.append(values[1])
         numbers.append(number)

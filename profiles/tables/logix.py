@@ -81,6 +81,10 @@ def _slope_tag(name: str, value: str) -> str:
     )
 
 
+_COPIED = 2e-6
+"""What the two copies of a number may differ by, relative to it: float32 is written with so many digits."""
+
+
 @dataclass
 class _Tag:
     """A tag as it stands in the file."""
@@ -201,10 +205,24 @@ def _cam(tag: _Tag, tags: list[_Tag], text: str, place: str) -> CamTable:
     ratio = np.full(len(x), np.nan)
     for at, end in ((0, "Start"), (-1, "End")):
         wanted = f"{tag.name}_{end}Slope"
-        given = [other for other in tags if other.name == wanted and other.value is not None]
-        if given:
-            ratio[at] = real(given[0].value or "", place, given[0].line)
+        for other in tags:
+            if other.name == wanted:
+                ratio[at] = _slope(other, place)
     return make_table(x, y, ratio, law=tuple(laws), units=units_in(text))
+
+
+def _slope(tag: _Tag, place: str) -> float:
+    """Read a tag of one number from its copies, which must agree; NaN where it has none."""
+    copies = [copy for copy in (tag.value, "".join(tag.compact).strip()) if copy]
+    values = [real(copy, place, tag.line) for copy in copies]
+    if values and abs(values[0] - values[-1]) > _COPIED * max(map(abs, values)):
+        raise refuse(
+            place,
+            tag.line,
+            f"the two copies of {shown(tag.name)} (L5K and Decorated) differ: {copies[1]} and {copies[0]}; one was edited: "
+            "export the tag again",
+        )
+    return values[0] if values else np.nan
 
 
 def _require_same(
@@ -219,7 +237,7 @@ def _require_same(
         )
     for k, (one, other) in enumerate(zip(first, second, strict=True)):
         if one[2] != other[2] or any(
-            abs(a - b) > 2e-6 * max(abs(a), abs(b)) for a, b in zip(one[:2], other[:2], strict=True)
+            abs(a - b) > _COPIED * max(abs(a), abs(b)) for a, b in zip(one[:2], other[:2], strict=True)
         ):
             raise refuse(
                 place,

@@ -40,7 +40,7 @@ def program_text(text: str, place: str) -> str:
     for start, end, plain in sorted(found):
         if start < at:
             continue
-        parts += ["\n" * text.count("\n", at, start), plain]
+        parts += ["\n" * text.count("\n", at, start) or " ", plain]  # END_VAR does not run into the first name
         at = end
     return "".join(parts) + "\n"
 

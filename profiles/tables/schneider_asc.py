@@ -55,14 +55,20 @@ def write(table: CamTable, header: Header) -> dict[str, str]:
     return {f"{name}.asc": "\r\n".join(lines) + "\r\n", f"{name}_asc.txt": beside}
 
 
-def read(text: str, place: str) -> CamTable:
-    """Points from the values behind ``CamPoints``, scaled by the factors and offsets of the head."""
+def _parts(text: str, place: str) -> tuple[dict[str, tuple[str, int]], list[float]]:
+    """Part a file into its head, with lines, and the values behind ``CamPoints``."""
     head: dict[str, tuple[str, int]] = {}
     values: list[float] = []
     points = False
+    empty = 0
     for number, line in enumerate(lines_of(text.replace("\r\n", "\n"), place), start=1):
         if not line.strip():
+            empty = empty or (number if points else 0)
             continue
+        if empty:
+            raise refuse(
+                place, empty, "the line among the points is empty: a point is missing, or one too many follows"
+            )
         if points:
             values.append(real(line, place, number))
             continue
@@ -77,6 +83,12 @@ def read(text: str, place: str) -> CamTable:
         head[key.strip().lower()] = (value, number)
     if not points:
         raise refuse(place, None, "the line CamPoints is missing")
+    return head, values
+
+
+def read(text: str, place: str) -> CamTable:
+    """Points from the values behind ``CamPoints``, scaled by the factors and offsets of the head."""
+    head, values = _parts(text, place)
     missing = [key for key in _KEYS if key not in head]
     if missing:
         raise refuse(place, None, f"the head has no {missing[0]}")

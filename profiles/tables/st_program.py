@@ -17,11 +17,12 @@ class Struct:
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """A call ``a.b(x, y := z)``; its name in lower case without what stands before the last point."""
+    """A call ``a.b(x, y := z)``; its name in lower case without what stands before the last point, and whether arguments have names."""
 
     name: str
     arguments: tuple[Value, ...]
     line: int
+    named: bool = False
 
 
 @dataclass(frozen=True, slots=True)

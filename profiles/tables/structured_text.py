@@ -128,6 +128,8 @@ class Reader:
         value: Value | None = None
         if self.words.accept(":="):
             value = self.value(0)
+            if self.words.now.text not in (";", ")", ",", ""):
+                value = self.sum_of(value)
             if isinstance(value, float) and not bounds and value == int(value):
                 self.variables[name.lower()] = int(value)
         self._found.declarations.append(
@@ -240,19 +242,24 @@ class Reader:
         line = self.words.line
         self.words.expect("(")
         arguments: list[Value] = []
+        named = False
         while not self.words.accept(")"):
             if self.words.now.kind == "end":
                 raise self.words.refusal("a bracket is never closed")
             if self.words.now.kind == "name" and self.words.after.text in (":=", "=>"):
+                named = True
                 self.words.step()
                 self.words.step()
                 if self.words.now.text in (",", ")"):
                     continue
             arguments.append(self.value(depth + 1))
+            if self.words.now.text not in (",", ")", ""):
+                arguments[-1] = Other(self.words.line)
             while self.words.now.text not in (",", ")", ""):  # the rest of an expression
                 self.value(depth + 1) if self.words.now.text in ("(", "[") else self.words.step()
-            self.words.accept(",")
-        return Call(name.lower(), tuple(arguments), line)
+            if self.words.accept(",") and self.words.now.text == ")":
+                raise self.words.refusal("a value is missing before ')'")
+        return Call(name.lower(), tuple(arguments), line, named)
 
     def structure(self, depth: int) -> Value:
         """Read ``(a := 1, b := 2)``; a bracket around anything else is an expression."""

@@ -98,6 +98,12 @@ def read(text: str, place: str) -> CamTable:
         if previous and index != previous + 1:
             raise refuse(place, line, f"the points have a gap: {index} follows {previous}")
         previous = index
+        for name in (*_MOTION_MEMBERS, "slavejerk"):
+            number_of(members.get(name), name, place, line)
+        if members.get("relindexnextpoint", 1.0) not in (0.0, 1.0):
+            raise refuse(
+                place, line, "RelIndexNextPoint must be 1: points that are not run in their order are not read"
+            )
         stated = members.get("pointindex", float(index))
         if stated != float(index):
             raise refuse(place, line, f"PointIndex must be {index} at the point with this index")
@@ -126,8 +132,7 @@ def _check_rows(program: Program, rows: int, place: str) -> None:
 
 def _table(kept: list[tuple[dict[str, Value], int, int]], text: str, place: str) -> CamTable:
     """Knots and laws; a rest-to-rest quintic needs rest at both of its knots."""
-    names = ("masterpos", "slavepos", "slavevelo", "slaveacc")
-    columns = [[number_of(m.get(name), name, place, line) for m, line, _ in kept] for name in names]
+    columns = [[number_of(m.get(name), name, place, line) for m, line, _ in kept] for name in _MOTION_MEMBERS]
     lines = [line for _, line, _ in kept]
     check_ascending(columns[0], lines, place)
     laws: list[PieceLaw] = []

@@ -167,6 +167,9 @@ def test_structured_text_inside_xml() -> None:
     assert detect(text, "t").name == "twincat"
     table = read_table(TARGETS["twincat"], text, "t")
     assert table.y.tolist() == [0, 4]
+    beside = text.replace("\n    <Implementation>", "<Implementation>").replace("<![CDATA[\np", "<![CDATA[p")
+    assert "END_VAR]]></Declaration><Implementation><ST><![CDATA[p[1]" in beside
+    assert read_table(TARGETS["twincat"], beside, "t").y.tolist() == [0, 4]
     escaped = POU.format(y="4 (* a &amp; b *)").replace("<![CDATA[", "").replace("]]>", "")
     assert read_table(TARGETS["twincat"], escaped, "t").y.tolist() == [0, 4]
 

@@ -237,6 +237,31 @@ def corpus() -> Iterator[Corpus]:
     )
     tc = t["twincat"]
     yield "index", "twincat", tc.replace("PointIndex := 2;", "PointIndex := 7;").encode(), "PointIndex must be 2"
+    yield "jump", "twincat", tc.replace("RelIndexNextPoint := 1;", "RelIndexNextPoint := 2;").encode(), "in their order"
+    for value in ("0,0", "NaN", "2.0*0.5", "rJerk"):
+        spoilt = tc.replace("SlaveJerk := 0.0;", f"SlaveJerk := {value};", 1).encode()
+        assert spoilt != tc.encode()
+        yield f"jerk {value}", "twincat", spoilt, "slavejerk must be a number"
+    for value in ("2.0*(0.5*1)", "1+1.0", "1.0abc", "1 (2)"):
+        bound = f"b.Append(Poly5(Bound(0), Bound(2, {value})));".encode()
+        yield f"bound {value}", "codesys-cambuilder", bound, "a bound's value must be a number"
+    yield "bound left out", "codesys-cambuilder", b"b.Append(Poly5(Bound(0), Bound(2, 1, )));", r"missing before '\)'"
+    logix = t["logix"]
+    slope = logix.replace("[0.9]]></Data>", "[1.5]]></Data>", 1).encode()
+    assert slope != logix.encode()
+    yield "two slopes", "logix", slope, r"two copies of '\w+_StartSlope' \(L5K and Decorated\) differ: 1.5 and 0.9"
+    yield "third value", "lenze", b"0 0\n1 0.5\n2 1 .5\n3 2\n", "line has 3 values, those above it 2"
+    asc = t["schneider-asc"]
+    at = asc.index("CamPoints") + 20
+    end = asc.index("\n", at) + 1
+    yield "empty row", "schneider-asc", (asc[:end] + "\r\n" + asc[end:]).encode(), "among the points is empty"
+    yield "named bound", "codesys-cambuilder", b"b.Append(Poly5(Bound(0), Bound(Y := 2, X := 1)));", "without names"
+    yield (
+        "named side",
+        "codesys-cambuilder",
+        b"b.Append(Poly5(right := Bound(0), left := Bound(2, 1)));",
+        "without names",
+    )
     yield (
         "gap in points",
         "twincat",
