@@ -1,9 +1,10 @@
 """Least torque and energy beside a reference of this benchmark's own, on random jobs of every machine; and their lower bounds.
 
 The reference is `motor_reference`: a plain nonlinear programme from many starts, from few where the bound already proves that none is
-0.5 % better. Writes a row a job to ``results/motor_objectives.csv``, each as soon as it is known. Jobs go round the machines and
-objectives, so that a run of a given time has about as many of each. The exit code is 0 if no job is more than 0.5 % above the
-reference, no bound above any motion, and none ended in an error:
+0.5 % better. It is kept in ``results/motor_references.csv``, so that a later run costs the designs and the bounds alone; delete that file
+after a change of ``motor_reference``. Writes a row a job to ``results/motor_objectives.csv``, each as soon as it is known. Jobs go round
+the machines and objectives, so that a run of a given time has about as many of each. A job that takes longer than its limit of processor
+time is ended. The exit code is 0 if no job is more than 0.5 % above the reference, no bound above any motion, and none ended in an error:
 
     python benchmarks/motor_objectives.py [--jobs 100] [--starts 40] [--seed 1] [--machine crank_slider]
 """
@@ -12,16 +13,21 @@ from __future__ import annotations
 
 import argparse
 import csv
+import hashlib
+import json
 import math
+import resource
 import sys
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
+from dataclasses import asdict, replace
+from multiprocessing import get_context
 from pathlib import Path
 from time import monotonic, process_time
-from typing import get_args
+from typing import TypeVar, get_args
 
 import numpy as np
-from motor_reference import WITHIN, Found, reference, value
+from motor_reference import WITHIN, reference, value
 from random_machines import MACHINES, RandomJob, placed, random_job, spread
 
 from camwright.design.feasible.feasibility import is_feasible
@@ -51,6 +57,11 @@ COLUMNS = (
     "reference_seconds",
     "note",
 )
+KEY = ("seed", "machine", "objective", "number")
+KEPT = (*KEY, "job", "starts", "reference", "seconds")
+Key = tuple[int, str, str, int]
+Kept = tuple[float, int, float]
+Answer = TypeVar("Answer")
 
 
 def jobs(rng: np.random.Generator, kind: str, objective: MotorObjective, count: int) -> Iterator[RandomJob]:
@@ -69,35 +80,128 @@ def jobs(rng: np.random.Generator, kind: str, objective: MotorObjective, count: 
             count -= 1
 
 
-def judged(job: RandomJob, rng: np.random.Generator, starts: int) -> tuple[dict[str, object], Found | None]:
-    """Design a job, bound it, and hold it beside the reference; its row, and the reference's motion."""
+def designed(job: RandomJob, limit: int) -> dict[str, object]:
+    """Design a job and bound it; its row as far as it goes. The process ends after so many seconds (s) of processor time."""
+    limited(limit)
     begun = process_time()
     row: dict[str, object] = {}
     try:
         solution = solve(job.task, job.objective)
         there = job.task.with_machine(solution.machine)
-        reached = value(solution.profile, there, job.objective)
-        row |= {"value": reached, "seconds": round(process_time() - begun, 2)}
+        row |= {"value": value(solution.profile, there, job.objective), "seconds": round(process_time() - begun, 2)}
         begun = process_time()
         bound = lower_bound(solution.profile, there, job.objective)
         row |= {"bound": bound.value, "method": bound.method, "bound_seconds": round(process_time() - begun, 2)}
     except InfeasibleError as error:
-        return row | {"end": "infeasible", "note": str(error)}, None
+        return row | {"end": "infeasible", "note": str(error)}
     except CamwrightError as error:
-        return row | {"end": "error", "note": str(error)}, None
+        return row | {"end": "error", "note": str(error)}
     except Exception as error:  # noqa: BLE001 - what nobody foresaw is looked for
-        return row | {"end": "crash", "note": repr(error)}, None
+        return row | {"end": "crash", "note": repr(error)}
+    return row
+
+
+def sought(job: RandomJob, seeds: Sequence[int], starts: int, limit: int) -> tuple[float, float]:
+    """Value of the reference's motion, infinite if none was found, and the processor time that it took (s)."""
+    limited(limit)
     begun = process_time()
-    tried = FEW if bound.value >= reached * (1 - ALLOWED) else starts
-    found = reference(job.task, job.objective, rng, tried)
-    other = found.value if found is not None else math.inf
+    found = reference(job.task, job.objective, np.random.default_rng(seeds), starts)
+    return math.inf if found is None else found.value, round(process_time() - begun, 2)
+
+
+def limited(seconds: int) -> None:
+    """End this process after so many seconds of processor time from now: a solver that hangs does not come back to Python."""
+    resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(process_time()) + seconds, resource.RLIM_INFINITY))
+
+
+class Worker:
+    """Process that jobs run in, another after each that was ended."""
+
+    def __init__(self) -> None:
+        self._pool: ProcessPoolExecutor | None = None
+
+    def __call__(self, work: Callable[..., Answer], *given: object) -> Answer | None:
+        """Answer of the work; none if it was ended."""
+        pool = self._pool = self._pool or ProcessPoolExecutor(1, get_context("spawn"))
+        try:
+            return pool.submit(work, *given).result()
+        except BrokenExecutor:
+            pool.shutdown()
+            self._pool = None
+            return None
+
+
+class References:
+    """References that are kept, for they depend on the job, the seed and the number of starts alone."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._kept: dict[tuple[str, ...], dict[str, str]] = {}
+        if path.exists():
+            with path.open(newline="", encoding="utf-8") as file:
+                self._kept = {tuple(row[name] for name in KEY): row for row in csv.DictReader(file)}
+
+    def of(
+        self, key: Key, job: RandomJob, starts: int, search: Callable[[], tuple[float, float] | None]
+    ) -> Kept | None:
+        """Value, starts and seconds (s) of a job's reference, sought where none of as many starts is kept; none if it was ended.
+
+        Raises ``SystemExit`` if another job is kept under its name.
+        """
+        name, mark = tuple(map(str, key)), marked(job)
+        row = self._kept.get(name)
+        if row is not None and row["job"] != mark:
+            raise SystemExit(f"{self._path}: {' '.join(name)} is the reference of another job; take its row out")
+        if row is None or int(row["starts"]) < starts:
+            answer = search()
+            if answer is None:
+                return None
+            values = *name, mark, str(starts), *map(repr, answer)
+            row = self._kept[name] = dict(zip(KEPT, values, strict=True))
+            with self._path.open("w", newline="", encoding="utf-8") as file:
+                writer = csv.DictWriter(file, KEPT, lineterminator="\n")
+                writer.writeheader()
+                writer.writerows(
+                    self._kept[each] for each in sorted(self._kept, key=lambda each: (*each[:3], int(each[3])))
+                )
+        return float(row["reference"]), int(row["starts"]), float(row["seconds"])
+
+
+def marked(job: RandomJob) -> str:
+    """Hash of a job's fields, to the digits that every machine draws alike."""
+
+    def plain(given: object) -> object:
+        if isinstance(given, dict):
+            return {name: plain(each) for name, each in given.items()}
+        if isinstance(given, list | tuple):
+            return [plain(each) for each in given]
+        return f"{given:.10g}" if isinstance(given, float) else str(given)
+
+    return hashlib.sha256(json.dumps([type(job.machine).__name__, plain(asdict(job))]).encode()).hexdigest()[:12]
+
+
+def judged(
+    job: RandomJob, key: Key, worker: Worker, kept: References, options: argparse.Namespace
+) -> dict[str, object]:
+    """Row of a job: designed, bounded, and held beside the reference."""
+    row = worker(designed, job, options.limit)
+    if row is None:
+        return {"end": "hang", "note": f"no answer in {options.limit} s of processor time"}
+    if "end" in row:
+        return row
+    reached, bound = float(row["value"]), float(row["bound"])  # type: ignore[arg-type]
+    tried = FEW if bound >= reached * (1 - ALLOWED) else options.starts
+    seeds = options.seed, key[-1]
+    found = kept.of(key, job, tried, lambda: worker(sought, job, seeds, tried, 10 * options.limit))
+    if found is None:
+        return row | {"end": "no reference", "note": f"the reference was ended after {10 * options.limit} s"}
+    other, tried, seconds = found
     row |= {"reference": other, "above": reached / other - 1.0 if other > 0 else 0.0}
-    row["starts"] = tried
-    row["reference_seconds"] = round(process_time() - begun, 2)
+    row |= {"starts": tried, "reference_seconds": seconds}
     lowest = reached if not job.machine.placed else min(reached, other)  # a bound is that of the place chosen
-    wrong = bound.value > lowest * (1 + WITHIN)
+    wrong = bound > lowest * (1 + WITHIN)
     end = "bound above a motion" if wrong else "above the reference" if reached > other * (1 + ALLOWED) else "good"
-    return row | {"end": end}, found
+    return row | {"end": end}
 
 
 def summary(rows: list[dict[str, object]]) -> None:
@@ -128,7 +232,9 @@ def main() -> int:
     parser.add_argument("--objective", choices=get_args(MotorObjective))
     parser.add_argument("--minutes", type=float, default=math.inf, help="begin no job after so many")
     parser.add_argument("--only", type=int, help="number of the one job to run")
+    parser.add_argument("--limit", type=int, default=60, help="end a job after so many seconds of processor time")
     parser.add_argument("--out", type=Path, default=RESULTS / "motor_objectives.csv")
+    parser.add_argument("--references", type=Path, default=RESULTS / "motor_references.csv")
     options = parser.parse_args()
     kinds = [options.machine] if options.machine else list(MACHINES)
     objectives = [options.objective] if options.objective else get_args(MotorObjective)
@@ -138,6 +244,7 @@ def main() -> int:
         for objective in objectives
     }
     rows: list[dict[str, object]] = []
+    worker, kept = Worker(), References(options.references)
     until = monotonic() + 60 * options.minutes
     with options.out.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
@@ -147,12 +254,13 @@ def main() -> int:
                 job = next(drawn)
                 if options.only not in (None, number) or monotonic() > until:
                     continue
-                row, found = judged(job, np.random.default_rng([options.seed, number]), options.starts)
+                key = options.seed, kind, objective, number
+                row = judged(job, key, worker, kept, options)
                 rows.append({"machine": kind, "objective": objective, "number": number} | row)
                 writer.writerow(rows[-1])
                 file.flush()
                 if row["end"] not in ("good", "infeasible"):
-                    print(rows[-1], job, "reference at", found and found.task.machine.place, flush=True)
+                    print(rows[-1], job, flush=True)
     summary(rows)
     return 1 if any(row["end"] not in ("good", "infeasible") for row in rows) else 0
 
