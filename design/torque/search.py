@@ -52,7 +52,9 @@ PATIENCE = 100
 TURNING_SHARE = 0.5
 """Share of its ratio in sync at which a return that is started from may run backwards where the slave may not."""
 AT_FLOOR = 1e-2
-"""A peak within this share of its floor on a mesh is held to be the floor on a finer one."""
+"""A peak beyond this share of its floor on a mesh does not reach it on a finer one."""
+REACHED = 1e-6
+"""A peak within this share of its floor is the floor."""
 ZONE_PLACES = 1001
 """Places of the sync zone at which its torque is looked at."""
 SAME = 1e-7
@@ -208,13 +210,19 @@ def _finer(task: TorqueTask, pattern: Pattern, answer: TorqueAnswer, count: int,
 
 
 def _solved(task: TorqueTask, pattern: Pattern, guess: Guess, value: float, floor: float) -> TorqueAnswer:
-    """Solve from a guess that has about a value; near the floor of a peak, for the least mean square under it."""
+    """Solve from a guess that has about a value; where the floor of a peak can be had, for the least mean square under it.
+
+    Under a floor that the mesh does not reach the solver finds no end, so it is asked for the peak first.
+    """
     programme = _programme(task, pattern, guess)
-    if value <= floor * (1 + AT_FLOOR):
-        under = programme.solve(guess, ceiling=floor)
-        if under.success:
-            return under
-    return programme.solve(guess, floor=floor)
+    answer = None
+    if value > floor * (1 + REACHED):
+        answer = programme.solve(guess, floor=floor)
+        if value > floor * (1 + AT_FLOOR) or (answer.success and answer.value > floor * (1 + REACHED)):
+            return answer
+        guess = answer.guess if answer.success else guess
+    under = programme.solve(guess, ceiling=floor)
+    return under if under.success else answer or programme.solve(guess, floor=floor)
 
 
 def _value(task: TorqueTask, answer: TorqueAnswer, pattern: Pattern) -> float:
