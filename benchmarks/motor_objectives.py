@@ -121,13 +121,16 @@ class Worker:
         self._pool: ProcessPoolExecutor | None = None
 
     def __call__(self, work: Callable[..., Answer], *given: object) -> Answer | None:
-        """Answer of the work; none if it was ended."""
+        """Answer of the work; none if it was ended, or fell over."""
         pool = self._pool = self._pool or ProcessPoolExecutor(1, get_context("spawn"))
         try:
             return pool.submit(work, *given).result()
         except BrokenExecutor:
             pool.shutdown()
             self._pool = None
+            return None
+        except RuntimeError as error:  # of the reference's solver: what a job throws is its row
+            print(error, flush=True)
             return None
 
 
@@ -194,7 +197,7 @@ def judged(
     seeds = options.seed, key[-1]
     found = kept.of(key, job, tried, lambda: worker(sought, job, seeds, tried, 10 * options.limit))
     if found is None:
-        return row | {"end": "no reference", "note": f"the reference was ended after {10 * options.limit} s"}
+        return row | {"end": "no reference", "note": f"the reference gave none in {10 * options.limit} s"}
     other, tried, seconds = found
     row |= {"reference": other, "above": reached / other - 1.0 if other > 0 else 0.0}
     row |= {"starts": tried, "reference_seconds": seconds}

@@ -251,7 +251,7 @@ class Grid:
             way = np.where(standing, 0.0, np.sign(nodes[1]))
             lower[1:, standing] = upper[1:, standing] = 0.0
             lower[1, way > 0] = np.maximum(lower[1, way > 0], 0.0)
-            upper[1, way < 0] = np.minimum(upper[1, way < 0], 0.0)
+            upper[1, way < 0] = np.maximum(np.minimum(upper[1, way < 0], 0.0), lower[1, way < 0])
             sign = np.concatenate([way, np.sign(way[:-1] + way[1:])])
         loose = (
             np.zeros(n) if standing is None else np.where(standing[1:] & standing[:-1], 1.0, 0.0)

@@ -38,8 +38,6 @@ NEAR = 0.05
 PATHS = 2
 """Returns along the path that are started from at each place."""
 HALVINGS = 60
-SECTIONS, SECTION = 9, 0.382
-"""Places looked at on the way to a valley's floor, and how far into the longer side each lies."""
 
 
 def place_by_objective(task: Task, aim: Aim, curve: MotorCurve | None = None) -> Placement | None:
@@ -85,12 +83,11 @@ def place_by_objective(task: Task, aim: Aim, curve: MotorCurve | None = None) ->
     ]
     best = min((answers[k].value for k in valleys), default=np.inf)
     found_valleys: list[TorqueAnswer] = []
-    down = _Descent(task, middle, zone)
+    down = _Descent(middle, zone)
     for k in sorted(valleys, key=lambda k: answers[k].value):
         if answers[k].value > best * (1 + NEAR):
             break
-        near = float(places[max(k - 1, 0)]), float(places[min(k + 1, len(places) - 1)])
-        found_valleys.append(down.floor(answers[k], float(places[k]), near))
+        found_valleys.append(down.floor(answers[k]))
     if not found_valleys:
         return None
     deepest = min(found_valleys, key=lambda answer: answer.value)
@@ -101,33 +98,21 @@ def place_by_objective(task: Task, aim: Aim, curve: MotorCurve | None = None) ->
 
 
 class _Descent:
-    """The way down to the floor of a valley: places on a coarse mesh, then the place as one more unknown on a finer one.
+    """The way down to the floor of a valley: the place is one more unknown, on the scan's mesh, then on a finer one."""
 
-    From a place beside the floor alone the solver may come to another one: where the objective is a peak there are corners.
-    """
+    def __init__(self, middle: TorqueTask, zone: Zone) -> None:
+        self._coarse, self._fine = (
+            TorqueProgramme(middle, ANYHOW, (count,), zone, near=True) for count in (COARSE, FINE)
+        )
+        self._held = TorqueProgramme(middle, ANYHOW, (FINE,), zone)
 
-    def __init__(self, task: Task, middle: TorqueTask, zone: Zone) -> None:
-        self._task = task
-        self._coarse, self._fine = (TorqueProgramme(middle, ANYHOW, (count,), zone) for count in (COARSE, FINE))
-
-    def floor(self, answer: TorqueAnswer, place: float, near: tuple[float, float]) -> TorqueAnswer:
-        """Best answer between two places, from that at a place among them."""
-        best, low, high = (place, answer), *near
-        for _ in range(SECTIONS):
-            at = best[0] + SECTION * ((high if high - best[0] > best[0] - low else low) - best[0])
-            found = self._held(at, best[1])
-            if found.success and found.value < best[1].value:
-                low, high = (best[0], high) if at > best[0] else (low, best[0])
-                best = at, found
-            else:
-                low, high = (low, at) if at > best[0] else (at, high)
-        held = self._fine.solve(remesh(best[1].guess, ANYHOW, (FINE,)), hold=True)
-        free = self._fine.solve(held.guess if held.success else remesh(best[1].guess, ANYHOW, (FINE,)))
-        return min((each for each in (held, free) if each.success), key=lambda each: each.value, default=best[1])
-
-    def _held(self, place: float, before: TorqueAnswer) -> TorqueAnswer:
-        at = self._task.placed_at(place)
-        return self._coarse.solve(replace(before.guess, ends=(at.slave_at_sync_start, at.slave_at_sync_end)), hold=True)
+    def floor(self, answer: TorqueAnswer) -> TorqueAnswer:
+        """Best answer about one at a place of the scan."""
+        coarse = self._coarse.solve(answer.guess)
+        start = remesh((coarse if coarse.success else answer).guess, ANYHOW, (FINE,))
+        held = self._held.solve(start, hold=True)
+        free = self._fine.solve(held.guess if held.success else start)
+        return min((each for each in (held, free) if each.success), key=lambda each: each.value, default=answer)
 
 
 def _middle(machine: Machine, answer: TorqueAnswer) -> float:

@@ -57,6 +57,7 @@ _OPTIONS: dict[str, Any] = QUIET | {
     "ipopt.mu_strategy": "adaptive",
     "ipopt.bound_relax_factor": 1e-10,
 }
+_FROM_NEAR: dict[str, Any] = {"ipopt.mu_strategy": "monotone", "ipopt.mu_init": 1e-4}
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,6 +133,7 @@ class TorqueProgramme:
         zone: Zone | None = None,
         accuracy: float = ACCURACY,
         iterations: int = MOST_ITERATIONS,
+        near: bool = False,
     ) -> None:
         """Build the programme.
 
@@ -147,6 +149,8 @@ class TorqueProgramme:
             The sync zone, if the programme is to place it.
         accuracy, iterations
             Of the solver: how well it must end (scaled), and how long it may take.
+        near
+            Whether its guesses are near an answer: the solver then does not leave the valley that they lie in.
         """
         self._task = task
         n = sum(counts)
@@ -238,7 +242,7 @@ class TorqueProgramme:
             )
         self._rows = (sum(part.numel() for part in equations), sum(part.numel() for part in (*peaks, *jerk)))
         nlp = {"x": unknowns, "p": p, "f": cost, "g": ca.vertcat(*equations, *peaks, *jerk, between)}
-        options = _OPTIONS | {"ipopt.tol": accuracy, "ipopt.max_iter": iterations}
+        options = _OPTIONS | {"ipopt.tol": accuracy, "ipopt.max_iter": iterations} | (_FROM_NEAR if near else {})
         self._watched = WatchedSolver.of("camwright_torque", nlp, options)
 
     def _ramps(self, a: Any, v: Any, h: Any, mesh: Any) -> list[Any]:
