@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from camwright.cli.options import Json, Quiet, option_quantity
+from camwright.cli.options import Json, Quiet, TraceColumns, option_quantity
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.house.files import read_bytes, require_plain, write_files
@@ -73,6 +73,7 @@ def run(
             help="Jerk feed-forward set in the drive, e.g. 2000 ms^3, or fit; 0 if left out.",
         ),
     ] = None,
+    columns: TraceColumns = None,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> int:
@@ -88,7 +89,7 @@ def run(
     voice = Voice(as_json, quiet)
     with voice.progress(1) as step:
         step("fitting the servo")
-        recorded, found = identify_file(trace, velocity_feedforward, beyond)
+        recorded, found = identify_file(trace, velocity_feedforward, beyond, columns)
     files: list[Path] = []
     if out is not None:
         files = write_files(out.parent, {out.name: servo_text(trace, recorded, found)})

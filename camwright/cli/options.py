@@ -31,6 +31,14 @@ CommonPlace = Annotated[
 Out = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Output directory; out/<name> if left out.")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of tables.")]
 NoFigures = Annotated[bool, typer.Option("--no-figures", help="Write no figures.")]
+TraceColumns = Annotated[
+    str | None,
+    typer.Option(
+        "--columns",
+        metavar="T,C,A",
+        help="Columns of time, command and actual, by heading or number, where their names do not tell: 't [s],q_d [rad],q [rad]'.",
+    ),
+]
 Quiet = Annotated[bool, typer.Option("--quiet", help="Print neither tables nor progress.")]
 
 

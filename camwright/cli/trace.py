@@ -9,7 +9,17 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from camwright.answers.trace import trace_answer
-from camwright.cli.options import Json, JudgedBy, NoFigures, Out, Quiet, job_work, option_quantity, output_directory
+from camwright.cli.options import (
+    Json,
+    JudgedBy,
+    NoFigures,
+    Out,
+    Quiet,
+    TraceColumns,
+    job_work,
+    option_quantity,
+    output_directory,
+)
 from camwright.cli.views.checks import checks_view
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import new_table, new_text, stacked
@@ -60,6 +70,7 @@ def run(
             "--gear", metavar="N", help="Recorded turns or travel over the slave's, where another shaft was recorded."
         ),
     ] = None,
+    columns: TraceColumns = None,
     out: Out = None,
     no_figures: NoFigures = False,
     as_json: Json = False,
@@ -79,7 +90,7 @@ def run(
         placed, profile = _cam(asked, design)
         step("laying the recording over it")
         with in_job_words(placed.units):
-            found = recorded_run(file, placed, profile, speed, gear)
+            found = recorded_run(file, placed, profile, speed, gear, columns)
         if not no_figures:
             step("drawing")
             directory = output_directory(out, asked)

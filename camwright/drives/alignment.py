@@ -42,7 +42,13 @@ _ROUNDS = 60
 
 
 def aligned(
-    rebuilt: CamProfile, job: Job, *, count: float = 0.0, grain: float = 0.0, tick: float = 0.0
+    rebuilt: CamProfile,
+    job: Job,
+    *,
+    seen: CamProfile | None = None,
+    count: float = 0.0,
+    grain: float = 0.0,
+    tick: float = 0.0,
 ) -> tuple[CamProfile, tuple[str, ...]]:
     """Begin the cycle where it fits the job's sync zone best, and put the slave's zero where the job has it.
 
@@ -56,6 +62,8 @@ def aligned(
     ----------
     rebuilt
         One cycle from master 0 on, in SI units, or several.
+    seen
+        The same without the rounding to counts, if it is known: the zero is found from it.
     count
         Size of the counts that its positions are in (slave unit), if that is coarse: its exact ratio is noise then, and
         chords between the places take its part; beginnings that differ by what a count does are as good as each other.
@@ -74,7 +82,7 @@ def aligned(
     sync = task.sync
     cuts = cuts_in(rebuilt, cut)
     stretch = rebuilt.length / (cuts * cut.length)
-    paths, zone, end = _seen(rebuilt, job, cuts, stretch)
+    paths, zone, end = _seen(rebuilt if seen is None else seen, job, cuts, stretch)
     width = end - zone
     in_zone = np.linspace(0.0, width, _IN_ZONE)
     inside = np.clip(in_zone, _EDGE * cut.length, width - _EDGE * cut.length)

@@ -14,7 +14,15 @@ from camwright.profiles.errors import InputError
 from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.tables.cam_table import CamTable
-from camwright.profiles.tables.count_grid import rounded_to, spacing_rounded_to, without_rounding
+from camwright.profiles.tables.count_grid import (
+    Counted,
+    evened,
+    rounded_to,
+    smoothed,
+    spacing_rounded_to,
+    without_rounding,
+)
+from camwright.profiles.tables.splines import cyclic_spline
 from camwright.profiles.tables.target import Target, fits_head, no_cycle_in, units_in
 from camwright.profiles.tables.targets import detect, layout_of, read_table
 from camwright.validation.rebuilt import LEAST_WRAPS, RUN, TableJudgement, cuts_in, each_cut, judge_table, one_cycle
@@ -91,6 +99,8 @@ def running_cam(
     if units is None and read.units is None and fits_head(read, head):
         read = replace(read, units=units_in(head), notes=(_BESIDE,))
     whole, cuts = _whole(read, placed, place, units, travel)
+    tick = spacing_rounded_to(whole.table.x) * whole.units.master.size
+    whole = replace(whole, table=evened(whole.table) or whole.table)
     table, counted = whole.table, without_rounding(whole.table)
     rebuilt = whole.units.to_si(layout.rebuild(table if counted is None else counted.table))
     try:
@@ -99,12 +109,22 @@ def running_cam(
         raise InputError(*(f"{place}: {fault}" for fault in error.faults)) from error
     count = 0.0 if counted is None else counted.count * whole.units.slave.size
     grain = rounded_to(whole.table.y) * whole.units.slave.size
-    tick = spacing_rounded_to(whole.table.x) * whole.units.master.size
-    rebuilt, notes = aligned(rebuilt.shift(-rebuilt.start), placed, count=count, grain=grain, tick=tick)
+    rebuilt, notes = aligned(
+        rebuilt.shift(-rebuilt.start), placed, seen=_smooth(whole, counted), count=count, grain=grain, tick=tick
+    )
     told = (*table.notes, *whole.notes, *((counted.note,) if counted else ()), *notes)
     return RunningCam(
         layout, table, told, placed, rebuilt, count, counted is not None, grain if set(table.laws) == {"line"} else 0.0
     )
+
+
+def _smooth(whole: WholeCycle, counted: Counted | None) -> CamProfile | None:
+    """Make of a table in counts what its zero is found from: the counts of straight lines shake the ends of the sync zone."""
+    found = smoothed(whole.table) if counted is None and set(whole.table.laws) == {"line"} else None
+    if found is None:
+        return None
+    profile = whole.units.to_si(cyclic_spline(found.x, found.y))
+    return profile.shift(-profile.start)
 
 
 def _whole(table: CamTable, job: Job, place: str, units: str | None, travel: str | None) -> tuple[WholeCycle, int]:

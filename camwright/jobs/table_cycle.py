@@ -11,7 +11,7 @@ from camwright.jobs.job import Job
 from camwright.jobs.table_units import kernel_units, slave_length, units_of
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import FloatArray
-from camwright.profiles.tables.cam_table import CamTable, Units
+from camwright.profiles.tables.cam_table import CamTable, Units, make_table
 
 _FEWEST = 12
 """Points from which on a jump can be told from motion."""
@@ -68,12 +68,13 @@ def whole_cycle(
     asked = None if travel is None else slave_length(travel, job.machine)
     if not table.travel_known:
         return _closed(table, job, place, units, asked)
-    known = _sizes(table, job, place, units)
+    known = _listed_sizes(table, job, place, units) if table.listed else _sizes(table, job, place, units)
     notes: tuple[str, ...] = ()
     if known is not None:
         table, notes = _unwrapped(table, job, known, asked, place)
         table, turned = _forwards(table, job, known)
-        table, more = _with_end(table, job, known, asked)
+        ended = _with_listed_end if table.listed else _with_end
+        table, more = ended(table, job, known, asked)
         notes += (*turned, *more)
     elif job.machine.pitch > 0:
         table, notes = _unwrapped(table, job, None, None, place)
@@ -109,6 +110,38 @@ def _sizes(table: CamTable, job: Job, place: str, units: str | None) -> Units | 
     if table.units is not None or None not in table.words:
         return units_of(table, units, job, place)[0]
     return None
+
+
+def _listed_sizes(table: CamTable, job: Job, place: str, units: str | None) -> Units:
+    """Give the units of a list of slave positions; that of the master is a step, the slave's must be said.
+
+    Raises
+    ------
+    InputError
+        It is not: whether the last row ends the cycle could not be told.
+    """
+    if units is None and table.words[1] is None:
+        raise InputError(
+            f"{place}: a list of {table.points} numbers, slave positions at even steps of the master, says no unit; write it above, as in "
+            "slave [mm], or say it with --units cycle,mm"
+        )
+    return units_of(table, units, job, place)[0]
+
+
+def _with_listed_end(table: CamTable, job: Job, units: Units, asked: float | None) -> tuple[CamTable, tuple[str, ...]]:
+    """Put the end of the cycle behind a list whose last row is a step before it: where a step more meets the travel better."""
+    travel = (job.machine.pitch if asked is None else asked) / units.slave.size
+    step = 0.5 * float(table.y[-1] - table.y[-2] + table.y[1] - table.y[0])
+    if abs(table.advance + step - travel) >= abs(table.advance - travel):
+        return table, ()
+    longer = make_table(
+        np.append(table.x, table.x[-1] + 1.0),
+        np.append(table.y, table.y[0] + travel),
+        law=table.laws[0],
+        notes=table.notes,
+    )
+    note = f"the list ends a step before the cycle, {travel:.6g} {units.slave.symbol} beyond its first row (--travel says another)"
+    return replace(longer, words=table.words, units=table.units), (note,)
 
 
 def _forwards(table: CamTable, job: Job, units: Units | None) -> tuple[CamTable, tuple[str, ...]]:

@@ -13,7 +13,8 @@ from camwright.production.columns import columns, measured, read_table_text, rol
 from camwright.profiles.cut_list import PIECE_KINDS, CutList, ListRow, PieceKind
 from camwright.profiles.errors import InputError
 from camwright.profiles.line_run import LineRun
-from camwright.profiles.tables.delimited import GROUPS, Layout, grouped, is_unit_row, number_in, read_sheet
+from camwright.profiles.tables.delimited import Layout, is_unit_row, read_sheet
+from camwright.profiles.tables.numbers import GROUPS, grouped, number_in
 
 MOST_BYTES = 32 * 2**20
 MOST_PIECES = 200_000

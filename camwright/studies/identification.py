@@ -44,22 +44,26 @@ ORIGINS = {
 }
 
 
-def read_trace(path: Path) -> Trace:
-    """Read a recorded trace.
+def read_trace(path: Path, columns: str | None = None) -> Trace:
+    """Read a recorded trace, the columns as `read_trace_csv` takes them.
 
     Raises
     ------
     InputError
         The file cannot be read, or is no trace with equally spaced rows.
     """
-    return read_trace_csv(decode(read_bytes(path, "trace", _MOST_BYTES), str(path), _MOST_BYTES), str(path))
+    text = decode(read_bytes(path, "trace", _MOST_BYTES), str(path), _MOST_BYTES)
+    return read_trace_csv(text, str(path), columns=columns)
 
 
 _SUM = "# camwright identify, SHA-256 of the lines above: "
 
 
 def identify_file(
-    path: Path, velocity_feedforward: float | None, beyond: Mapping[str, float | None] | None = None
+    path: Path,
+    velocity_feedforward: float | None,
+    beyond: Mapping[str, float | None] | None = None,
+    columns: str | None = None,
 ) -> tuple[Trace, Identified]:
     """Find the servo of a recorded trace.
 
@@ -69,6 +73,8 @@ def identify_file(
         Share of the command's velocity that is fed forward, if known.
     beyond
         As of `camwright.validation.identify.identification.identify`.
+    columns
+        As of `read_trace`.
 
     Raises
     ------
@@ -77,7 +83,7 @@ def identify_file(
     """
     if velocity_feedforward is not None and not 0.0 <= velocity_feedforward <= 1.0:
         raise InputError(f"--velocity-feedforward {velocity_feedforward:g}: it is a share from 0 to 1, usually 1")
-    trace = read_trace(path)
+    trace = read_trace(path, columns)
     return trace, identify(trace, str(path), velocity_feedforward, beyond)
 
 

@@ -76,7 +76,12 @@ class RecordedRun:
 
 
 def recorded_run(
-    path: Path, job: Job, profile: CamProfile, line_speed: float | None = None, gear: float | None = None
+    path: Path,
+    job: Job,
+    profile: CamProfile,
+    line_speed: float | None = None,
+    gear: float | None = None,
+    columns: str | None = None,
 ) -> RecordedRun:
     """Lay a recording over a cam.
 
@@ -92,6 +97,8 @@ def recorded_run(
         Line speed of the recording (m/s), if it is known and the master was not recorded.
     gear
         Recorded travel over the slave's, if it is known.
+    columns
+        As of `camwright.profiles.tables.trace_csv.read_trace_csv`.
 
     Raises
     ------
@@ -99,7 +106,7 @@ def recorded_run(
         The file cannot be read, or is no run of this cam.
     """
     data = read_bytes(path, "recording", _MOST_BYTES)
-    return laid_over(data, str(path), job, profile, line_speed, gear)
+    return laid_over(data, str(path), job, profile, line_speed, gear, columns)
 
 
 def laid_over(
@@ -109,10 +116,11 @@ def laid_over(
     profile: CamProfile,
     line_speed: float | None = None,
     gear: float | None = None,
+    columns: str | None = None,
 ) -> RecordedRun:
     """Lay the bytes of a recording over a cam; as `recorded_run`, messages begin with the place."""
     text = decode(data, place, _MOST_BYTES)
-    trace = read_trace_csv(text, place, most_rows=_MOST_ROWS, master=True)
+    trace = read_trace_csv(text, place, most_rows=_MOST_ROWS, master=True, columns=columns)
     trace = _unwrapped(trace, job.machine, job.cut.length, place)
     run = aligned(trace, profile, job.task, place, line_speed, gear)
     cuts = cut_errors(run, profile, job.task, place)

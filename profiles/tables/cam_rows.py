@@ -11,8 +11,8 @@ import numpy as np
 from camwright.profiles.errors import InputError
 from camwright.profiles.machines.machine import SlaveUnit
 from camwright.profiles.polynomial.profile import FloatArray
-from camwright.profiles.tables.column_words import cam_role
-from camwright.profiles.tables.delimited import Column, Sheet, read_sheet
+from camwright.profiles.tables.column_words import cam_role, is_unsized
+from camwright.profiles.tables.delimited import FEWEST_LISTED, Column, Sheet, read_sheet
 from camwright.profiles.tables.derivative_columns import scaled_derivatives
 from camwright.profiles.tables.text import refuse
 
@@ -26,6 +26,7 @@ _DERIVATIVES: dict[str, dict[str, tuple[float, float]]] = {
 }
 # How a number in a unit becomes SI: multiplied by the first, divided by the second.
 _TURNS = ("deg", "rev")
+_TIMES = ("s", "ms", "us")
 _X_UNITS = (*_LENGTHS, "rad", *_TURNS)
 _Y_UNITS = (*_LENGTHS, "rad", *_TURNS)
 _NAMES = ("x", "y", *_DERIVATIVES)
@@ -36,13 +37,6 @@ _FEWEST_PLAIN = 3
 
 _CLOSEST = 1e-12
 """Least distance of two rows on the master as a part of the table's length: closer rows hold no derivatives."""
-
-
-_UNSIZED = frozenset(
-    {"%", "inc", "incr", "ink", "inkr", "inkremente", "cts", "count", "counts", "pulse", "pulses", "pls", "puu", "uu", "units", "steps",
-     "脉冲", "用户单位"}
-)  # fmt: skip
-"""Words for a unit whose size only the machine knows: counts of an encoder, user units, parts of a cycle."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,6 +61,8 @@ class CamRows:
         ``None`` they are SI: m, slave unit, slave unit per m, per m².
     notes
         What was found worth telling.
+    listed
+        Whether only slave positions are in the file: the last may end the cycle, or be a step before its end.
     """
 
     x: FloatArray
@@ -76,6 +72,7 @@ class CamRows:
     slave_unit: SlaveUnit = "m"
     words: tuple[str | None, str | None] | None = None
     notes: tuple[str, ...] = ()
+    listed: bool = False
 
 
 def read_cam_csv(text: str, place: str) -> CamRows:
@@ -97,6 +94,8 @@ def read_cam_csv(text: str, place: str) -> CamRows:
         The header or a row is not as described; the message names the line.
     """
     sheet = read_sheet(text, place, cam_role, _EXAMPLE, "table")
+    if len(sheet.columns) == 1 and len(sheet.rows) >= FEWEST_LISTED:
+        return _listed(sheet)
     at, notes = _roles(sheet)
     x_unit = _unit(sheet, at["x"], "x", _X_UNITS)
     y_unit = _unit(sheet, at["y"], "y", _Y_UNITS)
@@ -135,6 +134,15 @@ def read_cam_csv(text: str, place: str) -> CamRows:
     return CamRows(columns["x"], columns["y"], dy, d2y, "rad" if y_unit == "rad" else "m", words, notes)
 
 
+def _listed(sheet: Sheet) -> CamRows:
+    """Take one column for slave positions, a step of the master apart."""
+    y = sheet.numbers(0)
+    note = f"one column of {len(y)} numbers is taken for slave positions at even steps of the master"
+    return CamRows(
+        np.arange(float(len(y))), y, words=(None, _unit(sheet, 0, "y", _Y_UNITS)), notes=(note,), listed=True
+    )
+
+
 def _si(values: FloatArray, factor: tuple[float, float]) -> FloatArray:
     return values * factor[0] / factor[1]
 
@@ -153,7 +161,7 @@ def _roles(sheet: Sheet) -> tuple[dict[str, int], tuple[str, ...]]:
                 f"{where}: column {role} stands there twice; leave one out ({first[:50]!r} and {column.heading[:50]!r})"
             )
         at[str(role)] = number
-    if "x" not in at and "y" not in at:
+    if ("x" not in at and "y" not in at) or len(sheet.columns) < 2:
         return _by_order(sheet)
     if "x" not in at:  # master positions that are called an index are all there is
         counted = [k for k, column in enumerate(sheet.columns) if cam_role(column.name) == "index"]
@@ -162,6 +170,10 @@ def _roles(sheet: Sheet) -> tuple[dict[str, int], tuple[str, ...]]:
     for name in missing:
         left = [column for k, column in enumerate(sheet.columns) if k not in at.values()]
         near = [(column, difflib.get_close_matches(column.name[:50], _NAMES, n=1)) for column in left]
+        if name == "x" and any(column.unit in _TIMES for column in left):
+            raise InputError(
+                f"{where}: column x is missing, a time stands there; write the master's position in its place, the line speed times that"
+            )
         told = "; ".join(
             f"there is no column {column.heading[:50]!r}" + (f"; did you mean {close[0]}?" if close else "")
             for column, close in near[:3]
@@ -207,7 +219,7 @@ def _where(sheet: Sheet) -> str:
 def _unit(sheet: Sheet, at: int, name: str, units: tuple[str, ...]) -> str | None:
     """Give a column's unit, one of those that it may have, or ``None`` if it has none."""
     column: Column = sheet.columns[at]
-    if column.unit is None or column.unit.lower().strip(".") in _UNSIZED:
+    if column.unit is None or is_unsized(column.unit):
         return None
     if not column.known or column.unit not in units:
         raise InputError(

@@ -93,6 +93,8 @@ class CamTable:
     travel_known
         Whether the last point is the file's: where a layout leaves it out, for the table closes by itself, the slave
         stands at the first point's position there and the travel must be found.
+    listed
+        Whether the master positions only count the file's rows, the last of which may end the cycle or be a step before its end.
 
     Raises
     ------
@@ -111,6 +113,7 @@ class CamTable:
     notes: tuple[str, ...] = ()
     words: tuple[str | None, str | None] = (None, None)
     travel_known: bool = True
+    listed: bool = False
 
     def __post_init__(self) -> None:
         n = len(self.x)

@@ -8,12 +8,14 @@ _UNIT_WORDS: dict[str, str] = {
     "m": "m", "mm": "mm", "cm": "cm", "um": "um", "in": "in", "inch": "in", "inches": "in", "ft": "ft",
     "meter": "m", "metre": "m", "millimeter": "mm", "millimetre": "mm", "micron": "um", "microns": "um",
     "米": "m", "毫米": "mm", "厘米": "cm", "微米": "um", "英寸": "in",
-    '"': "in", "″": "in", "zoll": "in",
+    '"': "in", "″": "in", "zoll": "in", "pollici": "in", "pouces": "in", "ミリ": "mm", "mètre": "m", "metri": "m", "metros": "m",
     "rad": "rad", "radian": "rad", "radians": "rad", "弧度": "rad",
     "deg": "deg", "degree": "deg", "degrees": "deg", "°": "deg", "º": "deg", "grad": "deg", "度": "deg",
-    "rev": "rev", "revs": "rev", "turn": "rev", "turns": "rev", "umdr": "rev", "转": "rev",
-    "s": "s", "sec": "s", "second": "s", "seconds": "s", "sekunden": "s", "秒": "s",
-    "ms": "ms", "msec": "ms", "毫秒": "ms", "us": "us", "微秒": "us",
+    "gradi": "deg", "degré": "deg", "degrés": "deg", "grados": "deg",
+    "rev": "rev", "revs": "rev", "turn": "rev", "turns": "rev", "umdr": "rev", "转": "rev", "回転": "rev",
+    "umdrehung": "rev", "umdrehungen": "rev", "giri": "rev", "giro": "rev", "tours": "rev", "vueltas": "rev",
+    "s": "s", "sec": "s", "second": "s", "seconds": "s", "sekunden": "s", "secondi": "s", "secondes": "s", "segundos": "s", "秒": "s",
+    "ms": "ms", "msec": "ms", "毫秒": "ms", "ミリ秒": "ms", "us": "us", "微秒": "us",
 }  # fmt: skip
 """Words for a unit, and the one name that this house has for it."""
 
@@ -21,6 +23,18 @@ _MEASURES = frozenset({"1", "-", "m/m", "mm/mm", "rad/m", "1/m", "1/mm", "rad/m^
 _SPACED = re.compile(r"\s*[\[(]?\s*([^\[\]()]*?)\s*[\])]?\s*")
 _BRACKETS = re.compile(r"(.*?)\s*(?:\[([^\[\]]*)\]|\(([^()]*)\))\s*")
 _SUFFIX = re.compile(r"(.+?)(?:_|\s+in\s+|\s*/\s*|\s*,\s*|\s+)([^\s_/,\[\]()]{1,12})")
+
+
+_UNSIZED = frozenset(
+    {"%", "inc", "incr", "ink", "inkr", "inkremente", "cts", "count", "counts", "pulse", "pulses", "pls", "puu", "uu", "units", "steps",
+     "脉冲", "用户单位", "パルス", "impulsi"}
+)  # fmt: skip
+"""Words for a unit whose size only the machine knows: counts of an encoder, user units, parts of a cycle."""
+
+
+def is_unsized(text: str) -> bool:
+    """Whether a word is a unit whose size only the machine knows."""
+    return text.strip().lower().strip(".") in _UNSIZED
 
 
 def unit_word(text: str) -> str | None:
@@ -66,32 +80,42 @@ def words_of(name: str) -> list[str]:
 
 
 _ROLES: tuple[tuple[str, frozenset[str], tuple[str, ...]], ...] = (
-    ("d3y/dx3", frozenset({"d3y/dx3", "j", "y'''"}), ("jerk", "ruck", "跃度", "加加速")),
-    ("d2y/dx2", frozenset({"d2y/dx2", "a", "acc", "accel", "y''"}), ("acc", "beschl", "slaveacc", "加速度")),
+    ("d3y/dx3", frozenset({"d3y/dx3", "j", "y'''"}), ("jerk", "ruck", "jolt", "跃度", "加加速", "躍度")),
+    ("d2y/dx2", frozenset({"d2y/dx2", "a", "acc", "accel", "y''"}), ("acc", "beschl", "slaveacc", "acel", "accél", "加速度")),
     ("dy/dx", frozenset({"dy/dx", "v", "vel", "velo", "speed", "ratio", "y'"}),
-     ("vel", "geschw", "speed", "vitesse", "速度", "drehzahl")),
+     ("vel", "geschw", "speed", "vitesse", "速度", "drehzahl", "übersetzung")),
     ("other", frozenset({"torque", "current", "moment", "strom", "error", "lag"}),
      ("torque", "drehm", "schlepp", "电流", "转矩", "误差")),
-    ("x", frozenset({"x", "master", "leading", "lead"}), ("master", "leit", "leading", "主轴")),
-    ("y", frozenset({"y", "slave", "following", "follower"}), ("slave", "folge", "follow", "从轴")),
-    ("x", frozenset({"phase", "theta", "phi", "angle", "winkel"}), ("theta", "phase", "angle", "winkel", "角度")),
-    ("y", frozenset({"s", "position", "pos", "displacement", "hub", "weg", "lift"}), ("displ", "位移", "位置")),
-    ("index", frozenset({"index", "no", "nr", "n", "i", "point", "pt", "row", "id", "punkt", "nummer", "序号", "点"}),
+    ("x", frozenset({"x", "master", "leading", "lead"}), ("master", "leit", "leading", "maître", "maestro", "主轴", "主軸", "マスタ")),
+    ("y", frozenset({"y", "slave", "following", "follower"}),
+     ("slave", "folge", "follow", "esclav", "asservi", "从轴", "從軸", "従軸", "従動", "スレーブ")),
+    ("x", frozenset({"phase", "theta", "phi", "angle", "winkel"}),
+     ("theta", "phase", "angle", "winkel", "angol", "ángulo", "fase", "角度", "位相")),
+    ("y", frozenset({"s", "position", "pos", "displacement", "hub", "weg", "lift", "corsa", "quota"}),
+     ("displ", "posiz", "posici", "spostam", "位移", "位置", "変位")),
+    ("index", frozenset({"index", "no", "nr", "n", "i", "point", "pt", "row", "id", "punkt", "punto", "nummer", "序号", "点", "番号"}),
      ("index",)),
 )  # fmt: skip
 """Roles of a cam's columns: exact names, and what a word of the name may begin with. The first that fits holds."""
 
 _TRACED: tuple[tuple[str, tuple[str, ...], tuple[str, ...]], ...] = (
-    ("other", (), ("velo", "vel", "speed", "geschw", "acc", "beschl", "torque", "drehm", "current", "strom", "error",
-                   "err", "lag", "schlepp", "diff", "速度", "加速", "电流", "转矩", "误差")),
-    ("time", ("t",), ("time", "zeit", "timestamp", "时间", "temps", "tempo")),
-    ("master", (), ("master", "leit", "leading", "web", "material", "conveyor", "主轴", "物料")),
-    ("command", (), ("command", "cmd", "set", "soll", "demand", "reference", "ref", "target", "指令", "设定", "目标", "给定",
-                     "comando", "consign")),
-    ("actual", (), ("actual", "act", "ist", "feedback", "fbk", "fb", "measured", "encoder", "实际", "反馈",
-                    "attual", "mesur", "réel", "reel")),
+    ("lag", ("lag",), ("schlepp", "追従誤差", "跟随误差", "跟踪误差", "偏差")),
+    ("other", ("qd", "qdd"), ("velo", "vel", "speed", "geschw", "vitesse", "acc", "beschl", "torque", "tor", "moment", "drehm", "current",
+                   "strom", "temper", "error", "err", "diff", "速度", "加速", "电流", "電流", "转矩", "トルク", "误差")),
+    ("time", ("t",), ("time", "zeit", "timestamp", "realtime", "时间", "時間", "時刻", "temps", "tempo", "tiempo")),
+    ("master", (), ("master", "leit", "leading", "web", "material", "conveyor", "主轴", "主軸", "物料", "マスタ")),
+    ("command", ("des",), ("command", "cmd", "set", "soll", "demand", "desired", "reference", "ref", "target", "goal",
+                           "指令", "设定", "設定",
+                           "目标", "目標", "给定", "comand", "consign", "rifer")),
+    ("actual", (), ("actual", "act", "ist", "feedback", "fbk", "fb", "meas", "encoder", "实际", "反馈", "実", "現在", "フィードバック",
+                    "attual", "mesur", "misur", "medid", "réel", "reel", "real", "present", "estim")),
 )  # fmt: skip
-"""Roles of a recording's columns, alike."""
+"""Roles of a recording's columns, alike; short names count as words of a longer one too."""
+
+_FOLLOWING = ("followingerror", "positionerror", "poserror", "poserr", "posdiff", "regelabweichung")
+"""Names of the lag of the axis, without what stands between their words."""
+_COMPOUND = re.compile(r".*(soll|ist)(?:wert|pos|lage|weg|winkel|.?pos)")
+"""A word with command or actual inside, as German joins them: ``Lagesollwert``."""
 
 
 def cam_role(name: str) -> str | None:
@@ -106,18 +130,25 @@ def cam_role(name: str) -> str | None:
 
 
 def trace_role(name: str) -> str | None:
-    """Say what a column of a recording is: ``time``, ``master``, ``command``, ``actual``, ``other``; ``None`` if its name does not tell."""
+    """Say what a column of a recording is: ``time``, ``master``, ``command``, ``actual``, ``lag``, ``other``; ``None`` if unclear."""
     plain = name.strip().lower().rpartition("/")[2]  # some recorders write where a channel comes from before its name
     words = words_of(name)
+    if any(each in "".join(words) for each in _FOLLOWING):
+        return "lag"
+    if "current" in words and is_position(name):
+        return "actual"
     for role, names, beginnings in _TRACED:
-        if plain in names or any(word.startswith(beginnings) for word in words):
+        if plain in names or any(word.startswith(beginnings) or (word in names and word != "t") for word in words):
             return role
-    return None
+    inside = next((found[1] for word in words if (found := _COMPOUND.match(word))), None)
+    return None if inside is None else {"soll": "command", "ist": "actual"}[inside]
 
 
 def is_position(name: str) -> bool:
     """Whether a name says that its column is a position, not something else of command or axis."""
-    return any(word.startswith(("pos", "lage", "weg", "angle", "winkel", "位置")) for word in words_of(name))
+    return any(
+        word.startswith(("pos", "lage", "weg", "angle", "winkel", "位置", "位移", "変位")) for word in words_of(name)
+    )
 
 
 def is_measured(name: str) -> bool:

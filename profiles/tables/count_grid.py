@@ -23,6 +23,10 @@ _ONE = 1e-9
 _EVEN = 0.02
 """Part of a step by which the points may miss even spacing: the master is counted too."""
 _ROUNDS = 50
+_UNEVEN = 1e-4
+"""Part of a step by which steps that are meant to be even may differ before their rounding counts."""
+_COARSEST = 0.9
+"""Part of a step that its rounding may make up: beyond, rows are left out or doubled."""
 
 
 @dataclass(frozen=True)
@@ -44,8 +48,46 @@ class Counted:
     note: str
 
 
+def evened(table: CamTable) -> CamTable | None:
+    """Take the rounding of evenly spaced master positions off, where it would shake the ratio.
+
+    A position that misses its place by half a grain makes the step beside it wrong by as much, and the ratio with it. The places are
+    those of even steps that all positions are rounded from, the middle of what these leave open. ``None`` where steps are even, or are
+    not so for another reason than rounding, or where the table states ratios of its own.
+    """
+    if not np.isnan(table.ratio).all() or table.points < _FEWEST:
+        return None
+    h = table.period / (table.points - 1)
+    off = table.x - (table.x[0] + h * np.arange(table.points))
+    if float(np.ptp(np.diff(table.x))) <= _UNEVEN * h:
+        return None
+    grain = grid_of(table.x) or rounded_to(table.x)
+    if not float(np.ptp(off)) <= 1.001 * grain < _COARSEST * h:
+        return None
+    begin = float(table.x[0]) + 0.5 * float(off.max() + off.min())
+    note = f"the master's positions are rounded to {grain:.6g}, {100 * grain / h:.2g} % of the even steps between them: that is taken off"
+    return replace(table, x=begin + h * np.arange(table.points, dtype=np.float64), notes=(*table.notes, note))
+
+
+def smoothed(table: CamTable) -> CamTable | None:
+    """Give the smoothest table that misses evenly spaced positions by no more than rounding to their count does, whatever its law.
+
+    ``None`` where they are no counts, or too few.
+    """
+    steps = np.diff(table.x)
+    h = table.period / (table.points - 1)
+    if table.points < _FEWEST or np.abs(steps - h).max() > _EVEN * h:
+        return None
+    count = grid_of(table.y)
+    return None if count is None else replace(table, y=_smoothed(table.y, count))
+
+
 _FINE = 1e-5
 _MOST_DIGITS = 9
+_SIGNIFICANT = range(4, 14)
+"""Digits of numbers that are written with a floating point."""
+_UNITS = (1.0, 1e3, 1e2, 1e6, 1e3 / 25.4)
+"""Units in a metre, in which numbers of 32 bits may have been written."""
 _OFF_DIGIT = 1e-15
 """What a decimal number may be off its digits, as a part of it: it is stored in binary."""
 
@@ -63,12 +105,14 @@ def without_rounding(table: CamTable) -> Counted | None:
     h = table.period / (table.points - 1)
     if np.abs(steps - h).max() > _EVEN * h:
         return None
-    count = grid_of(table.y)
-    if count is None or 2.0 * count / h**2 <= _TELLS * _bend(table.y, h):
+    grid = grid_of(table.y)
+    count = max(grid or 0.0, _last_digit(table.y))
+    if 2.0 * count / h**2 <= _TELLS * _bend(table.y, h):
         return None
     smooth = _smoothed(table.y, count)
+    what = f"whole counts of {count:.6g}" if count == grid else f"rounded to {count:.6g} where they are great"
     note = (
-        f"the slave's positions are whole counts of {count:.6g} ({table.advance / count:.6g} a cycle): their rounding is taken off, "
+        f"the slave's positions are {what} ({table.advance / count:.6g} a cycle): their rounding is taken off, "
         "and the cam is compared by differences at the sample time (more digits in the file show more)"
     )
     return Counted(replace(table, y=smooth), count, note)
@@ -99,15 +143,36 @@ def grid_of(y: FloatArray) -> float | None:
 def rounded_to(y: FloatArray) -> float:
     """Find what positions are rounded to: the greatest power of ten, or count, of which they are multiples.
 
-    0 for none, and for so few points that whole numbers may be meant.
+    Where they are written with a floating point it is the last digit of the greatest. 0 for none, and for so few points that whole
+    numbers may be meant.
     """
     if len(y) < _FEWEST:
         return 0.0
     for digits in range(_MOST_DIGITS + 1):
         scaled = y * 10.0**digits
         if np.abs(scaled - np.rint(scaled)).max() <= _OFF_DIGIT * max(1.0, float(np.abs(scaled).max())):
-            return float(10.0**-digits)
-    return grid_of(y) or 0.0
+            return max(float(10.0**-digits), _last_digit(y))
+    return max(grid_of(y) or 0.0, _last_digit(y))
+
+
+def _last_digit(y: FloatArray) -> float:
+    """Give the last digit of the greatest of numbers that are written with as many decimal or binary digits each; 0 if they are not.
+
+    ``%g`` writes six digits of any number; a number of 32 bits has 24 binary ones, whatever unit it is brought to.
+    """
+    size = np.abs(y[y != 0.0])
+    if not len(size):
+        return 0.0
+    for unit in _UNITS:
+        scaled = size * unit
+        if (np.abs(scaled.astype(np.float32) - scaled) <= _OFF_DIGIT * scaled).all():
+            return float(np.spacing(np.float32(scaled.max()))) / unit
+    power = np.floor(np.log10(size))
+    for digits in _SIGNIFICANT:
+        scaled = size * 10.0 ** (digits - 1.0 - power)
+        if (np.abs(scaled - np.rint(scaled)) <= _OFF_DIGIT * scaled).all():
+            return float(10.0 ** (power.max() + 1.0 - digits))
+    return 0.0
 
 
 def spacing_rounded_to(x: FloatArray) -> float:

@@ -86,7 +86,9 @@ def read(text: str, place: str) -> CamTable:
     notes = (
         rows.notes if rows.dy is not None else (*rows.notes, "no derivatives in the file: a cubic spline is assumed")
     )
-    return replace(make_table(rows.x, rows.y, rows.dy, rows.d2y, law=law, notes=notes), words=rows.words)
+    return replace(
+        make_table(rows.x, rows.y, rows.dy, rows.d2y, law=law, notes=notes), words=rows.words, listed=rows.listed
+    )
 
 
 def _millimetres(metres: FloatArray) -> FloatArray:

@@ -6,13 +6,14 @@ import collections
 import csv
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.profiles.tables.column_words import bare_unit, split_unit
+from camwright.profiles.tables.numbers import GROUPS, grouped, is_number, is_stamp, measured_in, number_in
 from camwright.profiles.tables.text import refuse, shown
 
 SEPARATORS = ("\t", ";", "|", ",", " ")
@@ -20,26 +21,30 @@ SEPARATORS = ("\t", ";", "|", ",", " ")
 GREATEST = 1e12
 LONGEST_LINE = 20_000
 
-_NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,4})?")
-_COMMA = re.compile(r"[+-]?(?:[0-9]+,[0-9]*|,[0-9]+)(?:[eE][+-]?[0-9]{1,4})?")
-_STAMP = re.compile(
-    r"[0-9]{1,4}[-./:][0-9]{1,2}[-./:][0-9]{1,4}(?:[.,][0-9]{1,9}|[ T][0-9:.,]{1,20})?(?: ?[AP]M)?(?:Z| ?[+-][0-9]{2}:?[0-9]{2})?"
+_ENDS = "0123456789.,"
+"""What a number without a unit ends with."""
+_COMMENT = re.compile(
+    r"\s*(?:#|//|%+\s*[^\W\d_]{2}|%+\s*[^\W\d_]\b|(?:number of points|(?:master|slave) units)\b)", re.IGNORECASE
 )
+"""How a comment begins, or a line above the rows of Aerotech's cams; a row of units may begin with a percent sign, too."""
 _FAULT_CELL = re.compile(r"#(?:[A-Z/0]{3,12}[!?]|N/A|NV)[\s,;|]")
 """What a spreadsheet writes for a cell that it cannot compute: the row that begins with one is no comment."""
-_GROUPED = re.compile(r"[+-]?[0-9]{1,3}(?:([.,' \u00a0\u2009\u202f])[0-9]{3})(?:\1[0-9]{3})*(?:[.,][0-9]*)?")
 _COUNTED = re.compile(r"\s*[\[(]?(?:pcs|stk|stück|pieces|件|个|张|片)\.?[\])]?\s*", re.IGNORECASE)
 _SAID = re.compile(r"sep=(.)", re.IGNORECASE)
-_REMARK = re.compile(r"\s+//.*")
+_REMARK = re.compile(r"\s+(?://|#|!).*")
+_NOTED = re.compile(r"([^;]*\s);\s*[^\W\d][^;]*")
+"""A row with words behind the one semicolon of its line."""
 _MISFIT = (
     "{count} cells where {where} {width}; separate cells by one sign, and where it is the comma write numbers with a decimal "
     "point"
 )
-GROUPS = "has its thousands set apart; export the numbers without such signs, like 1234.5"
-"""What is wrong with a number whose thousands are set apart."""
 _SAMPLE = 200
 """Lines that the separator is judged by."""
 _WIDEST = 400
+_ONE_OR_TWO = re.compile(r"[+-]?[0-9]{1,15}(?:,[0-9]{0,15})?;?")
+"""A number with a decimal comma, or two numbers; it is one where one name stands above."""
+FEWEST_LISTED = 12
+"""Lines of one number each that make a list."""
 
 
 @dataclass(frozen=True)
@@ -62,6 +67,14 @@ class Column:
     unit: str | None = None
     known: bool = True
     heading: str = ""
+
+
+class RowError(InputError):
+    """A row of what is a table otherwise is at fault."""
+
+
+def _spoilt(place: str, line: int, reason: str) -> RowError:
+    return RowError(*refuse(place, line, reason).messages)
 
 
 @dataclass(frozen=True)
@@ -135,21 +148,6 @@ class Sheet:
         return all(number_in(cells[at], self.comma) is not None for cells in self.rows)
 
 
-def is_stamp(cell: str) -> bool:
-    """Whether a cell is a date, with a time of day and the zone that it is in or without."""
-    return _STAMP.fullmatch(cell.strip()) is not None
-
-
-def number_in(cell: str, comma: bool) -> float | None:
-    """Read a cell with a decimal point, or where allowed a comma; ``None`` for what is no number."""
-    plain = cell.strip().replace("\u2212", "-")
-    if _NUMBER.fullmatch(plain):
-        return float(plain)
-    if comma and _COMMA.fullmatch(plain):
-        return float(plain.replace(",", "."))
-    return None
-
-
 def read_sheet(
     text: str, place: str, names: Callable[[str], str | None], example: str, kind: str, layout: Layout | None = None
 ) -> Sheet:
@@ -182,7 +180,7 @@ def read_sheet(
     lines, remarks, said = _lines(text, place)
     if not lines:
         raise InputError(f"{place}: there is no {kind} in it; write a header like {example} and rows below")
-    separator = said or _separator([line for _, line in lines], _is_number if layout is None else layout.holds)
+    separator = said or _separator([line for _, line in lines], is_number if layout is None else layout.holds)
     comma = separator != ","
     split = [(number, _cells(line, separator)) for number, line in lines]
     quoted = separator == "," and any('"' in line for _, line in lines)
@@ -191,6 +189,10 @@ def read_sheet(
         while len(split) > 1 and not any(any(sign.isdigit() for sign in cell) for cell in split[-1][1]):
             split.pop()  # scopes end their files with a word
         first = next((k for k, (_, cells) in enumerate(split) if _is_row(cells, comma)), len(split))
+        if first == len(split):  # no row of two numbers: a list
+            first = _list_start(split, comma)
+        elif separator == "," and not said:
+            _require_no_comma(split[first:], first, place)
     else:
         first = layout.above([cells for _, cells in split])
     headings = split[:first]
@@ -206,25 +208,57 @@ def read_sheet(
     width = _width(headings, rows)
     if layout is not None:  # rows may end early, so their usual width says little
         width = max((len(_trimmed(cells)) for _, cells in headings or rows), default=0)
-    if not headings and remarks:
-        near = remarks[-1]
-        cells = _cells(near[1], separator)
-        if len(_trimmed(cells)) == width > 1 and sum(names(split_unit(cell)[0]) is not None for cell in cells) >= 2:
-            headings = [(near[0], cells)]
+    headings = headings or _remarked(remarks[-1:], separator, width, names)
     columns, heading = _columns(headings, width, names)
     named = len(_trimmed([column.heading for column in columns]))
     if rows and heading and named < width and sum(names(column.name) is not None for column in columns) >= 2:
-        raise refuse(place, rows[0][0], _MISFIT.format(count=width, where="the header has", width=named))
+        raise _spoilt(place, rows[0][0], _MISFIT.format(count=width, where="the header has", width=named))
     if layout is not None:  # cells at the end of a row may be left out
         rows = [(number, _padded(cells, width) if len(cells) < width else cells) for number, cells in rows]
     kept = tuple(_row(cells, width, number, place, bool(headings)) for number, cells in rows)
-    return Sheet(place, columns, kept, tuple(number for number, _ in rows), heading, comma)
+    sheet = Sheet(place, columns, kept, tuple(number for number, _ in rows), heading, comma)
+    return sheet if layout is not None else _without_units(sheet)
 
 
-def grouped(cell: str) -> bool:
-    """Whether a cell is a number whose thousands are set apart."""
-    plain = cell.strip().strip('"').strip()
-    return _GROUPED.fullmatch(plain) is not None and number_in(plain, True) is None
+def _remarked(
+    remarks: Sequence[tuple[int, str]], separator: str, width: int, names: Callable[[str], str | None]
+) -> list[tuple[int, list[str]]]:
+    """Take the comment above the rows for their heading, where it names the columns."""
+    for number, line in remarks:
+        for sign in (separator, *SEPARATORS):
+            cells = _cells(line, sign)
+            if len(_trimmed(cells)) == width > 1 and sum(names(split_unit(cell)[0]) is not None for cell in cells) >= 2:
+                return [(number, cells)]
+    return []
+
+
+def _without_units(sheet: Sheet) -> Sheet:
+    """Put the units that stand in the cells of a column into its heading.
+
+    Raises
+    ------
+    InputError
+        They differ, from each other or from the heading's; a nought needs none.
+    """
+    rows, columns = [list(row) for row in sheet.rows], list(sheet.columns)
+    for at, column in enumerate(sheet.columns):
+        if all(row[at].rstrip()[-1:] in _ENDS for row in rows):
+            continue
+        found = [measured_in(row[at], sheet.comma) for row in rows]
+        unit = next((cell[1] for cell in found if cell), None)
+        if unit is None:
+            continue
+        stated = column.unit or unit
+        for number, row, cell in zip(sheet.lines, rows, found, strict=True):
+            if (cell is not None and cell[1] != stated) or (cell is None and number_in(row[at], sheet.comma)):
+                raise _spoilt(
+                    sheet.place,
+                    number,
+                    f"{row[at].strip()[:50]!r} where the column is in {stated}; write the whole column in one unit",
+                )
+            row[at] = row[at] if cell is None else cell[0]
+        columns[at] = replace(column, unit=stated)
+    return replace(sheet, columns=tuple(columns), rows=tuple(map(tuple, rows)))
 
 
 def _require_no_groups(place: str, lines: Sequence[tuple[int, Sequence[str]]]) -> None:
@@ -246,20 +280,18 @@ def _lines(text: str, place: str) -> tuple[list[tuple[int, str]], list[tuple[int
         line = raw.strip(" \r")
         if not line.strip("\t;,| "):
             continue
-        if line.lstrip().startswith(("#", "//")) and not _FAULT_CELL.match(line.lstrip()):
+        if _COMMENT.match(line) and not _FAULT_CELL.match(line.lstrip()):
             if not kept:
-                remarks.append((number, line.lstrip().lstrip("#/").strip()))
+                remarks.append((number, line.lstrip().lstrip("#/%").strip()))
             continue
         found = _SAID.fullmatch(line.strip())
         if found and not kept:
             said = found[1]
             continue
-        kept.append((number, _REMARK.sub("", line) if line[:1].isdigit() or line[:1] in "+-." else line))
+        if line[:1].isdigit() or line[:1] in "+-.":
+            line = _NOTED.sub(r"\1", _REMARK.sub("", line))
+        kept.append((number, line))
     return kept, remarks, said
-
-
-def _is_number(cell: str, comma: bool) -> bool:
-    return number_in(cell, comma) is not None
 
 
 def _separator(lines: Sequence[str], holds: Callable[[str, bool], bool]) -> str:
@@ -275,7 +307,10 @@ def _separator(lines: Sequence[str], holds: Callable[[str, bool], bool]) -> str:
         return total
 
     best = max(SEPARATORS, key=score)
-    return best if score(best) > 0 else max(SEPARATORS[:4], key=lines[0].count)
+    if score(best) <= 0:
+        return max(SEPARATORS[:4], key=lambda sign: sum(line.count(sign) for line in (lines[0], *sample)))
+    above = next((line for line in reversed(lines) if not _ONE_OR_TWO.fullmatch(line.strip())), ",")
+    return ";" if best == "," and "," not in above and above != lines[-1] else best
 
 
 def _cells(line: str, separator: str) -> list[str]:
@@ -300,8 +335,8 @@ def _trimmed(cells: Sequence[str]) -> list[str]:
 def _is_row(cells: Sequence[str], comma: bool) -> bool:
     """Whether a line holds numbers: it begins with one, or a time of day, and has two."""
     filled = [cell.strip() for cell in cells if cell.strip()]
-    found = sum(number_in(cell, comma) is not None for cell in filled)
-    return found >= 2 and (number_in(filled[0], comma) is not None or is_stamp(filled[0]))
+    found = sum(is_number(cell, comma) for cell in filled)
+    return found >= 2 and (is_number(filled[0], comma) or is_stamp(filled[0]))
 
 
 def _require_no_spoilt_row(
@@ -311,12 +346,33 @@ def _require_no_spoilt_row(
     below = False
     for number, cells in headings:
         filled = [cell.strip() for cell in cells]
-        wrong = [cell for cell in filled if number_in(cell, comma) is None and not is_stamp(cell)]
+        wrong = [cell for cell in filled if not is_number(cell, comma) and not is_stamp(cell)]
         if below and len(wrong) == 1 and len(filled) > 1:
-            raise refuse(
+            raise _spoilt(
                 place, number, f"{shown(wrong[0])} is no number, and the row stands below the names of the columns"
             )
         below = below or sum(names(split_unit(cell)[0]) is not None for cell in cells) >= 2
+
+
+def _list_start(split: Sequence[tuple[int, list[str]]], comma: bool) -> int:
+    """Find where a list of one number a line begins, if the text ends with one."""
+    start = len(split)
+    while start and len(filled := _trimmed(split[start - 1][1])) == 1 and is_number(filled[0], comma):
+        start -= 1
+    return start if len(split) - start >= FEWEST_LISTED else len(split)
+
+
+def _require_no_comma(rows: Sequence[tuple[int, list[str]]], above: int, place: str) -> None:
+    """Refuse two columns that may as well be one with a decimal comma: nothing stands above, and the second has always as many digits."""
+    if above or len(rows) < FEWEST_LISTED or any(len(cells) != 2 or not cells[1].isdecimal() for _, cells in rows):
+        return
+    if len(rows[0][1][1]) > 1 and len({len(cells[1]) for _, cells in rows}) == 1:
+        raise _spoilt(
+            place,
+            rows[0][0],
+            f"{','.join(rows[0][1])[:50]!r} may be two numbers, or one with a decimal comma; name the columns above, as in x [mm],y [mm], "
+            "or write decimal points",
+        )
 
 
 def _width(headings: Sequence[tuple[int, list[str]]], rows: Sequence[tuple[int, list[str]]]) -> int:
@@ -334,7 +390,7 @@ def _row(cells: list[str], width: int, number: int, place: str, named: bool) -> 
     if len(filled) > width or len(cells) < width:
         count = len(filled) if len(filled) > width else len(cells)
         where = "the header has" if named else "most rows have"
-        raise refuse(
+        raise _spoilt(
             place,
             number,
             _MISFIT.format(count=count, where=where, width=width),
@@ -348,12 +404,14 @@ def _columns(
     """Name the columns: the lowest line that names two, with a row of units below it."""
     lines: list[tuple[int, list[str]]] = []
     for number, cells in headings:  # a unit may stand alone below the names
-        if len(_trimmed(cells)) > 1 or (lines and is_unit_row(cells)):
+        if len(_trimmed(cells)) > 1 or width == 1 or (lines and is_unit_row(cells)):
             lines.append((number, _padded(cells, width)))
     if not lines:
         return (Column(""),) * width, 0
     known = [
-        k for k, (_, cells) in enumerate(lines) if sum(names(split_unit(cell)[0]) is not None for cell in cells) >= 2
+        k
+        for k, (_, cells) in enumerate(lines)
+        if sum(names(split_unit(cell)[0]) is not None for cell in cells) >= min(2, width)
     ]
     at = known[-1] if known else _lowest_names(lines)
     number, cells = lines[at]

@@ -62,8 +62,8 @@ def read(text: str, place: str) -> CamTable:
         elif state == 1:
             if len(cells) < 3 or cells[2].upper() != "SPLINE":
                 raise refuse(place, number, f"{shown(line.strip())} is no row of the form x;y;SPLINE")
-            x.append(real(cells[0], place, number))
-            y.append(real(cells[1], place, number))
+            x.append(real(cells[0], place, number, comma=True))
+            y.append(real(cells[1], place, number, comma=True))
             numbers.append(number)
         else:
             raise refuse(place, number, f"{shown(line.strip())} is not expected here")

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from camwright.profiles.tables.column_words import bare_unit
-from camwright.profiles.tables.delimited import LONGEST_LINE, Column, Sheet, number_in
+from camwright.profiles.tables.delimited import LONGEST_LINE, Column, Sheet
+from camwright.profiles.tables.numbers import number_in
 from camwright.profiles.tables.text import refuse
 
 _FIRST = re.compile(r"\s{0,99}Name([\t;,:])")

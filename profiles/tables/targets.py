@@ -26,7 +26,7 @@ from camwright.profiles.tables import (
 )
 from camwright.profiles.tables.cam_table import CamTable
 from camwright.profiles.tables.column_words import cam_role
-from camwright.profiles.tables.delimited import read_sheet
+from camwright.profiles.tables.delimited import FEWEST_LISTED, RowError, read_sheet
 from camwright.profiles.tables.plc_objects import program_text
 from camwright.profiles.tables.target import Target, points_in
 from camwright.profiles.tables.text import refuse
@@ -177,5 +177,5 @@ def _has_columns(text: str, place: str) -> bool:
     try:
         sheet = read_sheet(text, place, cam_role, "x [mm],y [mm]", "table")
     except InputError as error:
-        return "line" in str(error) and "cells" in str(error)  # rows, one of them broken: the reader names it
-    return len(sheet.columns) > 1 and len(sheet.rows) > 1
+        return isinstance(error, RowError)  # the reader names it
+    return (len(sheet.columns) > 1 and len(sheet.rows) > 1) or len(sheet.rows) >= FEWEST_LISTED

@@ -5,7 +5,6 @@ The position of the master may stand beside them.
 
 from __future__ import annotations
 
-import difflib
 import math
 
 import numpy as np
@@ -13,9 +12,11 @@ import numpy as np
 from camwright.profiles.errors import InputError
 from camwright.profiles.machines.machine import SlaveUnit
 from camwright.profiles.polynomial.profile import FloatArray
-from camwright.profiles.tables.column_words import is_measured, is_position, trace_role
-from camwright.profiles.tables.delimited import Sheet, is_stamp, read_sheet
+from camwright.profiles.tables.column_words import trace_role
+from camwright.profiles.tables.delimited import Sheet, read_sheet
+from camwright.profiles.tables.numbers import is_stamp
 from camwright.profiles.tables.scope_csv import is_scope, read_scope, used_rows
+from camwright.profiles.tables.trace_columns import columns_by_name, columns_chosen
 from camwright.profiles.trace import Trace
 
 MOST_ROWS = 10_000
@@ -26,14 +27,14 @@ _UNITS: dict[str, dict[str, float]] = {
     "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6},
     "command": {**_LENGTHS, **_ANGLES},
     "actual": {**_LENGTHS, **_ANGLES},
+    "lag": {**_LENGTHS, **_ANGLES},
     "master": {**_LENGTHS, **_ANGLES},
 }
-_CYCLES = frozenset({"cycle", "cycles", "zyklus"})
-"""What the first column of a trace of CODESYS 2.3 is called, saved as a text."""
-
-_POSITIONS = ("command", "actual")
+_POSITIONS = ("command", "actual", "lag")
 _HEADER = "time [ms],command [mm],actual [mm]"
 _WITH_MASTER = "time [ms],master [mm],command [mm],actual [mm]"
+
+_LAG = "command or actual position is made of the other and the lag, which is taken for the command less the actual position"
 
 _UNEQUAL = 0.01
 """What a step of the time may differ from the others, as a part of it: times are rounded."""
@@ -42,7 +43,9 @@ _GAP = 1.5
 """Steps, of a usual length each, from which on rows are missing."""
 
 
-def read_trace_csv(text: str, place: str, *, most_rows: int = MOST_ROWS, master: bool = False) -> Trace:
+def read_trace_csv(
+    text: str, place: str, *, most_rows: int = MOST_ROWS, master: bool = False, columns: str | None = None
+) -> Trace:
     """Read a recording: whatever separates its cells, with headings in one line or several.
 
     Parameters
@@ -50,13 +53,17 @@ def read_trace_csv(text: str, place: str, *, most_rows: int = MOST_ROWS, master:
     text
         The recording. Columns of time, command and actual position are known by their names
         (`camwright.profiles.tables.column_words.trace_role`), in any order; other columns are not read. A scope may give each channel a
-        column of times; they must be one and the same.
+        column of times; they must be one and the same. Where one of command and actual is missing, the lag of the axis behind its
+        command may stand in its place.
     place
         What messages begin with.
     most_rows
         The most rows that are taken.
     master
         Whether the position of the master is read too, where it was recorded; a turn of it is one cycle.
+    columns
+        Which columns are command and actual, or time, command and actual, where their names do not tell: headings or numbers,
+        separated by commas, each with its unit in brackets where the file has none.
 
     Raises
     ------
@@ -69,7 +76,10 @@ def read_trace_csv(text: str, place: str, *, most_rows: int = MOST_ROWS, master:
         if scope
         else read_sheet(text, place, trace_role, _WITH_MASTER if master else _HEADER, "recording")
     )
-    at = _roles(sheet, master)
+    if columns is None:
+        at = columns_by_name(sheet, master, _HEADER)
+    else:
+        sheet, at = columns_chosen(sheet, columns, master)
     if scope:
         sheet = used_rows(sheet, [k for found in at.values() for k in found])
     factors, unit, notes = _factors(sheet, at)
@@ -81,6 +91,12 @@ def read_trace_csv(text: str, place: str, *, most_rows: int = MOST_ROWS, master:
             f"{place}: {rows} rows, the limit is {most_rows}; cut out a part with lively motion, 2 s at 1 kHz are enough"
         )
     signals = {name: sheet.numbers(found[-1], name) * factors[name] for name, found in at.items()}
+    if "lag" in signals:
+        lag, notes = signals.pop("lag"), (*notes, _LAG)
+        if "command" in signals:
+            signals["actual"] = signals["command"] - lag
+        else:
+            signals["command"] = signals["actual"] + lag
     time = signals["time"]
     step = (time[-1] - time[0]) / (rows - 1)
     for other in at["time"][:-1]:
@@ -102,72 +118,12 @@ def read_trace_csv(text: str, place: str, *, most_rows: int = MOST_ROWS, master:
     )
 
 
-def _roles(sheet: Sheet, master: bool) -> dict[str, list[int]]:
-    """Say which columns are what: one command and one actual position, and the times, the one before the command last.
-
-    One master, where it is asked for and there; where there are several, that whose name says that it was measured.
-    """
-    where = f"{sheet.place}, line {sheet.heading}" if sheet.heading else sheet.place
-    at: dict[str, list[int]] = {"time": [], "command": [], "actual": []}
-    scope = any(
-        column.heading == "Name" for column in sheet.columns
-    )  # whose times have that heading, whatever channels are called
-    for number, column in enumerate(sheet.columns):
-        role = trace_role(column.name) if column.name else None
-        if role in at and not (role == "time" and scope and column.heading != "Name"):
-            at[role].append(number)
-    names = [column.heading[:50] or column.name[:50] for column in sheet.columns]
-    for name, found in at.items():
-        if not found:
-            left = [names[k] for k, column in enumerate(sheet.columns) if trace_role(column.name) is None]
-            if name == "time" and left and left[0].strip().lower() in _CYCLES:
-                raise InputError(
-                    f"{where}: column {left[0]!r} counts cycles of the PLC, and how long one lasts is not in the file; write the time in "
-                    "its place, under time [ms]"
-                )
-            near = difflib.get_close_matches(
-                name, [word.lower().split("[")[0].strip() for word in left], n=1, cutoff=0.6
-            )
-            told = (
-                f"is it {near[0]!r}? "
-                if near
-                else (f"the columns are {', '.join(map(repr, names[:8]))}; " if any(names) else "")
-            )
-            raise InputError(f"{where}: there is no column {name}; {told}write a header like {_HEADER}")
-    if master and (masters := _masters(sheet)):
-        at["master"] = masters
-    for name in at:
-        if len(at[name]) > 1 and not (name == "time" and scope):
-            exact = [k for k in at[name] if sheet.columns[k].name.strip().lower() == name]
-            exact = exact or [k for k in at[name] if is_position(sheet.columns[k].name)]
-            if len(exact) != 1:
-                both = " and ".join(repr(names[k]) for k in at[name][:2])
-                raise InputError(f"{where}: column {name} stands there twice; leave one out ({both})")
-            at[name] = exact
-    if len(at["time"]) > 1:  # those that stand before the positions
-        used = sorted(
-            {
-                max((k for k in at["time"] if k < found[0]), default=at["time"][0])
-                for name, found in at.items()
-                if name != "time"
-            }
-        )
-        at["time"] = used
-    return at
-
-
-def _masters(sheet: Sheet) -> list[int]:
-    """Find the columns of the master; where one of several is the measured one, that."""
-    found = [k for k, column in enumerate(sheet.columns) if column.name and trace_role(column.name) == "master"]
-    measured = [k for k in found if is_measured(sheet.columns[k].name)]
-    return measured if len(found) > 1 and len(measured) == 1 else found
-
-
 def _factors(sheet: Sheet, at: dict[str, list[int]]) -> tuple[dict[str, float], SlaveUnit, tuple[str, ...]]:
     """Give what makes the columns SI, and the unit of positions; a servo does not depend on how long that is."""
     where = f"{sheet.place}, line {sheet.heading}" if sheet.heading else sheet.place
     columns = {name: sheet.columns[found[-1]] for name, found in at.items()}
-    bare = all(columns[name].unit is None for name in _POSITIONS)
+    positions = [name for name in _POSITIONS if name in columns]
+    bare = all(columns[name].unit is None for name in positions)
     factors: dict[str, float] = {}
     for name, column in columns.items():
         units = _UNITS[name]
@@ -180,16 +136,18 @@ def _factors(sheet: Sheet, at: dict[str, list[int]]) -> tuple[dict[str, float], 
                     f"{sheet.place}, line {sheet.lines[0]}: {sheet.rows[0][at[name][-1]].strip()[:40]!r} is a time of day; export the time "
                     "since the start of the recording, e.g. time [ms]"
                 )
-            example = next(cell for cell in _WITH_MASTER.split(",") if cell.startswith(name))
+            example = f"{name} [{'ms' if name == 'time' else 'mm'}]"
             raise InputError(f"{where}: column {name} has no unit; write it in brackets, e.g. {example}")
         if not column.known or column.unit not in units:
             raise InputError(
                 f"{where}: column {name} cannot be in {column.unit[:50]!r}; its unit is one of {', '.join(units)}"
             )
         factors[name] = units[column.unit]
-    kinds = {columns[name].unit in _ANGLES for name in _POSITIONS}
+    kinds = {columns[name].unit in _ANGLES for name in positions}
     if len(kinds) > 1:
-        raise InputError(f"{where}: command and actual are a length and an angle; give both as they are at one axis")
+        raise InputError(
+            f"{where}: {positions[0]} and {positions[1]} are a length and an angle; give both as they are at one axis"
+        )
     note = "the positions have no unit in the file: mm is taken, on which the servo's parameters do not depend (name it in the header)"
     return factors, "rad" if kinds.pop() else "m", (note,) if bare else ()
 

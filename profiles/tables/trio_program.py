@@ -23,6 +23,8 @@ _LONGEST = 200
 _GIVEN = re.compile(r"(?:DEFCONST\s+([A-Za-z]\w{0,59})\s+|([A-Za-z]\w{0,59})\s*=)(.*)", re.IGNORECASE)
 _CHANGED = re.compile(r"(?:.*\bTHEN\s+([A-Za-z]\w{0,59})\s*=|([A-Za-z]\w{0,59})\s*\.\s*\w{1,20}\s*=).*", re.IGNORECASE)
 _FOR = re.compile(r"FOR\s+([A-Za-z]\w{0,59})\s*=\s*(.+?)\s+TO\s+(.+?)(?:\s+STEP\s+(.+))?", re.IGNORECASE)
+_GOES_ON = re.compile(r"(?:^|[\s,(+*/=-])_\s*$")
+"""A line whose statement goes on in the next; a name may end with the sign, too."""
 _NEXT = re.compile(r"NEXT\b.*", re.IGNORECASE)
 _TOKEN = re.compile(r"\s*(?:((?:\d{1,30}\.?\d{0,30}|\.\d{1,30})(?:[eE][-+]?\d{1,3})?)|([A-Za-z]\w{0,59})|([-+*/^()]))")
 
@@ -42,9 +44,21 @@ _SIGN = 3
 
 
 def numbered_statements(text: str, place: str) -> Iterator[tuple[int, str]]:
-    """Go through a program's statements, each with the number of its line: cut at colons, without what stands behind an apostrophe."""
+    """Go through a program's statements, each with the number of its first line.
+
+    Lines are cut at colons, without what stands behind an apostrophe; one that ends with an underscore goes on in the next.
+    """
+    first, begun = 0, ""
     for number, line in enumerate(lines_of(text, place), start=1):
-        yield from ((number, part.strip()) for part in line.partition("'")[0].split(":") if part.strip())
+        first = first if begun else number
+        plain = begun + line.partition("'")[0]
+        if _GOES_ON.search(plain):
+            begun = plain.rstrip()[:-1]
+            continue
+        begun = ""
+        yield from ((first, part.strip()) for part in plain.split(":") if part.strip())
+    if begun:
+        yield first, begun.strip()
 
 
 @dataclass(frozen=True)

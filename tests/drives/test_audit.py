@@ -311,6 +311,13 @@ def test_a_table_in_other_clothes_is_the_same_cam(text: str, told: str) -> None:
     assert told in " | ".join(found.notes)
 
 
+def listed(head: str, row: str, count: int, begin: float = 0.0, sign: float = 1.0) -> str:
+    """Slave positions (mm) at even steps of a cycle, modulo their pitch where they begin elsewhere."""
+    y = 1e3 * PROFILE(np.linspace(0.0, 0.6, 361))[:count]
+    y = sign * ((y + begin) % 400.0 if begin else y)
+    return head + "".join(row.format(value) for value in y.tolist())
+
+
 def test_swapped_columns_without_names_are_refused() -> None:
     with pytest.raises(
         InputError,
@@ -457,3 +464,53 @@ def test_slopes_that_are_none(slopes: str, message: str) -> None:
         with_slopes(make_table([0, 1, 2], [0, 1, 2], law="spline"), slopes)
     with pytest.raises(InputError, match="this table has its slopes, or needs none"):
         with_slopes(make_table([0, 1, 2], [0, 1, 2], law="line"), "1,1")
+
+
+@pytest.mark.parametrize(
+    ("text", "units", "told"),
+    [
+        (listed("slave [mm]\n", "{:.6f}\n", 361), None, "one column of 361 numbers is taken for slave positions"),
+        (
+            listed("slave [mm]\n", "{:.6f}\n", 360),
+            None,
+            "the list ends a step before the cycle, 400 mm beyond its first row",
+        ),
+        (listed("", "{:.6f},\n", 360), "cycle,mm", "the list ends a step before the cycle"),
+        (listed("", "{:.6f}\n", 361), "deg,mm", "one column of 361 numbers"),
+        (listed("Folgeachse (mm)\n", "{:.6f}\n", 360, 123.4).replace(".", ","), None, "unwrapped by that"),
+        (listed("", "{:.6f} mm\n", 361, sign=-1.0), None, "its sign was turned"),
+    ],
+)
+def test_a_list_of_the_slave_alone(text: str, units: str | None, told: str) -> None:
+    found = running_cam(text, "f.csv", JOB, units=units)
+    assert found.judged().passed
+    assert any(told in note for note in found.notes)
+    x = np.linspace(0.0, 0.6, 901)[:-1]
+    assert np.abs(found.cycle(x) - PROFILE(x)).max() < 5e-7
+
+
+def test_a_list_without_a_unit_asks_for_it() -> None:
+    with pytest.raises(
+        InputError,
+        match="a list of 361 numbers, slave positions at even steps of the master, says no unit; write it above",
+    ):
+        running_cam(listed("", "{:.6f}\n", 361), "f.csv", JOB)
+
+
+@pytest.mark.parametrize("shift", [0.0, 0.2345678])
+@pytest.mark.parametrize("points", [361, 1441])
+@pytest.mark.parametrize(("master", "slave"), [("{:.2f}", "{:.6f}"), ("{:g}", "{:g}"), ("{:.7g}", "{:.7g}")])
+def test_the_zero_and_the_verdict_of_coarse_numbers(master: str, slave: str, points: int, shift: float) -> None:
+    """Master positions to 0.01 mm, or six digits of both: a ratio of neighbours says nothing, a cam of smooth positions does."""
+    x = np.linspace(0.0, 0.6, points)[:-1]
+    y = PROFILE(x, outside="repeat")
+    order = np.argsort((x + shift) % 0.6)
+    at, up = ((x + shift) % 0.6)[order], np.where(x + shift >= 0.6, y - 0.4, y)[order]
+    pairs = zip([*at, at[0] + 0.6], [*up, up[0] + 0.4], strict=True)
+    text = "x [mm],y [mm]\n" + "".join(f"{master},{slave}\n".format(1e3 * a, 1e3 * b) for a, b in pairs)
+    found = running_cam(text, "f.csv", JOB)
+    assert {check.name for check in found.judged().checks if not check.passed} <= {
+        "closure"
+    }  # what the digits make of 10 000 cuts
+    x = np.linspace(0.0, 0.6, 901)[:-1]
+    assert np.abs(found.cycle(x) - PROFILE(x)).max() < 5e-6

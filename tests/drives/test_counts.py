@@ -108,7 +108,7 @@ def test_an_audit_judges_counts_as_their_export_did(target: str, units: str | No
     assert closure == pytest.approx(RUN * abs(result.drift), rel=1e-6, abs=1e-9)
     assert "the units are those of the text beside the table (--units says others)" in found.notes
     x = np.linspace(0.0, 0.6, 601)[:-1]
-    assert np.abs(found.cycle(x) - profile_of(job)(x)).max() < (2e-7 if units is None else 3e-4)
+    assert np.abs(found.cycle(x) - profile_of(job)(x)).max() < (2e-7 if units is None else 3e-5)
     assert "the units are those" not in " ".join(
         running_cam(text, name, job, head=head.replace("points: ", "points: 1")).notes
     )

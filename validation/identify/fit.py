@@ -342,8 +342,10 @@ class TraceFit:
         rows, width = jacobian.shape
         scale = np.sqrt((jacobian**2).sum(axis=0))
         cost = 2.0 * found.cost * size * size
-        inverse = np.linalg.pinv((jacobian / scale).T @ (jacobian / scale))
-        deviations = np.sqrt(np.diag(inverse) * cost / (rows - width - 3)) / scale
+        _, singular, directions = np.linalg.svd(jacobian / scale, full_matrices=False)
+        singular = np.maximum(singular, np.finfo(np.float64).eps * singular[0])  # what is not told at all is told badly
+        variances = ((directions / singular[:, None]) ** 2).sum(axis=0)
+        deviations = np.sqrt(variances * cost / (rows - width - 3)) / scale
         errors = {name: float(each) for name, each in zip(names, deviations, strict=False)}
         bounds = {
             name: (moved(name, values[name], -CONFIDENCE * each), moved(name, values[name], CONFIDENCE * each))

@@ -89,7 +89,7 @@ that leaves out where its cycle ends takes the pitch of the job if it runs on to
 An L5X with a CAM and the CAM_PROFILE computed from it is judged by the profile; a CAM without slopes asks for
 `--slopes A,B`; a profile that was never calculated, and a tag whose two copies differ, are refused. TwinCAT sources
 (`.TcPOU`, `.TcGVL`) and whole Trio programs (`TABLE`, `BASE`, comments, variables and
-their sums, `FOR` loops, `CAMBOX` with link distance and multiplier) are read;
+their sums, `FOR` loops, lines that go on behind `_`, `CAMBOX` with link distance and multiplier) are read;
 motion functions of TwinCAT are POLYNOM1, POLYNOM3, POLYNOM5 and POLYNOM5_MM.
 A number in structured text that is no plain number is refused with its line.
 
@@ -105,10 +105,18 @@ read like anybody's.
 
 Columns of numbers may be separated by commas, semicolons, tabs, bars or blanks, with a decimal point or comma, in quotes,
 with `sep=;`, with an index column, in UTF-8, UTF-16, GBK or code page 1252. Headings may take several lines; units stand
-in brackets, behind the name, or in a line of their own. Columns are known by words in English, German and Chinese.
+in brackets, behind the name, in a line of their own, or behind each number (one unit a column). Columns are known by words in
+English, German, Chinese, Japanese, Italian, French and Spanish. Exponents may be Fortran's (`1.0D-3`), signs those of word
+processors and Asian keyboards; comments stand behind `#`, `!`, `//`, or `;` where that does not separate cells. Thousands that
+are set apart, units that differ within a column, and numbers that may be one with a decimal comma or two are refused with their
+line. One column alone is slave positions at even steps of the master; its unit is written above it or said with
+`--units cycle,mm`, and whether the last row ends the cycle is told from the travel. Aerotech's cams (`Number of points`,
+`Master Units`) are read as columns.
 Velocity and acceleration in whatever unit are scaled to the positions, or left out with a note where they do not belong to
-them. Positions that are whole counts of an encoder are noticed where their rounding would drown the acceleration: it is
-taken off (the smoothest positions that miss the counts by no more than rounding does), and the cam compared by differences.
+them. Positions that are whole counts of an encoder, or have as many digits each as `%g` writes, are noticed where their rounding
+would drown the acceleration: it is taken off (the smoothest positions that miss the counts by no more than rounding does), and the
+cam compared by differences. So are master positions of even steps that are rounded: a hundredth of a millimetre of the master is a
+hundredth of the slave, too.
 
 Between straight lines the acceleration is unbounded in theory. What the drive is commanded is not: it knows the cam at
 its samples only. Such cams are compared, like the optimum beside them, by second and third differences of the positions

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from camwright.profiles.tables.cam_table import make_table
-from camwright.profiles.tables.count_grid import grid_of, rounded_to, without_rounding
+from camwright.profiles.tables.count_grid import evened, grid_of, rounded_to, without_rounding
 
 
 def cam(points: int) -> tuple[np.ndarray, np.ndarray]:
@@ -52,3 +52,27 @@ def test_what_is_fine_enough_is_left_alone() -> None:
     assert without_rounding(make_table(x, np.rint(y * 36_000), law="line")) is None
     uneven = x + 0.1 * x * (1 - x)
     assert without_rounding(make_table(uneven, np.rint(y * 36_000), law="spline")) is None
+
+
+@pytest.mark.parametrize("size", [1e-3, 1.0, 25.4e-3])
+def test_the_last_digit_of_floating_numbers_is_that_of_the_greatest(size: float) -> None:
+    _, y = cam(721)
+    short = np.array([float(f"{value:.6g}") for value in 400.0 * y])
+    assert rounded_to(short) == pytest.approx(1e-3)
+    single = (400.0 * y).astype(np.float32).astype(np.float64)
+    assert rounded_to(single * size) == pytest.approx(size * 2.0**-15, rel=1e-6)
+    assert rounded_to(400.0 * y * np.sqrt(2.0)) == 0.0
+
+
+def test_the_rounding_of_even_master_positions_is_taken_off() -> None:
+    x, y = cam(721)
+    for grain in (0.01, 0.05, 0.4):
+        stored = np.rint((600.0 * x + 0.003) / grain) * grain
+        found = evened(make_table(stored, y, law="spline"))
+        assert found is not None
+        assert np.ptp(np.diff(found.x)) < 1e-9
+        assert np.abs(found.x - stored).max() <= 0.5001 * grain
+        assert f"are rounded to {grain:g}" in found.notes[-1]
+    uneven = 600.0 * x + 0.2 * np.sin(40 * x)
+    assert evened(make_table(uneven, y, law="spline")) is None
+    assert evened(make_table(600.0 * x, y, law="spline")) is None

@@ -194,3 +194,60 @@ def test_a_whole_trio_program() -> None:
         TARGETS["trio"].read(text.replace("TABLE(203, 60)", "PRINT 1"), "t")
     with pytest.raises(InputError, match="more than one CAMBOX"):
         TARGETS["trio"].read(text + "CAMBOX(200, 203, 1, 600, 0, 4)\n", "t")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "x,y\n0,0\n1.5D0,2.25d+0\n3.0D+00,25D-1\n4.5,3.75\n",
+        "x [mm];y [mm]\n0;0\n１，５;2,25\n3;2,5\u00a0\n４５e-1;3,75\n",
+        "x [mm];y [mm]\n0 mm;0\n1,5 mm;2,25\n3\u00a0mm;2,5\n4,5mm;3,75 mm\n".replace("2,25", "2,25 mm").replace(";2,5\n", ";2,5 mm\n"),
+        "x,y\n0 mm,0 mm\n1.5 mm,2.25 mm\n3 mm,2.5 mm\n4.5 mm,3.75 mm\n",
+        "x [mm], y [mm]\n0, 0 # start\n1.5, 2.25 ! zone\n3, 2.5 ; there it ends\n4.5, 3.75 // end\n",
+        "% x [mm], y [mm]\n0 0\n1.5 2.25\n3 2.5\n4.5 3.75\n",
+        "Number of points 0004\nMaster Units (PRIMARY)\nSlave Units (PRIMARY)\n0001 0 0\n0002 1.5 2.25\n0003 3 2.5\n0004 4.5 3.75\n",
+        "主軸位置（mm）,従軸位置（mm）\n" + rows(","),
+        "番号,主軸位相(度),従軸変位(mm)\n" + rows(",", before="{n},"),
+        "Posizione master [mm];Posizione slave [mm]\n" + rows(";", comma=True),
+        "Angolo [gradi];Corsa [mm]\n" + rows(";", comma=True),
+        "Maître (mm);Esclave (mm)\n" + rows(";", comma=True),
+        "Posición maestro [mm];Posición esclavo [mm]\n" + rows(";", comma=True),
+    ],
+)  # fmt: skip
+def test_cells_and_headings_of_other_pens(text: str) -> None:
+    found = read_cam_csv(text, "t")
+    scale = 1e3 if found.words is None else 1.0
+    assert found.x * scale == pytest.approx(X)
+    assert found.y * scale == pytest.approx(Y)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("x,y\n0 mm,0 mm\n1 mm,1 cm\n2 mm,2 mm\n3 mm,3 mm\n", "t, line 3: '1 cm' where the column is in mm; write the whole column"),
+        ("x [mm],y [mm]\n0,0 cm\n1,1 cm\n2,2 cm\n3,3 cm\n", "t, line 2: '0 cm' where the column is in mm"),
+        ("x,y\n0 mm,0 mm\n1 mm,1\n2 mm,2 mm\n3 mm,3 mm\n", "t, line 3: '1' where the column is in mm"),
+        ("".join(f"{k},{7 * k % 90 + 10}\n" for k in range(20)), "t, line 1: '0,10' may be two numbers, or one with a decimal comma"),
+        ("t [ms],y [mm]\n0,0\n1,1\n2,2\n3,3\n", "t, line 1: column x is missing, a time stands there; write the master's position"),
+        ("x [mm];y [mm]\n0;0\n1'000.5;2\n2000;3\n3000;4\n", "t, line 3: \"1'000.5\" has its thousands set apart"),
+    ],
+)  # fmt: skip
+def test_what_would_be_a_guess_is_refused_by_its_line(text: str, message: str) -> None:
+    with pytest.raises(InputError) as caught:
+        read_table(detect(text, "t"), text, "t")
+    assert str(caught.value).startswith(message)
+
+
+@pytest.mark.parametrize(
+    ("heading", "role"),
+    [
+        ("Lagesollwert", "command"), ("Positionsistwert", "actual"), ("Schleppabstand", "lag"), ("following error [mm]", "lag"),
+        ("posDes", "command"), ("torDes", "other"), ("target_qd_0", "other"), ("target_q_0", "command"), ("real_time", "time"),
+        ("present_position", "actual"), ("goal_position", "command"), ("current_position", "actual"), ("current", "other"),
+        ("指令位置", "command"), ("現在位置", "actual"), ("Posizione comandata", "command"), ("Posizione misurata", "actual"),
+        ("tempo", "time"),
+        ("pos_estimate", "actual"), ("temperature", "other"),
+    ],
+)  # fmt: skip
+def test_columns_of_recordings_are_known_by_their_names(heading: str, role: str) -> None:
+    assert trace_role(split_unit(heading)[0]) == role

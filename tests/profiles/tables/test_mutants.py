@@ -17,7 +17,7 @@ from camwright.profiles.tables.targets import TARGETS
 
 PLAIN = re.compile(r"[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?")
 COLUMNS = ("x", "y", "ratio", "ratio_slope")
-COMMA = ("lenze", "sew", "twincat-cnc")
+COMMA = ("lenze", "sew", "twincat-cnc", "kollmorgen-kas")
 """Layouts in which a decimal comma is one."""
 
 MEMBERS = {

@@ -52,8 +52,8 @@ def test_rounded_times_are_equally_spaced() -> None:
         ("# only a comment\n", "t.csv: there is no recording in it"),
         (text(), "t.csv: 0 rows below the header"),
         (text(*rows(), header="time;command;actual"), "t.csv: there is no column time; write a header like"),
-        (text(*rows(), header="time [ms],comand [mm],actual [mm]"),
-         "t.csv, line 1: there is no column command; is it 'comand'? write a header like time [ms],command [mm],actual [mm]"),
+        (text(*rows(), header="time [ms],cmmand [mm],actual [mm]"),
+         "t.csv, line 1: there is no column command; is it 'cmmand'? write a header like time [ms],command [mm],actual [mm]"),
         (text(*rows(), header="time [ms],command [mm],actual"),
          "t.csv, line 1: column actual has no unit; write it in brackets, e.g. actual [mm]"),
         (text(*rows(), header="time,command [mm],actual [mm]"),
@@ -134,3 +134,72 @@ def test_positions_are_found_among_what_else_is_commanded_and_fed_back() -> None
     assert found.actual == pytest.approx(1e-3 * np.arange(5) - 0.5e-3)
     with pytest.raises(InputError, match="column time has no unit; write it in brackets"):
         read_trace_csv(text("0.1,1,0,0,1,24,0", "0.1,1,0,0,1,24,1", header=head.replace(" [ms]", "")), "t.csv")
+
+
+LOG = """t,q_cmd_1,q_1,q_cmd_2,q_2
+0,0,0,1,1
+0.002,1,0.5,3,2
+0.004,3,2,7,5
+"""
+
+
+def test_the_lag_stands_for_the_position_that_is_missing() -> None:
+    want = read_trace_csv(text(*rows()), "t")
+    behind = [f"{n},{2 * n},0.5" for n in range(5)]
+    led = read_trace_csv(text(*behind, header="time [ms],SetPos [mm],LagError [mm]"), "t")
+    measured = [f"{n},{2 * n - 0.5},0.5" for n in range(5)]
+    followed = read_trace_csv(text(*measured, header="time [ms];ActPos [mm];Schleppfehler [mm]".replace(";", ",")), "t")
+    for found in (led, followed):
+        assert found.command == pytest.approx(want.command, abs=1e-15)
+        assert found.actual == pytest.approx(want.actual, abs=1e-15)
+        assert any("lag" in note for note in found.notes)
+    with pytest.raises(InputError, match="column lag has no unit"):
+        read_trace_csv(text(*behind, header="time [ms],SetPos [mm],LagError"), "t")
+    with pytest.raises(InputError, match="there is no column time"):
+        read_trace_csv(text(*behind, header="n,SetPos [mm],LagError [mm]"), "t")
+
+
+@pytest.mark.parametrize(
+    "columns", ["t [s],q_cmd_2 [rad],q_2 [rad]", "1 [s], 4 [rad], 5 [rad]", "T [s],Q_CMD_2 [rad],q_2 [rad]"]
+)
+def test_columns_are_chosen_by_heading_or_number(columns: str) -> None:
+    found = read_trace_csv(LOG, "t", columns=columns)
+    assert (found.unit, found.step) == ("rad", pytest.approx(0.002))
+    assert found.command.tolist() == [1.0, 3.0, 7.0]
+    assert found.actual.tolist() == [1.0, 2.0, 5.0]
+
+
+def test_the_time_is_found_by_its_name_where_only_positions_are_chosen() -> None:
+    found = read_trace_csv(LOG.replace("t,", "time [s],", 1), "t", columns="q_cmd_1 [deg],q_1 [deg]")
+    assert found.actual[-1] == pytest.approx(math.radians(2.0))
+    with pytest.raises(InputError, match="there is no column time; say which is meant with --columns"):
+        read_trace_csv(LOG.replace("t,", "n,", 1), "t", columns="q_cmd_1 [deg],q_1 [deg]")
+
+
+@pytest.mark.parametrize(
+    ("columns", "message"),
+    [
+        ("t", "--columns takes headings or numbers of command and actual, or of time, command and actual"),
+        ("t [s],q_9,q_1", "t: --columns 'q_9': 0 columns are called so; the columns are 't', 'q_cmd_1', 'q_1'"),
+        ("t,q_cmd_1,q_1", "t, line 1: column time has no unit; write it in brackets, e.g. time [ms]"),
+        ("t [m],q_cmd_1,q_1", "t, line 1: column time cannot be in 'm'"),
+    ],
+)
+def test_columns_that_are_not_there_are_told(columns: str, message: str) -> None:
+    with pytest.raises(InputError) as caught:
+        read_trace_csv(LOG, "t", columns=columns)
+    assert str(caught.value).startswith(message)
+
+
+def test_a_unit_of_the_file_is_not_overruled() -> None:
+    with pytest.raises(InputError, match="the file says that it is in 'mm'"):
+        read_trace_csv(text(*rows()), "t", columns="time,command [deg],actual")
+
+
+def test_several_axes_ask_which_is_meant() -> None:
+    several = "time [ms],target_q_0 [rad],actual_q_0 [rad],target_q_1 [rad]\n0,0,0,0\n1,1,1,1\n"
+    with pytest.raises(
+        InputError,
+        match=r"'target_q_1 .rad.'\); leave one out, or say which is meant with --columns TIME,COMMAND,ACTUAL",
+    ):
+        read_trace_csv(several, "t")

@@ -121,3 +121,12 @@ def test_programs_that_fill_no_table_are_refused(text: str, message: str) -> Non
 def test_a_loop_of_unknown_bounds_is_gone_through_once() -> None:
     passed = [statement for _, statement, _ in run("FOR k = a TO b\nFORWARD\nNEXT k\nSTOP\n", "p", Numbers({}))]
     assert passed == ["FOR k = a TO b", "FORWARD", "STOP"]
+
+
+def test_a_statement_goes_on_behind_an_underscore() -> None:
+    text = "TABLE(0, 0, 1, _ ' first\n  2, 3,_\n4)\nrest_ = 5\nTABLE(5, rest_)\n"
+    table = read_table(TARGETS["trio"], text, "cam.bas")
+    assert table.y.tolist() == [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]
+    for end in ("", "\n"):
+        with pytest.raises(InputError, match="line 2"):
+            read_table(TARGETS["trio"], "TABLE(0, 1, 2)\nTABLE(2, 3, _" + end, "cam.bas")
