@@ -164,7 +164,7 @@ def _designed(job: Job) -> Design:
 def _exported(number: int, design: Design, targets: Sequence[str], limit: Limit | None) -> tuple[Entry, dict[str, str]]:
     """Write the tables of a design, read them back and judge them, and gather everything."""
     results, refused = export_possible(design.profile, design.job, targets)
-    failed = [check.name for check in design.report.checks if not check.passed]
+    failed = design.failed
     for result in results:
         failed += [f"{result.target.name}: {check.name}" for check in result.judgement.checks if not check.passed]
     failed += [f"{name}: refused" for name in refused]

@@ -139,9 +139,8 @@ def _ways(design: Design, ways: Sequence[Remedy], bands: Bands | None) -> list[R
 
 def _verdict(design: Design) -> str:
     """Say in the last line whether the cam passed, or what failed."""
-    failed = [check.name for check in design.report.checks if not check.passed]
-    if failed:
-        return f"{design.job.name}: FAILED: {', '.join(failed)}"
+    if design.failed:
+        return f"{design.job.name}: FAILED: {', '.join(design.failed)}"
     return f"{design.job.name}: passed every check at {with_unit(design.job.cut.line_speed, 'm/s', units=design.job.units)}"
 
 

@@ -20,6 +20,7 @@ from camwright.jobs.job import Job
 from camwright.notebook.drawing import Drawing
 from camwright.studies import design as designing
 from camwright.studies.comparison import Comparison
+from camwright.studies.speed_band import failed_words
 from camwright.validation.servo.simulation import simulate
 
 What = Literal["profile", "servo", "comparison"]
@@ -114,12 +115,7 @@ class Result(designing.Design):
 
     def _verdict(self) -> str:
         """Say which checks failed."""
-        failed = [check.name.replace("_", " ") for check in self.report.checks if not check.passed]
-        words = (
-            f"{len(failed)} {'check' if len(failed) == 1 else 'checks'} failed: {', '.join(failed)}"
-            if failed
-            else "every check passed"
-        )
+        words = failed_words([name.replace("_", " ") for name in self.failed])
         return f"<p>{escape(words)}</p>"
 
 

@@ -17,7 +17,7 @@ from camwright.studies.axis_study import AxisStudy, Robustness, axis_study, robu
 from camwright.studies.comparison import Comparison, compare
 from camwright.studies.cut_lengths import CutLengths, cut_lengths
 from camwright.studies.remedies import solve_or_advise
-from camwright.studies.speed_band import SpeedBand, job_band
+from camwright.studies.speed_band import SpeedBand, failed_checks, job_band
 from camwright.validation.bounds.bound import Bound
 from camwright.validation.bounds.optimality import lower_bound
 from camwright.validation.report import ValidationReport, judge
@@ -97,9 +97,14 @@ class Design:
         return (self.objective - self.bound.value) / self.objective if self.objective > 0.0 else 0.0
 
     @property
+    def failed(self) -> list[str]:
+        """Names of the checks that failed at the job's line speed, the ranges of its servo among them."""
+        return failed_checks(self.report, self.band, self.job.cut.line_speed)
+
+    @property
     def passed(self) -> bool:
-        """Whether every check passed."""
-        return self.report.passed
+        """Whether every check passed, with every servo of the job's ranges."""
+        return not self.failed
 
 
 def optimise(job: Job, step: Step = ignore) -> Design:

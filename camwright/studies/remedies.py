@@ -18,7 +18,7 @@ from camwright.studies.axis_study import beyond_reach, solve_job, sync_error
 from camwright.studies.covering import Uncovered
 from camwright.studies.family_bands import family_bands, placed_for_all
 from camwright.studies.reach import stand_in, verdict
-from camwright.studies.speed_band import SpeedBand
+from camwright.studies.speed_band import SpeedBand, failed_checks
 from camwright.validation.report import ValidationReport, judge
 
 MOST, LONG = 30, 3
@@ -141,7 +141,7 @@ def _passes(job: Job) -> bool:
     task = job.task.with_machine(solution.machine)
     if not judge(solution.profile, task, job.servo, servo_aware=job.servo_aware, slowest=job.slowest).passed:
         return False
-    if not job.servo_aware or job.servo_tolerance is None:
+    if job.servo_tolerance is None:
         return True
     worst = sync_error(solution.profile, job)
     return worst is not None and worst <= job.cut.sync_tolerance * (1 + 1e-6)
@@ -163,7 +163,7 @@ def remedies(job: Job, report: ValidationReport, band: SpeedBand) -> tuple[Remed
     tuple
         Changes that were designed and passed; none where every check passed.
     """
-    if report.passed:
+    if not failed_checks(report, band, job.cut.line_speed):
         return ()
     trial, cut = _Trial(job), job.cut
     error = next((check.value for check in report.checks if check.name == "shear_zone_error"), None)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +13,7 @@ from camwright.jobs.servos import servos_of
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
-from camwright.studies.speed_scan import NAMES, SpeedScan
+from camwright.studies.speed_scan import NAMES, TOLERANCE, SpeedScan
 from camwright.validation.production.line_ramp import line_ramp
 from camwright.validation.report import ALLOWANCE, ValidationReport
 from camwright.validation.servo.simulation import PHASES
@@ -95,6 +96,18 @@ class SpeedBand:
     def creeps(self) -> bool:
         """Whether the cam may run from standstill on."""
         return bool(self.parts) and self.parts[0][0] == 0.0
+
+
+def failed_checks(report: ValidationReport, band: SpeedBand, line_speed: float) -> list[str]:
+    """Name the checks of a cam that failed at its line speed (m/s); `TOLERANCE` where only a servo at the corners of its ranges fails."""
+    failed = [check.name for check in report.checks if not check.passed]
+    return failed or ([] if band.holds(line_speed) else [TOLERANCE])
+
+
+def failed_words(failed: Sequence[str]) -> str:
+    """Say how many checks failed, and which."""
+    count = f"{len(failed)} {'check' if len(failed) == 1 else 'checks'} failed"
+    return f"{count}: {', '.join(failed)}" if failed else "every check passed"
 
 
 def job_band(profile: CamProfile, job: Job, report: ValidationReport) -> SpeedBand:

@@ -16,6 +16,7 @@ from camwright.cli.main import main
 from camwright.jobs.job import BUNDLED_JOB, Job, parse_job
 from camwright.jobs.toml_text import toml_text
 from camwright.profiles.errors import InfeasibleError
+from camwright.stored.save import design_files
 from camwright.studies import remedies as module
 from camwright.studies.axis_study import solve_job
 from camwright.studies.design import optimise
@@ -247,3 +248,22 @@ def test_a_lower_line_speed_takes_the_ends_of_the_line_speeds_with_it() -> None:
     assert [each.words for each in found] == [
         '[cut] line_speed = "40 m/min", [objective] line_speeds = ["8 m/min", "100 %"]'
     ]
+
+
+@pytest.mark.slow
+def test_a_servo_of_the_ranges_that_fails_at_the_line_speed_fails_the_job(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The design keeps everything with its own servo; its band ends below the job's speed, and no verdict may say that it passed."""
+    text = PAPER.replace('length = "600 mm"', 'length = "420 mm"').replace('"0.1 mm"', '"0.03 mm"')
+    file = tmp_path / "job.toml"
+    file.write_text(f'{text}\n[servo.tolerance]\nbandwidth = "30 %"\nposition_gain = "20 %"\n', encoding="utf-8")
+    result = optimise(parse_job(file.read_text(encoding="utf-8"), "job.toml"))
+    assert result.report.passed
+    assert not result.band.holds(result.job.cut.line_speed)
+    assert (result.passed, result.failed) == (False, ["servo_tolerance"])
+    ways = remedies(result.job, result.report, result.band)
+    assert "line_speed" in {way.change for way in ways}
+    (tmp_path / "cam.csv").write_text(design_files(result)["cam.csv"], encoding="utf-8")
+    assert main(["validate", str(tmp_path / "cam.csv"), "--job", str(file)]) == 1
+    assert "1 check failed: servo_tolerance" in capsys.readouterr().out
