@@ -67,9 +67,8 @@ def run(
 
 def _view(result: Audit, file: Path, files: list[Path]) -> RenderableType:
     """Show the cam beside the optimum of the same job, and its checks."""
-    table = new_table(title=f"{file}: {result.target.title}, {result.table.points} points", title_justify="left")
-    for name in ("", "this cam", "optimum", "saving"):
-        table.add_column(name, justify="left" if not name else "right")
+    what = f"{file}: {result.target.title}, {result.table.points} points"
+    table = new_table(what, ("", "this cam", "optimum", "saving"), left=("",))
     unit, units = result.job.machine.slave_unit, result.job.units
     for (measure, title), power in zip(MEASURES.items(), ("/s", "/s^2", "/s^2", "/s^3", "/s^3"), strict=True):
         (own, best), saving = result.pair(measure), result.saving(measure)

@@ -269,9 +269,8 @@ def _calibrate(measurements: Path, bender: BenderJob, out: Path | None, voice: V
 
 def _drawing_view(result: BentDrawing, files: Sequence[Path]) -> RenderableType:
     """Show the programs of a drawing, their checks, warnings and files."""
-    table = new_table(title=f"Programs of {result.drawing.name}", title_justify="left")
-    table.add_column("program")
-    for name in (
+    heads = (
+        "program",
         "bends\n",
         "by the paper's\narc rule",
         "rule\nmm",
@@ -280,9 +279,9 @@ def _drawing_view(result: BentDrawing, files: Sequence[Path]) -> RenderableType:
         "cycle\ns",
         "sequential\ns",
         "gain\n%",
-    ):
-        table.add_column(name, justify="right")
-    table.add_column("checks")
+        "checks",
+    )
+    table = new_table(f"Programs of {result.drawing.name}", heads, left=("program", "checks"))
     for outline in result.outlines[:_MOST_ROWS]:
         proof, cycle, paper = outline.proof, outline.times.total, outline.paper_times.total
         failed = result.failed(outline)
@@ -319,9 +318,8 @@ def _drawing_view(result: BentDrawing, files: Sequence[Path]) -> RenderableType:
 
 def _calibration_view(result: Calibration, files: Sequence[Path]) -> RenderableType:
     """Show the test bends with their residuals, and the files."""
-    table = new_table(title=f"Test bends of {result.springback.name}", title_justify="left")
-    for name in ("row", "radius\nmm", "mould angle\n°", "measured\n°", "by the table\n°", "residual\n°"):
-        table.add_column(name, justify="right")
+    heads = ("row", "radius\nmm", "mould angle\n°", "measured\n°", "by the table\n°", "residual\n°")
+    table = new_table(f"Test bends of {result.springback.name}", heads)
     for bend, residual in zip(result.bends[:_MOST_ROWS], result.residuals, strict=False):
         table.add_row(
             str(bend.row),

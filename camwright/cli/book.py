@@ -84,10 +84,8 @@ def run(
 
 def _view(answer: BookAnswer) -> RenderableType:
     """Show how many combinations ended how, and where the book is."""
-    table = new_table(title=f"{answer.book.name}: a book of {answer.counts.designs} designs", title_justify="left")
-    for name in ("passed", "a check failed", "infeasible", "solver failed"):
-        table.add_column(name, justify="right")
-    counts = answer.counts
+    counts, ends = answer.counts, ("passed", "a check failed", "infeasible", "solver failed")
+    table = new_table(f"{answer.book.name}: a book of {counts.designs} designs", ends)
     table.add_row(*map(str, (counts.passed, counts.check_failed, counts.infeasible, counts.failed)))
     made = counts.designs - answer.resumed
     speed = f"{made} made at {answer.rate:.3g} a second, {answer.resumed} done before"

@@ -109,18 +109,9 @@ def _views(study: ListStudy) -> list[RenderableType]:
     planned = study.planned
     units = planned.job.units
     speed = unit_shown("m/s", units)
-    cams = new_table(
-        title=f"{planned.job.name}: {len(planned.cams)} cams for {planned.asked.pieces} pieces", title_justify="left"
-    )
-    for name in (
-        "cam",
-        f"length\n{unit_shown('m', units)}",
-        "pieces",
-        f"highest speed\n{speed}",
-        "bears ramps",
-        "checks",
-    ):
-        cams.add_column(name, justify="left" if name == "checks" else "right")
+    heads = ("cam", f"length\n{unit_shown('m', units)}", "pieces", f"highest speed\n{speed}", "bears ramps", "checks")
+    title = f"{planned.job.name}: {len(planned.cams)} cams for {planned.asked.pieces} pieces"
+    cams = new_table(title, heads, left=("checks",))
     for cam in planned.cams:
         failed = [check.name for check in cam.report.checks if not check.passed]
         cams.add_row(
@@ -132,9 +123,7 @@ def _views(study: ListStudy) -> list[RenderableType]:
             new_text(f"FAILED: {', '.join(failed)}", "bold red") if failed else new_text("passed", "green"),
         )
     made = [change for change in planned.changes.values() if change.times]
-    changes = new_table(title="Changes", title_justify="left")
-    for name in ("from", "to", "how", f"line speed\n{speed}", "times"):
-        changes.add_column(name, justify="left" if name == "how" else "right")
+    changes = new_table("Changes", ("from", "to", "how", f"line speed\n{speed}", "times"), left=("how",))
     for change in made[:_MOST_SHOWN]:
         at = f"{converted(change.line_speed, 'm/s', units):.5g}"
         changes.add_row(str(change.before), str(change.after), _HOW[change.how], at, str(change.times))

@@ -121,9 +121,8 @@ def _design(path: Path) -> StoredDesign:
 
 def _view(written: TableFiles, directory: Path) -> RenderableType:
     """Show each table as its drive runs it, what was refused, and what was set aside."""
-    table = new_table(title="Tables as the drives run them", title_justify="left")
-    for name in ("target", "points", "position\num", "ratio\n1e-6", "acceleration\n%", "judgement", "files"):
-        table.add_column(name, justify="left" if name in ("target", "judgement", "files") else "right")
+    heads = ("target", "points", "position\num", "ratio\n1e-6", "acceleration\n%", "judgement", "files")
+    table = new_table("Tables as the drives run them", heads, left=("target", "judgement", "files"))
     for result in written.results:
         off = result.deviation
         failed = [check.name for check in result.judgement.checks if not check.passed]

@@ -109,9 +109,8 @@ def _views(found: Family) -> list[RenderableType]:
     """Show cams, changes, seams, and what was proved of their number."""
     units = found.found.job.units
     speed, error = unit_shown("m/s", units), unit_shown("m", units)
-    cams = new_table(title=f"{found.found.job.name}: {_count(found)}", title_justify="left")
-    for name in ("cam", f"from\n{speed}", f"to\n{speed}", f"sync error\n{error}", "checks"):
-        cams.add_column(name, justify="left" if name == "checks" else "right")
+    heads = ("cam", f"from\n{speed}", f"to\n{speed}", f"sync error\n{error}", "checks")
+    cams = new_table(f"{found.found.job.name}: {_count(found)}", heads, left=("checks",))
     for cam in found.cams:
         low, top = cam.line_speeds
         failed = [check.name for check in cam.report.checks if not check.passed]
@@ -145,9 +144,8 @@ def _switching_view(found: Family) -> RenderableType:
     """Show where the controller switches, and how."""
     units = found.found.job.units
     speed = unit_shown("m/s", units)
-    table = new_table(title="Switching", title_justify="left")
-    for name in ("between", f"up above\n{speed}", f"down below\n{speed}", "how", ""):
-        table.add_column(name, justify="right" if speed in name else "left")
+    heads = ("between", f"up above\n{speed}", f"down below\n{speed}", "how", "")
+    table = new_table("Switching", heads, left=("between", "how", ""))
     for each in found.switchings:
         failed = sorted({check.name for checks in each.checks for check in checks if not check.passed})
         table.add_row(

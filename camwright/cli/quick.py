@@ -55,7 +55,7 @@ def run(
 
 def _view(answer: QuickAnswer) -> RenderableType:
     """Show what the cam is like."""
-    table = new_table(title="Cross-cutter, quintic cam", title_justify="left", show_header=False)
+    table = new_table("Cross-cutter, quintic cam", show_header=False)
     for row in answer.rows():
         table.add_row(*row)
     return table

@@ -136,11 +136,10 @@ def _view(found: Ramps, tables: RampTables, files: Sequence[Path]) -> Renderable
     job, units = found.job, found.job.units
     slave = job.machine.slave_unit
     rows = new_table(
-        title=f"Start and stop at {with_unit(job.cut.line_speed, 'm/s', units=units)}, minimised: {AIMS[found.aim]}",
-        title_justify="left",
+        f"Start and stop at {with_unit(job.cut.line_speed, 'm/s', units=units)}, minimised: {AIMS[found.aim]}",
+        ("", "slave travels", "material", "time", "peak acceleration", "lower bound"),
+        left=("",),
     )
-    for name in ("", "slave travels", "material", "time", "peak acceleration", "lower bound"):
-        rows.add_column(name, justify="right" if name else "left")
     for name, ramp, bound in zip(("start", "stop"), (found.ramp_in, found.ramp_out), found.bounds, strict=True):
         unit = objective_of(found, ramp)[1]
         measure = units.measure(unit) if unit in units.shown else None
@@ -205,9 +204,8 @@ def _facts(found: Ramps) -> list[str]:
 
 def _tables_view(tables: RampTables) -> RenderableType:
     """Show each table as its drive runs it."""
-    table = new_table(title="Tables as the drives run them", title_justify="left")
-    for name in ("motion", "target", "points", "position\num", "judgement", "files"):
-        table.add_column(name, justify="right" if name in ("points", "position\num") else "left")
+    heads = ("motion", "target", "points", "position\num", "judgement", "files")
+    table = new_table("Tables as the drives run them", heads, left=("motion", "target", "judgement", "files"))
     for kind, results in tables.results.items():
         for result in results:
             failed = [check.name for check in result.judgement.checks if not check.passed]

@@ -180,9 +180,8 @@ def _compare(before: Path, after: Path, voice: Voice) -> int:
 
 def _recipe_view(recipe: Recipe, answer: dict[str, Any], out: Path, units: Units, further: str) -> RenderableType:
     """Show whether the cam is released and what failed, then the files."""
-    table = new_table(title=f"{out}", title_justify="left")
-    table.add_column("file")
-    table.add_column(f"SHA-256, first {SHORT} digits")
+    heads = ("file", f"SHA-256, first {SHORT} digits")
+    table = new_table(str(out), heads, heads)
     for file in answer["files"]:
         table.add_row(new_text(file["path"]), file["sha256"][:SHORT])
     notes = [
@@ -209,9 +208,8 @@ def _told(check: RecipeCheck, units: Units) -> str:
 def _compare_view(before: Path, after: Path, changes: list[Change]) -> RenderableType:
     if not changes:
         return new_text(f"nothing changes from {before} to {after}")
-    table = new_table(title="What changes on the machine", title_justify="left")
-    for heading in ("", "what", "unit"):
-        table.add_column(heading)
+    heads = ("", "what", "unit")
+    table = new_table("What changes on the machine", heads, heads)
     table.add_column(new_text(str(before)), justify="right")
     table.add_column(new_text(str(after)), justify="right")
     last = ""

@@ -132,9 +132,6 @@ def _views(study: ShiftStudy) -> list[RenderableType]:
     job = study.planned.job
     factor, unit = job.units.shown["m"].factor, unit_shown("m", job.units)
     answer = shift_answer(study)
-    table = new_table(
-        title=f"{job.name}: {answer['pieces']} pieces in {study.cut_times[-1]:.6g} s ({unit})", title_justify="left"
-    )
     heads = (
         "",
         "length\nspread",
@@ -144,8 +141,9 @@ def _views(study: ShiftStudy) -> list[RenderableType]:
         "pieces\noutside",
         "of all\nservos",
     )
-    for name in heads:
-        table.add_column(name, justify="right" if name else "left")
+    table = new_table(
+        f"{job.name}: {answer['pieces']} pieces in {study.cut_times[-1]:.6g} s ({unit})", heads, left=("",)
+    )
     for motion in MOTIONS:
         found = answer[motion]
         table.add_row(

@@ -28,9 +28,9 @@ def run(as_json: Json = False, quiet: Quiet = False) -> int:
 
 def _view(answer: list[dict[str, Any]]) -> RenderableType:
     """Show the targets."""
-    table = new_table(title="Targets; none was tested on a controller", title_justify="left", show_lines=True)
-    for name in ("name", "what", "interpolation", "points", "numbers", "evidence"):
-        table.add_column(name, justify="right" if name == "points" else "left")
+    heads = ("name", "what", "interpolation", "points", "numbers", "evidence")
+    left = [head for head in heads if head != "points"]
+    table = new_table("Targets; none was tested on a controller", heads, left, show_lines=True)
     for entry in answer:
         table.add_row(
             entry["name"],

@@ -41,9 +41,8 @@ def _view(directory: Path, found: Verified) -> RenderableType:
         promised = "sheet says what its cams do" if is_family(directory) else "tables are the motion that it promises"
         head = f"{directory}: as it was written; its {promised}"
         return stacked(new_text("\n- ".join((head, *found.proved))), *notes)
-    table = new_table(title=new_text(f"{directory}: NOT as it was written"), title_justify="left")
-    table.add_column("file")
-    table.add_column("what is wrong")
+    heads = ("file", "what is wrong")
+    table = new_table(new_text(f"{directory}: NOT as it was written"), heads, heads)
     for fault in found.faults:
         table.add_row(new_text(fault.file), new_text(fault.what))
     return stacked(table, *notes)

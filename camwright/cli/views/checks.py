@@ -49,7 +49,7 @@ def _value(check: Check, factor: float) -> str:
 
 def _table(checks: Sequence[Check], units: Units, *, sources: bool) -> WholeTable:
     """Lay out the checks."""
-    table = new_table(title="Checks", title_justify="left")
+    table = new_table("Checks")
     for name in ("check", "", "value", "limit", "unit", "at"):
         table.add_column(name, justify="right" if name in ("value", "limit", "at") else "left", no_wrap=True)
     if sources:

@@ -15,11 +15,7 @@ if TYPE_CHECKING:
 def lengths_view(lengths: CutLengths, units: Units) -> RenderableType:
     """Show minimum cut lengths and what binds them."""
     unit = unit_shown("m", units)
-    table = new_table(title="Minimum cut length", title_justify="left")
-    table.add_column("by")
-    table.add_column(unit, justify="right")
-    table.add_column(f"transition\n{unit}", justify="right")
-    table.add_column("binds")
+    table = new_table("Minimum cut length", ("by", unit, f"transition\n{unit}", "binds"), left=("by", "binds"))
     table.add_row(
         "eq. 9, crossing, no shear zone", shown(lengths.eq9, "m", 4, units), shown(lengths.crossing, "m", 4, units), ""
     )

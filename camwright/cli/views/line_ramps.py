@@ -20,12 +20,9 @@ _EVERY = 5
 def line_ramps_view(found: LineRamps) -> RenderableType:
     """Show what the line may do at some speeds, and the two numbers for the PLC."""
     units = found.job.units
-    table = new_table(title="How hard the line may ramp, at any phase", title_justify="left")
-    ramp = unit_shown("m/s^2", units)
-    table.add_column(f"line speed\n{unit_shown('m/s', units)}", justify="right")
-    for name in ("speeding up", "braking"):
-        table.add_column(f"{name}\n{ramp}", justify="right")
-    table.add_column("binds")
+    speed, ramp = unit_shown("m/s", units), unit_shown("m/s^2", units)
+    heads = (f"line speed\n{speed}", f"speeding up\n{ramp}", f"braking\n{ramp}", "binds")
+    table = new_table("How hard the line may ramp, at any phase", heads, left=("binds",))
     for each in found.curve[_EVERY - 1 :: _EVERY]:
         speed = number(converted(each.line_speed, "m/s", units), 4)
         table.add_row(speed, ramp_words(each.speeding, units), ramp_words(each.braking, units), each.ramp.binds)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -13,9 +13,14 @@ if TYPE_CHECKING:
     from rich.text import Text
 
 
-def new_table(title: str | Text | None = None, **look: Any) -> WholeTable:
-    """Make an empty table, whose words are never cut."""
-    return WholeTable(title, look)
+def new_table(
+    title: str | Text | None = None, headings: Sequence[str] = (), left: Collection[str] = (), **look: Any
+) -> WholeTable:
+    """Make an empty table, whose words are never cut; its columns hold numbers, at the right, but for those named in `left`."""
+    table = WholeTable(title, {"title_justify": "left", **look})
+    for heading in headings:
+        table.add_column(heading, justify="left" if heading in left else "right")
+    return table
 
 
 def new_text(text: str = "", style: str = "") -> Text:

@@ -56,7 +56,7 @@ def _parts(columns: list[Column]) -> list[list[Column]]:
 def _table(comparison: Comparison, columns: Sequence[Column]) -> WholeTable:
     """Lay out some columns."""
     what = OBJECTIVES[comparison.job.objective].words
-    table = new_table(title=f"Profiles, by {what}", title_justify="left")
+    table = new_table(f"Profiles, by {what}")
     table.add_column("profile", no_wrap=True)
     for heading, _ in columns:
         table.add_column(heading, justify="right", no_wrap=True)

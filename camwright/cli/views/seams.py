@@ -15,10 +15,12 @@ if TYPE_CHECKING:
 
 def seams_view(tables: Sequence[TargetSeams], units: Units) -> RenderableType:
     """Show what was found at the seams of each target's tables."""
-    seams = new_table(title="Seams of the tables as read back", title_justify="left")
     speed, acceleration = (unit_shown(unit, units) for unit in ("m/s", "m/s^2"))
-    for name in ("target", "numbers", f"velocity jump\n{speed}", f"acceleration jump\n{acceleration}", ""):
-        seams.add_column(name, justify="right" if "jump" in name else "left")
+    seams = new_table(
+        "Seams of the tables as read back",
+        ("target", "numbers", f"velocity jump\n{speed}", f"acceleration jump\n{acceleration}", ""),
+        left=("target", "numbers", ""),
+    )
     for table in tables:
         told = [
             *(f"cam {cam} withheld: {why}" for cam, why in table.withheld.items()),

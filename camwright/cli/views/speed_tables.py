@@ -20,18 +20,10 @@ def speed_tables_view(found: Sequence[SpeedTables], files: Sequence[Path], units
     parts: list[RenderableType] = []
     speed, length = units.shown["m/s"], units.shown["m"]
     for each in found:
-        count = len(each.cam.tables)
-        table = new_table(
-            title=f"{each.target.name}: {count} tables, added by powers of the line speed", title_justify="left"
-        )
-        headings = (
-            f"line speed\n{speed.printed}",
-            f"sync error\n{length.printed}",
-            f"position table alone\n{length.printed}",
-            "fails",
-        )
-        for heading in headings:
-            table.add_column(heading, justify="left" if heading == "fails" else "right")
+        errors = (f"{what}\n{length.printed}" for what in ("sync error", "position table alone"))
+        heads = (f"line speed\n{speed.printed}", *errors, "fails")
+        title = f"{each.target.name}: {len(each.cam.tables)} tables, added by powers of the line speed"
+        table = new_table(title, heads, left=("fails",))
         for at in each.judged:
             table.add_row(
                 shown(at.line_speed, "m/s", units=units),

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 def tradeoff_view(result: TradeOff) -> RenderableType:
     """Show all profiles, each measure with its multiple of the best."""
-    table = new_table(title=f"Objectives and laws, by {words(result.sorted_by)}; × the best", title_justify="left")
+    table = new_table(f"Objectives and laws, by {words(result.sorted_by)}; × the best")
     table.add_column("minimised, or law")
     for name in result.measures:
         unit = result.unit(name).replace("^2", "²").replace("^3", "³")
