@@ -15,6 +15,8 @@ LONGEST_LINE = 20_000
 MOST_LINES = 40_000
 
 _CONTROL = re.compile(r"[\x00-\x08\x0b\x0e-\x1f\x7f]")
+_WORKBOOKS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")
+"""How files of spreadsheets begin, packed ones and older ones."""
 _HIGH = re.compile(rb"[\x80-\xff]+")
 _GB2312 = re.compile(rb"(?:[\xa1-\xa9\xb0-\xf7][\xa1-\xfe])+")
 _REAL = re.compile(r"[+-]?(?:[0-9]{1,40}(?:\.[0-9]{0,40})?|\.[0-9]{1,40})(?:[eE][+-]?[0-9]{1,4})?")
@@ -55,6 +57,12 @@ def decode(data: bytes, place: str, most: int = LARGEST_FILE) -> str:
     """
     if len(data) > most:
         raise refuse(place, None, f"the file is larger than {most} bytes; no cam table of a drive is")
+    if data.startswith(_WORKBOOKS):
+        raise refuse(
+            place,
+            None,
+            "this is a workbook of a spreadsheet, or another packed file; save the sheet as CSV, and name that",
+        )
     text = text_of(data, place)
     found = _CONTROL.search(text)
     if found:

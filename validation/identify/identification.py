@@ -245,6 +245,8 @@ def _faults(solution: Minimum, fit: float, lag: float) -> Iterator[str]:
         spread = 0.5 * (most - least)
         low, high = RANGES[name]
         about = f"{value * factor:.4g}{unit}, give or take {spread * factor:.2g}{unit} (95 %)"
+        if spread > high - low:
+            about = f"it may be anything from {low * factor:.4g} to {high * factor:.4g}{unit}"
         known = max(value, values["sample_time"]) if name == "dead_time" else abs(value)
         if name == "dead_time" and most < -_ROUNDED:
             yield (

@@ -98,9 +98,10 @@ between), and `st-arrays`, structured text with one array of master and one of s
 it (a cubic spline is assumed); its CSV is read as columns; and `trio-linked-moves`, a cycle of Trio's `MOVELINK` and `FLEXLINK`
 calls: base distance, straight ramps, and those by the curves of the options (sine, powers 5, 7 and 9). That a sine is half a cosine
 of the speed follows from the peak accelerations that Trio's reference prints beside a straight ramp's.
-Named and refused, with the way out, are TwinCAT's `.xti` items: a search of public repositories and of Beckhoff's pages found
-project items of axes and terminals, but no cam in one, and no description of its elements. The cam editor's own exports, points as
-columns or the function blocks' points, are read. Of Omron, Inovance and Delta no layout is known; their points as two columns are
+Named and refused, with the way out, are TwinCAT's `.xti` items: two searches of public repositories and of Beckhoff's
+pages found project items of axes and terminals, but no cam in one, and no description of its elements. The cam
+editor's export of a master and a slave position a line and the function blocks' points are read; of its `.tce` files
+its help tells no more than the name. Of Omron, Inovance and Delta no layout is known; their points as two columns are
 read like anybody's.
 
 Columns of numbers may be separated by commas, semicolons, tabs, bars or blanks, with a decimal point or comma, in quotes,
@@ -124,6 +125,47 @@ at the servo's sample time: the greatest over all sampling phases, and the root 
 answer then says `"saving_by": "differences at the sample time"`. A shorter sample time shows more of the corners.
 
 > {SAFETY_NOTE}
+
+## Files of others that were tried
+
+Public files, read as a user would, and not kept here. What was refused was refused with its reason and a way out.
+
+Tables:
+
+- LuBieML/FlyingShear, twenty programs of Trio's reference: CAMBOX 0 and 2, FLEXLINK 0 and 1, MOVELINK 0 to 8, 10
+  and 11 are read. CAMBOX 3 fills an address twice, CAMBOX 4 leaves some out, MOVELINK 9 and 12 use a variable
+  without a number: refused. CAMBOX 1 has no table.
+- moaz-ahmed/CAM-Profile, a modified sine in a workbook, is refused as one; as CSV it has two columns of the master,
+  `Angle_deg` and `x_norm`: one is to be left out.
+- Aerotech's cams, as three public programs write them, are read as columns.
+- Teknic-Brendan/ClearPath-Cam-Profiles-With-Arduino (a program in C), simatic-ax/lcamhdl and MCCodeAI/MCCoder
+  (calls that build a cam) are not recognised: no points are in them.
+
+Recordings, none of which tells a servo:
+
+- maido-39/free-dog-sdk-dev, twelve joints of a walking robot with command and actual position. `--columns` takes
+  one; by its own clock rows are missing, by the nominal one the command stands in stairs of 20 ms.
+- mmaag01/Actuator-Net, a geared actuator at 1 kHz, 82 files: two rows of one time. With even times put in, its
+  parameters are not told: its loop is one of torque.
+- joelxue123/ODrive-fw-v0.5.1-for_work, sines of 1 to 5 Hz at 1 kHz: read with `--columns "13 [ms],3 [rad],6
+  [rad]"`; the actual position runs ahead of the sine, by the resonance of a loop without a cascade.
+- gkeiel/dc_motor_position_control, a motor under PID, nine files without times: with 2 ms a row put in, no servo is
+  told by positions of 3.5 degrees a count.
+- aniketgiri96/Robstride_Control_Gui, six joints at 50 Hz: read with `--columns`; no parameter is told at 20 ms a
+  row.
+- Laiurasol/03_CNC (25 files of a milling machine), jesus-mastrogiacomo/ball-and-beam-nonlinear,
+  LukeXII/Control_Digital, ryanGT/systemid, friessssss/C: no times in them.
+- CagtayFabry/pytcs (eleven exports of TwinCAT Scope), qblc7/bachelorproject (RTDE): no command beside the actual
+  position. M-TRCH/BLEGS_Actuator-Unit, koyomimono/OMUNI: no actual position of an axis.
+- moelyaakoubi/GUI-RTDE, six axes of a robot at rest: `--columns` is asked for.
+
+Drawings:
+
+- BrownBear127/open-dieline, six cartons (rte-default, synthetic-all-types, telescope-base, -default, -lid, -liner):
+  they have no unit, which is asked for; with it all styles are listed. Their CUT styles bend to 1094, 50, 2896,
+  5395, 1852 and 647 mm of rule, lines that stand twice in two of them named.
+- mozman/ezdxf: 1_polylines, bin_dxf_r12, hatch_text_box_in_fill, transform_hatch_pattern; LibreCAD/LibreCAD:
+  Diode-SCS, alg14, cap3, evd17. All bend; three ask for their unit.
 
 ## The targets
 

@@ -251,3 +251,11 @@ def test_what_would_be_a_guess_is_refused_by_its_line(text: str, message: str) -
 )  # fmt: skip
 def test_columns_of_recordings_are_known_by_their_names(heading: str, role: str) -> None:
     assert trace_role(split_unit(heading)[0]) == role
+
+
+@pytest.mark.parametrize("head", [b"PK\x03\x04\x14\x00", b"\xd0\xcf\x11\xe0\xa1\xb1"])
+def test_a_workbook_is_called_one(head: bytes) -> None:
+    with pytest.raises(
+        InputError, match="t: this is a workbook of a spreadsheet, or another packed file; save the sheet as CSV"
+    ):
+        decode(head + bytes(40), "t")
