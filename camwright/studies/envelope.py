@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from camwright.design.feasible.envelope import Envelope, envelope, quintic_speed
-from camwright.design.feasible.extremes import max_line_speed
+from camwright.design.feasible.extremes import max_line_speed, placed_fastest
 from camwright.house.progress import Step, ignore
 from camwright.house.provenance import provenance
 from camwright.jobs.job import Job
@@ -54,7 +54,8 @@ class EnvelopeAnswer:
         What was made least at every point.
     quintic, perfect, within
         Highest line speeds (m/s) over cut lengths (m): with the quintic return, with a perfect axis, and with the axis in
-        tolerance, which is what `design` would pass, designed anew. Lines with nodes so close that what lies between is true
+        tolerance, which is what `design` would pass, designed anew; a crank's free sync zone placed where the line can run fastest, as the
+        map's rows tell. Lines with nodes so close that what lies between is true
         to `STRAIGHT`; NaN where no line speed works. Where an edge jumps, two nodes have one length.
     """
 
@@ -156,12 +157,12 @@ def envelope_answer(job: Job, points: int, step: Step = ignore) -> EnvelopeAnswe
     objective = of_motion(job.objective)
     found = envelope(job.task, objective, lengths.tolist(), speeds.tolist(), step)
     step("the edges between the cut lengths")
-    machines = [row.machine for row in found.rows]
 
+    @cache
     def at(length: float) -> Job:
-        """Give the job at a cut length; a crank's free sync zone is where it is at the length beside it."""
-        beside = machines[int(np.abs(lengths - length).argmin())]
-        return replace(job, machine=beside, cut=replace(job.cut, length=length))
+        """Give the job at a cut length; a crank's free sync zone is where the line can run fastest."""
+        there = job.task.with_length(length)
+        return replace(job, machine=placed_fastest(there).machine, cut=there.cut)
 
     @cache
     def fastest(length: float) -> float | None:
