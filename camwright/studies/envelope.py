@@ -18,7 +18,7 @@ from camwright.house.provenance import provenance
 from camwright.jobs.job import Job
 from camwright.profiles.machines import Machine
 from camwright.profiles.objective import OBJECTIVES, MotionObjective, of_motion
-from camwright.studies.reach import ACCURACY, highest_speed
+from camwright.studies.reach import ACCURACY, followed_speed, highest_speed
 
 SHORTEST, LONGEST = 0.5, 2.0
 """Cut lengths of the map as parts of the job's; none of them is shorter than `LEAST_ZONE` of the sync zone."""
@@ -175,14 +175,19 @@ def envelope_answer(job: Job, points: int, step: Step = ignore) -> EnvelopeAnswe
         top, accuracy = fastest(length), ACCURACY if length in lengths else BETWEEN
         shorter = max((each for each in found_within if each < length), default=None)
         at_top = shorter is not None and found_within[shorter] == fastest(shorter)
-        near = None
-        if not (at_top or math.isnan(expected) or top is None or expected >= (1.0 - STRAIGHT) * top):
-            near = expected * (1.0 - 0.5 * accuracy)  # the line is as often on one side of the edge as on the other
-        found_within[length] = highest_speed(at(length), top, near, accuracy)[0]
-        return found_within[length]
+        if job.servo_aware:  # a job is made for about what its machine can do
+            own = job.cut.line_speed * length / job.cut.length
+            found = followed_speed(at(length), top, own if math.isnan(expected) else expected)
+        elif at_top or math.isnan(expected) or top is None or expected >= (1.0 - STRAIGHT) * top:
+            found, _ = highest_speed(at(length), top, None, accuracy)
+        else:  # the line is as often on one side of the edge as on the other
+            found, _ = highest_speed(at(length), top, expected * (1.0 - 0.5 * accuracy), accuracy)
+        found_within[length] = found
+        return found
 
     perfect = true_edge(lambda length, _: fastest(length), lengths.tolist(), FINEST)
-    within = true_edge(in_tolerance, lengths.tolist(), None if job.servo_aware or not job.machine.placed else FINE)
+    dear = job.servo_aware or job.line.ramps or not job.machine.placed
+    within = true_edge(in_tolerance, lengths.tolist(), None if dear else FINE)
     quintic = true_edge(lambda length, _: quintic_speed(at(length).task), lengths.tolist(), FINEST)
     return EnvelopeAnswer(job, objective, found, quintic, perfect, within)
 

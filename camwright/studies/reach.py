@@ -112,12 +112,32 @@ def highest_speed(
     """
     if perfect is None:
         return None, ""
-    end = perfect
-    if _shaped(job):  # beyond it the mean speed alone is too high
-        end = max(perfect, job.limits.speed * job.cut.length / job.machine.pitch)
+    end = _end_of_speeds(job, perfect)
     at = None if near is None else near / end
     found, failed = _kept(job, lambda share: job.task.designed_at(end * share), SLOWEST, accuracy, at)
     return (None if found is None else end if not failed else end * found), failed
+
+
+def followed_speed(job: Job, perfect: float | None, near: float) -> float | None:
+    """Find the highest line speed of a servo-aware job (m/s) near where a cut length beside has it; ``None`` where none works.
+
+    Every step is the whole design, with all line speeds and servos: from near by there are few. What fails beyond is not asked.
+    """
+    if perfect is None:
+        return None
+    end, objective = _end_of_speeds(job, perfect), stand_in(job)
+    found, _ = _edge(
+        lambda share: verdict(job, job.task.designed_at(end * share), objective),
+        SLOWEST,
+        SERVO_AWARE_ACCURACY,
+        near / end,
+    )
+    return None if found is None else end * found
+
+
+def _end_of_speeds(job: Job, perfect: float) -> float:
+    """Give the highest line speed that is looked at: of a shaped command the one beyond which the mean speed alone is too high."""
+    return max(perfect, job.limits.speed * job.cut.length / job.machine.pitch) if _shaped(job) else perfect
 
 
 def shortest_cut(job: Job, perfect: float | None) -> tuple[float | None, str]:
