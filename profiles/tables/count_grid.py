@@ -65,7 +65,8 @@ def evened(table: CamTable) -> CamTable | None:
     if not float(np.ptp(off)) <= 1.001 * grain < _COARSEST * h:
         return None
     begin = float(table.x[0]) + 0.5 * float(off.max() + off.min())
-    note = f"the master's positions are rounded to {grain:.6g}, {100 * grain / h:.2g} % of the even steps between them: that is taken off"
+    unit = "" if table.units is None else f" {table.units.master.symbol}"
+    note = f"the master's positions are rounded to {grain:.6g}{unit}, {100 * grain / h:.2g} % of their even steps: that is taken off"
     return replace(table, x=begin + h * np.arange(table.points, dtype=np.float64), notes=(*table.notes, note))
 
 

@@ -311,10 +311,10 @@ def test_a_table_in_other_clothes_is_the_same_cam(text: str, told: str) -> None:
     assert told in " | ".join(found.notes)
 
 
-def listed(head: str, row: str, count: int, begin: float = 0.0, sign: float = 1.0) -> str:
+def listed(head: str, row: str, count: int, begin: float = 0.0, sign: float = 1.0, scale: float = 1.0) -> str:
     """Slave positions (mm) at even steps of a cycle, modulo their pitch where they begin elsewhere."""
     y = 1e3 * PROFILE(np.linspace(0.0, 0.6, 361))[:count]
-    y = sign * ((y + begin) % 400.0 if begin else y)
+    y = sign * scale * ((y + begin) % 400.0 if begin else y)
     return head + "".join(row.format(value) for value in y.tolist())
 
 
@@ -477,6 +477,7 @@ def test_slopes_that_are_none(slopes: str, message: str) -> None:
         ),
         (listed("", "{:.6f},\n", 360), "cycle,mm", "the list ends a step before the cycle"),
         (listed("", "{:.6f}\n", 361), "deg,mm", "one column of 361 numbers"),
+        (listed("", "{:.0f}\n", 361, scale=1e4), "cycle,0.0001 mm", "one column of 361 numbers"),
         (listed("Folgeachse (mm)\n", "{:.6f}\n", 360, 123.4).replace(".", ","), None, "unwrapped by that"),
         (listed("", "{:.6f} mm\n", 361, sign=-1.0), None, "its sign was turned"),
     ],
