@@ -97,27 +97,25 @@ def peak_rss() -> int:
 
 def make(book: Book, combination: Combination) -> tuple[Entry, dict[str, str]]:
     """Make one combination; its entry and the texts of its files by name."""
-    number = combination.number
+    number, limit = combination.number, None
     try:
         job = book.job(combination)
-    except InputError as error:
-        return _no_job(number, error, None), {}
-    limit = _limit(job) if combination.first else None
-    try:
-        design = _designed(job)
+        limit = _limit(job) if combination.first else None
+        return _exported(number, _designed(job), book.targets, limit)
     except InfeasibleError as error:
         return Entry(number, "infeasible", binding=error.binding, reason="\n".join(error_words(error)), limit=limit), {}
     except InputError as error:
         return _no_job(number, error, limit), {}
     except SolverError as error:
         return Entry(number, "failed", reason="\n".join(error_words(error)), limit=limit), {}
-    return _exported(number, design, book.targets, limit)
 
 
 def _row(book: Book, number: int) -> tuple[Entry, dict[str, str]]:
     """Make one combination; what nobody foresaw is its row, and the book goes on."""
     try:
-        return make(book, book.combination(number))
+        entry, texts = make(book, book.combination(number))
+        entry.to_json()  # a line with a number that is none could not be kept
+        return entry, texts
     except Exception as error:  # noqa: BLE001 - whatever it is, the other rows are none the worse for it
         return Entry(number, "failed", reason=unforeseen(error)), {}
 

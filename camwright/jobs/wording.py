@@ -81,4 +81,6 @@ def unforeseen(error: Exception) -> str:
     while trace is not None and trace.tb_next is not None:
         trace = trace.tb_next
     where = "" if trace is None else f" (in {trace.tb_frame.f_code.co_name})"
-    return f"a fault of camwright, not of the job: {type(error).__name__}: {error}{where}; report it with the job file"
+    # a lone surrogate would end the file that the words are written to
+    told = "".join(each if each.isprintable() or each.isspace() else ascii(each)[1:-1] for each in str(error))
+    return f"a fault of camwright, not of the job: {type(error).__name__}: {told}{where}; report it with the job file"

@@ -5,12 +5,14 @@ from __future__ import annotations
 import csv
 import hashlib
 import json
+import math
 import re
 import shutil
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from html import unescape
 from pathlib import Path
+from typing import Any
 
 import openpyxl
 import pytest
@@ -33,11 +35,12 @@ from camwright.profiles.errors import (
     InputError,
     SolverError,
 )
+from camwright.profiles.mark_range import MarkRange
 from camwright.profiles.objective import CommandObjective, of_command
 from camwright.profiles.task import Task
 from camwright.stored.design_file import read_design
 from camwright.validation.production.line_ramp import line_ramp
-from camwright.validation.report import judge
+from camwright.validation.report import ValidationReport, judge
 
 
 @pytest.fixture(scope="module")
@@ -392,6 +395,59 @@ def test_an_error_that_nobody_foresaw_is_the_row_of_its_job(tmp_path: Path, monk
     before = contents(root)
     again = make_book(small_book(), root, inline_crew(), resume=True)
     assert (again.counts.failed, again.resumed) == (1, 12)
+    assert contents(root) == before
+
+
+def without_a_number(report: ValidationReport) -> ValidationReport:
+    """Give a report whose peak speed is no number."""
+    return replace(report, tool=replace(report.tool, peak_speed=math.nan))
+
+
+def raises(error: Exception) -> Callable[[object], object]:
+    """Make what a call gives that ends in an error."""
+
+    def end(_given: object) -> object:
+        raise error
+
+    return end
+
+
+@pytest.mark.parametrize(
+    ("point", "becomes", "words"),
+    [
+        ("judge", without_a_number, "not JSON compliant"),
+        ("fastest_line", lambda _: (math.nan, "speed"), "float"),
+        ("next_lengths", lambda _: MarkRange(math.nan, None), "not JSON compliant"),
+        ("solve_job", raises(ValueError("\udc80\x00\x1b[31m")), "ValueError: \\udc80\\x00\\x1b[31m"),
+        ("fastest_line", raises(SolverError("no end")), "no end"),
+        ("next_lengths", raises(SolverError("no end")), "no end"),
+        ("export_possible", raises(MemoryError()), "MemoryError"),
+    ],
+)
+def test_whatever_a_design_ends_in_is_its_row(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    point: str,
+    becomes: Callable[[Any], object],
+    words: str,
+) -> None:
+    """At any depth: a number that is none, a text that no file can hold, a solver without an answer."""
+    own, calls = getattr(making, point), []
+
+    def once(*given: object, **named: object) -> object:
+        calls.append(1)
+        found = own(*given, **named)
+        return becomes(found) if len(calls) == 1 else found
+
+    monkeypatch.setattr(making, point, once)
+    root, book = tmp_path / "book", plan_book(load_job(JOB), "600", "60:80:20", [], "csv")
+    answer = make_book(book, root, inline_crew())
+    assert answer.exit_code == 4
+    assert [row["status"] for row in rows(root)] == ["failed", "passed"]
+    assert words in rows(root)[0]["reason"]
+    assert len(rows(root, "limits.csv")) == 1
+    before = contents(root)
+    assert make_book(book, root, inline_crew(), resume=True).exit_code == 4
     assert contents(root) == before
 
 
