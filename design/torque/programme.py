@@ -20,7 +20,7 @@ import numpy as np
 from camwright.design.line.forms import ramp_forms
 from camwright.design.returns.ipopt import QUIET
 from camwright.design.torque.task import Pattern, TorqueTask
-from camwright.design.torque.watch import WatchedSolver
+from camwright.design.torque.watch import MOST_AT_FIRST, MOST_MULTIPLIER, WatchedSolver
 from camwright.design.torque.zone import Zone, available_torque
 from camwright.profiles.objective import MOTION_OBJECTIVES
 from camwright.profiles.polynomial.profile import FloatArray
@@ -370,6 +370,7 @@ class TorqueProgramme:
             start[bound] = upper[bound]
         equal, above = self._rows
         low, high = self._paces()
+        self._watched.watch.most = MOST_AT_FIRST if rough else MOST_MULTIPLIER
         try:
             answer = self._watched.solver(
                 x0=start / self._layout.units,

@@ -15,6 +15,8 @@ import numpy as np
 
 MOST_MULTIPLIER = 1e12
 """Multiplier (scaled) beyond which a programme is held to have no answer."""
+MOST_AT_FIRST = 1e9
+"""The same for a first look, which has other starts: on the way to there a factorisation takes a minute where limits leave no room."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +39,7 @@ class MultiplierWatch(ca.Callback):
     def __init__(self, unknowns: int, rows: int, parameters: int) -> None:
         """Make the watch of a programme of so many unknowns, constraints and parameters."""
         ca.Callback.__init__(self)
+        self.most = MOST_MULTIPLIER
         self._sizes = {"x": unknowns, "f": 1, "g": rows, "lam_x": unknowns, "lam_g": rows, "lam_p": parameters}
         self.construct("multiplier_watch", {})
 
@@ -59,4 +62,4 @@ class MultiplierWatch(ca.Callback):
     def eval(self, given: Sequence[ca.DM]) -> list[float]:
         """Tell whether to end: where a multiplier of a constraint has run away."""
         multipliers = np.asarray(given[self.index_in("lam_g")])
-        return [float(not np.abs(multipliers).max(initial=0.0) < MOST_MULTIPLIER)]
+        return [float(not np.abs(multipliers).max(initial=0.0) < self.most)]
