@@ -37,8 +37,8 @@ from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import assemble
 from camwright.profiles.task import Task
 
-# Share of a peak that its smoothest motion may give away.
-KEPT_PEAK = 1e-6
+# Share of a peak that its smoothest motion may give away; an RMS that is less by as little comes of that alone, not of another motion.
+KEPT_PEAK, SMOOTHER = 1e-6, 1e-5
 
 
 @dataclass(frozen=True)
@@ -318,7 +318,7 @@ def _smoothest(problem: ReturnProblem, back: CamProfile, zone: float) -> CamProf
         smooth, _, _ = solve_return(within)
     except SolverError:
         return back
-    better = objective_value(smooth, "rms_acceleration") < objective_value(back, "rms_acceleration")
+    better = objective_value(smooth, "rms_acceleration") < (1 - SMOOTHER) * objective_value(back, "rms_acceleration")
     return smooth if better and objective_value(smooth, problem.objective) <= peak * (1 + KEPT_PEAK) else back
 
 

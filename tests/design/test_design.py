@@ -84,7 +84,7 @@ def check_cycle(result: Solution, machine: RotaryKnife, cut: Cut, limits: Limits
     slope = limits.acceleration / cut.line_speed**2
     assert np.abs(profile.jumps(2)).max() <= 1e-9 * slope
     for start, end in cut.sync_parts:
-        low, high = profile.extrema(1, start, end)
+        low, high = profile.restrict(start, end).extrema(1)
         assert abs(low.value - 1.0) <= 1e-12 or low.at in (start, end)  # the side of the return at the zone's ends
         inside = np.linspace(start, end, 52)[1:-1]
         assert np.abs(profile(inside, 1) - 1.0).max() <= 1e-12
@@ -514,6 +514,15 @@ def test_least_jerk_is_the_closed_form() -> None:
     machine, cut, limits = PAPER
     result = solve(Task(machine, cut, limits), "peak_jerk")
     assert result.minimised == pytest.approx(least_jerk(0.2, 0.3, 80 / 60, 30.0), rel=1e-7)
+
+
+def test_the_only_motion_of_least_peak_jerk_is_left_as_it_is() -> None:
+    cut = Cut(0.5, 0.5, 0.09, 0.01, 0.05, 2e-4)
+    task = Task(RotaryKnife(0.8, blades=2, sync="horizontal"), cut, Limits(200 / 60, 60.0, 5000.0))
+    back = solve(task, "peak_jerk").back
+    jerk = back(back.breaks[:-1], 3)
+    assert back.pieces == 3
+    assert jerk == pytest.approx(abs(jerk[1]) * np.array([-1.0, 1.0, -1.0]), rel=1e-8)
 
 
 @pytest.mark.parametrize("status", SolveStatus)
