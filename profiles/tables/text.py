@@ -15,6 +15,8 @@ LONGEST_LINE = 20_000
 MOST_LINES = 40_000
 
 _CONTROL = re.compile(r"[\x00-\x08\x0b\x0e-\x1f\x7f]")
+_EASTERN = ("時間", "位置", "位相", "変位", "主軸", "従軸", "從軸", "指令", "現在", "角度")
+"""Words of headings by which Japanese and Taiwanese codes are known: of other texts they come out of none."""
 _WORKBOOKS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")
 """How files of spreadsheets begin, packed ones and older ones."""
 _HIGH = re.compile(rb"[\x80-\xff]+")
@@ -53,7 +55,8 @@ def decode(data: bytes, place: str, most: int = LARGEST_FILE) -> str:
     r"""Turn a table file's bytes into text with ``\n`` line ends.
 
     UTF-8 with or without a byte order mark; UTF-16, which has a zero in every second byte if it has no mark; what is
-    neither is GBK if all its bytes beyond ASCII stand in pairs of that code, else the Windows code page 1252.
+    neither is Shift JIS or Big5 where that gives words of headings, GBK if all its bytes beyond ASCII stand in pairs of
+    that code, else the Windows code page 1252.
     """
     if len(data) > most:
         raise refuse(place, None, f"the file is larger than {most} bytes; no cam table of a drive is")
@@ -85,6 +88,10 @@ def text_of(data: bytes, place: str) -> str:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError:
         pass
+    for code in ("cp932", "big5"):
+        text = data.decode(code, "ignore")
+        if any(word in text for word in _EASTERN):
+            return text
     runs = _HIGH.findall(data)
     if all(_GB2312.fullmatch(run) for run in runs):
         try:

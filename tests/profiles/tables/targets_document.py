@@ -105,7 +105,7 @@ its help tells no more than the name. Of Omron, Inovance and Delta no layout is 
 read like anybody's.
 
 Columns of numbers may be separated by commas, semicolons, tabs, bars or blanks, with a decimal point or comma, in quotes,
-with `sep=;`, with an index column, in UTF-8, UTF-16, GBK or code page 1252. Headings may take several lines; units stand
+with `sep=;`, with an index column, in UTF-8, UTF-16, GBK, Shift JIS, Big5 or code page 1252. Headings may take several lines; units stand
 in brackets, behind the name, in a line of their own, or behind each number (one unit a column). Columns are known by words in
 English, German, Chinese, Japanese, Italian, French and Spanish. Exponents may be Fortran's (`1.0D-3`), signs those of word
 processors and Asian keyboards; comments stand behind `#`, `!`, `//`, or `;` where that does not separate cells. Thousands that

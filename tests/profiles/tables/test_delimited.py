@@ -259,3 +259,21 @@ def test_a_workbook_is_called_one(head: bytes) -> None:
         InputError, match="t: this is a workbook of a spreadsheet, or another packed file; save the sheet as CSV"
     ):
         decode(head + bytes(40), "t")
+
+
+@pytest.mark.parametrize("code", ["cp932", "utf-8", "utf-16"])
+def test_japanese_headings_in_their_codes(code: str) -> None:
+    text = "時間[ms],指令位置[mm],現在位置[mm]\n0,0,0\n1,2,1\n2,4,3\n"
+    assert read_trace_csv(decode(text.encode(code), "t"), "t").actual.tolist() == [0.0, 1e-3, 3e-3]
+
+
+@pytest.mark.parametrize("code", ["big5", "gbk"])
+def test_chinese_headings_in_their_codes(code: str) -> None:
+    text = "從軸(mm),主軸(mm)\n" if code == "big5" else "从轴(mm),主轴(mm)\n"
+    found = read_cam_csv(decode((text + "0,0\n1,2\n3,4\n5,6\n").encode(code), "t"), "t")
+    assert found.x.tolist() == pytest.approx([0.0, 2e-3, 4e-3, 6e-3])
+
+
+def test_umlauts_are_no_kanji() -> None:
+    text = "Länge über Führung [mm];Folgeachse Größe [mm]\n"
+    assert decode(text.encode("cp1252"), "t") == text
