@@ -148,7 +148,7 @@ def staged(directory: Path, settle: Callable[[Path], Changes] = no_changes) -> I
     except OSError as error:
         _take_back(aside, made)
         raise InputError(
-            f"{directory}: the files cannot be written: {_reason(error)}; nothing was left there; choose another --out"
+            f"{directory}: the files cannot be written: {_reason(error)}; what was there is as it was; choose another --out"
         ) from error
     except BaseException:
         _take_back(aside, made)

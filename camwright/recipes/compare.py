@@ -201,6 +201,7 @@ _SPEED_UNITS = {
     "rms_torque": "N m",
     "following_error": "m",
     "sync_error": "m",
+    "worst_sync_error": "m",
     "length_offset": "m",
     "length_offset_with_lead": "m",
     "length_variation": "m",

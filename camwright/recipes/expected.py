@@ -10,6 +10,7 @@ import numpy as np
 
 from camwright.house.progress import Step, ignore
 from camwright.jobs.job import Job
+from camwright.jobs.servos import servos_of
 from camwright.profiles.cut import Cut
 from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.polynomial.profile import CamProfile
@@ -36,6 +37,7 @@ from camwright.validation.check import Check
 from camwright.validation.motion import measure_motion
 from camwright.validation.motor import measure_motor
 from camwright.validation.report import ValidationReport, judge
+from camwright.validation.servo.line_speeds import line_speed_errors
 from camwright.validation.servo.response import servo_response
 
 STEPS = 5
@@ -137,6 +139,7 @@ def at_speeds(profile: CamProfile, job: Job, report: ValidationReport) -> tuple[
     """
     stable = spectral_radius(job.servo) < 1.0
     rows = []
+    worst = _worst_errors(profile, job) if stable else {}
     errors = {error.share: error for error in report.length_errors}
     for share in SHARES:
         task = job.task.at_speed(share * job.cut.line_speed)
@@ -158,9 +161,19 @@ def at_speeds(profile: CamProfile, job: Job, report: ValidationReport) -> tuple[
                 length_offset=error.offset if error else None,
                 length_offset_with_lead=error.offset_with_lead if error else None,
                 length_variation=error.variation if error else None,
+                worst_sync_error=worst.get(share),
             )
         )
     return tuple(rows)
+
+
+def _worst_errors(profile: CamProfile, job: Job) -> dict[float, float]:
+    """Find the greatest sync error of all servos of a job's ranges (m) by share of the line speed; nothing where it gives none."""
+    servos = servos_of(job)
+    if len(servos) == 1:
+        return {}
+    speeds = job.cut.line_speed * np.array(SHARES)
+    return dict(zip(SHARES, line_speed_errors(profile, job.task, servos, speeds).max(axis=0).tolist(), strict=True))
 
 
 SHARES = (0.1, 0.25, 0.5, 1.0)

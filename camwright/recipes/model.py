@@ -101,6 +101,8 @@ class AtSpeed:
         As `camwright.validation.servo.lead.LengthError` (m): mean sync error in the shear zone, positive where the tool is late and
         the piece too
         long; the same with the recipe's lead time set; what changes from cut to cut.
+    worst_sync_error
+        The greatest sync error with any servo at the corners of the job's ranges (m); ``None`` where the job gives none.
     """
 
     share: float
@@ -116,6 +118,7 @@ class AtSpeed:
     length_offset: float | None
     length_offset_with_lead: float | None
     length_variation: float | None
+    worst_sync_error: float | None = None
 
 
 @dataclass(frozen=True, config=_STRICT)

@@ -31,6 +31,9 @@ def recipe_text(recipe: Recipe) -> str:
         del data["particulars"]  # recipes of versions that knew none read as they were written
     if not recipe.start_tables:
         del data["start_tables"]
+    for row in data["speeds"]:
+        if row["worst_sync_error"] is None:
+            del row["worst_sync_error"]
     return canonical(data)
 
 

@@ -142,12 +142,14 @@ def speed_columns(recipe: Recipe) -> list[tuple[str, str, str]]:
         ("column.rms_torque", "rms_torque", "N m"),
         ("column.following_error", "following_error", "m"),
         ("column.sync_error", "sync_error", "m"),
+        ("column.worst_sync_error", "worst_sync_error", "m"),
         ("column.length_offset", "length_offset", "m"),
         ("column.length_offset_with_lead", "length_offset_with_lead", "m"),
         ("column.length_variation", "length_variation", "m"),
     ]
-    moved = any(row.peak_torque is not None for row in recipe.speeds)
-    return [column for column in columns if moved or "torque" not in column[1]]
+    lacking = ["peak_torque", "rms_torque"] if all(row.peak_torque is None for row in recipe.speeds) else []
+    lacking += ["worst_sync_error"] if all(row.worst_sync_error is None for row in recipe.speeds) else []
+    return [column for column in columns if column[1] not in lacking]
 
 
 def _speeds(recipe: Recipe, words: Catalogue) -> list[Block]:

@@ -388,7 +388,7 @@ def test_a_full_disk_ends_with_2_and_leaves_nothing(tmp_path: Path) -> None:
         check=False,
     )
     assert run.returncode == 2
-    assert "the files cannot be written: File too large; nothing was left there" in run.stderr
+    assert "the files cannot be written: File too large; what was there is as it was" in run.stderr
     assert "Traceback" not in run.stderr
     assert list(tmp_path.iterdir()) == []
 

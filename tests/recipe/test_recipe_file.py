@@ -19,17 +19,24 @@ from camwright.profiles.closed_forms.reach import greatest_reach
 from camwright.profiles.errors import InputError
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import RotaryKnife
+from camwright.profiles.returns import baseline
+from camwright.profiles.servo_tolerance import ServoTolerance
 from camwright.profiles.task import Task
 from camwright.recipes import build, expected
 from camwright.recipes.build import MadeRecipe, designed, make_recipe
+from camwright.recipes.catalogue import Catalogue, catalogue
+from camwright.recipes.expected import at_speeds
+from camwright.recipes.model import Recipe
 from camwright.recipes.recipe_file import (
     parse_recipe,
     recipe_schema,
     recipe_text,
     stored_design,
 )
+from camwright.recipes.sheet import sheet
 from camwright.recipes.working_range import can_rest, longest_cut, stopping_distance
 from camwright.studies.reach import reach
+from camwright.validation.report import judge
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -209,3 +216,28 @@ def test_a_slave_that_comes_back_without_a_guide_can_wait_at_rest(paper_design) 
     task = paper_design.job.task.with_machine(Swinging(0.4))
     assert can_rest(task)
     assert longest_cut(task).value is None
+
+
+def test_the_worst_servo_of_the_ranges_stands_beside_the_sync_error(made: MadeRecipe) -> None:
+    """A sheet of a job with ranges has a row of it; one of a job without has none, nor has its recipe.json the key."""
+    assert "worst_sync_error" not in recipe_text(made.recipe)
+    servo = load_job().servo
+    job = replace(load_job(), servo_tolerance=ServoTolerance((100.0, 140.0), *((end, end) for end in (
+        servo.damping, servo.position_gain, servo.sample_time, servo.dead_time
+    ))))  # fmt: skip
+    cam = baseline("cycloid", job.task)
+    rows = at_speeds(cam, job, judge(cam, job.task, servo))
+    pairs = [(row.worst_sync_error or 0.0, row.sync_error or 0.0) for row in rows]
+    assert all(worst >= own * (1 - 1e-6) for worst, own in pairs)
+    assert pairs[-1][0] > 1.1 * pairs[-1][1]
+    words = catalogue("en")
+    shown = [row[0] for row in _speed_rows(replace(made.recipe, speeds=rows), words)]
+    assert words("column.worst_sync_error") in shown
+    assert words("column.worst_sync_error") not in [row[0] for row in _speed_rows(made.recipe, words)]
+
+
+def _speed_rows(recipe: Recipe, words: Catalogue) -> list[list[str]]:
+    """Rows of what to expect at lower line speeds."""
+    return next(each for each in sheet(recipe, words)["sections"] if each["key"] == "section.speeds")["blocks"][0][
+        "rows"
+    ]

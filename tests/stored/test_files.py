@@ -64,7 +64,7 @@ def test_nothing_is_left_when_the_work_fails(tmp_path: Path, failure: BaseExcept
         work()
     assert tree(tmp_path) == {}
     if isinstance(failure, OSError):
-        assert "the files cannot be written: No space left on device; nothing was left there" in str(caught.value)
+        assert "the files cannot be written: No space left on device; what was there is as it was" in str(caught.value)
 
 
 def test_many_files_are_brought_to_the_disk_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
