@@ -272,9 +272,8 @@ def _solve_for_motor(task: Task, objective: CommandObjective, suggest: bool, tho
         ]
         found += _within_rectangle(task.with_limits(rectangles[int(np.argmin(rough))]), objective, thorough)
     easiest = None
-    # a rectangle says little where the torque depends on the place, or where friction helps to brake, so that the slave may stand
-    rubs = machine.friction > 0 and decisive is None
-    if not found or rubs or not machine.constant_inertia:
+    # a rectangle says little where the torque depends on the place, and of energy, or where friction helps to brake, not all
+    if not found or decisive is None or not machine.constant_inertia:
         easiest = None if found and machine.constant_inertia else least_load(task)
         starts = [solution.back for solution in found] + ([] if easiest is None else [easiest.back])
         within = solve_within_curve(task, decisive or objective, starts)
