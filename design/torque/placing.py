@@ -8,6 +8,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
+from camwright.design.feasible.feasibility import is_feasible
 from camwright.design.place import Placement, is_smooth
 from camwright.design.returns.problem import return_problem
 from camwright.design.torque.guesses import ANYHOW, from_path
@@ -31,6 +32,8 @@ COARSE, FINE = 40, 120
 """Intervals of the scan, and of the search about its best places."""
 SCANNED = 1e-3
 """Accuracy of the solver on the scan, scaled: it tells valleys, whose floors are then looked for."""
+EDGE = 1e-6
+"""Accuracy of the places beyond which no motion keeps the limits (rad)."""
 APART = 0.02
 """Places that differ by less are one (rad)."""
 NEAR = 0.05
@@ -60,6 +63,7 @@ def place_by_objective(task: Task, aim: Aim, curve: MotorCurve | None = None) ->
     least, greatest = task.machine.place_range(task.cut)
     room = MARGIN * (greatest - least)
     looked = np.linspace(least + room, greatest - room, PLACES)
+    looked = np.sort(np.concatenate([looked, _edges(task, looked)]))
     tasks = [placed for placed in (task.placed_at(float(place)) for place in looked) if is_smooth(placed)]
     if len(tasks) < LEAST_PLACES:
         return None
@@ -95,6 +99,26 @@ def place_by_objective(task: Task, aim: Aim, curve: MotorCurve | None = None) ->
     apart = {round(_middle(task.machine, answer) / APART) for answer in found_valleys}
     apart |= {round(float(places[k]) / APART) for k in valleys if answers[k].value > best * (1 + NEAR)}
     return Placement(task.placed_at(at), deepest.value, len(apart))
+
+
+def _edges(task: Task, places: FloatArray) -> list[float]:
+    """Places just inside those beyond which no motion keeps the limits, between neighbouring places: there the objective may be least."""
+
+    def feasible(place: float) -> bool:
+        placed = task.placed_at(place)
+        return is_smooth(placed) and is_feasible(placed)
+
+    able = [feasible(float(place)) for place in places]
+    found = []
+    for k in range(len(places) - 1):
+        if able[k] == able[k + 1]:
+            continue
+        inside, outside = (float(places[k]), float(places[k + 1]))[:: 1 if able[k] else -1]
+        while abs(outside - inside) > EDGE:
+            middle = 0.5 * (inside + outside)
+            inside, outside = (middle, outside) if feasible(middle) else (inside, middle)
+        found.append(inside)
+    return found
 
 
 class _Descent:

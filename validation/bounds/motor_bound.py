@@ -24,8 +24,8 @@ from camwright.validation.bounds.path_dual import (
 )
 from camwright.validation.bounds.path_limits import least_square_limited
 from camwright.validation.bounds.path_task import PathTask
-from camwright.validation.bounds.path_tubes import least_square_in_tubes
-from camwright.validation.bounds.path_turns import Around, turning_square_around
+from camwright.validation.bounds.path_tubes import least_in_tubes
+from camwright.validation.bounds.path_turns import Around, turning_peak_around, turning_square_around
 from camwright.validation.motion import greatest_magnitude
 from camwright.validation.motor import motor_torque, work_drawn
 
@@ -43,14 +43,14 @@ PLACES = 2001
 """Places of the path at which the inertia is taken."""
 NEAR = 2e-3
 """Share of the mean square below which nothing is left to be proved."""
-LOOSE = 0.08
-"""Share of the mean square below which a bound that knows the jerk is asked too."""
+LOOSE = 0.05
+"""Share of the mean square or the energy below which a bound that knows the jerk is asked too."""
 KNOWN = 0.02
 """Share of the energy within which a closed form is good enough."""
 EDGE = 5e-3
 """Share by which a peak may lie above that of the zone to need no other bound."""
-PEAKS = (0.993, 0.98, 0.96, 0.93, 0.9, 0.86, 0.82, 0.76, 0.7, 0.6, 0.5)
-"""Shares of a peak that are tried for the greatest that is proved to be too low."""
+PEAKS = (0.97, 0.91, 0.85, 0.7)
+"""Shares of a peak that are tried for the greatest that is proved to be too low, as long as the tubes prove less."""
 
 
 def motor_bound(profile: CamProfile, task: Task, objective: MotorObjective, motion: Bound) -> Bound:
@@ -164,15 +164,19 @@ def _along_path(profile: CamProfile, task: Task, objective: MotorObjective) -> B
         first, last = path.energies
         rubbed = path.friction * path.way
         turning = last + max(rubbed - first, 0.0) if turns else math.inf
-        back = min(least_drawn(path, found), turning) if found > 0 else 0.0
-        return Bound(zone + max(back, (rubbed + last - first) * (1 - ROUNDING)), PATH)
+        back, method = _least_drawn(path, found) if found > 0 else (0.0, PATH)
+        back = min(back, turning)
+        return Bound(zone + max(back, (rubbed + last - first) * (1 - ROUNDING)), method)
     zone = _zone_peak(profile, task)
     greatest = greatest_magnitude(torque, 0).value
     if greatest <= zone * (1 + EDGE):
         return Bound(zone, ZONE)
-    turning = turning_peak(path, _everywhere(task)) / ratio if turns else math.inf
-    back = min(_least_peak(path, zone * ratio, greatest * ratio) / ratio, turning)
-    return Bound(zone, ZONE) if zone >= back else Bound(back, PATH)
+    level = greatest * ratio
+    if turns:
+        turning = turning_peak(path, _everywhere(task))
+        level = min(level, max(turning, turning_peak_around(path, _around(task), level)))
+    back, method = _least_peak(path, zone * ratio, level)
+    return Bound(zone, ZONE) if zone >= back / ratio else Bound(back / ratio, method)
 
 
 def _everywhere(task: Task) -> FloatArray:
@@ -212,18 +216,27 @@ def _least_square(path: PathTask, level: float) -> tuple[float, str]:
         if seen > found:
             found, method = seen, STANDING if below < level and seen > 0.999 * below else PATH
     if found < level * (1 - LOOSE) and math.isfinite(path.acceleration):
-        return max((found, method), (least_square_in_tubes(path, level), TUBES))
+        return max((found, method), (least_in_tubes(path, "square", level), TUBES))
     return found, method
 
 
-def _least_peak(path: PathTask, low: float, high: float) -> float:
-    """Greatest of a ladder of peaks that is proved to be too low, from that of a motion down to one of the zone, which it is if none is."""
+def _least_drawn(path: PathTask, level: float) -> tuple[float, str]:
+    """Bound of the energy drawn on the way, at most the level, and the better road's name."""
+    found = least_drawn(path, level), PATH
+    if found[0] < level * (1 - LOOSE) and math.isfinite(path.acceleration):
+        return max(found, (least_in_tubes(path, "drawn", level), TUBES))
+    return found
+
+
+def _least_peak(path: PathTask, low: float, high: float) -> tuple[float, str]:
+    """Bound of the peak torque on the way, at most the high one, and its road; the low one, that of the zone, if it is none."""
+    found = least_in_tubes(path, "peak", high) if math.isfinite(path.acceleration) else 0.0
     for share in PEAKS:
-        if high * share <= low:
+        if high * share <= max(low, found):
             break
         if no_motion_below(path, high * share):
-            return high * share
-    return low
+            return high * share, PATH
+    return max((found, TUBES), (low, ZONE))
 
 
 def _zone_peak(profile: CamProfile, task: Task) -> float:

@@ -201,13 +201,11 @@ def _bound(task: PathTask, tube: Tube, kind: str, level: float, least: float) ->
         weights = _best(spline, x, y, kind, level)
         if weights is None:
             break
-        broken, beyond = _broken(spline, far_x, far_y, weights, kind, level)
+        broken = _broken(spline, far_x, far_y, weights, kind, level)
         # a motion passes each place once, at the worst energy at most
         worst_there = np.maximum(broken.reshape(LOOKED[1], LOOKED[0]).max(axis=0), 0.0)
         cost = float(np.trapezoid(worst_there, far_x[: LOOKED[0]])) * spline.whole
-        # a φ_E from -1 - b to b is put into its range: b E is taken off, and the rest divided
-        first, last = task.energies
-        value = max(value, (float(ends @ weights) - cost + beyond * (last - first)) / (1.0 + 2.0 * beyond))
+        value = max(value, float(ends @ weights) - cost)
         if cost <= SMALL * unit or value + cost < least or value >= (0.0 if kind == "peak" else level):
             break
         worst = np.argsort(broken)[-MORE:]
@@ -265,6 +263,32 @@ class _Spline:
         by_s = by_s + weights[-1] * self.inertia(x) / 2 / np.sqrt(energy)
         return by_s - self.rubbed(x) * by_energy, by_energy
 
+    def rises(self) -> tuple[FloatArray, FloatArray]:
+        """Coefficients of the spline's derivative across the tube, a row each, and the least of them for ``φ_E >= -1`` everywhere.
+
+        The derivative over the speed's share is a spline whose coefficients are not negative where it is not, and ``φ_E >= -1`` is one
+        that is linear in the share. Those of no place of the tube are left out.
+        """
+        bottom, top = self._range
+        along, across = self._knots
+        room = top - bottom
+        middle = 0.5 * (across[2:-3] + across[3:-2])
+        low, high = (side**_POWER for side in (self._tube.low, self._tube.high))
+        rows, least = [], []
+        for i in range(KNOTS[0] + 3):
+            inside = (self._s >= along[i] * self.whole) & (self._s <= along[i + 4] * self.whole)
+            bounds = float(low[inside].min()), float(high[inside].max())
+            for j in range(KNOTS[1] + 2):
+                first, last = (bottom + room * float(across[k]) for k in (j + 1, j + 4))
+                if last < bounds[0] or first > bounds[1]:
+                    continue
+                row = np.zeros((KNOTS[0] + 3) * (KNOTS[1] + 3) + 1)
+                at = i * (KNOTS[1] + 3) + j
+                row[at : at + 2] = np.array([-3.0, 3.0]) / (across[j + 4] - across[j + 1])
+                rows.append(row)
+                least.append(-2.0 * room * (bottom + room * float(middle[j])))
+        return np.array(rows), np.array(least)
+
     def ends(self) -> FloatArray:
         """Give what the bound is made of: the spline at the start less that at the end, less ``λ`` times the time."""
         bottom, top = self._range
@@ -303,14 +327,14 @@ def _parts(spline: _Spline, x: FloatArray, energy: FloatArray) -> tuple[FloatArr
 
 def _broken(
     spline: _Spline, x: FloatArray, energy: FloatArray, weights: FloatArray, kind: str, level: float
-) -> tuple[FloatArray, float]:
-    """By how much the inequality is broken at places, per stretched length; for energy drawn also how far ``φ_E`` leaves its range."""
+) -> FloatArray:
+    """By how much the inequality is broken at places, per stretched length."""
     linear, slope = spline.values(x, energy, weights)
     if kind == "square":  # φ_z² 9/64 with φ_z = φ_E 4/3 z^(1/3)
-        return np.asarray(0.25 * slope**2 * np.sqrt(energy) - linear), 0.0
+        return np.asarray(0.25 * slope**2 * np.sqrt(energy) - linear)
     if kind == "peak":
-        return np.asarray(level * np.sqrt(spline.inertia(x) / 2) * np.abs(slope) - linear), 0.0
-    return -linear, max(float(slope.max()), -1.0 - float(slope.min()), 0.0)
+        return np.asarray(level * np.sqrt(spline.inertia(x) / 2) * np.abs(slope) - linear)
+    return -linear
 
 
 def _best(spline: _Spline, x: FloatArray, energy: FloatArray, kind: str, level: float) -> FloatArray | None:
@@ -334,9 +358,11 @@ def _best(spline: _Spline, x: FloatArray, energy: FloatArray, kind: str, level: 
         cones = [clarabel.SecondOrderConeT(3)] * count
     elif kind == "drawn":
         scale = level / spline.whole
-        rows = np.vstack([-linear / scale, slope, -slope])
-        right = np.concatenate([np.zeros(2 * count), np.ones(count)])
-        cones = [clarabel.NonnegativeConeT(3 * count)]
+        rises, least = spline.rises()
+        rises, most = rises * unit / level, -least / level
+        rows = np.vstack([-linear / scale, rises, -rises])
+        right = np.concatenate([np.zeros(count + len(most)), most])
+        cones = [clarabel.NonnegativeConeT(len(right))]
     else:
         push = level * np.sqrt(spline.inertia(x) / 2)[:, None] * slope
         rows = np.vstack([push - linear, -push - linear]) / (level / spline.whole)

@@ -1,11 +1,12 @@
-"""Lower bound of the squared torque where acceleration and jerk are limited: a convex programme in a tube that it makes narrower itself.
+"""Lower bounds of torque and energy where acceleration and jerk are limited: a convex programme in a tube that it makes narrower itself.
 
 With ``w = u²`` over the place the acceleration is ``w' / 2`` and the jerk ``w'' √w / 2``, so a limit ``J`` of the jerk is
 ``|w''| <= 2 J / √w``. That is not convex in ``w``, but where ``w`` stays between two values the chord of ``1 / √w`` lies above it, and
 ``|w''| <= 2 J (α - β w)`` is. The time ``∫ dq / √w = T`` is no longer than that of the chord and no shorter than ``T``: both are
 convex too. On ``n`` cells the unknowns are ``w`` at the nodes and the means over the cells of ``w`` and ``√w``; then
 
-- of a cell the squared torque costs at least ``(ΔE)² / ∫ √w dq``, and it takes at least the time ``h² / ∫ √w dq`` (Jensen);
+- of a cell the squared torque costs at least ``(ΔE)² / ∫ √w dq``, and it takes at least the time ``h² / ∫ √w dq`` (Jensen); the energy
+  drawn is at least ``ΔE + F h``, the peak at least ``|ΔE| / h``;
 - the mean of ``w`` is that of its ends to ``h²/12`` of the greatest ``|w''|``;
 - the second difference of ``w`` is the mean of ``w''`` under a hat, the value of ``w`` there that of a straight line to ``h²/8`` of it,
 
@@ -20,20 +21,20 @@ import math
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from camwright.profiles.polynomial.profile import FloatArray
-from camwright.validation.bounds.path_dual import square_tube
+from camwright.validation.bounds.path_dual import drawn_tube, peak_tube, square_tube
 from camwright.validation.bounds.path_task import PathTask
 
 CELLS, INSIDE = 100, 8
 """Cells of the path, and parts of each in which the tube is known."""
 ASKED = tuple(range(5, 100, 5))
 """Nodes at which the programme is asked for the least and the greatest of ``w``."""
-LEVELS = (0.93, 0.82, 0.7)
+LEVELS = {"square": (0.93, 0.82, 0.7), "drawn": (0.98, 0.955, 0.925, 0.87), "peak": (0.99, 0.96, 0.91, 0.82, 0.7, 0.5)}
 """Shares of a level that are tried, until one is proved."""
 ROUNDS, STAYS = 5, 0.01
 """How often a tube is made narrower at most, and the share of the level by which that must raise the bound to go on."""
@@ -44,24 +45,37 @@ BENT = 1e30
 ROUNDING = 1e-9
 
 
-def least_square_in_tubes(task: PathTask, level: float) -> float:
-    """Lower bound of the integral of the squared torque over time, (N·m)² s, at most the level, of motions that never turn."""
+Kind = Literal["square", "drawn", "peak"]
+
+
+def least_in_tubes(task: PathTask, kind: Kind, level: float) -> float:
+    """Lower bound of a cost of motions that never turn, at most the level.
+
+    Parameters
+    ----------
+    task
+        The motion.
+    kind
+        The integral of the squared torque over time, (N·m)² s; the energy drawn (J); or the peak of the torque (N·m).
+    level
+        Cost of a motion.
+    """
     best = 0.0
-    for share in LEVELS:
+    for share in LEVELS[kind]:
         if best >= share:
             break
-        best = max(best, share * _share_proved(task, share * level))
+        best = max(best, share * _share_proved(task, kind, share * level))
     return best * level
 
 
-def _share_proved(task: PathTask, level: float) -> float:
+def _share_proved(task: PathTask, kind: Kind, level: float) -> float:
     """Share of a level, at most all, below which no motion is."""
-    tube = _tube(task, level)
+    tube = _tube(task, kind, level)
     best = 0.0
     for number in range(ROUNDS + 1):
         if tube.empty:
             return 1.0
-        programme = _Programme(tube)
+        programme = _Programme(tube, kind)
         before, best = best, max(best, programme.least_cost())
         if best >= 1.0 or number == ROUNDS or (number > 1 and best < before + STAYS):
             break
@@ -123,7 +137,7 @@ class _Tube:
         return replace(self, low=low, high=high)
 
 
-def _tube(task: PathTask, level: float) -> _Tube:
+def _tube(task: PathTask, kind: Kind, level: float) -> _Tube:
     """Tube of the motions below a level."""
     unit, mean = task.way / task.time, float(task.inertia.mean())
     places = np.linspace(0.0, 1.0, len(task.inertia))
@@ -136,14 +150,21 @@ def _tube(task: PathTask, level: float) -> _Tube:
         task.acceleration * task.way / unit**2,
         task.jerk * task.way**2 / unit**3,
         (task.slopes[0] * task.way / unit**2, task.slopes[1] * task.way / unit**2),
+        task.friction * task.way / (mean * unit**2),
     )
-    energies, half = square_tube(task, level), 0.5 * task.inertia * unit**2
+    tube_of = {"square": square_tube, "drawn": drawn_tube, "peak": peak_tube}[kind]
+    costs = {
+        "square": mean**2 * unit**4 / task.way**2 * task.time,
+        "drawn": mean * unit**2,
+        "peak": mean * unit**2 / task.way,
+    }
+    energies, half = tube_of(task, level), 0.5 * task.inertia * unit**2
     x = np.linspace(0.0, 1.0, CELLS * INSIDE + 1)
     low = np.interp(x, places, energies.low / half) * (1 - ROUNDING)
     high = np.interp(x, places, energies.high / half) * (1 + ROUNDING)
     for side in (low, high):
         side[0], side[-1] = (speed**2 for speed in scaled.speeds)
-    return _Tube(scaled, level / (mean**2 * unit**4 / task.way**2 * task.time), low, high)
+    return _Tube(scaled, level / costs[kind], low, high)
 
 
 @dataclass(eq=False)
@@ -196,7 +217,7 @@ _SIZE = 5 * CELLS + 1
 class _Programme:
     """The programme in a tube."""
 
-    def __init__(self, tube: _Tube) -> None:
+    def __init__(self, tube: _Tube, kind: Kind) -> None:
         import clarabel
         from scipy.sparse import csc_array
 
@@ -217,16 +238,19 @@ class _Programme:
         if math.isfinite(tube.scaled.jerk):
             _limit_jerk(rows, tube)
         rows.add_sum(_COST, np.full(CELLS, h), 1.0)
+        if kind != "square":
+            _state_cost(rows, tube, kind)
         limits = rows.count - equations
         # |(2 x, y - z)| <= y + z is x² <= y z, with (x, y, z) = (√w, w, 1), (1, √w, time), (torque, cost, √w)
         none: tuple[list[Any], list[Any], float] = ([], [], 2.0)
         rows.add_cones(([_MEAN], [-1.0], 1.0), ([_MEAN], [-1.0], -1.0), ([_ROOT], [-2.0], 0.0))
         rows.add_cones(([_ROOT, _TIME], [-1.0, -1.0], 0.0), ([_ROOT, _TIME], [-1.0, 1.0], 0.0), none)
-        force = tube.scaled.inertia / h / math.sqrt(tube.level)
-        torque: tuple[list[Any], list[Any], float] = ([_W + 1, _W], [-force[1:], force[:-1]], 0.0)
-        rows.add_cones(([_COST, _ROOT], [-1.0, -1.0], 0.0), ([_COST, _ROOT], [-1.0, 1.0], 0.0), torque)
+        if kind == "square":
+            force = tube.scaled.inertia / h / math.sqrt(tube.level)
+            torque: tuple[list[Any], list[Any], float] = ([_W + 1, _W], [-force[1:], force[:-1]], 0.0)
+            rows.add_cones(([_COST, _ROOT], [-1.0, -1.0], 0.0), ([_COST, _ROOT], [-1.0, 1.0], 0.0), torque)
         cones = [clarabel.ZeroConeT(equations), clarabel.NonnegativeConeT(limits)]
-        cones += [clarabel.SecondOrderConeT(3)] * (3 * CELLS)
+        cones += [clarabel.SecondOrderConeT(3)] * ((rows.count - equations - limits) // 3)
         settings = clarabel.DefaultSettings()
         settings.verbose = settings.presolve_enable = False
         right, quadratic = np.concatenate(rows.right), csc_array((_SIZE, _SIZE))
@@ -262,6 +286,20 @@ class _Programme:
             return None
         value = float(answer.obj_val_dual)
         return value - SAFE * max(1.0, abs(value))
+
+
+def _state_cost(rows: _Rows, tube: _Tube, kind: Kind) -> None:
+    """State what the cells cost as shares of the level: what they draw, or all of them the greatest force of any."""
+    force = 0.5 * tube.scaled.inertia * CELLS / tube.level
+    if kind == "drawn":
+        rows.add(
+            [_W + 1, _W, _COST], [force[1:], -force[:-1], -1.0], np.full(CELLS, -tube.scaled.friction / tube.level)
+        )
+        rows.add([_COST], [-1.0], np.zeros(CELLS))
+        return
+    for sign in (1.0, -1.0):
+        rows.add([_W + 1, _W, _COST], [sign * force[1:], -sign * force[:-1], -1.0], np.zeros(CELLS))
+        rows.add([_COST[1:], _COST[:-1]], [sign, -sign], np.zeros(CELLS - 1))
 
 
 def _limit_jerk(rows: _Rows, tube: _Tube) -> None:

@@ -19,6 +19,7 @@ import numpy as np
 
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.validation.bounds.path_convex import INTERVALS, PathDual
+from camwright.validation.bounds.path_reach import slowest
 from camwright.validation.bounds.path_task import PathTask
 
 RATIOS = 1.3, 1.05
@@ -26,6 +27,11 @@ RATIOS = 1.3, 1.05
 TURNS = 2
 """Pitches of the machine that a part is looked at; a longer one pays no time beyond."""
 PLACES = 2001
+MOST = 1e30
+"""Acceleration that counts as any."""
+PEAKS, STEP, SLOW = 9, 1.01, 2e-3
+"""Halvings of the peak of a motion that turns, ratio of neighbouring lengths, and the share that its sampling may be wrong by."""
+SAMPLED = 801
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 PRICES = 8
 """Prices of time that are tried."""
@@ -61,6 +67,68 @@ def turning_square_around(task: PathTask, around: Around, level: float) -> float
         if best < level:
             best = max(best, _in_lengths(task, around, level, ratio))
     return best
+
+
+def turning_peak_around(task: PathTask, around: Around, level: float) -> float:
+    """Lower bound of the peak torque of every motion that turns, at most the level.
+
+    With the torque at most ``P`` the kinetic energy changes by no more than ``P`` over the way, so each of the two ways to rest has a
+    least length, and every length a least time; between the two rests speed and acceleration leave a least time too.
+    """
+    low, high = 0.0, level
+    for _ in range(PEAKS):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if _may_turn(task, around, middle) else (middle, high)
+    return low
+
+
+def _may_turn(task: PathTask, around: Around, peak: float) -> bool:
+    """Tell whether the time may be enough for a motion that turns, of a peak of the torque."""
+    room = 0.5 * (task.greatest * task.time + task.way)
+    parts = [
+        _ways_to_rest(task, (inertia, around.pitch), state, (peak, room))
+        for inertia, state in (
+            (around.ahead, (task.speeds[0], task.slopes[0])),
+            (around.behind, (task.speeds[1], -task.slopes[1])),
+        )
+    ]
+    if not all(len(ends) for ends, _ in parts):
+        return False
+    (first, before), (last, after) = parts
+    short = task.way - first[1:, None] - last[1:]
+    over = first[:-1, None] + last[:-1] - task.way
+    left = np.maximum(np.maximum(short, over), 0.0)
+    # from rest to rest over what is left, by the acceleration or by the torque with the least inertia
+    push = min(task.acceleration, peak / float(np.min(around.ahead)))
+    between = np.maximum(left / task.greatest, 2.0 * np.sqrt(left / push))
+    return bool(float((before[:, None] + after + between).min()) <= task.time)
+
+
+def _ways_to_rest(
+    task: PathTask, inertia: tuple[FloatArray, float], state: tuple[float, float], within: tuple[float, float]
+) -> tuple[FloatArray, FloatArray]:
+    """Give neighbouring lengths of a way from a state to rest, and the least time of one between each two; none where there is no room.
+
+    The inertia is that at even places over a pitch, and the pitch; within a peak of the torque and a room.
+    """
+    (along, pitch), (peak, room) = inertia, within
+    q = np.linspace(0.0, room, SAMPLED)
+    held = np.interp(q % pitch, np.linspace(0.0, pitch, len(along)), along)
+    energy = 0.5 * held[0] * state[0] ** 2
+    braked = np.nonzero(slowest(q, state, task.acceleration, task.jerk) <= 0.0)[0]
+    least = max(energy / peak, float(q[max(int(braked[0]) - 1, 0)]) if len(braked) else math.inf)
+    if least >= room:
+        return np.empty(0), np.empty(0)
+    count = max(1, math.ceil(math.log(room / least) / math.log(STEP)))
+    ends = np.geomspace(least, room, count + 1)
+    pushed = np.minimum(2.0 * (energy + peak * q) / held, state[0] ** 2 + 2.0 * min(task.acceleration, MOST) * q)
+    ahead = np.maximum(ends[1:, None] - q, 0.0)
+    rest = np.minimum(2.0 * peak / held, 2.0 * task.acceleration) * ahead
+    speed = np.sqrt(np.minimum(np.minimum(pushed, rest), task.greatest**2))
+    pace = 1.0 / np.maximum(speed, SLOW * task.greatest)
+    spent = np.concatenate([np.zeros((count, 1)), np.cumsum(0.5 * (pace[:, 1:] + pace[:, :-1]), axis=1)], axis=1) * q[1]
+    times = [float(np.interp(way, q, row)) for way, row in zip(ends[:-1], spent, strict=True)]
+    return ends, np.array(times) * (1.0 - SLOW)
 
 
 def _in_lengths(task: PathTask, around: Around, level: float, ratio: float) -> float:

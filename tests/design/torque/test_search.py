@@ -16,7 +16,7 @@ from camwright.design.torque.guesses import ANYHOW, RESTING, from_profile, resti
 from camwright.design.torque.mesh import divide, remesh, spread
 from camwright.design.torque.path_starts import path_starts
 from camwright.design.torque.peaks import peaks
-from camwright.design.torque.placing import place_by_objective
+from camwright.design.torque.placing import _edges, place_by_objective
 from camwright.design.torque.programme import TorqueProgramme
 from camwright.design.torque.search import solve_torque, zone_peak
 from camwright.design.torque.task import TorqueTask
@@ -203,18 +203,32 @@ def test_no_peak_hides_between_the_points_of_the_programme() -> None:
 
 @pytest.mark.slow
 def test_a_corner_of_the_places_is_gone_down_to() -> None:
-    """A crank whose least peak lies at a corner: no place beside it is better by what is asked, half a per cent."""
+    """A crank whose least peak lies at a corner: no place beside it is better."""
     crank = CrankSlider(crank=0.11, rod=0.22, crank_inertia=1.0, carriage_mass=220.0)
     cut, limits = Cut(0.5, 0.465, 0.038, 0.01, 0.02, 1e-4), Limits(15.0, 44.0, 1800.0, reversal=False)
     task = Task(crank, cut, limits)
     found = solve(task, "peak_torque")
     assert found.profile.pieces < 400  # it was 591, more than a table of 400 points holds
-    for aside in (-0.03, -0.01, 0.01, 0.03):
+    for aside in (-0.01, -0.001, 0.001):
         try:
             other = solve(task.placed_at(found.machine.place + aside), "peak_torque")
         except InfeasibleError:
             continue
-        assert found.minimised <= other.minimised * (1 + 5e-3)
+        assert found.minimised <= other.minimised * (1 + 1e-4)
+
+
+@pytest.mark.slow
+def test_the_best_place_may_be_the_last_one_that_keeps_the_limits() -> None:
+    """The peak falls towards both ends of the places at which the zone keeps the acceleration; a scan that stops short of one misses it."""
+    crank = CrankSlider(crank=0.384, rod=2.21, crank_inertia=0.0434, carriage_mass=3.454, gear_ratio=9.33)
+    cut = Cut(0.875, 1.4036, 0.3148, 0.063, 0.2518, 6.3e-3, "return")
+    task = Task(crank, cut, Limits(48.7, 111.2, 36_160.0, reversal=True))
+    found = solve(task, "peak_torque")
+    least, greatest = task.machine.place_range(cut)
+    edges = _edges(task, np.linspace(least + 0.01, greatest - 0.01, 12))
+    assert len(edges) == 2
+    for place in (edges[0], edges[0] + 0.01, edges[1] - 0.01, edges[1]):
+        assert found.minimised <= solve(task.placed_at(place), "peak_torque").minimised * (1 + 1e-4)
 
 
 def test_a_mesh_shares_its_density_evenly() -> None:
