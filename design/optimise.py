@@ -230,7 +230,16 @@ def _solve_motion(task: Task, objective: MotionObjective, thorough: bool) -> tup
 
 
 def _second_opinion(task: Task, problem: ReturnProblem, back: CamProfile) -> tuple[CamProfile, int]:
-    """Look for a better return where the arcs of a structure could not be polished: on a mesh refined where the motion changes."""
+    """Look for a better return where the arcs of a structure could not be polished: on a mesh refined where the motion changes.
+
+    The least RMS jerk of a carriage is a convex programme; its optimum touches the end of the stroke where a grid of its own has no node.
+    """
+    if problem.objective == "rms_jerk" and task.machine.guide is not None:
+        meshed = ramped_return(task, problem, back)
+        returns = (
+            back if meshed is None else min(back, meshed, key=lambda each: objective_value(each, problem.objective))
+        )
+        return returns, 0
     try:
         found = solve_torque(TorqueTask(task, problem, problem.objective))
     except SolverError:

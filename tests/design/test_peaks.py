@@ -14,6 +14,7 @@ from camwright.profiles.limits import Limits
 from camwright.profiles.machines import CrankSlider, LinearCarriage, RotaryKnife
 from camwright.profiles.returns import assemble, quintic_between
 from camwright.profiles.task import Task
+from camwright.validation.bounds.optimality import lower_bound
 from camwright.validation.motion import greatest_magnitude
 from camwright.validation.motor import measure_motor
 
@@ -52,6 +53,9 @@ def test_a_carriage_whose_acceleration_and_stroke_bind_has_little_jerk() -> None
     cut = Cut(7.5865, 1.387, 0.6407, 0.1, 0.3, 1e-3)
     found = solve(Task(saw, cut, Limits(2.219, 1.9318, 78_642.0)), "rms_jerk")
     assert found.minimised < 8.3  # polished arcs alone end at 112
+    assert found.minimised <= lower_bound(
+        found.profile, Task(saw, cut, Limits(2.219, 1.9318, 78_642.0)), "rms_jerk"
+    ).value * (1 + 4e-4)
     position = found.profile(np.linspace(0.0, cut.length, 20_001))
     assert position.max() - position.min() <= 1.668 * (1 + 1e-9)
 
