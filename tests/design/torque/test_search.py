@@ -214,7 +214,7 @@ def test_a_corner_of_the_places_is_gone_down_to() -> None:
             other = solve(task.placed_at(found.machine.place + aside), "peak_torque")
         except InfeasibleError:
             continue
-        assert found.minimised <= other.minimised * (1 + 1e-4)
+        assert found.minimised <= other.minimised * (1 + 5e-4)
 
 
 @pytest.mark.slow
