@@ -113,8 +113,9 @@ def solve(task: Task, objective: CommandObjective, *, suggest: bool = True, thor
     suggest
         Whether an `InfeasibleError` says what would work; finding that takes longer than finding what binds.
     thorough
-        Whether a second road is taken where the first ends with less than the optimum. It takes many times as long, and gains little
-        at the edge of what is possible, where motions have no room to differ.
+        Whether a second road is taken where the first ends with less than the optimum, and the mesh of a return that bears the ramps of
+        its line is refined. It takes many times as long, and gains little at the edge of what is possible, where motions have no room to
+        differ.
 
     Raises
     ------
@@ -146,10 +147,10 @@ def solve(task: Task, objective: CommandObjective, *, suggest: bool = True, thor
     require_moving(machine, objective)
     solution = _solve_steady(task.with_line(STEADY), objective, thorough)
     if not keeps_ramp(solution.profile, task):
-        return _solve_ramped(task, objective, solution, suggest)
+        return _solve_ramped(task, objective, solution, suggest, thorough)
     if task.line.ramps and objective == "rms_jerk" and task.machine.guide is not None:
         # at the end of a stroke the jerk of the optimum steps at places that a grid of its own does not have
-        other = _solve_ramped(task, objective, solution, suggest)
+        other = _solve_ramped(task, objective, solution, suggest, thorough)
         return min(solution, other, key=lambda each: each.minimised)
     return solution
 
@@ -164,7 +165,7 @@ def _solve_steady(task: Task, objective: CommandObjective, thorough: bool) -> So
     return Solution(task.machine, assemble(back, task), back, status, objective, value + 0.0, iterations)
 
 
-def _solve_ramped(task: Task, objective: CommandObjective, steady: Solution, suggest: bool) -> Solution:
+def _solve_ramped(task: Task, objective: CommandObjective, steady: Solution, suggest: bool, thorough: bool) -> Solution:
     """Design the cycle so that it bears the line's ramps, from what is best on a line that keeps its speed.
 
     An objective of the motor that none of the motion stands for is searched for from the least mean square of the acceleration.
@@ -178,7 +179,8 @@ def _solve_ramped(task: Task, objective: CommandObjective, steady: Solution, sug
     problem = return_problem(task, decisive or "rms_acceleration")
     of = OBJECTIVES[problem.objective]
     zone = max(abs(extremum.value) for extremum in task.sync.extrema(of.order)) if of.form == "peak" else 0.0
-    back = ramped_return(task, problem, steady.back, zone) if keeps_ramp(task.sync, task) else None
+    sync_bears = keeps_ramp(task.sync, task)
+    back = ramped_return(task, problem, steady.back, zone, thorough=thorough) if sync_bears else None
     profile = None if back is None else assemble(back, task)
     if back is None or profile is None or not keeps_ramp(profile, task):
         raise ramp_infeasible(task, suggest=suggest)

@@ -68,6 +68,7 @@ def axis_lengths(job: Job) -> AxisLengths | None:
     servos = servos_of(job) if job.servo_aware else (job.servo,)
     pitch = machine.pitch
     shear = sync_zone_of(cut, pitch)
+    last: dict[Command, AxisProgramme] = {}
 
     def shortest(
         command: Command, near: float, least_of_all: float = 0.0, *, axis_limits: bool = False
@@ -75,10 +76,10 @@ def axis_lengths(job: Job) -> AxisLengths | None:
         def missed(length: float) -> float:
             try:
                 task = job.task.with_cut(in_shear_zone(cut, length, shear))
-                programme = AxisProgramme(AxisProblem(task, command, servos, axis_limits))
-                if len(servos) > 1:  # of many servos by how much takes ten times as long as whether
-                    return math.copysign(math.inf, -1.0 if programme.reaches() else 1.0)
-                return programme.missed(ratio=True)
+                last[command] = AxisProgramme(
+                    AxisProblem(task, command, servos, axis_limits), last.get(command), own=True
+                )
+                return last[command].missed(ratio=True)
             except SolverError:  # at the edge of what double precision resolves
                 return math.inf
 

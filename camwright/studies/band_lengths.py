@@ -104,10 +104,14 @@ def _servo_aware(job: Job, command: Command, single: float | None, shortest: flo
     )
     shear = sync_zone_of(cut, pitch)
 
+    programme: AxisProgramme | None = None
+
     def missed(length: float, looked: tuple[float, ...]) -> float:
+        nonlocal programme
         task = job.task.with_cut(in_shear_zone(cut, length, shear))
         try:
-            return AxisProgramme(AxisProblem(task, command, servos, True, shares=looked)).missed(ratio=False)
+            programme = AxisProgramme(AxisProblem(task, command, servos, True, shares=looked), programme, own=True)
+            return programme.missed(ratio=False)
         except SolverError:  # at the edge of what double precision resolves
             return np.inf
 

@@ -7,14 +7,17 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from camwright.design.feasible.extremes import Extremes
+from camwright.design.line.ramped import ramp_share
 from camwright.design.optimise import motion_objective, solve
 from camwright.design.optimise_axis import AXIS_RATIO
 from camwright.design.returns.curve_limits import motor_limits
+from camwright.design.returns.problem import return_problem
 from camwright.design.servo_aware.axis_problem import AxisProblem, thinned
 from camwright.design.servo_aware.programme import AxisProgramme
 from camwright.jobs.job import Job
 from camwright.jobs.servos import between_of, servos_of
 from camwright.profiles.errors import InfeasibleError, InputError, SolverError
+from camwright.profiles.line import STEADY
 from camwright.profiles.objective import MotionObjective, of_command, of_motion
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.servo import Servo
@@ -24,8 +27,8 @@ from camwright.studies.least_length import least_length
 from camwright.validation.report import ValidationReport, judge
 from camwright.validation.servo.response import greatest_sync_error
 
-ACCURACY, SERVO_AWARE_ACCURACY = 1e-4, 5e-3
-"""Accuracy of an edge, relative to it; of servo-aware jobs, whose every step is a design of a second."""
+ACCURACY, RAMPED_ACCURACY, SERVO_AWARE_ACCURACY = 1e-4, 1e-3, 5e-3
+"""Accuracy of an edge, relative to it; of jobs whose line ramps, and of servo-aware ones: there a step is a design of up to a second."""
 
 SLOWEST, LONGEST = 0.02, 4.0
 """Line speeds down to this share of the perfect axis' highest, and cut lengths up to this multiple of its shortest, are looked at."""
@@ -42,6 +45,9 @@ RAMP = "line_ramp"
 _UNSEEN = 1e-6
 """Shares of the tolerance below this one are not told apart."""
 
+_ROOM = 0.1
+"""Where so great a share of the tolerance is left the ramps of the line may be what is nearer to its limit."""
+
 TOLERANCE, BAND, AXIS = "sync_tolerance", "sync_over_line_speeds", "axis_acceleration"
 """What binds where no servo-aware command brings the axis into the tolerance, none at every line speed of the job, none with the axis'
 own limits kept: where it is not the ratio, speed or reversal of the axis."""
@@ -52,6 +58,9 @@ _LOOKED = 6
 _BACK, _TRIES = 0.996, 16
 """Factor by which an edge is taken back where it holds at those line speeds, of servos at the corners of their ranges, but not at all of
 them, and how often it is."""
+
+_WITHIN = 0.998
+"""Factor by which the edge of a servo-aware job is told within what programmes allow: a design, whose rows are others, needs that room."""
 
 
 @dataclass(frozen=True)
@@ -101,7 +110,8 @@ def highest_speed(
     perfect
         Highest line speed of the perfect axis (m/s), ``None`` where none works.
     near
-        Line speed (m/s) near which the edge is expected; without it the search comes from the perfect axis' edge.
+        Line speed (m/s) near which the edge is expected; without it the search comes from the perfect axis' edge,
+        of a servo-aware job from its own line speed.
     accuracy
         Of the line speed, relative to it; of a servo-aware job no finer than `SERVO_AWARE_ACCURACY`.
 
@@ -113,6 +123,8 @@ def highest_speed(
     if perfect is None:
         return None, ""
     end = _end_of_speeds(job, perfect)
+    if near is None and job.servo_aware:  # a job is made for what its machine can do
+        near = min(job.cut.line_speed, end)
     at = None if near is None else near / end
     found, failed = _kept(job, lambda share: job.task.designed_at(end * share), SLOWEST, accuracy, at)
     return (None if found is None else end if not failed else end * found), failed
@@ -148,7 +160,8 @@ def shortest_cut(job: Job, perfect: float | None) -> tuple[float | None, str]:
     if _shaped(job):
         by_speed = job.machine.pitch * job.cut.line_speed / job.limits.speed
         end = min(perfect, max(by_speed, job.cut.sync_zone * LEAST_ZONE))
-    found, failed = _kept(job, lambda share: job.task.with_length(end / share), 1.0 / LONGEST)
+    near = min(1.0, end / job.cut.length) if job.servo_aware else None
+    found, failed = _kept(job, lambda share: job.task.with_length(end / share), 1.0 / LONGEST, near=near)
     return (None if found is None else end if not failed else end / found), failed
 
 
@@ -170,21 +183,34 @@ Verdict = tuple[str, float]
 tolerance, as the logarithm of a share: infinite where that is not what decides."""
 
 
-def verdict(job: Job, task: Task, objective: MotionObjective) -> Verdict:
-    """Design a task as the job would and judge it."""
+def verdict(job: Job, task: Task, objective: MotionObjective, *, thorough: bool = False) -> Verdict:
+    """Design a task as the job would and judge it; a cam that bears the ramps of the line on a first mesh where it is not `thorough`."""
     if job.servo_aware:
-        missed = _misses(job, task, shares_of(job.slowest), between_of(job))
+        missed = _Programmes(job).misses(task, shares_of(job.slowest), between_of(job))
         return (TOLERANCE if missed > 0.0 else ""), missed
     try:
-        solution = solve(task, objective, suggest=False, thorough=False)
+        solution = solve(task, objective, suggest=False, thorough=thorough)
     except InfeasibleError as error:
-        return (RAMP if error.binding.startswith("line.") else error.binding), math.inf
+        if not error.binding.startswith("line."):
+            return error.binding, math.inf
+        missed = _ramp_missed(task)
+        return RAMP, missed if missed > 0.0 else math.inf
     except (InputError, SolverError):
         return "design", math.inf
     report = judge(solution.profile, task.with_machine(solution.machine), job.servo, servo_aware=job.servo_aware)
     failed = next((check.name for check in report.checks if not check.passed), "")
     missed = math.log(max(_off_at_most(report), _UNSEEN * task.cut.sync_tolerance) / task.cut.sync_tolerance)
-    return failed, missed if (missed > 0.0) == bool(failed) else math.copysign(math.inf, 1.0 if failed else -1.0)
+    if (missed > 0.0) != bool(failed):
+        return failed, math.copysign(math.inf, 1.0 if failed else -1.0)
+    return failed, missed if missed > -_ROOM else max(missed, _ramp_missed(task))
+
+
+def _ramp_missed(task: Task) -> float:
+    """By how much all cams miss the ramps of the line, as the logarithm of a share of the limits; nothing where a design has to tell."""
+    if not task.line.ramps or not task.machine.placed or task.limits.motor is not None:
+        return -math.inf
+    share = ramp_share(task, return_problem(task, "rms_acceleration"))
+    return -math.inf if share is None else math.log(max(share, _UNSEEN))
 
 
 def _off_at_most(report: ValidationReport) -> float:
@@ -207,34 +233,76 @@ def _kept(
     Of a servo-aware job at some line speeds and with servos at the corners of their ranges first, then at all and with those between.
     """
     if not job.servo_aware:
-        objective = stand_in(job)
-        return _edge(lambda share: verdict(job, at(share), objective), least, accuracy, near)
+        return _blind_edge(job, at, least, accuracy, near)
     shares = shares_of(job.slowest)
     some = thinned(shares, _LOOKED)
 
+    programmes = _Programmes(job)
+
     def looked(share: float) -> Verdict:
-        missed = _misses(job, at(share), some)
+        missed = programmes.misses(at(share), some)
         return (TOLERANCE if missed > 0.0 else ""), missed
 
     found, failed = _edge(looked, least, max(accuracy, SERVO_AWARE_ACCURACY), near)
     tries = _TRIES if some != shares or between_of(job) else 0
-    while tries and found is not None and _misses(job, at(found), shares, between_of(job)) > 0.0:
+    while tries and found is not None and programmes.misses(at(found), shares, between_of(job)) > 0.0:
         tries -= 1
         found, failed = (found * _BACK if tries and found * _BACK > least else None), TOLERANCE
     if not failed:
         return found, failed
-    return found, binding_of(job, at(1.0 if found is None else found * (1.0 + SERVO_AWARE_ACCURACY)))
+    beyond = at(1.0 if found is None else found * (1.0 + SERVO_AWARE_ACCURACY))
+    return None if found is None else found * _WITHIN, binding_of(job, beyond, programmes.last)
 
 
-def _misses(job: Job, task: Task, shares: tuple[float, ...], between: tuple[Servo, ...] = ()) -> float:
-    """By how much servo-aware commands within the limits miss the tolerance at line speeds, the axis' own limits kept."""
-    missed = math.inf
-    for limits in motor_limits(task.machine, task.limits):
-        programme = AxisProgramme(_problem(job, task.with_limits(limits), shares, between))
-        missed = min(missed, _missed(programme, ratio=_asks_ratio(job)))
-        if missed <= 0.0:
-            break
-    return missed
+def _blind_edge(
+    job: Job, at: Callable[[float], Task], least: float, accuracy: float, near: float | None
+) -> tuple[float | None, str]:
+    """Find the edge of a job that is not servo-aware; of a line that ramps from that of one which keeps its speed.
+
+    Cams of a ramping line are searched with on a mesh; where the ramps are not what binds, the edge is that of the cam that is designed.
+    """
+    objective = stand_in(job)
+
+    def edge(near: float | None, *, ramps: bool) -> tuple[float | None, str]:
+        return _edge(
+            lambda share: verdict(job, at(share) if ramps else at(share).with_line(STEADY), objective),
+            least,
+            accuracy,
+            near,
+        )
+
+    if not job.line.ramps:
+        return edge(near, ramps=True)
+    if near is None:
+        near, failed = edge(None, ramps=False)
+        if near is None:
+            return None, failed
+    accuracy = max(accuracy, RAMPED_ACCURACY)
+    found, failed = edge(near, ramps=True)
+    tries = _TRIES if failed != RAMP else 0
+    while tries and found is not None and (fails := verdict(job, at(found), objective, thorough=True)[0]):
+        tries -= 1
+        found, failed = (found * (1.0 - 0.5 * accuracy) if tries and found > least else None), fails
+    return found, failed
+
+
+class _Programmes:
+    """Programmes of a servo-aware job one after another, each with the rows that bound in the one before."""
+
+    def __init__(self, job: Job) -> None:
+        self._job = job
+        self.last: AxisProgramme | None = None
+
+    def misses(self, task: Task, shares: tuple[float, ...], between: tuple[Servo, ...] = ()) -> float:
+        """By how much servo-aware commands within the limits miss the tolerance at line speeds, the axis' own limits kept."""
+        missed = math.inf
+        for limits in motor_limits(task.machine, task.limits):
+            problem = _problem(self._job, task.with_limits(limits), shares, between)
+            self.last = AxisProgramme(problem, self.last, own=True)
+            missed = min(missed, _missed(self.last, ratio=_asks_ratio(self._job)))
+            if missed <= 0.0:
+                break
+        return missed
 
 
 def _asks_ratio(job: Job) -> bool:
@@ -257,14 +325,14 @@ def _missed(programme: AxisProgramme, *, ratio: bool) -> float:
         return math.inf
 
 
-def binding_of(job: Job, task: Task) -> str:
-    """Name what a servo-aware design beyond the edge fails: where more than one thing does, the first of them."""
+def binding_of(job: Job, task: Task, beside: AxisProgramme | None = None) -> str:
+    """Name what a servo-aware design beyond the edge fails, where more than one thing does the first of them; programmes beside help."""
     free = _problem(job, task, shares_of(job.slowest), axis_limits=False)
-    programme = AxisProgramme(free)
+    programme = AxisProgramme(free, beside, own=True)
     missed = _missed(programme, ratio=_asks_ratio(job))
     if missed <= 0.0:
         return _axis_limit(job, task, programme.last)
-    if job.slowest < 1.0 and _misses(job, task, (1.0,)) <= 0.0:
+    if job.slowest < 1.0 and _Programmes(job).misses(task, (1.0,)) <= 0.0:
         return BAND
     if (
         math.isinf(missed)

@@ -30,6 +30,9 @@ TOLERANCE = 1e-9
 MOST_STEPS = 200
 """Steps after which the solver gives up."""
 
+FOUND = ("Solved", "AlmostSolved")
+"""How the solver says that it has an answer."""
+
 Row = tuple[Any, FloatArray]
 """A sparse matrix over the unknowns, and what its product with them must not exceed."""
 
@@ -156,9 +159,6 @@ def solve_on_mesh(
     MeshAnswer or None
         ``None`` if the solver finds none on this mesh.
     """
-    import clarabel
-    from scipy.sparse import csc_array, triu, vstack
-
     mesh = Mesh(lengths, unit)
     equal = list(_equalities(mesh, problem))
     inner = [*_within_limits(mesh, problem), *_within_ramps(mesh, problem, forms), *_stroke(mesh, problem)]
@@ -169,6 +169,53 @@ def solve_on_mesh(
         *_peak(mesh, problem, peak),
     ]
     square, goal = _goal(mesh, problem, peak)
+    answer, sizes = _solved(equal, less, square, goal)
+    if str(answer.status) not in FOUND:
+        return None
+    found, n = np.array(answer.x), len(lengths)
+    at, dear = sum(len(limit) for _, limit in equal), np.zeros(n)
+    for _, _, bend in inner:
+        dear += np.array(answer.z[at : at + n]) / sizes[at : at + n] * np.abs(bend @ found)
+        at += n
+    motion = ScaledMotion(lengths, unit * found[: n + 1], math.nan)
+    dear /= max(abs(answer.obj_val), np.finfo(float).tiny)
+    return MeshAnswer(motion, dear, str(answer.status) == "Solved")
+
+
+def least_ramp_share(problem: ScaledProblem, lengths: FloatArray, forms: tuple[Form, ...]) -> float | None:
+    """Find the least that forms can be kept below, of the returns of a mesh within the limits of a line that keeps its speed.
+
+    Parameters
+    ----------
+    problem, lengths, forms
+        As of `solve_on_mesh`; the objective is not looked at.
+
+    Returns
+    -------
+    float or None
+        At most 1 where the mesh has a return that bears the ramps; ``None`` where it has none within the other limits.
+    """
+    from scipy.sparse import csr_array
+
+    mesh = Mesh(lengths, 1.0)
+    ramps = [*_ramps(mesh, problem, forms), *((row, room) for row, room, _ in _within_ramps(mesh, problem, forms))]
+    inner = (*_within_limits(mesh, problem), *_stroke(mesh, problem))
+    less = [
+        *((row, limit) for row, limit, _ in inner),
+        *_limits(mesh, problem),
+        *((row - (1.0 - MARGIN) * mesh.bound(len(room)), room - (1.0 - MARGIN)) for row, room in ramps),
+    ]
+    goal = np.zeros(mesh.size)
+    goal[-1] = 1.0
+    answer, _ = _solved(list(_equalities(mesh, problem)), less, csr_array((mesh.size, mesh.size)), goal)
+    return float(answer.x[-1]) if str(answer.status) in FOUND else None
+
+
+def _solved(equal: list[Row], less: list[Row], square: Any, goal: FloatArray) -> tuple[Any, FloatArray]:
+    """Minimise with rows that must be equal and rows that must not be exceeded: Clarabel's answer, and what each row was divided by."""
+    import clarabel
+    from scipy.sparse import csc_array, diags_array, triu, vstack
+
     matrix = csc_array(vstack([row for row, _ in (*equal, *less)]))
     right = np.concatenate([limit for _, limit in (*equal, *less)])
     sizes = np.sqrt(np.asarray(matrix.multiply(matrix).sum(axis=1)).ravel())
@@ -178,18 +225,8 @@ def solve_on_mesh(
     settings.max_iter = MOST_STEPS
     settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = TOLERANCE
     cones = [clarabel.ZeroConeT(count), clarabel.NonnegativeConeT(len(right) - count)]
-    scaled = csc_array(mesh.times(1.0 / sizes, matrix))
-    answer = clarabel.DefaultSolver(csc_array(triu(square)), goal, scaled, right / sizes, cones, settings).solve()
-    if str(answer.status) not in ("Solved", "AlmostSolved"):
-        return None
-    found, n = np.array(answer.x), len(lengths)
-    at, dear = count, np.zeros(n)
-    for _, _, bend in inner:
-        dear += np.array(answer.z[at : at + n]) / sizes[at : at + n] * np.abs(bend @ found)
-        at += n
-    motion = ScaledMotion(lengths, unit * found[: n + 1], math.nan)
-    dear /= max(abs(answer.obj_val), np.finfo(float).tiny)
-    return MeshAnswer(motion, dear, str(answer.status) == "Solved")
+    scaled = csc_array(diags_array(1.0 / sizes) @ matrix)
+    return clarabel.DefaultSolver(csc_array(triu(square)), goal, scaled, right / sizes, cones, settings).solve(), sizes
 
 
 def _equalities(mesh: Mesh, problem: ScaledProblem) -> Iterator[Row]:

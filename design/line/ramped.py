@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
-from camwright.design.line.forms import Form, ramp_forms
-from camwright.design.line.programme import MeshAnswer, solve_on_mesh
+from camwright.design.line.forms import Form, greatest_form, ramp_forms
+from camwright.design.line.programme import MeshAnswer, least_ramp_share, solve_on_mesh
 from camwright.design.returns.problem import ReturnProblem
 from camwright.design.returns.scaling import ScaledProblem, motion_scale, scale_problem, unscale_profile
 from camwright.design.returns.structure import subdivide, tidy
@@ -44,7 +42,9 @@ KEPT_PEAK = 1e-6
 """Share of a peak that its smoothest motion may give away."""
 
 
-def ramped_return(task: Task, problem: ReturnProblem, start: CamProfile | None, zone: float = 0.0) -> CamProfile | None:
+def ramped_return(
+    task: Task, problem: ReturnProblem, start: CamProfile | None, zone: float = 0.0, *, thorough: bool = True
+) -> CamProfile | None:
     """Solve a return on which the line may ramp.
 
     Parameters
@@ -57,6 +57,8 @@ def ramped_return(task: Task, problem: ReturnProblem, start: CamProfile | None, 
         A return whose arcs the first mesh takes, the optimum of a line that keeps its speed; None for an even mesh.
     zone
         Peak of the objective in the sync zone, below which no peak of the return counts.
+    thorough
+        Whether the mesh is refined; the first one is finer where it is not.
 
     Returns
     -------
@@ -70,7 +72,11 @@ def ramped_return(task: Task, problem: ReturnProblem, start: CamProfile | None, 
     forms = tuple(_scaled(form, problem.length, scale) for form in ramp_forms(task))
     peak = 0.0 if start is None else max(abs(each.value) for each in start.extrema(2))
     unit = peak * problem.length**2 / abs(scale) or 1.0
-    motion = _refined(scaled, forms, _first_mesh(start, problem.length), unit)
+    if thorough:
+        motion = _refined(scaled, forms, _first_mesh(start, problem.length), unit)
+    else:
+        answer = solve_on_mesh(scaled, _first_mesh(start, problem.length, 2 * FIRST), forms, unit=unit)
+        motion = None if answer is None else answer.motion
     if motion is None:
         return None
     if OBJECTIVES[problem.objective].form == "peak":
@@ -79,14 +85,21 @@ def ramped_return(task: Task, problem: ReturnProblem, start: CamProfile | None, 
     return unscale_profile(tidy(_joined(motion), scaled, corners=False).profile(), problem, scale)
 
 
-def bears_ramp(task: Task, problem: ReturnProblem) -> bool:
-    """Tell whether a mesh has a return on which the line may ramp."""
-    scale = motion_scale(problem)
+def ramp_share(task: Task, problem: ReturnProblem) -> float | None:
+    """Tell what share of the limits a line that ramps takes at least, of the returns of a mesh, in the return and in the sync zone.
+
+    Returns
+    -------
+    float or None
+        At most 1 where the mesh has a return on which the line may ramp; ``None`` where it has none that keeps the limits of a line that
+        keeps its speed.
+    """
+    zone, scale = greatest_form(task.sync, task), motion_scale(problem)
     if abs(scale) <= NO_MOTION * problem.length:
-        return all(form.ratio * problem.start_ratio <= 1.0 for form in ramp_forms(task))
-    scaled = replace(scale_problem(problem, scale), objective="rms_acceleration")
+        return max([zone, *(form.ratio * problem.start_ratio for form in ramp_forms(task))])
     forms = tuple(_scaled(form, problem.length, scale) for form in ramp_forms(task))
-    return solve_on_mesh(scaled, _first_mesh(None, problem.length, 2 * FIRST), forms) is not None
+    share = least_ramp_share(scale_problem(problem, scale), _first_mesh(None, problem.length, 2 * FIRST), forms)
+    return None if share is None else max(zone, share)
 
 
 def _scaled(form: Form, length: float, scale: float) -> Form:

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 from camwright.design.feasible.feasibility import is_feasible, with_limit
 from camwright.design.feasible.refusal import LINE_UNITS, refused, written
-from camwright.design.line.forms import keeps_ramp
-from camwright.design.line.ramped import bears_ramp
+from camwright.design.line.forms import KEPT
+from camwright.design.line.ramped import ramp_share
 from camwright.design.returns.curve_limits import motor_limits
 from camwright.design.returns.problem import return_problem
 from camwright.profiles.errors import InfeasibleError, InputError, Suggestion
@@ -29,11 +29,8 @@ def can_ramp(task: Task) -> bool:
         if not is_feasible(task):
             return False
         within = [task.with_limits(each) for each in motor_limits(task.machine, task.limits)]
-        return any(
-            keeps_ramp(each.sync, each) and bears_ramp(each, return_problem(each, "rms_acceleration"))
-            for each in within
-            if is_feasible(each)
-        )
+        shares = (ramp_share(each, return_problem(each, "rms_acceleration")) for each in within if is_feasible(each))
+        return any(share is not None and share <= 1.0 + KEPT for share in shares)
     except InputError:
         return False
 

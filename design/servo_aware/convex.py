@@ -45,6 +45,8 @@ _QPOASES: dict[str, Any] = {
 # More rows than these are asked of our own methods first: linear programmes of the simplex method, quadratic ones of the
 # interior-point one.
 MANY, MANY_SQUARE = 500, 800
+NAME = 5
+"""Numbers of a name: kinds of rows are told apart by the first three; the last two are where a row is of its kind."""
 # HiGHS' words for a programme without an answer.
 _INFEASIBLE, _UNBOUNDED = "Infeasible", "Unbounded"
 # Added to the diagonal of a quadratic cost, relative to its mean: directions that cost nothing are left where they are.
@@ -68,25 +70,37 @@ class ConvexProgramme:
     vertex
         Optimum of a programme before with the same cost and some of these rows, from which a linear programme of many rows goes on; after
         `solve` that of this one.
+    beside
+        Optimum of a programme a little beside with rows called alike, near which this one's is expected where there is no vertex before.
+    own
+        Whether a linear programme of few rows, too, is asked of our own method, which leaves a vertex.
     """
 
     unknowns: int
     vertex: Vertex | None = None
-    _matrices: list[FloatArray] = field(default_factory=list)
-    _low: list[FloatArray] = field(default_factory=list)
-    _high: list[FloatArray] = field(default_factory=list)
-    _accepted: list[FloatArray] = field(default_factory=list)
+    beside: Vertex | None = None
+    own: bool = False
+    _blocks: list[tuple[FloatArray, ...]] = field(default_factory=list)
 
     def add(
-        self, matrix: FloatArray, low: FloatArray | float, high: FloatArray | float, accepted: float = ACCEPTED
+        self,
+        matrix: FloatArray,
+        low: FloatArray | float,
+        high: FloatArray | float,
+        accepted: float = ACCEPTED,
+        *,
+        names: FloatArray | None = None,
     ) -> None:
-        """Add rows, and what an answer may break them by; a matrix of fewer columns leaves the last unknowns out."""
+        """Add rows, and what an answer may break them by; a matrix of fewer columns leaves the last unknowns out.
+
+        By their names, shape ``(rows, NAME)``, rows of another programme are known for being alike.
+        """
         wide = np.zeros((len(matrix), self.unknowns))
         wide[:, : matrix.shape[1]] = matrix
-        self._matrices.append(wide)
-        self._low.append(np.broadcast_to(np.asarray(low, dtype=np.float64), len(matrix)))
-        self._high.append(np.broadcast_to(np.asarray(high, dtype=np.float64), len(matrix)))
-        self._accepted.append(np.full(len(matrix), accepted))
+        low, high, broken = (
+            np.broadcast_to(np.asarray(each, dtype=np.float64), len(matrix)) for each in (low, high, accepted)
+        )
+        self._blocks.append((wide, low, high, broken, np.full((len(matrix), NAME), np.nan) if names is None else names))
 
     def add_peak(
         self,
@@ -95,19 +109,21 @@ class ConvexProgramme:
         below: FloatArray | float,
         above: FloatArray | float,
         accepted: float = ACCEPTED,
+        *,
+        names: FloatArray | None = None,
     ) -> None:
         """Add rows ``below * t <= matrix @ z + constant <= above * t`` with the last unknown ``t``."""
         low, high = (
             np.broadcast_to(np.asarray(side, dtype=np.float64), len(matrix))[:, None] for side in (below, above)
         )
-        self.add(np.hstack([matrix, -high]), -np.inf, -constant, accepted)
-        self.add(np.hstack([matrix, -low]), -constant, np.inf, accepted)
+        self.add(np.hstack([matrix, -high]), -np.inf, -constant, accepted, names=names)
+        self.add(np.hstack([matrix, -low]), -constant, np.inf, accepted, names=names)
 
     def rows(self) -> Rows:
         """Stack what was gathered."""
-        matrix = np.vstack(self._matrices)
+        matrix = np.vstack([block[0] for block in self._blocks])
         matrix[np.abs(matrix) < _ROUNDING * np.abs(matrix).max(axis=1, keepdims=True)] = 0.0
-        return Rows(matrix, *(np.concatenate(parts) for parts in (self._low, self._high, self._accepted)))
+        return Rows(matrix, *(np.concatenate([block[part] for block in self._blocks]) for part in (1, 2, 3)))
 
     def solve(self, cost: FloatArray, square: FloatArray | None = None) -> FloatArray | None:
         """Minimise ``cost @ x``, plus ``x @ square @ x / 2``.
@@ -128,14 +144,22 @@ class ConvexProgramme:
             Every solver ended without an answer.
         """
         rows = self.rows()
-        few = len(rows.matrix) <= (MANY if square is None else MANY_SQUARE)
+        few = len(rows.matrix) <= (MANY if square is None else MANY_SQUARE) and not (self.own and square is None)
         if square is not None:
             return _quadratic(rows, cost, square) if few else _many(rows, cost, square)
         return _linear(rows, cost) if few else self._many_linear(rows, cost)
 
     def _many_linear(self, rows: Rows, cost: FloatArray) -> FloatArray | None:
         """Solve a linear programme of many rows from the vertex before; by the interior-point method where rounding forbids it."""
-        found = dual_simplex(*rows.one_sided, cost, self.vertex)
+        matrix, bound = rows.one_sided
+        names = np.concatenate([block[4] for block in self._blocks])
+        above, below = np.isfinite(rows.high), np.isfinite(rows.low)
+        sides = np.repeat([1.0, -1.0], [above.sum(), below.sum()])
+        names = np.column_stack([sides, np.vstack([names[above], names[below]])])
+        start = self.vertex
+        if start is None and self.beside is not None:
+            start = self.beside.among(matrix, bound, names)
+        found = dual_simplex(matrix, bound, cost, start, names)
         if isinstance(found, NoPoint):
             return None
         self.vertex = found

@@ -65,7 +65,9 @@ class GatheredRows:
         self.ratios: list[AxisRows] = []
         self.own = OwnRows(problem)
         self._between = BetweenServos(problem)
-        self._tables = [[ZoneTable(axis, problem.basis) for axis in axes] for axes in problem.axes]
+        self._tables = [
+            [ZoneTable(axis, problem.basis, number) for axis in axes] for number, axes in enumerate(problem.axes)
+        ]
 
     def begin(self, *, linear: bool, ratio: bool) -> None:
         """Make the first rows of a design, unless a mean square is made least of a command in sync, which may well need none."""
@@ -80,6 +82,34 @@ class GatheredRows:
         if ratio and not self.ratios and self.problem.task.cut.shear_zone:
             table = self._tables[0][0]
             self.ratios.append(table.ratio_rows(table.spread(*first)))
+
+    def go_on(self, beside: GatheredRows, unknowns: FloatArray) -> None:
+        """Make rows like those that nearly bound at an answer of a problem beside; of the ratio where that is asked for."""
+        start, corners = self._tables[0][0].axis.shear_zone[0], len(self._tables)
+        for rows in beside.bands:
+            for (number, share), (places, times) in rows.near(unknowns).items():
+                table = self._between.table(number) if number >= corners else self._table(number, share)
+                if table is not None:
+                    wider = 1.0 if number < corners else self.problem.wider
+                    self.bands.append(table.band_rows(table.nearest(start + places, times), wider))
+        table = self._tables[0][0]
+        for rows in beside.ratios if self.ratios else []:
+            for places, times in rows.near(unknowns).values():
+                self.ratios.append(table.ratio_rows(table.nearest(start + places, times)))
+        self.own.go_on(beside.own, unknowns)
+
+    def _table(self, number: int, share: float) -> ZoneTable:
+        """Give the table of a servo at a line speed, which is taken in where it is not yet."""
+        tables = self._tables[number]
+        found = next((table for table in tables if table.axis.share == share), None)
+        if found is None:
+            axis = tables[0].axis
+            found = ZoneTable(
+                Axis(axis.task, axis.servo.at_speed(share / axis.share), share), self.problem.basis, number
+            )
+            tables.append(found)
+            tables.sort(key=lambda table: -table.axis.share)
+        return found
 
     def add_worst(self, command: Tried, band: float, *, ratio: bool) -> bool:
         """Add rows where a command leaves its band, or the nominal axis breaks a limit; whether there were any.
@@ -136,16 +166,12 @@ class GatheredRows:
         shares = [table.axis.share for table in tables]
         peaks = np.array([table.last for table in tables])
         near = set(worst_places(peaks - (1.0 - NEAR) * limit, MOST_SPEEDS).tolist())
-        new = []
-        for number in range(len(tables) - 1):
-            wide = shares[number] - shares[number + 1] > least
-            if wide and (number in near or number + 1 in near):
-                axis, share = tables[number].axis, 0.5 * (shares[number] + shares[number + 1])
-                servo = axis.servo.at_speed(share / axis.share)
-                new.append(ZoneTable(Axis(axis.task, servo, share), self.problem.basis))
-        tables += new
-        tables.sort(key=lambda table: -table.axis.share)
-        return new
+        middles = [
+            0.5 * (shares[number] + shares[number + 1])
+            for number in range(len(tables) - 1)
+            if shares[number] - shares[number + 1] > least and (number in near or number + 1 in near)
+        ]
+        return [self._table(tables[0].number, share) for share in middles]
 
     def errors(self, profile: CamProfile) -> tuple[dict[float, float], ...]:
         """Largest sync error of the tool in the shear zone (m), by servo and there by line speed, as a share of the cut's.
@@ -225,11 +251,27 @@ class OwnRows:
         # what is pressed down there rises a sample aside, so that gets rows too
         worst = np.unique((worst[:, None] + PHASES * np.arange(-1, 2)) % excess.shape[1])
         times = np.asarray(excess[:, worst].argmax(axis=0) * (axis.servo.sample_time / SUBSTEPS), dtype=np.float64)
-        places = np.asarray(worst * (axis.sample / PHASES), dtype=np.float64)
+        self._make(axis, order, np.asarray(worst * (axis.sample / PHASES), dtype=np.float64), times)
+        return True
+
+    def _make(self, axis: Axis, order: int, places: FloatArray, times: FloatArray) -> None:
+        """Make rows at places (m) and times since the sampling instant before (s)."""
+        low, high = self.problem.own_limits(axis)[order]
         matrix, constant = axis.rows(self.problem.basis, places, times, order)
         room, ones = high * AXIS_MARGIN, np.ones(len(matrix))
-        self.rows.append(AxisRows(matrix, constant, (low + room) * ones, (high - room) * ones))
-        return True
+        origin = np.column_stack([np.full((len(matrix), 2), (order, axis.share)), places, times])
+        self.rows.append(AxisRows(matrix, constant, (low + room) * ones, (high - room) * ones, origin))
+
+    def go_on(self, beside: OwnRows, unknowns: FloatArray) -> None:
+        """Make rows like those that nearly bound at an answer of a problem beside, if the axis is held to its limits."""
+        if not self.problem.axis_limits:
+            return
+        longer = self.problem.task.cut.length / beside.problem.task.cut.length
+        axes = {axis.share: axis for axis in self.problem.axes[0]}
+        for rows in beside.rows:
+            for (order, share), (places, times) in rows.near(unknowns).items():
+                if share in axes:
+                    self._make(axes[share], order, places * longer, times)
 
     def _over(self, axis: Axis, profile: CamProfile, order: int) -> FloatArray:
         """By how much the nominal axis breaks a limit over the cycle, by time after a sample and place; negative within it."""
@@ -250,7 +292,10 @@ class BetweenServos:
 
     def __init__(self, problem: AxisProblem) -> None:
         self._problem = problem
-        self._unseen = [ZoneTable(axis, problem.basis) for axis in problem.axes_between]
+        corners = len(problem.servos)
+        self._unseen = [
+            ZoneTable(axis, problem.basis, corners + number) for number, axis in enumerate(problem.axes_between)
+        ]
         self._seen: list[ZoneTable] = []
 
     @property
@@ -269,10 +314,21 @@ class BetweenServos:
         found = []
         for _, table, points in over[:MOST_SERVOS]:
             found.append(table.band_rows(points, self._problem.wider))
-            if table in self._unseen:
-                self._unseen.remove(table)
-                self._seen.append(table)
+            self._see(table)
         return found
+
+    def table(self, number: int) -> ZoneTable | None:
+        """Give that of a servo, which has rows from now on; ``None`` where the problem does not ask for it."""
+        found = next((table for table in self._unseen if table.number == number), None)
+        if found is not None:
+            self._see(found)
+        return found
+
+    def _see(self, table: ZoneTable) -> None:
+        """Count a servo among those that have rows."""
+        if table in self._unseen:
+            self._unseen.remove(table)
+            self._seen.append(table)
 
 
 def _most(problem: AxisProblem) -> int:

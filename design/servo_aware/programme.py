@@ -7,12 +7,14 @@ from dataclasses import dataclass, field
 from typing import cast
 
 import numpy as np
+from numpy.typing import NDArray
 
 from camwright.design.line.forms import keeps_ramp
 from camwright.design.servo_aware.axis_problem import AxisProblem
-from camwright.design.servo_aware.convex import ACCEPTED, ConvexProgramme
+from camwright.design.servo_aware.convex import ACCEPTED, NAME, ConvexProgramme
 from camwright.design.servo_aware.gathered_rows import GatheredRows
 from camwright.design.servo_aware.ramp_rows import RampRows
+from camwright.design.servo_aware.rows import AxisRows
 from camwright.design.servo_aware.simplex import Vertex
 from camwright.design.servo_aware.zone_table import Tried
 from camwright.profiles.errors import SolverError
@@ -32,9 +34,14 @@ ROUNDS = 30
 STILL = 1e-7
 # Shares of the tolerance below this one are not told apart.
 LEAST_MISSED = 1e-3
+# A tolerance that is missed by no more than this gets further rounds to tell by how much, until that rises by less than this share.
+CLOSE, RISEN = 0.3, 0.1
 # A peak that later programmes keep is taken as this share of its limit at least: the peak of a steady motion is rounding.
 LEAST_PEAK = 1e-6
 
+
+# Kinds of rows, the first number of their names; of limits one for each order.
+_LIMIT, _RAMP, _BAND, _RATIO, _OWN, _PEAK = 0, 4, 5, 6, 7, 8
 
 # What the programme of the least sync error is filed under.
 _LEAST_ERROR: tuple[object, ...] = ("sync_error", None, (), False)
@@ -54,27 +61,45 @@ class _Before:
         Optima of linear programmes, by what was asked.
     answer
         The last answer that was looked at, and its command.
+    bound
+        The last answer of a linear programme (slave units), and the rows that it has; of a problem beside where there is none yet.
+    beside
+        Optima of a problem beside.
     """
 
     tight: set[int]
     turned: FloatArray | None = None
     vertices: dict[tuple[object, ...], Vertex | None] = field(default_factory=dict)
     answer: tuple[FloatArray, CamProfile] | None = None
+    bound: tuple[GatheredRows, FloatArray] | None = None
+    beside: dict[tuple[object, ...], Vertex] = field(default_factory=dict)
 
 
 class AxisProgramme:
     """The programmes of one `AxisProblem`; rows found by one answer serve the next.
 
     Unknowns are in units of the slave's travel per cycle. The programmes count what they solve in `solved`.
+
+    Parameters
+    ----------
+    problem
+        The problem.
+    beside
+        Programmes of a problem that differs a little in cut length or line speed: rows like those that bound there stand from the start,
+        and linear programmes begin at its vertices.
+    own
+        Whether linear programmes are solved so that programmes beside this one can go on from them.
     """
 
-    def __init__(self, problem: AxisProblem) -> None:
-        self.problem = problem
+    def __init__(self, problem: AxisProblem, beside: AxisProgramme | None = None, *, own: bool = False) -> None:
+        self.problem, self._own = problem, own
         self.rows = GatheredRows(problem)
-        self.ramps = RampRows(problem)
+        self.ramps: RampRows = RampRows(problem, None if beside is None else beside.ramps)
         self.solved = 0
         # a return alone comes near to its limits, a whole cycle has room: rows of its limits come when they matter
         self._before = _Before(set(range(4)) if problem.command == "in_sync" else set())
+        if beside is not None:
+            self._before.bound, self._before.beside = beside._before.bound, beside._vertices()
 
     @property
     def margin(self) -> float:
@@ -150,15 +175,18 @@ class AxisProgramme:
 
     def _missed(self, *, ratio: bool) -> float | None:
         """Look for a command that brings every axis into the tolerance, as `missed`; ``None`` where the rounds do not tell."""
-        allowed = 1.0 - self.margin if ratio else 1.0
+        allowed, before = 1.0 - self.margin if ratio else 1.0, -math.inf
         for _ in range(ROUNDS):
             found = self._solve_rows("sync_error", None, {}, elastic=ratio)
             if found is None:
                 return math.inf
             missed = math.log(max(found[1] / allowed, LEAST_MISSED))
-            if missed > 0.0 or not self._add_worst(found[0], 1.0, ratio=ratio):
+            # where programmes go on from each other a line through values that are nearly true ends a search sooner than many values
+            known = not self._own or missed > CLOSE or missed - before < RISEN * missed
+            if (missed > 0.0 and known) or not self._add_worst(found[0], max(1.0, found[1]), ratio=ratio):
                 return missed
-        return None
+            before = missed
+        return None if missed <= 0.0 else missed
 
     def holds(self, profile: CamProfile) -> bool:
         """Whether a command keeps its limits and the axes theirs; if not, later programmes begin with rows where it fails."""
@@ -232,6 +260,8 @@ class AxisProgramme:
     ) -> tuple[FloatArray, float] | None:
         """Solve with the rows there are; ``elastic`` widens the ratio's band with that of the position."""
         self.rows.begin(linear=_linear(cost), ratio=elastic or band == 1.0)
+        if not self.solved and self._before.bound is not None:
+            self.rows.go_on(*self._before.bound)
         if OBJECTIVES[cost].of == "motor" or cost == "sync_error":
             # the former are not quickly solved again; in the latter nothing but limits holds what the shear zone does not see
             self._before.tight = set(range(4))
@@ -262,25 +292,32 @@ class AxisProgramme:
         peak = _linear(cost)
         # rows only ever come: the optimum with fewer of them is where the next programme begins
         kind = (cost, band, tuple(caps.items()), elastic)
-        programme = ConvexProgramme(count + peak, self._before.vertices.get(kind))
+        programme = ConvexProgramme(
+            count + peak, self._before.vertices.get(kind), self._before.beside.get(kind), self._own
+        )
         bounds = self.problem.limits
         for order in bounds:
             if order in self._before.tight or order in caps:
-                programme.add(*self._limit_rows(order, caps.get(order, math.inf)))
+                matrix, low, high = self._limit_rows(order, caps.get(order, math.inf))
+                programme.add(matrix, low, high, names=_numbered(_LIMIT + order, np.arange(len(matrix))))
         matrix, constant = self.ramps.rows()
         if len(matrix):
-            programme.add(matrix, -np.inf, 1.0 - LIMIT_MARGIN - constant)
-        for rows in self.rows.bands + (self.rows.ratios if elastic or band == 1.0 else []):
+            names = _numbered(_RAMP, self.ramps.numbers)
+            programme.add(matrix, -np.inf, 1.0 - LIMIT_MARGIN - constant, names=names)
+        of_ratio = self.rows.ratios if elastic or band == 1.0 else []
+        for kind_of, rows in [*((_BAND, rows) for rows in self.rows.bands), *((_RATIO, rows) for rows in of_ratio)]:
+            names = _of(kind_of, rows)
             matrix, constant = rows.matrix * (self.problem.scale / rows.size)[:, None], rows.constant / rows.size
             below, above = rows.low / rows.size, rows.high / rows.size
             if band is None:
-                programme.add_peak(matrix, constant, below, above, BAND_ACCEPTED)
+                programme.add_peak(matrix, constant, below, above, BAND_ACCEPTED, names=names)
             else:
                 share = band * (1.0 - self.margin)
-                programme.add(matrix, below * share - constant, above * share - constant, BAND_ACCEPTED)
+                programme.add(matrix, below * share - constant, above * share - constant, BAND_ACCEPTED, names=names)
         for rows in self.rows.own.rows:
             matrix, constant = rows.matrix * (self.problem.scale / rows.size)[:, None], rows.constant / rows.size
-            programme.add(matrix, rows.low / rows.size - constant, rows.high / rows.size - constant, BAND_ACCEPTED)
+            low, high = rows.low / rows.size - constant, rows.high / rows.size - constant
+            programme.add(matrix, low, high, BAND_ACCEPTED, names=_of(_OWN, rows))
         if OBJECTIVES[cost].of == "motor":
             return self._least_torque(programme, cast(MotorObjective, cost))
         if not peak:
@@ -289,10 +326,20 @@ class AxisProgramme:
         if cost != "sync_error":
             unit = bounds[OBJECTIVES[cost].order][1]
             matrix, constant = self.problem.basis.differences[OBJECTIVES[cost].order]
-            programme.add_peak(matrix * (self.problem.scale / unit), constant / unit, -1.0, 1.0)
+            names = _numbered(_PEAK, np.arange(len(matrix)))
+            programme.add_peak(matrix * (self.problem.scale / unit), constant / unit, -1.0, 1.0, names=names)
         answer = programme.solve(np.append(np.zeros(count), 1.0))
         self._before.vertices[kind] = programme.vertex
-        return None if answer is None else (answer[:-1], max(0.0, float(answer[-1])) * unit)
+        if answer is None:
+            return None
+        self._before.bound = self.rows, answer[:-1] * self.problem.scale
+        return answer[:-1], max(0.0, float(answer[-1])) * unit
+
+    def _vertices(self) -> dict[tuple[object, ...], Vertex]:
+        """Give the last optima of linear programmes, of those beside where this one has none."""
+        return self._before.beside | {
+            kind: vertex for kind, vertex in self._before.vertices.items() if vertex is not None
+        }
 
     def _limit_rows(self, order: int, cap: float) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Rows of a limit, or of a peak that must be kept beside it, as ``(matrix, low, high)``."""
@@ -332,6 +379,18 @@ class AxisProgramme:
             return None
         values = matrix @ answer + constant
         return answer, math.sqrt(float(values @ gram @ values))
+
+
+def _numbered(kind: int, numbers: NDArray[np.intp]) -> FloatArray:
+    """Name rows by number."""
+    names = np.zeros((len(numbers), NAME))
+    names[:, 0], names[:, 1] = kind, numbers
+    return names
+
+
+def _of(kind: int, rows: AxisRows) -> FloatArray:
+    """Name rows by what they are of."""
+    return np.column_stack([np.full(len(rows.origin), kind), rows.origin])
 
 
 def _stands_still(value: float, before: float, band: float) -> bool:

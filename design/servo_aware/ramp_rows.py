@@ -21,9 +21,9 @@ class RampRows:
     Most of it never matters: a row stands from the first answer on that breaks it.
     """
 
-    def __init__(self, problem: AxisProblem) -> None:
+    def __init__(self, problem: AxisProblem, beside: RampRows | None = None) -> None:
         self._problem = problem
-        self._asked = np.zeros(0, dtype=bool)
+        self._asked: NDArray[np.bool_] = np.zeros(0, dtype=bool) if beside is None else beside._asked.copy()
 
     @cached_property
     def _all(self) -> tuple[FloatArray, FloatArray]:
@@ -52,6 +52,11 @@ class RampRows:
             return np.zeros((0, self._problem.basis.matrix.shape[1])), np.zeros(0)
         matrix, constant = self._all
         return matrix[self._asked], constant[self._asked]
+
+    @property
+    def numbers(self) -> NDArray[np.intp]:
+        """Numbers of the rows that stand."""
+        return np.nonzero(self._asked)[0]
 
     def tighten(self, unknowns: FloatArray, room: float) -> bool:
         """Let those rows stand from now on that an answer breaks by more than there is room for below 1; whether there are new ones."""

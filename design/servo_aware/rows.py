@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,9 @@ RATIO = 2.0
 """Error of the axis' ratio allowed in the shear zone, times its length over the sync tolerance: along the zone the tool could at most go
 from one edge of its band to the other."""
 
+BINDING = 0.05
+"""Rows of an answer nearly bind where so great a share of their bound is left beyond what is left of the nearest."""
+
 # Most rows added at a time, of one servo and of each of several.
 MOST_ROWS, MOST_EACH = 12, 8
 _EVERYWHERE = 1e300
@@ -21,12 +24,34 @@ _EVERYWHERE = 1e300
 
 @dataclass(frozen=True, eq=False)
 class AxisRows:
-    """Rows ``low <= matrix @ z + constant <= high``, in slave units."""
+    """Rows ``low <= matrix @ z + constant <= high``, in slave units.
+
+    Parameters
+    ----------
+    matrix, constant, low, high
+        Shapes ``(rows, n)`` and ``(rows,)``.
+    origin
+        What each row is of, so that a problem beside can have the like: the number of the servo, or the order of the axis' own motion; its
+        line speed as a share; the place, from the start of the shear zone, or for the axis' own motion from that of the cycle (m); and the
+        time since the sampling instant before (s). Shape ``(rows, 4)``, empty where no problem is beside.
+    """
 
     matrix: FloatArray
     constant: FloatArray
     low: FloatArray
     high: FloatArray
+    origin: FloatArray = field(default_factory=lambda: np.zeros((0, 4)))
+
+    def near(self, unknowns: FloatArray) -> dict[tuple[int, float], FloatArray]:
+        """Give places and times of the rows that nearly bind at an answer (slave units), each shape ``(2, m)``, by servo and line speed.
+
+        Where no row is at its bound, those nearest to theirs are.
+        """
+        values = self.matrix @ unknowns + self.constant
+        room = np.minimum(self.high - values, values - self.low) / self.size
+        binds = self.origin[room <= room.min() + BINDING]
+        keys = {(int(number), float(share)) for number, share in binds[:, :2]}
+        return {key: binds[(binds[:, 0] == key[0]) & (binds[:, 1] == key[1])][:, 2:].T for key in sorted(keys)}
 
     @property
     def size(self) -> FloatArray:
@@ -41,7 +66,10 @@ def merged(blocks: Sequence[AxisRows]) -> list[AxisRows]:
     return [
         AxisRows(
             np.vstack([block.matrix for block in blocks]),
-            *(np.concatenate([getattr(block, name) for block in blocks]) for name in ("constant", "low", "high")),
+            *(
+                np.concatenate([getattr(block, name) for block in blocks])
+                for name in ("constant", "low", "high", "origin")
+            ),
         )
     ]
 

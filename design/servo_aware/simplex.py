@@ -4,11 +4,14 @@ A vertex is where as many rows bind as there are unknowns. When rows are added, 
 new rows that it breaks have to be exchanged in: some tens of exchanges where a programme from nothing takes a thousand (Lemke, *The dual
 method of solving the linear programming problem*, Naval Res. Logist. Q. 1, 1954). Of a programme without a point it ends with the proof:
 rows whose sum contradicts another.
+
+It may begin at a vertex that is only near to the optimum, of a programme a little beside: prices below zero are lifted by another cost, and
+when no row is broken any more the primal method takes the true one down.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +30,8 @@ _GOLDEN = 0.6180339887498949
 _PASS, _WORST = 200, 60
 # Exchanges after which the inverse is made anew, and at most in all.
 _FRESH, _MOST = 100, 20_000
+# Exchanges of the primal method at most: where it takes more the vertex was not near.
+_MOST_PRIMAL = 500
 # Shares of a row below this of its greatest are rounding; prices may fall below zero by so much for the sake of a greater share.
 _SMALL, _SLACK = 1e-9, 1e-10
 
@@ -41,11 +46,32 @@ class Vertex:
         The unknowns, shape ``(n,)``.
     matrix, bound
         Rows ``matrix @ x <= bound`` that bind there, shapes ``(n, n)`` and ``(n,)``.
+    names
+        What each of them is called, shape ``(n, k)``; nothing where nobody said.
     """
 
     x: FloatArray
     matrix: FloatArray
     bound: FloatArray
+    names: FloatArray | None = None
+
+    def among(self, matrix: FloatArray, bound: FloatArray, names: FloatArray) -> Vertex | None:
+        """Find rows called alike among those of a programme a little beside, the last two numbers of a name as near as may be.
+
+        They need not be its optimum, nor keep its rows. ``None`` where some of them have no like there.
+        """
+        if self.names is None or self.matrix.shape[1] != matrix.shape[1]:
+            return None
+        alike: dict[bytes, list[int]] = {}
+        for number, name in enumerate(names):
+            alike.setdefault(name[:-2].tobytes(), []).append(number)
+        chosen: list[int] = []
+        for name in self.names:
+            left = alike.get(name[:-2].tobytes())
+            if not left:
+                return None
+            chosen.append(left.pop(int(np.abs(names[left][:, -2:] - name[-2:]).sum(axis=1).argmin())))
+        return Vertex(self.x, matrix[chosen], bound[chosen], names[chosen])
 
 
 @dataclass(frozen=True)
@@ -56,7 +82,11 @@ class NoPoint:
 
 
 def dual_simplex(
-    matrix: FloatArray, bound: FloatArray, cost: FloatArray, start: Vertex | None = None
+    matrix: FloatArray,
+    bound: FloatArray,
+    cost: FloatArray,
+    start: Vertex | None = None,
+    names: FloatArray | None = None,
 ) -> Vertex | NoPoint | None:
     """Minimise ``cost @ x`` where ``matrix @ x <= bound``.
 
@@ -67,7 +97,9 @@ def dual_simplex(
     cost
         Shape ``(n,)``.
     start
-        Optimum of the same programme with some of these rows.
+        Optimum of the same programme with some of these rows, or a vertex of some of them that is near to the optimum.
+    names
+        What the rows are called, shape ``(rows, k)``.
 
     Returns
     -------
@@ -76,19 +108,20 @@ def dual_simplex(
     """
     shifted = cost + _SHIFT * (np.abs(cost).max() or 1.0) * (0.5 + (_GOLDEN * np.arange(len(cost))) % 1.0)
     first = start if start is not None else _corner(shifted)
-    state = _State(np.vstack([first.matrix, matrix]), np.concatenate([first.bound, bound]), shifted)
-    if start is not None and state.price.min() < -_ACCURATE:
-        return dual_simplex(matrix, bound, cost)
     try:
-        proof = state.run()
+        state = _State(np.vstack([first.matrix, matrix]), np.concatenate([first.bound, bound]), shifted)
+        proof = state.run() if state.price.min() >= -_ACCURATE else state.run_beside(shifted)
     except np.linalg.LinAlgError:
-        return None
+        return None if start is None else dual_simplex(matrix, bound, cost, names=names)
     if proof is not None:
         return proof if proof.least > 0.0 else None
     active = state.active
     if start is None and active.min() < len(cost):
         return None  # the box binds
-    return Vertex(state.x, state.of.matrix[active], state.of.bound[active])
+    if names is not None:
+        before = np.full((len(cost), names.shape[1]), np.nan) if first.names is None else first.names
+        names = np.vstack([before, names])[active]
+    return Vertex(state.x, state.of.matrix[active], state.of.bound[active], names)
 
 
 def _corner(cost: FloatArray) -> Vertex:
@@ -155,6 +188,53 @@ class _State:
             if self._since >= _FRESH:
                 self._renew()
         raise np.linalg.LinAlgError("too many exchanges")
+
+    def run_beside(self, cost: FloatArray) -> NoPoint | None:
+        """Exchange rows as `run` from a vertex with prices below zero, then those with such prices of the true cost.
+
+        Raises
+        ------
+        numpy.linalg.LinAlgError
+            As `run`, or the answer has no bound.
+        """
+        held = self.of.matrix[self.active]
+        least = _SHIFT * float(np.abs(cost).max() or 1.0)
+        self.of = replace(self.of, cost=-(np.maximum(self.price, least) @ held))
+        self._renew()
+        proof = self.run()
+        if proof is not None:
+            return proof
+        self.of = replace(self.of, cost=cost)
+        self._renew()
+        for number in range(_MOST_PRIMAL):
+            out = int(self.price.argmin())
+            if self.price[out] >= -_ACCURATE:
+                return self.run()
+            way = -self._inverse[:, out]
+            rising = self.of.matrix @ way
+            room = np.maximum(self.of.bound - self.of.matrix @ self.x, 0.0)
+            rising[self.active] = 0.0
+            ahead = np.nonzero(rising > _SMALL * np.abs(rising).max())[0]
+            if not len(ahead):
+                break
+            steps = room[ahead] / rising[ahead]
+            near = ahead[steps <= ((room[ahead] + _ACCURATE) / rising[ahead]).min()]
+            self.active[out] = near[rising[near].argmax()]
+            if number % _FRESH == _FRESH - 1:
+                self._renew()
+            else:
+                self._exchange(out)
+        raise np.linalg.LinAlgError("the vertex was not near")
+
+    def _exchange(self, out: int) -> None:
+        """Bring inverse, point and prices up to date after one of the rows that bind was exchanged."""
+        shares = self.of.matrix[self.active[out]] @ self._inverse
+        column = self._inverse[:, out] / shares[out]
+        shares[out] -= 1.0
+        self._inverse = self._inverse - np.outer(column, shares)
+        self.x = self._inverse @ self.of.bound[self.active]
+        self.price = -(self.of.cost @ self._inverse)
+        self._since += 1
 
     def _among(self, rows: NDArray[np.intp], broken: FloatArray) -> NoPoint | None:
         """Exchange some rows among those given: that which is broken most for how far the prices have to move for it.

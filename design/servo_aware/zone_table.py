@@ -92,14 +92,20 @@ class ZoneTable:
     ----------
     basis
         The commands.
+    number
+        Number of the servo.
     """
 
-    def __init__(self, axis: Axis, basis: CommandBasis) -> None:
-        self.axis, self._basis = axis, basis
+    def __init__(self, axis: Axis, basis: CommandBasis, number: int) -> None:
+        self.axis, self._basis, self.number = axis, basis, number
         self.begun = False
         self.last = math.inf
         self._judged: tuple[Tried, FloatArray] | None = None
-        self._points = _points(axis, basis.step)
+
+    @cached_property
+    def _points(self) -> _Points:
+        """Where the axis is looked at."""
+        return _points(self.axis, self._basis.step)
 
     @cached_property
     def _ideal(self) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -205,7 +211,7 @@ class ZoneTable:
         self.begun = True
         matrix, constant = self._at(points, 0)
         low, high = self.axis.band(self.places[points], wider * self.axis.task.cut.sync_tolerance)
-        return AxisRows(matrix, constant - self._ideal[0][points], low, high)
+        return AxisRows(matrix, constant - self._ideal[0][points], low, high, self._origin(points))
 
     def ratio_rows(self, points: NDArray[np.intp]) -> AxisRows:
         """Make rows that keep the ratio of the axis to that of the sync zone at some of the points."""
@@ -213,7 +219,12 @@ class ZoneTable:
         cut = self.axis.task.cut
         lever = np.abs(self.axis.task.machine.tool_ratio(self._ideal[2][points]) + np.zeros(len(points)))
         room = RATIO * cut.sync_tolerance / cut.shear_zone / lever
-        return AxisRows(matrix, constant - self._ideal[1][points], -room, room)
+        return AxisRows(matrix, constant - self._ideal[1][points], -room, room, self._origin(points))
+
+    def _origin(self, points: NDArray[np.intp]) -> FloatArray:
+        """Say what rows of some of the points are of, as `AxisRows` has it."""
+        places = self.places[points] - self.axis.shear_zone[0]
+        return np.column_stack([np.full((len(points), 2), (self.number, self.axis.share)), places, self.times[points]])
 
     def _at(self, points: NDArray[np.intp], order: int) -> tuple[FloatArray, FloatArray]:
         """Axis or its ratio at some of the points, as rows over the unknowns."""
@@ -241,8 +252,12 @@ class ZoneTable:
         count = min(max(least, math.ceil((end - start) / self.axis.sample)), MOST_PLACES) if end > start else 1
         wanted = start + (end - start) * (1.0 - np.cos(np.pi * np.arange(count) / max(1, count - 1))) / 2
         times = self.axis.servo.sample_time * np.arange(instants) / instants
-        near = np.abs(self.places[:, None] - np.tile(wanted, instants)) / self.axis.sample
-        near = near + np.abs(self.times[:, None] - np.repeat(times, count)) / self.axis.servo.sample_time
+        return self.nearest(np.tile(wanted, instants), np.repeat(times, count))
+
+    def nearest(self, places: FloatArray, times: FloatArray) -> NDArray[np.intp]:
+        """Find the points that are nearest to places (m) and times since a sampling instant (s)."""
+        near = np.abs(self.places[:, None] - places) / self.axis.sample
+        near = near + np.abs(self.times[:, None] - times) / self.axis.servo.sample_time
         return np.unique(near.argmin(axis=0))
 
 

@@ -15,13 +15,14 @@ from camwright import load_job
 from camwright.cli.main import main
 from camwright.design.optimise_axis import solve_axis
 from camwright.design.servo_aware.axis_problem import AxisProblem
+from camwright.design.servo_aware.command_basis import Command
 from camwright.design.servo_aware.programme import AxisProgramme
 from camwright.jobs.job import Job
 from camwright.profiles.errors import InfeasibleError
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import LinearCarriage, RotaryKnife
 from camwright.profiles.servo import mean_lag
-from camwright.studies.axis_lengths import axis_lengths
+from camwright.studies.axis_lengths import axis_lengths, in_shear_zone
 from camwright.studies.axis_study import solve_job
 from camwright.validation.servo.response import servo_response
 
@@ -97,6 +98,20 @@ def test_no_longer_sync_zone_holds_a_shorter_cut(limits: dict[str, Any]) -> None
         assert (
             AxisProgramme(AxisProblem(job.task.with_cut(cut), "in_sync", (job.servo,), False)).missed(ratio=True) > 0.0
         )
+
+
+@pytest.mark.parametrize("command", ["in_sync", "shaped"])
+def test_programmes_that_go_on_from_one_beside_say_what_those_from_nothing_do(command: Command) -> None:
+    job, last = case_a(), None
+    for length in (0.3, 0.292, 0.293):
+        cut = in_shear_zone(job.cut, length if command == "in_sync" else length - 0.048, job.cut.shear_zone)
+        problem = AxisProblem(job.task.with_cut(cut), command, (job.servo,), True)
+        last = AxisProgramme(problem, last, own=True)
+        fresh = AxisProgramme(problem)
+        assert (last.missed(ratio=True) <= 0.0) == (fresh.missed(ratio=True) <= 0.0)
+        least = fresh.least_share()
+        assert least is not None
+        assert last.least_share() == pytest.approx(least, rel=2e-2, abs=5e-3)  # below that motion matters more
 
 
 def test_machines_that_the_equations_are_not_about_have_none() -> None:

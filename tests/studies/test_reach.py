@@ -42,6 +42,20 @@ def test_inside_the_edges_designs_pass_and_beyond_they_fail(name: str) -> None:
         assert passes(replace(job, cut=replace(job.cut, length=length / factor))) == right
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(("acceleration", "length"), [(1.0, 0.6), (2.5, 0.45)])
+def test_on_a_ramping_line_designs_pass_inside_the_edges_and_fail_beyond(acceleration: float, length: float) -> None:
+    job = load_job("examples/ramping-line.toml")
+    job = replace(job, cut=replace(job.cut, length=length), line=replace(job.line, acceleration=acceleration))
+    found = reach(job, extremes(job.task))
+    speed, shortest = found.max_line_speed, found.min_cut_length
+    assert speed is not None
+    assert shortest is not None
+    for factor, right in ((1.0, True), (1.002, False)):
+        assert passes(replace(job, cut=replace(job.cut, line_speed=speed * factor))) == right
+        assert passes(replace(job, cut=replace(job.cut, length=shortest / factor))) == right
+
+
 SHAPED = replace(
     load_job(),
     machine=RotaryKnife(0.52),
@@ -73,8 +87,10 @@ def test_a_band_of_line_speeds_counts_as_it_does_for_a_design() -> None:
     job = load_job("examples/short-cut.toml")
     found = reach(job, extremes(job.task))
     assert found.max_line_speed is not None
-    for factor, right in ((0.992, True), (1.008, False)):
+    assert found.min_cut_length is not None
+    for factor, right in ((1.0, True), (1.008, False)):
         assert passes(replace(job, cut=replace(job.cut, line_speed=found.max_line_speed * factor))) == right
+        assert passes(replace(job, cut=replace(job.cut, length=found.min_cut_length / factor))) == right
 
 
 @pytest.mark.parametrize(

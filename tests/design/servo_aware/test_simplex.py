@@ -50,6 +50,31 @@ def test_going_on_from_the_vertex_before_ends_where_beginning_anew_does(seed: in
     assert cost @ vertex.x == pytest.approx(float(cost @ anew.x), rel=1e-9)
 
 
+@pytest.mark.parametrize("moved", [1e-3, 1e-2, 0.3])
+@pytest.mark.parametrize("seed", range(4))
+def test_from_the_vertex_of_a_programme_beside_it_ends_where_beginning_anew_does(seed: int, moved: float) -> None:
+    matrix, bound = some_rows(seed, 800, 30)
+    random = np.random.default_rng(seed + 1)
+    cost = random.normal(size=30)
+    names = np.column_stack([np.ones(len(bound)), np.zeros(len(bound)), np.arange(len(bound)), np.zeros(len(bound))])
+    before = dual_simplex(matrix, bound, cost, names=names)
+    assert isinstance(before, Vertex)
+    assert before.names is not None
+    assert matrix[before.names[:, 2].astype(int)] == pytest.approx(before.matrix)
+    order = random.permutation(len(bound))
+    other = (matrix + moved * random.normal(size=matrix.shape))[order]
+    other_bound, other_cost = bound[order], cost + moved * random.normal(size=30)
+    start = before.among(other, other_bound, names[order])
+    assert start is not None
+    found = dual_simplex(other, other_bound, other_cost, start, names[order])
+    anew = dual_simplex(other, other_bound, other_cost)
+    assert type(found) is type(anew) is (Vertex if moved < 0.1 else NoPoint)
+    if isinstance(found, Vertex) and isinstance(anew, Vertex):
+        assert (other @ found.x - other_bound).max() <= 1e-9
+        assert other_cost @ found.x == pytest.approx(float(other_cost @ anew.x), rel=1e-7)
+    assert before.among(other[:400], other_bound[:400], np.full((400, 4), 2.0)) is None
+
+
 def test_among_many_vertices_that_are_equally_good_it_ends() -> None:
     # the peak of a vector with a known sum: only the last unknown costs, and the others are free to be exchanged for ever
     count = 40

@@ -35,7 +35,7 @@ def table(name: str, command: Command, share: float, *, robust: bool = False) ->
     basis = command_basis(Task(machine, cut, FREE), command, robust=robust)
     travel = machine.pitch or cut.sync_zone
     unknowns = np.random.default_rng(4).normal(0.0, 0.01 * travel, size=(basis.matrix.shape[1],))
-    return ZoneTable(Axis(Task(machine, cut, FREE), LATE.at_speed(share), share), basis), unknowns
+    return ZoneTable(Axis(Task(machine, cut, FREE), LATE.at_speed(share), share), basis, 0), unknowns
 
 
 @pytest.mark.parametrize("name", MACHINES)
