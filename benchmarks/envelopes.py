@@ -153,9 +153,8 @@ def wrong(job: Job, edge: Edge, random: np.random.Generator, *, checked: bool) -
         (left, low), (right, high) = edge[at], edge[at + 1]
         if math.isnan(low + high) or left == right:  # where there is none, and where it jumps
             continue
-        alone = checked and (
-            job.servo_aware or not job.machine.placed
-        )  # where the lengths of the map are the only nodes
+        # where the lengths of the map are the only nodes
+        alone = checked and (job.servo_aware or not job.machine.placed)
         part = 0.0 if alone else random.random()
         length, speed = left + part * (right - left), low + part * (high - low)
         for factor, possible in ((1 - ASIDE, True), (1 + ASIDE, False)):
@@ -215,6 +214,7 @@ def written(totals: dict[tuple[str, str], Counter[str]]) -> None:
         f"{found['wrong'] == 0:d},{kind},{sense},{found['envelopes']},{SEED},{found['places']},{found['wrong']},"
         f"{found['milliseconds'] / 1e3 / max(found['envelopes'], 1):.1f}"
         for (kind, sense), found in totals.items()
+        if found["envelopes"]
     ]
     head = "valid,machine,edge,envelopes,seed,places,wrong,processor_s_an_envelope"
     RESULTS.write_text("\n".join([head, *rows]) + "\n")
