@@ -36,6 +36,11 @@ DRAWN_IN = 3e-8
 """Share by which limits are drawn in here: the solver answers this programme to about 1e-8, the contract says 1e-9."""
 JERK_DRAWN_IN = 3e-7
 """The same for the jerk, which short phases see magnified."""
+
+FAR_SLOPE, FAR_JERK = 1e5, 1e8
+"""Limits of the scaled acceleration and jerk are no greater than these, times how much its ends alone move it. On slow lines they are by
+powers of ten, and the solver, whose steps go by the room to a limit, takes hundreds of them or finds no end."""
+
 CURVE_DRAWN_IN = 2e-3
 """The same for the motor's torque, which is looked at in Gauss-Lobatto points only."""
 SHORTEST_PHASE = 1e-5
@@ -122,6 +127,14 @@ class _Layout:
     units: FloatArray
 
 
+def _moved(task: TorqueTask) -> float:
+    """How much the ratios and slopes at the ends move the slave over the return, in units of its scale, at least 1."""
+    problem = task.problem
+    ratios = (problem.start_ratio * problem.length, problem.end_ratio * problem.length)
+    slopes = (problem.start_slope * problem.length**2, problem.end_slope * problem.length**2)
+    return max(task.scale, *map(abs, (*ratios, *slopes))) / task.scale
+
+
 class TorqueProgramme:
     """The programme of one task and pattern on a mesh of a size: accelerations at nodes, linear between, and the node states."""
 
@@ -183,7 +196,7 @@ class TorqueProgramme:
         weights = ca.vec(ca.DM(LOBATTO[1]) @ h.T)
         self._measure = ca.Function("measure", [unknowns, p], [torque, power, available, weights, h])
         mean_square = ca.dot(weights, (torque / units[0]) ** 2)
-        sharpest = task.problem.greatest_jerk * task.problem.length**3 / task.scale
+        sharpest = min(task.problem.greatest_jerk * task.problem.length**3 / task.scale, FAR_JERK * _moved(task))
         by_phase = (1.0 - JERK_DRAWN_IN) * h / p[:n]
         jerk = (
             by_phase - rise / p[:n] / sharpest,
@@ -431,7 +444,7 @@ class TorqueProgramme:
         length, scale, count = problem.length, task.scale, sum(self._layout.sizes)
         lower, upper = np.full(count, -np.inf), np.full(count, np.inf)
         a, v, q, lengths, _, drawn, ends, zone_drawn = self._slices()
-        slope = problem.greatest_slope * length**2 / scale * (1 - DRAWN_IN)
+        slope = min(problem.greatest_slope * length**2 / scale, FAR_SLOPE * _moved(task)) * (1 - DRAWN_IN)
         lower[a], upper[a] = -slope, slope
         low, high = self._paces()
         lower[v] = np.maximum(np.append(low, low[-1]), np.append(low[0], low))

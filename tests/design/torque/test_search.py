@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from camwright import load_job
 from camwright.design.optimise import solve
 from camwright.design.returns.problem import return_problem
 from camwright.design.returns.solver import objective_value, solve_return
@@ -274,3 +275,12 @@ def test_a_knife_that_rubs_and_may_turn_need_not(aim: CommandObjective) -> None:
     one_way = solve(Task(KNIFE, cut, limits), aim)
     both = solve(Task(KNIFE, cut, replace(limits, reversal=True)), aim)
     assert both.minimised == pytest.approx(one_way.minimised, rel=1e-3)
+
+
+@pytest.mark.slow
+def test_a_crank_on_a_slow_line_is_searched_as_one_on_a_quicker_line() -> None:
+    """Limits that are far away say nothing: torques go with the square of the line speed, and the solver needs as few steps."""
+    task = load_job("examples/chasing-shear.toml").task
+    quick, slow = (solve(task.at_speed(speed / 60.0), "rms_torque") for speed in (1.0, 0.01))
+    assert slow.minimised == pytest.approx(quick.minimised * 1e-4, rel=1e-6)
+    assert slow.iterations < 200
