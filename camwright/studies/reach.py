@@ -137,13 +137,13 @@ def followed_speed(job: Job, perfect: float | None, near: float) -> float | None
     """
     if perfect is None:
         return None
-    end, objective = _end_of_speeds(job, perfect), stand_in(job)
-    found, _ = _edge(
-        lambda share: verdict(job, job.task.designed_at(end * share), objective),
-        SLOWEST,
-        SERVO_AWARE_ACCURACY,
-        near / end,
-    )
+    end, programmes = _end_of_speeds(job, perfect), _Programmes(job)
+
+    def judged(share: float) -> Verdict:
+        missed = programmes.misses(job.task.designed_at(end * share), shares_of(job.slowest), between_of(job))
+        return (TOLERANCE if missed > 0.0 else ""), missed
+
+    found, _ = _edge(judged, SLOWEST, SERVO_AWARE_ACCURACY, near / end)
     return None if found is None else end * found
 
 
