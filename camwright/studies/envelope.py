@@ -40,6 +40,12 @@ PROBE = 0.29
 BETWEEN = 1e-3
 """Accuracy of the line speeds with the axis in tolerance between the cut lengths of the map, relative to them."""
 
+FOLLOWED = 5e-3
+"""Share of itself by which the edge of a line that ramps may differ, as a share of the perfect axis', where it is said to follow it."""
+
+POWER, APART = 4.0, 0.99
+"""Greatest power of the cut length by which an edge is expected to go on beyond two nodes, of which one is shorter by this factor."""
+
 STEEP = 5e-3
 """Share of the line speed by which an edge may change between nodes as close as `FINE`; by more at `FINEST` it jumps."""
 
@@ -173,13 +179,21 @@ def envelope_answer(job: Job, points: int, step: Step = ignore) -> EnvelopeAnswe
     def in_tolerance(length: float, expected: float) -> float | None:
         """Begin at the perfect axis' edge where that is the edge of the next shorter length too, or is about what is expected."""
         top, accuracy = fastest(length), ACCURACY if length in lengths else BETWEEN
+        accuracy = STRAIGHT if job.line.ramps else accuracy
         shorter = max((each for each in found_within if each < length), default=None)
         at_top = shorter is not None and found_within[shorter] == fastest(shorter)
         if job.servo_aware:  # a job is made for about what its machine can do
-            own = job.cut.line_speed * length / job.cut.length
-            found = followed_speed(at(length), top, own if math.isnan(expected) else expected)
+            if math.isnan(expected):
+                expected = job.cut.line_speed * length / job.cut.length
+            elif len(found_within) == 1 and shorter is not None:  # cycles of one time
+                expected *= length / shorter
+            found = followed_speed(at(length), top, expected)
         elif at_top or math.isnan(expected) or top is None or expected >= (1.0 - STRAIGHT) * top:
             found, _ = highest_speed(at(length), top, None, accuracy)
+        elif job.line.ramps:  # where the edge is not followed well that of a line which keeps its speed is nearer
+            share = (found_within.get(shorter) or 0.0) / (fastest(shorter) or top) if shorter is not None else 0.0
+            follows = abs(expected / top - share) <= FOLLOWED * share
+            found, _ = highest_speed(at(length), top, expected if follows else None, accuracy)
         else:  # the line is as often on one side of the edge as on the other
             found, _ = highest_speed(at(length), top, expected * (1.0 - 0.5 * accuracy), accuracy)
         found_within[length] = found
@@ -233,11 +247,21 @@ def true_edge(fastest: Callable[[float, float], float | None], lengths: list[flo
 
     first: list[tuple[float, float]] = []
     for length in lengths:
-        first.append(node(length, first[-1][1] if first else math.nan))
+        first.append(node(length, _expected(first, length)))
     found = [first[0]]
     for left, right in pairwise(first):
         found += [*(between(left, right, finest) if finest is not None else ()), right]
     return tuple(found)
+
+
+def _expected(nodes: list[tuple[float, float]], length: float) -> float:
+    """Follow an edge beyond its last nodes: as the power of the length that goes through two of them, NaN after none (m/s)."""
+    last, speed = nodes[-1] if nodes else (math.nan, math.nan)
+    before = [node for node in nodes[:-1] if node[0] < APART * last][-1:]
+    if math.isnan(speed) or not before or math.isnan(before[0][1]):
+        return speed
+    power = math.log(speed / before[0][1]) / math.log(last / before[0][0])
+    return float(speed * (length / last) ** min(max(power, -POWER), POWER))
 
 
 def _place(machine: Machine) -> dict[str, float]:

@@ -6,19 +6,24 @@ from collections.abc import Callable
 
 from camwright.profiles.halving import narrowed, zero_between
 
-_STEEP = 50.0
+STEEP = 50.0
 """What a share of the tolerance is taken to fall by, as a logarithm, while the cut length grows by a share of itself: the first step is
 laid by it, further ones by what it was seen to fall by."""
 
-_LEAST_STEP, _GREATEST_STEP, _GROWTH = 0.6, 0.025, 2.0
-"""Bounds of these steps, in resolutions and as a share of the length, and by what each further one may and must be longer."""
+_LEAST_STEP, _GREATEST_STEP, _GROWTH = 0.6, 1.25, 2.0
+"""Bounds of these steps, in resolutions and as what the first share is taken to fall by, and by what each further one may and must be
+longer."""
 
 _BEYOND = 1.1
 """Steps go so much farther than to where the share would be zero, to the other side of the edge."""
 
 
 def least_length(
-    missed: Callable[[float], float], near: float, ends: tuple[float, float], resolution: float
+    missed: Callable[[float], float],
+    near: float,
+    ends: tuple[float, float],
+    resolution: float,
+    steep: float = STEEP,
 ) -> float | None:
     """Find the least length at which something holds, as if it held at every longer one.
 
@@ -32,6 +37,8 @@ def least_length(
         Lengths that are looked at (m).
     resolution
         Accuracy of the length, relative to it.
+    steep
+        What the share is taken to fall by, as `STEEP`.
 
     Returns
     -------
@@ -42,7 +49,7 @@ def least_length(
     (low, high), length, longer = ends, min(max(near, ends[0]), ends[1]), 1.0
     fails: tuple[float, float] | None = None
     holds: tuple[float, float] | None = None
-    steep = _STEEP
+    greatest = _GREATEST_STEP / steep
     while fails is None or holds is None:
         before = fails or holds
         found = missed(length)
@@ -57,7 +64,7 @@ def least_length(
         zero = zero_between((length, found), before)
         if zero is not None:
             steep = abs(found) * length / (_BEYOND * max(abs(zero - length), _LEAST_STEP * resolution * length))
-        step = max(min(abs(found) / steep, longer * _GREATEST_STEP), longer * _LEAST_STEP * resolution)
+        step = max(min(abs(found) / steep, longer * greatest), longer * _LEAST_STEP * resolution)
         length = min(length * (1.0 + step), high) if found > 0.0 else max(length / (1.0 + step), low)
         longer *= _GROWTH
     return narrowed(missed, fails, holds, resolution)[0]

@@ -23,7 +23,7 @@ from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
 from camwright.studies.axis_study import shares_of
-from camwright.studies.least_length import least_length
+from camwright.studies.least_length import STEEP, least_length
 from camwright.validation.report import ValidationReport, judge
 from camwright.validation.servo.response import greatest_sync_error
 
@@ -58,6 +58,19 @@ _LOOKED = 6
 _BACK, _TRIES = 0.996, 16
 """Factor by which an edge is taken back where it holds at those line speeds, of servos at the corners of their ranges, but not at all of
 them, and how often it is."""
+
+_FOLLOWED_STEEP, _RAMPED_STEEP = 9.0, 15.0
+"""What the error of a servo-aware command is taken to grow by with the line speed, as `STEEP`, where an edge is followed; and that of a
+cam on a line that ramps."""
+
+_BELOW_END = 0.8
+"""Accuracies below the end of the line speeds where an edge is followed that may be there: at the very end limits allow no command."""
+
+FOLLOWED_ACCURACY = 7e-3
+"""Accuracy of an edge that is followed: one percent beyond it nothing designs."""
+
+_FLATTERED = 0.25
+"""Share of a coarse accuracy by which an edge is taken back before it is designed: cams of the first mesh settle a little sooner."""
 
 _WITHIN = 0.998
 """Factor by which the edge of a servo-aware job is told within what programmes allow: a design, whose rows are others, needs that room."""
@@ -143,7 +156,8 @@ def followed_speed(job: Job, perfect: float | None, near: float) -> float | None
         missed = programmes.misses(job.task.designed_at(end * share), shares_of(job.slowest), between_of(job))
         return (TOLERANCE if missed > 0.0 else ""), missed
 
-    found, _ = _edge(judged, SLOWEST, SERVO_AWARE_ACCURACY, near / end)
+    at = min(near / end, 1.0 - _BELOW_END * FOLLOWED_ACCURACY)
+    found, _ = _edge(judged, SLOWEST, FOLLOWED_ACCURACY, at, _FOLLOWED_STEEP)
     return None if found is None else end * found
 
 
@@ -269,6 +283,7 @@ def _blind_edge(
             least,
             accuracy,
             near,
+            _RAMPED_STEEP if ramps and job.line.ramps else STEEP,
         )
 
     if not job.line.ramps:
@@ -280,6 +295,8 @@ def _blind_edge(
     accuracy = max(accuracy, RAMPED_ACCURACY)
     found, failed = edge(near, ramps=True)
     tries = _TRIES if failed != RAMP else 0
+    if tries and failed and found is not None and accuracy > RAMPED_ACCURACY:
+        found *= 1.0 - _FLATTERED * accuracy
     while tries and found is not None and (fails := verdict(job, at(found), objective, thorough=True)[0]):
         tries -= 1
         found, failed = (found * (1.0 - 0.5 * accuracy) if tries and found > least else None), fails
@@ -356,7 +373,11 @@ def _axis_limit(job: Job, task: Task, profile: CamProfile | None) -> str:
 
 
 def _edge(
-    judged: Callable[[float], Verdict], least: float, accuracy: float, near: float | None = None
+    judged: Callable[[float], Verdict],
+    least: float,
+    accuracy: float,
+    near: float | None = None,
+    steep: float = STEEP,
 ) -> tuple[float | None, str]:
     """Find the greatest share of the perfect axis' edge that passes, from where it is expected or from above.
 
@@ -374,7 +395,7 @@ def _edge(
         return by
 
     first = 1.0 / (1.0 - _INSIDE)
-    found = least_length(missed, first if near is None else 1.0 / near, (first, 1.0 / least), accuracy)
+    found = least_length(missed, first if near is None else 1.0 / near, (first, 1.0 / least), accuracy, steep)
     if found is None:
         return None, failures[max(failures)]
     if found <= first:

@@ -9,7 +9,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from camwright.studies.envelope import FINE, FINEST, Edge, true_edge
+from camwright.studies.envelope import FINE, FINEST, Edge, _expected, true_edge
 from camwright.studies.reach import TOLERANCE, Verdict, _edge
 
 LENGTHS = [1.0, 2.0, 3.0, 4.0]
@@ -120,3 +120,36 @@ def test_an_edge_is_found_from_wherever_it_is_expected(share: float, near: float
 def test_the_edge_of_the_perfect_axis_is_the_end(near: float | None) -> None:
     assert _edge(lambda _: ("", -math.inf), 0.02, 1e-3, near) == (1.0, "")
     assert _edge(lambda _: ("settling", math.inf), 0.02, 1e-3, near) == (None, "settling")
+
+
+def test_the_next_node_is_expected_where_a_power_of_the_length_goes_on() -> None:
+    expected: list[float] = []
+
+    def asked(length: float, near: float) -> float:
+        expected.append(near)
+        return 0.3 * length**1.5
+
+    true_edge(asked, LENGTHS, None)
+    assert math.isnan(expected[0])
+    assert expected[1:] == pytest.approx([0.3, 0.3 * 3.0**1.5, 0.3 * 4.0**1.5])
+
+
+@pytest.mark.parametrize("speed", [0.5, 2.0])
+def test_two_nodes_beside_a_jump_expect_nothing_beyond_all_measure(speed: float) -> None:
+    assert _expected([(1.0, 1.0), (1.0 + 1e-9, speed)], 2.0) == speed
+    assert speed / 20.0 < _expected([(1.0, 1.0), (1.02, speed)], 2.0) < speed * 20.0
+
+
+@pytest.mark.parametrize("steep", [9.0, 15.0])
+def test_an_edge_that_is_followed_takes_few_steps(steep: float) -> None:
+    for near in (0.79, 0.8, 0.81):
+        asked: list[float] = []
+
+        def judged(at: float, asked: list[float] = asked) -> Verdict:
+            asked.append(at)
+            return ("settling" if at > 0.8 else ""), 12.0 * math.log(at / 0.8)
+
+        found, _ = _edge(judged, 0.02, 7e-3, near, steep)
+        assert found is not None
+        assert 0.8 / (1 + 7e-3) <= found <= 0.8
+        assert len(asked) <= 4
