@@ -81,7 +81,7 @@ class Header:
             turned = " rad" if units.slave.si == "rad" else ""
             lines.append(
                 f"camwright units: master {master} {units.master.size!r}, slave {slave} {units.slave.size!r}{turned}; "
-                f"advance {table.advance!r}"
+                f"advance {float(f'{table.advance:.15g}')!r}"  # the sum of a cycle's steps may miss it by its last digit
             )
         lines += [f"{what}: {value}" for what, value in self.facts]
         lines.append(SAFETY_NOTE)

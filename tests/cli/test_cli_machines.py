@@ -291,3 +291,15 @@ def test_a_screw_is_refused_where_there_is_none_and_beside_objectives(
     assert "--screw: only a crank whose carriage has a mass" in capsys.readouterr().err
     assert main(["compare", str(EXAMPLES / "chasing-shear.toml"), "--objectives", "--screw"]) == 2
     assert "leave out --screw" in capsys.readouterr().err
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("job", sorted(EXAMPLES.glob("*.toml")), ids=lambda file: file.stem)
+def test_the_table_that_design_writes_passes_as_its_design_does(
+    job: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    # as many rows as the example asks for hold its motion in the sync zone, wherever the design puts that
+    assert main(["design", str(job), "--no-figures", "--quiet", "--out", str(tmp_path)]) == 0
+    capsys.readouterr()
+    assert main(["validate", str(tmp_path / "cam.csv"), "--job", str(job), "--json"]) == 0
+    assert answer_of(capsys)["passed"] is True
