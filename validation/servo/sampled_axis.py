@@ -13,6 +13,9 @@ from camwright.profiles.servo import Servo, closed_loop, sample_plant
 
 ComplexArray = NDArray[np.complex128]
 
+# Powers of the loop below this are not followed any further.
+_FORGOTTEN = 1e-20
+
 
 def axis_response(
     servo: Servo, clock: float, command: Callable[[FloatArray], FloatArray], times: FloatArray
@@ -38,8 +41,6 @@ def axis_response(
     (position, free)
         Shapes ``(n,)`` and ``(3, n)``.
     """
-    from scipy.signal import lfilter
-
     step, gain = servo.sample_time, servo.position_gain
     first, last = (math.floor((float(time) - clock) / step) for time in (times[0], times[-1]))
     before = len(servo.drive) - 1
@@ -47,14 +48,14 @@ def axis_response(
     base = float(seen[before])
     drive = np.convolve(seen - base, servo.drive, "valid")
 
-    # states from rest: (adj(q - A) b) / det(q - A), q the shift by a sample, by Faddeev and LeVerrier
+    # states from rest, x[k + 1] = A x[k] + b d[k]: what d does at once, then what is twice as many samples old each time
     loop, held = closed_loop(servo)[0], sample_plant(servo, step).input
-    square = loop @ loop
-    c2 = -float(np.trace(loop))
-    c1 = 0.5 * (c2 * c2 - float(np.trace(square)))
-    c0 = -float(np.trace(square @ loop) + c2 * np.trace(square) + c1 * np.trace(loop)) / 3
-    ahead = np.stack([held, loop @ held + c2 * held, square @ held + c2 * (loop @ held) + c1 * held])
-    state = [lfilter([0.0, *ahead[:, i]], [1.0, c2, c1, c0], drive) for i in range(3)]
+    state = np.zeros((3, len(drive)))
+    state[:, 1:] = held[:, None] * drive[:-1]
+    power, age = loop, 1
+    while age < len(drive) and np.abs(power).max() > _FORGOTTEN:
+        state[:, age:] += power @ state[:, :-age]
+        power, age = power @ power, 2 * age
     # a state that can be reached is a combination of b, A b and A² b: three shifts of one decay
     decay, power = held[:, None], loop
     while decay.shape[1] < len(drive) + 2:
