@@ -44,6 +44,8 @@ class AxisProblem:
         Factor by which the band of these servos is wider than that of the others.
     shares
         Line speeds at which all this is to hold, as shares of the cut's, from the full line speed down.
+    sketch
+        Whether these line speeds alone are looked at, and none between where the axis comes near to its tolerance.
     """
 
     task: Task
@@ -54,6 +56,7 @@ class AxisProblem:
     between: tuple[Servo, ...] = ()
     wider: float = 1.0
     shares: tuple[float, ...] = (1.0,)
+    sketch: bool = False
 
     @cached_property
     def axes(self) -> tuple[tuple[Axis, ...], ...]:

@@ -275,7 +275,7 @@ def _before(profile: CamProfile, places: tuple[float, ...], sample: float, count
     return profile(np.array(places)[:, None] - sample * np.arange(count), outside="repeat")
 
 
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=1024)
 def sampled_plants(servo: Servo, times: tuple[float, ...]) -> tuple[FloatArray, FloatArray]:
     """Transitions and inputs of `camwright.profiles.servo.sample_plant` at several times, shapes ``(n, 3, 3)`` and ``(n, 3)``."""
     parts = [sample_plant(servo, time) for time in times]

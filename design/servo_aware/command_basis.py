@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from camwright.design.servo_aware.splines import EvenSplines, lattice_sums, sums
+from camwright.design.servo_aware.splines import EvenSplines, LaidSamples
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray, join
 from camwright.profiles.task import Task
 
@@ -21,6 +21,8 @@ INTERVALS: dict[Command, int] = {"in_sync": 48, "shaped": 64}
 ROBUST_SHARE = 1.5
 """Times as many for several servos."""
 
+# What a number of samples is rounded up to, for servos that forget nearly alike; and most samples at places that are kept for them.
+_SHARED, _MOST_KEPT = 128, 2**16
 # Arcs of a structure shorter than this share of an interval get no node of their own.
 _SHORTEST = 0.1
 _DEGREE = 3
@@ -191,18 +193,42 @@ class CommandBasis:
         weights
             Shape ``(samples, sums)``, newest sample first.
         """
-        samples = delay + sample * np.arange(len(weights))
-        first = 0 if self.sync is None else _DEGREE
-        splines = EvenSplines(self.step, float(self.knots[first]), self.matrix.shape[1], self.length)
-        matrix = np.empty((len(places), weights.shape[1], splines.count))
-        if regular:
-            parts = round(self.step * (regular - 1) / float(places[regular - 1] - places[0]))
-            lattice_sums((float(places[0]), parts), (delay, sample), weights, splines, matrix[:regular])
-        sums(places[regular:, None] - samples, weights, splines, matrix[regular:])
-        if self.sync is None:  # what is added to is a straight line
-            pull = self.pitch / self.length
-            return matrix, pull * (places[:, None] * weights.sum(axis=0) - samples @ weights)
-        return matrix, self._even(places[:, None] - samples, outside="repeat") @ weights
+        laid = self._laid(places, regular, delay, sample, len(weights))
+        return laid.sums.of(weights), laid.known[:, : len(weights)] @ weights
+
+    def looked(
+        self,
+        places: FloatArray,
+        regular: int,
+        delay: float,
+        sample: float,
+        weights: FloatArray,
+        unknowns: FloatArray,
+    ) -> FloatArray:
+        """Give the sums of `lattice` of one command, shape ``(rows, sums)``: for a servo of many that is looked at once."""
+        laid = self._laid(places, regular, delay, sample, len(weights))
+        return np.asarray(laid.values(unknowns)[:, : len(weights)] @ weights)
+
+    @cached_property
+    def _lattices(self) -> dict[tuple[bytes, float, float], LaidSamples]:
+        """Samples that were laid out: servos differ in their weights alone, and in how many they have."""
+        return {}
+
+    def _laid(self, places: FloatArray, regular: int, delay: float, sample: float, count: int) -> LaidSamples:
+        """Lay out samples behind places (m), at least so many, and give the command there that the unknowns are added to."""
+        key = places.tobytes(), delay, sample
+        laid = self._lattices.get(key)
+        if laid is None or laid.known.shape[1] < count:
+            samples = delay + sample * np.arange(_SHARED * -(-count // _SHARED), dtype=np.float64)
+            first = 0 if self.sync is None else _DEGREE
+            splines = EvenSplines(self.step, float(self.knots[first]), self.matrix.shape[1], self.length)
+            past = places[:, None] - samples
+            # what a shaped command is added to is a straight line
+            known = past * (self.pitch / self.length) if self.sync is None else self._even(past, outside="repeat")
+            laid = LaidSamples(places, regular, samples, splines, known)
+            if known.size <= _MOST_KEPT:
+                self._lattices[key] = laid
+        return laid
 
     @cached_property
     def _even(self) -> CamProfile:

@@ -20,6 +20,7 @@ from camwright.design.servo_aware.rows import (
     merged,
     worst_places,
 )
+from camwright.design.servo_aware.zone_points import ZonePoints, zone_points
 from camwright.design.servo_aware.zone_table import Tried, ZoneTable
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 
@@ -64,10 +65,9 @@ class GatheredRows:
         self.bands: list[AxisRows] = []
         self.ratios: list[AxisRows] = []
         self.own = OwnRows(problem)
-        self._between = BetweenServos(problem)
-        self._tables = [
-            [ZoneTable(axis, problem.basis, number) for axis in axes] for number, axes in enumerate(problem.axes)
-        ]
+        tables = NewTables(problem)
+        self._between = BetweenServos(problem, tables)
+        self._tables = [[tables.of(axis, number) for axis in axes] for number, axes in enumerate(problem.axes)]
 
     def begin(self, *, linear: bool, ratio: bool) -> None:
         """Make the first rows of a design, unless a mean square is made least of a command in sync, which may well need none."""
@@ -75,13 +75,13 @@ class GatheredRows:
         if in_sync and mean:
             return
         first = FEWEST if self.problem.several else FEW if in_sync or mean else MORE
-        if not any(table.begun for table in self._tables[0]):
+        if not self.bands:
             for number, tables in enumerate(self._tables):
                 for table in thinned(tables, max(1, len(tables) // (CORNERS_BEGUN if number else BEGUN))):
-                    self.bands.append(table.band_rows(table.spread(*first)))
+                    self.bands.append(table.band_rows(table.points.spread(*first)))
         if ratio and not self.ratios and self.problem.task.cut.shear_zone:
             table = self._tables[0][0]
-            self.ratios.append(table.ratio_rows(table.spread(*first)))
+            self.ratios.append(table.ratio_rows(table.points.spread(*first)))
 
     def go_on(self, beside: GatheredRows, unknowns: FloatArray) -> None:
         """Make rows like those that nearly bound at an answer of a problem beside; of the ratio where that is asked for."""
@@ -91,11 +91,11 @@ class GatheredRows:
                 table = self._between.table(number) if number >= corners else self._table(number, share)
                 if table is not None:
                     wider = 1.0 if number < corners else self.problem.wider
-                    self.bands.append(table.band_rows(table.nearest(start + places, times), wider))
+                    self.bands.append(table.band_rows(table.points.nearest(start + places, times), wider))
         table = self._tables[0][0]
         for rows in beside.ratios if self.ratios else []:
             for places, times in rows.near(unknowns).values():
-                self.ratios.append(table.ratio_rows(table.nearest(start + places, times)))
+                self.ratios.append(table.ratio_rows(table.points.nearest(start + places, times)))
         self.own.go_on(beside.own, unknowns)
 
     def _table(self, number: int, share: float) -> ZoneTable:
@@ -104,9 +104,7 @@ class GatheredRows:
         found = next((table for table in tables if table.axis.share == share), None)
         if found is None:
             axis = tables[0].axis
-            found = ZoneTable(
-                Axis(axis.task, axis.servo.at_speed(share / axis.share), share), self.problem.basis, number
-            )
+            found = self._between.tables.of(Axis(axis.task, axis.servo.at_speed(share / axis.share), share), number)
             tables.append(found)
             tables.sort(key=lambda table: -table.axis.share)
         return found
@@ -144,6 +142,8 @@ class GatheredRows:
         near = [[table for table in tables if table.last > FAR * limit] for tables in self._tables]
         if self._add_over(near, command, limit) or self._add_over(self._tables, command, limit):
             return True
+        if self.problem.sketch:
+            return False
         return self._add_over([self._finer(tables, limit) for tables in self._tables], command, limit)
 
     def _add_over(self, every: list[list[ZoneTable]], command: Tried, limit: float) -> bool:
@@ -201,6 +201,21 @@ class GatheredRows:
         if len(worst):
             self.ratios.append(table.ratio_rows(worst))
         return bool(len(worst))
+
+
+class NewTables:
+    """Tables of the axes of a problem as they are asked for; servos that sample at the same times share their points."""
+
+    def __init__(self, problem: AxisProblem) -> None:
+        self._basis = problem.basis
+        self._points: dict[tuple[float, float], ZonePoints] = {}
+
+    def of(self, axis: Axis, number: int) -> ZoneTable:
+        """Make the table of the axis of a servo, given by its number."""
+        at = axis.share, axis.sample
+        if at not in self._points:
+            self._points[at] = zone_points(axis, self._basis.step)
+        return ZoneTable(axis, self._basis, number, self._points[at])
 
 
 class OwnRows:
@@ -290,12 +305,10 @@ class OwnRows:
 class BetweenServos:
     """Servos between the corners of the ranges: those that have rows, and those that have none yet."""
 
-    def __init__(self, problem: AxisProblem) -> None:
-        self._problem = problem
+    def __init__(self, problem: AxisProblem, tables: NewTables) -> None:
+        self._problem, self.tables = problem, tables
         corners = len(problem.servos)
-        self._unseen = [
-            ZoneTable(axis, problem.basis, corners + number) for number, axis in enumerate(problem.axes_between)
-        ]
+        self._unseen = [tables.of(axis, corners + number) for number, axis in enumerate(problem.axes_between)]
         self._seen: list[ZoneTable] = []
 
     @property

@@ -259,9 +259,9 @@ class AxisProgramme:
         self, cost: ObjectiveName, band: float | None, caps: dict[int, float], *, elastic: bool = False
     ) -> tuple[FloatArray, float] | None:
         """Solve with the rows there are; ``elastic`` widens the ratio's band with that of the position."""
-        self.rows.begin(linear=_linear(cost), ratio=elastic or band == 1.0)
         if not self.solved and self._before.bound is not None:
             self.rows.go_on(*self._before.bound)
+        self.rows.begin(linear=_linear(cost), ratio=elastic or band == 1.0)
         if OBJECTIVES[cost].of == "motor" or cost == "sync_error":
             # the former are not quickly solved again; in the latter nothing but limits holds what the shear zone does not see
             self._before.tight = set(range(4))

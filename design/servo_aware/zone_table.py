@@ -13,65 +13,15 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from camwright.design.servo_aware.axis_response import PHASES, SUBSTEPS, Axis, sampled_plants, shared
+from camwright.design.servo_aware.axis_response import PHASES, Axis, sampled_plants, shared
 from camwright.design.servo_aware.command_basis import CommandBasis
 from camwright.design.servo_aware.rows import RATIO, AxisRows
 from camwright.design.servo_aware.servo_weights import memory, state_weights
+from camwright.design.servo_aware.zone_points import ZonePoints
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 
-# Sampling instants in the shear zone at most, of a servo that samples often: what the axis does there has no finer waves. At line speeds
-# below the full one fewer will do, and fewer sampling phases at the ends of the zone, as there are several of them.
-MOST_INSTANTS, SLOWER_INSTANTS, SLOWER_PHASES = 128, 96, 8
 # Most samples that are summed for a table as a whole.
 MOST_SAMPLES = 50_000
-# Most places in the shear zone that have rows from the start.
-MOST_PLACES = 24
-
-
-@dataclass(frozen=True, eq=False)
-class _Points:
-    """Points of a table: their places (m), their times since the sampling instant before (s), the instants (m), and which one each has.
-
-    Of the instants ``count`` lie on a grid of sampling phases from its step ``first``, ``stride`` steps apart; those of the ends follow.
-    """
-
-    places: FloatArray
-    times: FloatArray
-    instants: FloatArray
-    of: NDArray[np.intp]
-    first: int
-    count: int
-    stride: int
-
-
-def _points(axis: Axis, knots: float) -> _Points:
-    """Lay points over the shear zone of an axis: on a grid of sampling instants (parts of a step of knots), and at its ends."""
-    start, end = axis.shear_zone
-    v, after = axis.task.cut.line_speed, np.arange(SUBSTEPS) * (axis.servo.sample_time / SUBSTEPS)
-    step = axis.sample / PHASES
-    most = MOST_INSTANTS if axis.share == 1.0 else SLOWER_INSTANTS
-    stride = max(1, math.ceil((end - start) / (step * most)))
-    if knots:
-        step, stride = knots / math.ceil(knots / (step * stride)), 1
-    first = math.ceil((start - axis.sample) / step)
-    regular = np.arange(first, math.floor(end / step) + 1, stride) * step
-    places = regular + v * after[:, None]
-    inside = (places >= start) & (places <= end)
-    phases = PHASES if axis.share == 1.0 else SLOWER_PHASES
-    edges = np.repeat(list(dict.fromkeys((start, end))), phases)
-    edge_times = (edges / v) % (axis.servo.sample_time / phases)
-    edge_times += np.tile(np.arange(phases), len(edges) // phases) * (axis.servo.sample_time / phases)
-    sub, index = np.nonzero(inside)
-    return _Points(
-        np.concatenate([places[inside], edges]),
-        np.concatenate([after[sub], edge_times]),
-        np.concatenate([regular, edges - v * edge_times]),
-        np.concatenate([index, len(regular) + np.arange(len(edges))]),
-        first,
-        len(regular),
-        stride,
-    )
-
 
 @dataclass(frozen=True, eq=False)
 class Tried:
@@ -94,39 +44,25 @@ class ZoneTable:
         The commands.
     number
         Number of the servo.
+    points
+        Where its axis is looked at, shared with others that sample at the same times.
     """
 
-    def __init__(self, axis: Axis, basis: CommandBasis, number: int) -> None:
-        self.axis, self._basis, self.number = axis, basis, number
+    def __init__(self, axis: Axis, basis: CommandBasis, number: int, points: ZonePoints) -> None:
+        self.axis, self._basis, self.number, self.points = axis, basis, number, points
         self.begun = False
-        self.last = math.inf
-        self._judged: tuple[Tried, FloatArray] | None = None
-
-    @cached_property
-    def _points(self) -> _Points:
-        """Where the axis is looked at."""
-        return _points(self.axis, self._basis.step)
-
-    @cached_property
-    def _ideal(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """What the axis would do at the points in sync, as `Axis.ideal` has it."""
-        return self.axis.ideal(self._points.places)
+        self._judged: tuple[Tried, FloatArray, float] | None = None
 
     @property
-    def places(self) -> FloatArray:
-        """Master positions of the points (m)."""
-        return self._points.places
-
-    @property
-    def times(self) -> FloatArray:
-        """Times of the points since the sampling instant before (s)."""
-        return self._points.times
+    def last(self) -> float:
+        """Greatest sync error (m) of the command that was looked at last, without sign; infinite before the first."""
+        return math.inf if self._judged is None else self._judged[2]
 
     def _samples(self, instants: NDArray[np.intp] | slice) -> FloatArray:
         """Master positions that the loop sees at some of the instants, newest first."""
         cut, servo = self.axis.task.cut, self.axis.servo
-        past = np.arange(memory(servo.loop) + 1) * servo.sample_time
-        return self._points.instants[instants, None] - cut.line_speed * (servo.delay + past)
+        past = np.arange(memory(servo.loop) + 1, dtype=np.float64) * servo.sample_time
+        return self.points.instants[instants, None] - cut.line_speed * (servo.delay + past)
 
     @cached_property
     def _weights(self) -> FloatArray:
@@ -136,8 +72,8 @@ class ZoneTable:
     @cached_property
     def _combined(self) -> tuple[FloatArray, ...]:
         """What state and reference contribute at each point to the axis, and to its ratio: shapes ``(points, 4)``."""
-        known, index = np.unique(self.times, return_inverse=True)
-        turned, pushed = sampled_plants(self.axis.servo.loop, tuple(known.tolist()))
+        known, index = self.points.timed
+        turned, pushed = sampled_plants(self.axis.servo.loop, known)
         v = self.axis.task.cut.line_speed
         return tuple(
             np.concatenate([turned[:, 2 - order], pushed[:, 2 - order, None]], axis=1)[index] / v**order
@@ -146,29 +82,33 @@ class ZoneTable:
 
     def _motion(self, command: Tried, order: int) -> FloatArray:
         """Axis (0) or its ratio (1) at the points."""
-        found: FloatArray = np.einsum("pa,pa->p", self._combined[order], self._states(command)[self._points.of])
+        found: FloatArray = np.einsum("pa,pa->p", self._combined[order], self._states(command)[self.points.of])
         return found
 
     @property
     def _short(self) -> bool:
         """Whether rows are so soon made of all instants at once that they serve to judge commands as well."""
-        return bool(self._basis.step) or memory(self.axis.servo.loop) * len(self._points.instants) <= MOST_SAMPLES
+        return bool(self._basis.step) or memory(self.axis.servo.loop) * len(self.points.instants) <= MOST_SAMPLES
 
     @cached_property
     def _sums(self) -> tuple[FloatArray, FloatArray]:
         """State and reference at the instants as rows over the unknowns, shapes ``(instants, 4, n)`` and ``(instants, 4)``."""
         if not self._basis.step:
             return self._basis.sums(self._samples(slice(None)), self._weights)
-        return self._lattice(self._points.instants, self._points.count)
+        return self._basis.lattice(*self._past)
 
-    def _lattice(self, instants: FloatArray, regular: int) -> tuple[FloatArray, FloatArray]:
-        """State and reference at instants the first of which are a lattice, as `CommandBasis.lattice`."""
-        delay = self.axis.task.cut.line_speed * self.axis.servo.delay
-        return self._basis.lattice(instants, regular, delay, self.axis.sample, self._weights)
+    @property
+    def _past(self) -> tuple[FloatArray, int, float, float, FloatArray]:
+        """Instants, how many of them are a lattice, delay and distance of samples (m), and weights, as `CommandBasis.lattice` asks."""
+        axis = self.axis
+        delay = axis.task.cut.line_speed * axis.servo.delay
+        return self.points.instants, self.points.count, delay, axis.sample, self._weights
 
     def _states(self, command: Tried) -> FloatArray:
         """State and reference at the instants: by rows once there are any, or of the command, whose samples many of them share."""
-        points, axis = self._points, self.axis
+        points, axis = self.points, self.axis
+        if self._basis.step and command.coefficients is not None and "_sums" not in vars(self):
+            return self._basis.looked(*self._past, command.coefficients)
         if (self.begun or self._basis.step) and self._short and command.coefficients is not None:
             matrix, constant = self._sums
             return np.asarray((matrix.reshape(-1, matrix.shape[2]) @ command.coefficients).reshape(-1, 4) + constant)
@@ -190,10 +130,10 @@ class ZoneTable:
     def errors(self, command: Tried) -> FloatArray:
         """Sync error of the tool at the points (m); of the command that was asked for last it is kept."""
         if self._judged is None or self._judged[0] is not command:
-            travel, _, coordinate = self._ideal
+            travel, _, coordinate = self.points.ideal
             tool = self.axis.task.machine.tool
             found = np.asarray(tool(coordinate + (self._motion(command, 0) - travel)) - tool(coordinate))
-            self._judged, self.last = (command, found), float(np.abs(found).max())
+            self._judged = command, found, float(np.abs(found).max())
         return self._judged[1]
 
     def peak(self, command: Tried) -> float:
@@ -203,62 +143,38 @@ class ZoneTable:
 
     def ratios(self, command: Tried) -> FloatArray:
         """Error of the tool's ratio at the points."""
-        _, ratio, coordinate = self._ideal
+        _, ratio, coordinate = self.points.ideal
         return np.asarray((self._motion(command, 1) - ratio) * self.axis.task.machine.tool_ratio(coordinate))
 
     def band_rows(self, points: NDArray[np.intp], wider: float = 1.0) -> AxisRows:
         """Make rows that keep the axis in its band at some of the points, the tolerance times a factor; from then on it has `begun`."""
         self.begun = True
         matrix, constant = self._at(points, 0)
-        low, high = self.axis.band(self.places[points], wider * self.axis.task.cut.sync_tolerance)
-        return AxisRows(matrix, constant - self._ideal[0][points], low, high, self._origin(points))
+        low, high = self.axis.band(self.points.places[points], wider * self.axis.task.cut.sync_tolerance)
+        return AxisRows(matrix, constant - self.points.ideal[0][points], low, high, self._origin(points))
 
     def ratio_rows(self, points: NDArray[np.intp]) -> AxisRows:
         """Make rows that keep the ratio of the axis to that of the sync zone at some of the points."""
         matrix, constant = self._at(points, 1)
         cut = self.axis.task.cut
-        lever = np.abs(self.axis.task.machine.tool_ratio(self._ideal[2][points]) + np.zeros(len(points)))
+        lever = np.abs(self.axis.task.machine.tool_ratio(self.points.ideal[2][points]) + np.zeros(len(points)))
         room = RATIO * cut.sync_tolerance / cut.shear_zone / lever
-        return AxisRows(matrix, constant - self._ideal[1][points], -room, room, self._origin(points))
+        return AxisRows(matrix, constant - self.points.ideal[1][points], -room, room, self._origin(points))
 
     def _origin(self, points: NDArray[np.intp]) -> FloatArray:
         """Say what rows of some of the points are of, as `AxisRows` has it."""
-        places = self.places[points] - self.axis.shear_zone[0]
-        return np.column_stack([np.full((len(points), 2), (self.number, self.axis.share)), places, self.times[points]])
+        places = self.points.places[points] - self.axis.shear_zone[0]
+        return np.column_stack([np.full((len(points), 2), (self.number, self.axis.share)), places, self.points.times[points]])
 
     def _at(self, points: NDArray[np.intp], order: int) -> tuple[FloatArray, FloatArray]:
         """Axis or its ratio at some of the points, as rows over the unknowns."""
-        instants, of = np.unique(self._points.of[points], return_inverse=True)
-        if "_sums" in vars(self):
+        instants, of = np.unique(self.points.of[points], return_inverse=True)
+        if self._basis.step or "_sums" in vars(self):
             matrix, constant = (part[instants] for part in self._sums)
-        elif self._basis.step:
-            matrix, constant = self._lattice(self._points.instants[instants], 0)
         else:  # the first rows may well tell that there is no answer to judge
             matrix, constant = self._basis.sums(self._samples(instants), self._weights)
         weights = self._combined[order][points]
         return np.einsum("pa,pan->pn", weights, matrix[of]), np.einsum("pa,pa->p", weights, constant[of])
-
-    def spread(self, least: int, instants: int) -> NDArray[np.intp]:
-        """Choose points for the first rows: the ends of the zone and places between, crowded at the ends, at a few times after a sample.
-
-        Parameters
-        ----------
-        least
-            Fewest places; there is one for each sample in the zone, up to `MOST_PLACES`.
-        instants
-            Times for each place.
-        """
-        start, end = self.axis.shear_zone
-        count = min(max(least, math.ceil((end - start) / self.axis.sample)), MOST_PLACES) if end > start else 1
-        wanted = start + (end - start) * (1.0 - np.cos(np.pi * np.arange(count) / max(1, count - 1))) / 2
-        times = self.axis.servo.sample_time * np.arange(instants) / instants
-        return self.nearest(np.tile(wanted, instants), np.repeat(times, count))
-
-    def nearest(self, places: FloatArray, times: FloatArray) -> NDArray[np.intp]:
-        """Find the points that are nearest to places (m) and times since a sampling instant (s)."""
-        near = np.abs(self.places[:, None] - places) / self.axis.sample
-        near = near + np.abs(self.times[:, None] - times) / self.axis.servo.sample_time
-        return np.unique(near.argmin(axis=0))
 
 
 @lru_cache(maxsize=64)  # servos at one line speed ask for the same

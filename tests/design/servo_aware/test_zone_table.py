@@ -9,6 +9,7 @@ import pytest
 
 from camwright.design.servo_aware.axis_response import Axis
 from camwright.design.servo_aware.command_basis import Command, command_basis
+from camwright.design.servo_aware.zone_points import zone_points
 from camwright.design.servo_aware.zone_table import Tried, ZoneTable
 from camwright.profiles.cut import Cut
 from camwright.profiles.limits import Limits
@@ -35,7 +36,8 @@ def table(name: str, command: Command, share: float, *, robust: bool = False) ->
     basis = command_basis(Task(machine, cut, FREE), command, robust=robust)
     travel = machine.pitch or cut.sync_zone
     unknowns = np.random.default_rng(4).normal(0.0, 0.01 * travel, size=(basis.matrix.shape[1],))
-    return ZoneTable(Axis(Task(machine, cut, FREE), LATE.at_speed(share), share), basis, 0), unknowns
+    axis = Axis(Task(machine, cut, FREE), LATE.at_speed(share), share)
+    return ZoneTable(axis, basis, 0, zone_points(axis, basis.step)), unknowns
 
 
 @pytest.mark.parametrize("name", MACHINES)
@@ -45,9 +47,9 @@ def table(name: str, command: Command, share: float, *, robust: bool = False) ->
 def test_rows_and_profile_are_judged_alike(name: str, command: Command, share: float, *, robust: bool) -> None:
     found, unknowns = table(name, command, share, robust=robust)
     profile = found._basis.profile(unknowns)
-    points = np.arange(0, len(found.places), 5)
+    points = np.arange(0, len(found.points.places), 5)
     rows = found.band_rows(points)
-    slave = found.axis.ideal(found.places[points])[2]
+    slave = found.axis.ideal(found.points.places[points])[2]
     tool = found.axis.task.machine.tool
     errors = tool(slave + rows.matrix @ unknowns + rows.constant) - tool(slave)
     for tried in (Tried(profile), Tried(profile, unknowns)):  # of the profile, and of the rows
@@ -63,7 +65,7 @@ def test_at_full_speed_its_points_are_those_of_all_phases(name: str, command: Co
     places, times, errors = found.axis.zone_errors(profile)
     assert float(np.abs(found.errors(Tried(profile))).max()) == pytest.approx(float(np.abs(errors).max()), abs=1e-12)
     theirs = {(round(x, 9), round(t, 9)) for x, t in zip(places, times, strict=True)}
-    assert {(round(x, 9), round(t, 9)) for x, t in zip(found.places, found.times, strict=True)} == theirs
+    assert {(round(x, 9), round(t, 9)) for x, t in zip(found.points.places, found.points.times, strict=True)} == theirs
 
 
 @pytest.mark.parametrize("command", ["in_sync", "shaped"])
@@ -73,7 +75,7 @@ def test_a_slow_line_is_looked_at_where_it_matters(command: Command, *, robust: 
     profile = found._basis.profile(unknowns)
     every = float(np.abs(found.axis.zone_errors(profile)[2]).max())
     seen = float(np.abs(found.errors(Tried(profile))).max())
-    assert len(found.places) < 0.2 * len(found.axis.zone_errors(profile)[0])
+    assert len(found.points.places) < 0.2 * len(found.axis.zone_errors(profile)[0])
     assert 0.99 * every <= seen <= every * (1 + 1e-9)
 
 
@@ -82,27 +84,27 @@ def test_a_slow_line_is_looked_at_where_it_matters(command: Command, *, robust: 
 @pytest.mark.parametrize("robust", [False, True])
 def test_rows_are_the_axis(name: str, command: Command, *, robust: bool) -> None:
     found, unknowns = table(name, command, 0.4, robust=robust)
-    points = np.arange(0, len(found.places), 7)
+    points = np.arange(0, len(found.points.places), 7)
     rows = found.band_rows(points)
-    matrix, constant = found.axis.rows(found._basis, found.places[points], found.times[points])
-    ideal = found.axis.ideal(found.places[points])[0]
+    matrix, constant = found.axis.rows(found._basis, found.points.places[points], found.points.times[points])
+    ideal = found.axis.ideal(found.points.places[points])[0]
     assert np.abs(rows.matrix @ unknowns + rows.constant - (matrix @ unknowns + constant - ideal)).max() <= 1e-11
-    low, high = found.axis.band(found.places[points], found.axis.task.cut.sync_tolerance)
+    low, high = found.axis.band(found.points.places[points], found.axis.task.cut.sync_tolerance)
     np.testing.assert_allclose(rows.low, low)
     np.testing.assert_allclose(rows.high, high)
     assert found.begun
     if found.axis.task.cut.shear_zone:
         slopes = found.ratio_rows(points)
-        matrix, constant = found.axis.rows(found._basis, found.places[points], found.times[points], 1)
-        off = matrix @ unknowns + constant - found.axis.ideal(found.places[points])[1]
+        matrix, constant = found.axis.rows(found._basis, found.points.places[points], found.points.times[points], 1)
+        off = matrix @ unknowns + constant - found.axis.ideal(found.points.places[points])[1]
         assert np.abs(slopes.matrix @ unknowns + slopes.constant - off).max() <= 1e-9
 
 
 def test_first_points_are_the_ends_and_places_between() -> None:
     found, _ = table("tangential", "shaped", 1.0)
     start, end = found.axis.shear_zone
-    points = found.spread(6, 2)
-    places = found.places[points]
+    points = found.points.spread(6, 2)
+    places = found.points.places[points]
     assert places.min() == start
     assert places.max() == end
     assert 12 <= len(points) <= 24
