@@ -12,7 +12,7 @@ from camwright.jobs.job import Job
 from camwright.jobs.servos import servos_of
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import SolverError
-from camwright.studies.least_length import least_length
+from camwright.studies.least_length import AWARE_STEEP, least_length
 from camwright.validation.bounds import minimum_length as least
 
 _LENGTH_RESOLUTION = 2e-4
@@ -84,7 +84,7 @@ def axis_lengths(job: Job) -> AxisLengths | None:
                 return math.inf
 
         ends = max(shortest_return(job, command, shear), least_of_all), pitch * (1.0 - _LENGTH_RESOLUTION)
-        return least_length(missed, near, ends, _LENGTH_RESOLUTION) if ends[0] < ends[1] else None
+        return least_length(missed, near, ends, _LENGTH_RESOLUTION, AWARE_STEEP) if ends[0] < ends[1] else None
 
     linear = least.linear_return_to_tolerance(job.task.with_cut(cut), job.servo).length
     in_sync = shortest("in_sync", _SOONER * linear)

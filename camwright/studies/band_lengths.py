@@ -14,10 +14,10 @@ from camwright.jobs.servos import servos_of
 from camwright.profiles.errors import SolverError
 from camwright.studies.axis_lengths import AxisLengths, in_shear_zone, shortest_return, sync_zone_of
 from camwright.studies.axis_study import shares_of
-from camwright.studies.least_length import least_length
+from camwright.studies.least_length import AWARE_STEEP, SketchedFirst, least_length
 from camwright.validation.bounds.minimum_length import over_line_speeds
 
-_LENGTH_RESOLUTION = 1e-3
+_LENGTH_RESOLUTION = 1.5e-3
 """Accuracy of a cut length, relative to the pitch."""
 
 _LAW_SPEEDS = 13
@@ -106,11 +106,13 @@ def _servo_aware(job: Job, command: Command, single: float | None, shortest: flo
 
     programme: AxisProgramme | None = None
 
-    def missed(length: float, looked: tuple[float, ...]) -> float:
+    def missed(length: float, looked: tuple[float, ...], *, sketch: bool = False) -> float:
         nonlocal programme
         task = job.task.with_cut(in_shear_zone(cut, length, shear))
         try:
-            programme = AxisProgramme(AxisProblem(task, command, servos, True, shares=looked), programme, own=True)
+            programme = AxisProgramme(
+                AxisProblem(task, command, servos, True, shares=looked, sketch=sketch), programme, own=True
+            )
             return programme.missed(ratio=False)
         except SolverError:  # at the edge of what double precision resolves
             return np.inf
@@ -120,11 +122,12 @@ def _servo_aware(job: Job, command: Command, single: float | None, shortest: flo
     if not ends[0] < ends[1]:
         return None
     near = single if shortest is None or command != job.command else max(single, shortest)
-    best = least_length(lambda length: missed(length, some), near, ends, _LENGTH_RESOLUTION)
+    by = SketchedFirst(lambda length: missed(length, some, sketch=True), lambda length: missed(length, shares))
+    best = least_length(by, near, ends, _LENGTH_RESOLUTION, AWARE_STEEP)
     for _ in range(_TRIES):
         if best is None or best >= pitch:
             return None
-        if missed(best, shares) <= 0.0:
+        if by.by_all(best) <= 0.0:
             return best
         best *= _LONGER
     return None

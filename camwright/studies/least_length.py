@@ -10,9 +10,15 @@ STEEP = 50.0
 """What a share of the tolerance is taken to fall by, as a logarithm, while the cut length grows by a share of itself: the first step is
 laid by it, further ones by what it was seen to fall by."""
 
+AWARE_STEEP = 25.0
+"""The same for servo-aware commands, whose error falls less."""
+
 _LEAST_STEP, _GREATEST_STEP, _GROWTH = 0.6, 1.25, 2.0
 """Bounds of these steps, in resolutions and as what the first share is taken to fall by, and by what each further one may and must be
 longer."""
+
+_FAR = 0.3
+"""A sketch that keeps its tolerance by so great a share, as a logarithm, needs no whole look until that place is told."""
 
 _BEYOND = 1.1
 """Steps go so much farther than to where the share would be zero, to the other side of the edge."""
@@ -62,9 +68,41 @@ def least_length(
                 return length
             holds = length, found
         zero = zero_between((length, found), before)
-        if zero is not None:
-            steep = abs(found) * length / (_BEYOND * max(abs(zero - length), _LEAST_STEP * resolution * length))
+        if zero is not None and zero != length:
+            steep = abs(found) * length / (_BEYOND * abs(zero - length))
         step = max(min(abs(found) / steep, longer * greatest), longer * _LEAST_STEP * resolution)
         length = min(length * (1.0 + step), high) if found > 0.0 else max(length / (1.0 + step), low)
         longer *= _GROWTH
     return narrowed(missed, fails, holds, resolution)[0]
+
+
+class SketchedFirst:
+    """By how much something is missed, as `least_length` asks: by a sketch, which misses no more than the whole; where that holds, by all.
+
+    From the first place on where the sketch alone holds all is looked at: a line through values of both kinds leads nowhere.
+
+    Parameters
+    ----------
+    sketch, whole
+        By how much is missed at a place; no sketch where it would be the whole.
+    """
+
+    def __init__(self, sketch: Callable[[float], float] | None, whole: Callable[[float], float]) -> None:
+        self._sketch, self._whole = sketch, whole
+        self._known: dict[float, float] = {}
+        self._misled = False
+
+    def __call__(self, at: float) -> float:
+        """Say by how much is missed at a place."""
+        if self._sketch is not None and not self._misled:
+            missed = self._sketch(at)
+            if missed > 0.0 or missed < -_FAR:
+                return missed
+            self._misled = self.by_all(at) > 0.0
+        return self.by_all(at)
+
+    def by_all(self, at: float) -> float:
+        """Say by how much the whole misses at a place."""
+        if at not in self._known:
+            self._known[at] = self._whole(at)
+        return self._known[at]

@@ -23,7 +23,7 @@ from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
 from camwright.studies.axis_study import shares_of
-from camwright.studies.least_length import STEEP, least_length
+from camwright.studies.least_length import AWARE_STEEP, STEEP, SketchedFirst, least_length
 from camwright.validation.report import ValidationReport, judge
 from camwright.validation.servo.response import greatest_sync_error
 
@@ -108,13 +108,18 @@ def reach(job: Job, far: Extremes) -> Reach:
     far
         The same for the perfect axis, which is the end of the search.
     """
-    speed, too_fast = highest_speed(job, far.max_line_speed)
-    length, too_short = shortest_cut(job, far.min_cut_length)
+    programmes = _Programmes(job)
+    speed, too_fast = highest_speed(job, far.max_line_speed, programmes=programmes)
+    length, too_short = shortest_cut(job, far.min_cut_length, programmes)
     return Reach(speed, too_fast or far.line_speed_binding, length, too_short or far.cut_length_binding)
 
 
 def highest_speed(
-    job: Job, perfect: float | None, near: float | None = None, accuracy: float = ACCURACY
+    job: Job,
+    perfect: float | None,
+    near: float | None = None,
+    accuracy: float = ACCURACY,
+    programmes: _Programmes | None = None,
 ) -> tuple[float | None, str]:
     """Find the highest line speed at the job's cut length that passes, and what fails beyond.
 
@@ -127,6 +132,8 @@ def highest_speed(
         of a servo-aware job from its own line speed.
     accuracy
         Of the line speed, relative to it; of a servo-aware job no finer than `SERVO_AWARE_ACCURACY`.
+    programmes
+        Those of a search before for the same job, which began at it too.
 
     Returns
     -------
@@ -139,7 +146,7 @@ def highest_speed(
     if near is None and job.servo_aware:  # a job is made for what its machine can do
         near = min(job.cut.line_speed, end)
     at = None if near is None else near / end
-    found, failed = _kept(job, lambda share: job.task.designed_at(end * share), SLOWEST, accuracy, at)
+    found, failed = _kept(job, lambda share: job.task.designed_at(end * share), SLOWEST, accuracy, at, programmes)
     return (None if found is None else end if not failed else end * found), failed
 
 
@@ -166,7 +173,7 @@ def _end_of_speeds(job: Job, perfect: float) -> float:
     return max(perfect, job.limits.speed * job.cut.length / job.machine.pitch) if _shaped(job) else perfect
 
 
-def shortest_cut(job: Job, perfect: float | None) -> tuple[float | None, str]:
+def shortest_cut(job: Job, perfect: float | None, programmes: _Programmes | None = None) -> tuple[float | None, str]:
     """Shortest cut at the job's line speed that passes (m), and what fails below it, empty where the perfect axis ends there."""
     if perfect is None:
         return None, ""
@@ -175,7 +182,9 @@ def shortest_cut(job: Job, perfect: float | None) -> tuple[float | None, str]:
         by_speed = job.machine.pitch * job.cut.line_speed / job.limits.speed
         end = min(perfect, max(by_speed, job.cut.sync_zone * LEAST_ZONE))
     near = min(1.0, end / job.cut.length) if job.servo_aware else None
-    found, failed = _kept(job, lambda share: job.task.with_length(end / share), 1.0 / LONGEST, near=near)
+    found, failed = _kept(
+        job, lambda share: job.task.with_length(end / share), 1.0 / LONGEST, near=near, programmes=programmes
+    )
     return (None if found is None else end if not failed else end / found), failed
 
 
@@ -240,26 +249,35 @@ def _off_at_most(report: ValidationReport) -> float:
 
 
 def _kept(
-    job: Job, at: Callable[[float], Task], least: float, accuracy: float = ACCURACY, near: float | None = None
+    job: Job,
+    at: Callable[[float], Task],
+    least: float,
+    accuracy: float = ACCURACY,
+    near: float | None = None,
+    programmes: _Programmes | None = None,
 ) -> tuple[float | None, str]:
     """Find the greatest share of the perfect axis' edge that passes, as `_edge`.
 
-    Of a servo-aware job at some line speeds and with servos at the corners of their ranges first, then at all and with those between.
+    Of a servo-aware job by sketches at some line speeds with servos at the corners of their ranges; at all line speeds, and with the servos
+    between, where these hold.
     """
     if not job.servo_aware:
         return _blind_edge(job, at, least, accuracy, near)
     shares = shares_of(job.slowest)
-    some = thinned(shares, _LOOKED)
-
-    programmes = _Programmes(job)
+    some, between = thinned(shares, _LOOKED), between_of(job)
+    programmes = programmes or _Programmes(job)
+    missed = SketchedFirst(
+        (lambda share: programmes.misses(at(share), some, sketch=True)) if some != shares or between else None,
+        lambda share: programmes.misses(at(share), shares, between),
+    )
 
     def looked(share: float) -> Verdict:
-        missed = programmes.misses(at(share), some)
-        return (TOLERANCE if missed > 0.0 else ""), missed
+        by = missed(share)
+        return (TOLERANCE if by > 0.0 else ""), by
 
-    found, failed = _edge(looked, least, max(accuracy, SERVO_AWARE_ACCURACY), near)
-    tries = _TRIES if some != shares or between_of(job) else 0
-    while tries and found is not None and programmes.misses(at(found), shares, between_of(job)) > 0.0:
+    found, failed = _edge(looked, least, max(accuracy, SERVO_AWARE_ACCURACY), near, AWARE_STEEP)
+    tries = _TRIES
+    while tries and found is not None and missed.by_all(found) > 0.0:
         tries -= 1
         found, failed = (found * _BACK if tries and found * _BACK > least else None), TOLERANCE
     if not failed:
@@ -304,22 +322,43 @@ def _blind_edge(
 
 
 class _Programmes:
-    """Programmes of a servo-aware job one after another, each with the rows that bound in the one before."""
+    """Programmes of a servo-aware job one after another, each with the rows that bound in the one before.
+
+    The first is kept: the searches for the highest line speed and for the shortest cut both begin at the job.
+    """
 
     def __init__(self, job: Job) -> None:
         self._job = job
         self.last: AxisProgramme | None = None
+        self._first: tuple[AxisProgramme, float] | None = None
 
-    def misses(self, task: Task, shares: tuple[float, ...], between: tuple[Servo, ...] = ()) -> float:
+    def misses(
+        self, task: Task, shares: tuple[float, ...], between: tuple[Servo, ...] = (), *, sketch: bool = False
+    ) -> float:
         """By how much servo-aware commands within the limits miss the tolerance at line speeds, the axis' own limits kept."""
+        if self._first is not None and _is_of(self._first[0].problem, task, shares, sketch=sketch):
+            self.last = self._first[0]
+            return self._first[1]
         missed = math.inf
         for limits in motor_limits(task.machine, task.limits):
-            problem = _problem(self._job, task.with_limits(limits), shares, between)
+            problem = replace(_problem(self._job, task.with_limits(limits), shares, between), sketch=sketch)
             self.last = AxisProgramme(problem, self.last, own=True)
             missed = min(missed, _missed(self.last, ratio=_asks_ratio(self._job)))
             if missed <= 0.0:
                 break
+        if self._first is None and self.last is not None:
+            self._first = self.last, missed
         return missed
+
+
+def _is_of(problem: AxisProblem, task: Task, shares: tuple[float, ...], *, sketch: bool) -> bool:
+    """Whether a problem is that of a task at line speeds, but for rounding of its cut length and line speed."""
+    one, other = problem.task.cut, task.cut
+    return (
+        (problem.sketch, problem.shares) == (sketch, shares)
+        and math.isclose(one.length, other.length)
+        and math.isclose(one.line_speed, other.line_speed)
+    )
 
 
 def _asks_ratio(job: Job) -> bool:

@@ -36,7 +36,7 @@ class ZonePoints:
     of
         Which instant each point has.
     first, count, stride
-        Of the instants ``count`` lie on a grid of sampling phases from its step ``first``, ``stride`` steps apart; those of the ends follow.
+        Of the instants ``count`` lie on a grid of phases from its step ``first``, ``stride`` steps apart; those of the ends follow.
     """
 
     axis: Axis
