@@ -23,6 +23,7 @@ from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 # Most samples that are summed for a table as a whole.
 MOST_SAMPLES = 50_000
 
+
 @dataclass(frozen=True, eq=False)
 class Tried:
     """A command that is looked at, and its unknowns in the slave's unit; ``None`` where it is not of the basis."""
@@ -164,7 +165,9 @@ class ZoneTable:
     def _origin(self, points: NDArray[np.intp]) -> FloatArray:
         """Say what rows of some of the points are of, as `AxisRows` has it."""
         places = self.points.places[points] - self.axis.shear_zone[0]
-        return np.column_stack([np.full((len(points), 2), (self.number, self.axis.share)), places, self.points.times[points]])
+        return np.column_stack(
+            [np.full((len(points), 2), (self.number, self.axis.share)), places, self.points.times[points]]
+        )
 
     def _at(self, points: NDArray[np.intp], order: int) -> tuple[FloatArray, FloatArray]:
         """Axis or its ratio at some of the points, as rows over the unknowns."""
