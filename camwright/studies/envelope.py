@@ -18,7 +18,7 @@ from camwright.house.provenance import provenance
 from camwright.jobs.job import Job
 from camwright.profiles.machines import Machine
 from camwright.profiles.objective import OBJECTIVES, MotionObjective, of_motion
-from camwright.studies.reach import ACCURACY, followed_speed, highest_speed
+from camwright.studies.reach import ACCURACY, followed_speed, highest_speed, stand_in, verdict
 
 SHORTEST, LONGEST = 0.5, 2.0
 """Cut lengths of the map as parts of the job's; none of them is shorter than `LEAST_ZONE` of the sync zone."""
@@ -45,6 +45,10 @@ FOLLOWED = 5e-3
 
 POWER, APART = 4.0, 0.99
 """Greatest power of the cut length by which an edge is expected to go on beyond two nodes, of which one is shorter by this factor."""
+
+JUMP, LEAST_JUMP, HOLE = 10.0, 0.15, 1.02
+"""Power of the cut length, and share of the line speed, beyond which an edge is taken to jump between two nodes; and factor by which line
+speeds above its lower node are looked at for a hole: where there is none the edge is about the upper one."""
 
 STEEP = 5e-3
 """Share of the line speed by which an edge may change between nodes as close as `FINE`; by more at `FINEST` it jumps."""
@@ -188,6 +192,11 @@ def envelope_answer(job: Job, points: int, step: Step = ignore) -> EnvelopeAnswe
             elif len(found_within) == 1 and shorter is not None:  # cycles of one time
                 expected *= length / shorter
             found = followed_speed(at(length), top, expected)
+        elif (jump := at_jump(found_within, length)) is not None:
+            low, high = jump  # between there may be a hole, above which line speeds pass again: the edge is below it
+            there = at(length)
+            closed = not verdict(there, there.task.designed_at(low * HOLE), stand_in(there))[0]
+            found, _ = highest_speed(there, top, high if closed else low, accuracy)
         elif at_top or math.isnan(expected) or top is None or expected >= (1.0 - STRAIGHT) * top:
             found, _ = highest_speed(at(length), top, None, accuracy)
         elif job.line.ramps:  # where the edge is not followed well that of a line which keeps its speed is nearer
@@ -252,6 +261,17 @@ def true_edge(fastest: Callable[[float, float], float | None], lengths: list[flo
     for left, right in pairwise(first):
         found += [*(between(left, right, finest) if finest is not None else ()), right]
     return tuple(found)
+
+
+def at_jump(found: dict[float, float | None], length: float) -> tuple[float, float] | None:
+    """Give the line speeds of the nodes beside a length between which an edge jumps (m/s), the lower one first; ``None`` elsewhere."""
+    before = max((each for each in found if each < length), default=None)
+    after = min((each for each in found if each > length), default=None)
+    if before is None or after is None:
+        return None
+    low, high = sorted((found[before] or 0.0, found[after] or 0.0))
+    jumps = low > 0.0 and math.log(high / low) > max(JUMP * math.log(after / before), LEAST_JUMP)
+    return (low, high) if jumps else None
 
 
 def _expected(nodes: list[tuple[float, float]], length: float) -> float:

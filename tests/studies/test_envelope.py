@@ -9,7 +9,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from camwright.studies.envelope import FINE, FINEST, Edge, _expected, true_edge
+from camwright.studies.envelope import FINE, FINEST, Edge, _expected, at_jump, true_edge
 from camwright.studies.reach import TOLERANCE, Verdict, _edge
 
 LENGTHS = [1.0, 2.0, 3.0, 4.0]
@@ -153,3 +153,12 @@ def test_an_edge_that_is_followed_takes_few_steps(steep: float) -> None:
         assert found is not None
         assert 0.8 / (1 + 7e-3) <= found <= 0.8
         assert len(asked) <= 4
+
+
+def test_an_edge_jumps_between_two_nodes_where_no_power_of_the_length_joins_them() -> None:
+    assert at_jump({1.0: 2.0, 1.01: 3.0}, 1.005) == (2.0, 3.0)
+    assert at_jump({1.0: 3.0, 1.01: 2.0}, 1.005) == (2.0, 3.0)
+    assert at_jump({1.0: 2.0, 1.01: 2.1}, 1.005) is None
+    assert at_jump({1.0: 2.0, 1.5: 3.0}, 1.2) is None
+    assert at_jump({1.0: 2.0, 1.01: None}, 1.005) is None
+    assert at_jump({1.0: 2.0}, 1.2) is None
