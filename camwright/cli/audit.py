@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from camwright.cli.options import Json, NoFigures, Out, Quiet, job_work, output_directory
+from camwright.cli.options import Json, NoFigures, Out, Quiet, StoredTravel, StoredUnits, job_work, output_directory
 from camwright.cli.views.checks import checks_view
 from camwright.cli.views.files import files_view
 from camwright.cli.views.line_ramps import plc_words
@@ -29,16 +29,8 @@ def run(
     target: Annotated[
         str | None, typer.Option("--target", metavar="NAME", help="Layout; recognised if left out.")
     ] = None,
-    units: Annotated[
-        str | None,
-        typer.Option("--units", metavar="M,S", help="Units of master and slave, for files that state none: mm,deg."),
-    ] = None,
-    travel: Annotated[
-        str | None,
-        typer.Option(
-            "--travel", metavar="Q", help="Travel of the slave per cycle, for files that leave it out: 400 mm."
-        ),
-    ] = None,
+    units: StoredUnits = None,
+    travel: StoredTravel = None,
     slopes: Annotated[
         str | None,
         typer.Option(

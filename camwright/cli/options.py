@@ -17,6 +17,14 @@ JobOrPaper = Annotated[
 ]
 GivenJob = Annotated[Path, typer.Argument(metavar="JOB", help="Job file (TOML).")]
 JudgedBy = Annotated[Path, typer.Option("--job", metavar="JOB", help="Job file (TOML) to judge it by.")]
+StoredUnits = Annotated[
+    str | None,
+    typer.Option("--units", metavar="M,S", help="Units of master and slave, for files that state none: mm,deg."),
+]
+StoredTravel = Annotated[
+    str | None,
+    typer.Option("--travel", metavar="Q", help="Travel of the slave per cycle, for files that leave it out: 400 mm."),
+]
 TableTargets = Annotated[
     str | None,
     typer.Option(

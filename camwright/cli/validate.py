@@ -13,7 +13,7 @@ from camwright.answers.axis import (
 )
 from camwright.answers.line_ramps import line_ramps_answer
 from camwright.answers.measures import band_answer, checks_answer, report_answer
-from camwright.cli.options import Json, JudgedBy, Quiet
+from camwright.cli.options import Json, JudgedBy, Quiet, StoredTravel, StoredUnits
 from camwright.cli.views.checks import checks_view
 from camwright.cli.views.lead import lead_view
 from camwright.cli.views.line_ramps import plc_words
@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 def run(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="A design.json, or a table with x and y as CSV.")],
     job: JudgedBy,
+    units: StoredUnits = None,
+    travel: StoredTravel = None,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> int:
@@ -41,7 +43,7 @@ def run(
     voice = Voice(as_json, quiet)
     with voice.progress(3) as step:
         step("checking")
-        found = validate_file(file, asked)
+        found = validate_file(file, asked, units, travel)
         step("finding its line speeds")
         band = job_band(found.profile, found.job, found.report)
         step("finding how hard the line may ramp")

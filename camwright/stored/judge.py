@@ -60,10 +60,10 @@ def validate(profile: CamProfile | str | Path, job: Job) -> ValidationReport:
     return validate_file(Path(profile), job).report
 
 
-def validate_file(path: Path, job: Job) -> Judged:
-    """Judge the cycle of a file like `validate`, and keep what was judged."""
+def validate_file(path: Path, job: Job, units: str | None = None, travel: str | None = None) -> Judged:
+    """Judge the cycle of a file like `validate`, and keep what was judged; `units` and `travel` as of `read_cycle`."""
     with in_job_words(job.units):
-        cycle, machine, notes = read_cycle(path, job)
+        cycle, machine, notes = read_cycle(path, job, units, travel)
         placed = replace(job, machine=machine)
         return Judged(
             cycle, placed, judge(cycle, placed.task, job.servo, servo_aware=job.servo_aware, slowest=job.slowest), notes

@@ -45,7 +45,9 @@ def cam_text(design: Design) -> str:
     return write_cam_csv(design.profile, design.job.output.points, comments, machine.slave_unit)
 
 
-def read_cycle(path: Path, job: Job) -> tuple[CamProfile, Machine, tuple[str, ...]]:
+def read_cycle(
+    path: Path, job: Job, units: str | None = None, travel: str | None = None
+) -> tuple[CamProfile, Machine, tuple[str, ...]]:
     """Read one cycle from a design.json or a table, told apart by the first character, the machine to judge it by, and notes.
 
     The machine is the job's; where the job leaves the place of its sync zone free, it is that of the file.
@@ -58,6 +60,8 @@ def read_cycle(path: Path, job: Job) -> tuple[CamProfile, Machine, tuple[str, ..
         anywhere.
     job
         The job that the cycle is judged by.
+    units, travel
+        What a table does not state, as `camwright.jobs.table_cycle.whole_cycle` reads them.
 
     Raises
     ------
@@ -66,6 +70,8 @@ def read_cycle(path: Path, job: Job) -> tuple[CamProfile, Machine, tuple[str, ..
     """
     text = decode(read_bytes(path, "profile file", MOST_BYTES), str(path))
     if text.lstrip().startswith("{"):
+        if units is not None or travel is not None:
+            raise InputError(f"{path}: a design states its units and its travel; leave --units and --travel out")
         stored = parse_design(text, str(path))
         unit = stored.job.machine.slave_unit
         _require_unit(unit, job, path)
@@ -75,7 +81,7 @@ def read_cycle(path: Path, job: Job) -> tuple[CamProfile, Machine, tuple[str, ..
     table = csv_target.read(text, str(path))
     if table.units is not None:
         _require_unit(table.units.slave.si, job, path)
-    whole = whole_cycle(table, replace(job, machine=machine), str(path))
+    whole = whole_cycle(table, replace(job, machine=machine), str(path), units, travel)
     counted = without_rounding(whole.table)
     profile = whole.units.to_si(csv_target.rebuild(whole.table if counted is None else counted.table))
     notes = (*whole.table.notes, *whole.notes, *((counted.note,) if counted else ()))

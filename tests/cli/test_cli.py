@@ -563,3 +563,18 @@ def test_check_reads_standard_input(monkeypatch: pytest.MonkeyPatch, capsys: pyt
         assert main(["check", "-"]) == code
         captured = capsys.readouterr()
         assert words in captured.out + captured.err
+
+
+def test_validate_takes_what_a_bare_table_leaves_out(
+    designed: tuple[Path, dict[str, Any]], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rows = [line.split(",") for line in (designed[0] / "cam.csv").read_text().splitlines() if line[0].isdigit()]
+    bare = tmp_path / "bare.csv"
+    bare.write_text("\n".join(f"{x},{float(y) / 10.0!r}" for x, y, *_ in rows))  # the slave in centimetres
+    assert main(["validate", str(bare), "--job", JOB, "--units", "mm,cm", "--json"]) == 0
+    stated = strict(capsys.readouterr().out)
+    assert stated["passed"] is True
+    assert main(["validate", str(bare), "--job", JOB, "--units", "mm,mm", "--json"]) == 1
+    capsys.readouterr()
+    assert main(["validate", str(designed[0] / "design.json"), "--job", JOB, "--units", "mm,mm"]) == 2
+    assert "leave --units and --travel out" in capsys.readouterr().err

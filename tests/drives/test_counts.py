@@ -41,8 +41,10 @@ def profile_of(job: Job) -> CamProfile:
 
 def written(job: Job, target: str, units: str | None = None, **more: object) -> Exported:
     wanted = None if units is None else parse_units(units, job.task)
-    (result,) = export_possible(profile_of(job), job, [target], units=wanted, **more)[0]  # type: ignore[arg-type]
-    return result
+    results, refused = export_possible(profile_of(job), job, [target], units=wanted, **more)  # type: ignore[arg-type]
+    if refused:
+        raise InputError("; ".join(f"{name}: {fault}" for name, faults in refused.items() for fault in faults))
+    return results[0]
 
 
 def last_value(result: Exported) -> int:
