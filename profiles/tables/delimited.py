@@ -31,9 +31,8 @@ _FAULT_CELL = re.compile(r"#(?:[A-Z/0]{3,12}[!?]|N/A|NV)[\s,;|]")
 """What a spreadsheet writes for a cell that it cannot compute: the row that begins with one is no comment."""
 _COUNTED = re.compile(r"\s*[\[(]?(?:pcs|stk|stück|pieces|件|个|张|片)\.?[\])]?\s*", re.IGNORECASE)
 _SAID = re.compile(r"sep=(.)", re.IGNORECASE)
-_REMARK = re.compile(r"\s+(?://|#|!).*")
-_NOTED = re.compile(r"([^;]*\s);\s*[^\W\d][^;]*")
-"""A row with words behind the one semicolon of its line."""
+_REMARK = re.compile(r"(?<!\s)\s+(?://|#|!).*")
+"""A comment behind a row; it is looked for once in each run of blanks, however long that is."""
 _MISFIT = (
     "{count} cells where {where} {width}; separate cells by one sign, and where it is the comma write numbers with a decimal "
     "point"
@@ -289,9 +288,17 @@ def _lines(text: str, place: str) -> tuple[list[tuple[int, str]], list[tuple[int
             said = found[1]
             continue
         if line[:1].isdigit() or line[:1] in "+-.":
-            line = _NOTED.sub(r"\1", _REMARK.sub("", line))
+            line = _without_note(_REMARK.sub("", line))
         kept.append((number, line))
     return kept, remarks, said
+
+
+def _without_note(line: str) -> str:
+    """Take words off that stand behind the one semicolon of a row."""
+    row, _, words = line.partition(";")
+    first = words.lstrip()[:1]
+    noted = row[-1:].isspace() and ";" not in words and (first.isalpha() or first == "_")
+    return row if noted else line
 
 
 def _separator(lines: Sequence[str], holds: Callable[[str, bool], bool]) -> str:

@@ -204,6 +204,7 @@ def test_a_whole_trio_program() -> None:
         "x [mm];y [mm]\n0 mm;0\n1,5 mm;2,25\n3\u00a0mm;2,5\n4,5mm;3,75 mm\n".replace("2,25", "2,25 mm").replace(";2,5\n", ";2,5 mm\n"),
         "x,y\n0 mm,0 mm\n1.5 mm,2.25 mm\n3 mm,2.5 mm\n4.5 mm,3.75 mm\n",
         "x [mm], y [mm]\n0, 0 # start\n1.5, 2.25 ! zone\n3, 2.5 ; there it ends\n4.5, 3.75 // end\n",
+        "x [mm], y [mm]\n0, 0\n1.5," + " " * 9000 + "2.25 #" + " #" * 4000 + "\n3, 2.5 ; __\n4.5, 3.75 ;_\n",
         "% x [mm], y [mm]\n0 0\n1.5 2.25\n3 2.5\n4.5 3.75\n",
         "Number of points 0004\nMaster Units (PRIMARY)\nSlave Units (PRIMARY)\n0001 0 0\n0002 1.5 2.25\n0003 3 2.5\n0004 4.5 3.75\n",
         "主軸位置（mm）,従軸位置（mm）\n" + rows(","),
