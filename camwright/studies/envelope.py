@@ -66,7 +66,7 @@ class EnvelopeAnswer:
         Highest line speeds (m/s) over cut lengths (m): with the quintic return, with a perfect axis, and with the axis in
         tolerance, which is what `design` would pass, designed anew; a crank's free sync zone placed where the line can run fastest, as the
         map's rows tell. Lines with nodes so close that what lies between is true
-        to `STRAIGHT`; NaN where no line speed works. Where an edge jumps, two nodes have one length.
+        to `STRAIGHT`, `within` where `sampled` is false; NaN where no line speed works. Where an edge jumps, two nodes have one length.
     """
 
     job: Job
@@ -75,6 +75,11 @@ class EnvelopeAnswer:
     quintic: Edge
     perfect: Edge
     within: Edge
+
+    @property
+    def sampled(self) -> bool:
+        """Whether `within` is found at the lengths of the map alone, and drawn straight between them."""
+        return _dear(self.job)
 
     @property
     def unit(self) -> str:
@@ -115,6 +120,7 @@ class EnvelopeAnswer:
                 }
                 for row in self.envelope.rows
             ],
+            "axis_in_tolerance_at_lengths_only": self.sampled,
             "edges": {
                 name: [
                     {"length_mm": length * 1e3, "line_speed_m_per_min": None if math.isnan(speed) else speed * 60}
@@ -209,8 +215,7 @@ def envelope_answer(job: Job, points: int, step: Step = ignore) -> EnvelopeAnswe
         return found
 
     perfect = true_edge(lambda length, _: fastest(length), lengths.tolist(), FINEST)
-    dear = job.servo_aware or job.line.ramps or not job.machine.placed
-    within = true_edge(in_tolerance, lengths.tolist(), None if dear else FINE)
+    within = true_edge(in_tolerance, lengths.tolist(), None if _dear(job) else FINE)
     quintic = true_edge(lambda length, _: quintic_speed(at(length).task), lengths.tolist(), FINEST)
     return EnvelopeAnswer(job, objective, found, quintic, perfect, within)
 
@@ -261,6 +266,11 @@ def true_edge(fastest: Callable[[float, float], float | None], lengths: list[flo
     for left, right in pairwise(first):
         found += [*(between(left, right, finest) if finest is not None else ()), right]
     return tuple(found)
+
+
+def _dear(job: Job) -> bool:
+    """Say whether designs of a job are too dear to follow its edge with the axis in tolerance between the lengths of the map."""
+    return job.servo_aware or job.line.ramps or not job.machine.placed
 
 
 def at_jump(found: dict[float, float | None], length: float) -> tuple[float, float] | None:

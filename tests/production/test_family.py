@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from record_kinds import kinds
 
 from camwright.cli.family import write_family
 from camwright.cli.main import main
@@ -279,16 +280,6 @@ def forge(out: Path, record: dict) -> None:
     (out / MANIFEST_FILE).write_text(
         manifest_text(listed, Origin(**{key: origin[key] for key in ("camwright", "job_sha256", "libraries")}))
     )
-
-
-def kinds(value: object, path: tuple[str | int, ...] = ()) -> dict[tuple[str, ...], tuple[str | int, ...]]:
-    """One place of each kind of key or item: of lists the first item stands for all."""
-    found: dict[tuple[str, ...], tuple[str | int, ...]] = {}
-    for key, each in value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ():
-        place = (*path, key)
-        found.setdefault(tuple("#" if isinstance(part, int) else part for part in place), place)
-        found = {**kinds(each, place), **found}
-    return found
 
 
 def test_nothing_of_a_family_can_be_left_out(written: Path, tmp_path: Path) -> None:

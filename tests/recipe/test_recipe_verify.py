@@ -10,6 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from record_kinds import kinds
 
 from camwright.profiles.errors import InputError
 from camwright.profiles.tables.targets import TARGETS, read_table
@@ -342,16 +343,6 @@ def test_a_page_that_says_something_else_is_told(folder: Path) -> None:
     (note,) = found.notes
     assert note.file == "recipe.pdf"
     assert note.what.endswith("or was made with other versions of the typesetting libraries")
-
-
-def kinds(value: object, path: tuple[str | int, ...] = ()) -> dict[tuple[str, ...], tuple[str | int, ...]]:
-    """One place of each kind of key or item: of lists the first item stands for all."""
-    found: dict[tuple[str, ...], tuple[str | int, ...]] = {}
-    for key, each in value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ():
-        place = (*path, key)
-        found.setdefault(tuple("#" if isinstance(part, int) else part for part in place), place)
-        found = {**kinds(each, place), **found}
-    return found
 
 
 FREE = ("provenance", "libraries")

@@ -5,12 +5,17 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from camwright.studies.envelope import FINE, FINEST, Edge, _expected, at_jump, true_edge
+from camwright import load_job
+from camwright.design.feasible.envelope import Envelope
+from camwright.studies.envelope import FINE, FINEST, Edge, EnvelopeAnswer, _expected, at_jump, true_edge
 from camwright.studies.reach import TOLERANCE, Verdict, _edge
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
 
 LENGTHS = [1.0, 2.0, 3.0, 4.0]
 
@@ -162,3 +167,12 @@ def test_an_edge_jumps_between_two_nodes_where_no_power_of_the_length_joins_them
     assert at_jump({1.0: 2.0, 1.5: 3.0}, 1.2) is None
     assert at_jump({1.0: 2.0, 1.01: None}, 1.005) is None
     assert at_jump({1.0: 2.0}, 1.2) is None
+
+
+@pytest.mark.parametrize(
+    ("name", "sampled"),
+    [("paper-600", False), ("flying-saw", False), ("chasing-shear", True), ("ramping-line", True), ("short-cut", True)],
+)
+def test_an_edge_that_is_found_at_the_lengths_of_the_map_alone_says_so(name: str, sampled: bool) -> None:
+    answer = EnvelopeAnswer(load_job(EXAMPLES / f"{name}.toml"), "peak_acceleration", Envelope((), ()), (), (), ())
+    assert answer.to_dict()["axis_in_tolerance_at_lengths_only"] is sampled
