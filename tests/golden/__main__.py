@@ -1,11 +1,14 @@
 """The golden run: what every command says and writes, recorded once and compared after a change that must not change it.
 
-    python tests/golden record BEFORE.json --root OTHER_CHECKOUT
-    python tests/golden compare BEFORE.json
+    python tests/golden record BEFORE.jsonl --root OTHER_CHECKOUT
+    python tests/golden compare BEFORE.jsonl
+    python tests/golden compare BEFORE.jsonl AFTER.jsonl
 
 ``record`` runs every case and records, for each: exit code, the answer on standard output (parsed if it is JSON), the text on
-standard error, and the SHA-256 of each file that it wrote. ``compare`` runs the cases again, prints each difference (key path,
-before, after), and ends with 1 if there is one. All cases take about ten minutes on two processors; ``--only`` and ``--fast`` choose.
+standard error, and the SHA-256 of each file that it wrote. A record has one line a case, written as soon as the case ends: a run
+that was killed goes on where it stopped with the same command. ``compare`` runs the cases again or takes a second record, prints each
+difference (key path, before, after), and ends with 1 if there is one. All cases take more than an hour, the slowest come last;
+``--only`` and ``--fast`` choose.
 
 Each case runs in one scratch directory, with relative paths, so the record does not depend on where that is. All files
 that a case reads are copied there or made here. Files carry the version of camwright: with another version their hashes
@@ -18,13 +21,13 @@ wanted change of an answer would have to replace it. The record of any commit is
 from __future__ import annotations
 
 import argparse
-import json
 import shlex
 import sys
 from pathlib import Path
 
 from cases import all_cases
 from comparing import compare
+from record import Record, code_of
 from running import chosen, run_all, tell
 
 
@@ -38,7 +41,10 @@ def main() -> int:
     """
     parser = argparse.ArgumentParser(description="Record what every command says, or compare with such a record.")
     parser.add_argument("what", choices=("record", "compare", "list"))
-    parser.add_argument("record", type=Path, metavar="OUT.json", nargs="?", help="the record; not needed to list")
+    parser.add_argument("record", type=Path, metavar="RECORD.jsonl", nargs="?", help="the record; not needed to list")
+    parser.add_argument(
+        "after", type=Path, metavar="AFTER.jsonl", nargs="?", help="compare with this record, run nothing"
+    )
     default = shlex.join([sys.executable, "-m", "camwright"])
     parser.add_argument("--command", default=default, help="how camwright is started; paths must be absolute")
     parser.add_argument(
@@ -59,19 +65,24 @@ def main() -> int:
         return 0
     if options.record is None:
         parser.error("name the record")
-    before = json.loads(options.record.read_text(encoding="utf-8")) if options.what == "compare" else {}
-    after, wanted = run_all(options)
-    if options.what == "compare":
+    if options.what == "record":
+        run_all(options, Record(options.record, code_of(options.root, options.command)))
+        return 0
+    before = Record(options.record).cases
+    if options.after is not None:
+        after = Record(options.after).cases
+        names = [name for name in before if name in after and (options.only is None or options.only in name)]
+    else:
+        fresh = Record(None)
+        wanted = run_all(options, fresh)
+        after = fresh.cases
         # a case that is no longer listed counts only where everything was run
         gone = [] if options.fast else [name for name in before if options.only is None or options.only in name]
-        names = dict.fromkeys([*(case.name for case in wanted), *gone])
-        found = compare(before, after, names)
-        for text in (*found, f"{len(found)} differences in {len(names)} cases"):
-            tell(text, sys.stdout)
-        return 1 if found else 0
-    text = json.dumps(after, indent=1, ensure_ascii=False, allow_nan=False)
-    options.record.write_text(text + "\n", encoding="utf-8")
-    return 0
+        names = [*dict.fromkeys([*(case.name for case in wanted), *gone])]
+    found = compare(before, after, names)
+    for text in (*found, f"{len(found)} differences in {len(names)} cases"):
+        tell(text, sys.stdout)
+    return 1 if found else 0
 
 
 if __name__ == "__main__":

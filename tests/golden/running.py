@@ -19,9 +19,10 @@ from typing import Any
 
 from cases import Case, all_cases
 from inputs import inputs
+from record import Record
 
-TIMEOUT = 900.0
-"""Seconds that a case may take."""
+TIMEOUT = 3600.0
+"""Seconds that a case may take; the slowest takes a few minutes alone, and several times that beside other work."""
 
 LEFT_OUT = {
     "designs_per_s": "a duration: differs from run to run",
@@ -162,32 +163,32 @@ def with_needs(cases: Sequence[Case], wanted: Sequence[Case]) -> list[Case]:
     return [case for case in cases if case.name in names]
 
 
-def run_all(options: argparse.Namespace) -> tuple[dict[str, Any], list[Case]]:
-    """Run the cases that are asked for.
+def run_all(options: argparse.Namespace, record: Record) -> list[Case]:
+    """Run the cases that are asked for and that the record does not have yet, those that ``--fast`` leaves out last.
 
     Returns
     -------
-    tuple
-        What is recorded, by the name of the case; the cases that were asked for.
+    list of Case
+        The cases that were asked for.
     """
     with tempfile.TemporaryDirectory(prefix="golden-") as place:
         scratch = Path(place)
         runner = Runner(shlex.split(options.command), options.root, scratch)
         cases = all_cases(runner.examples)
         wanted = chosen(cases, options.only, fast=options.fast)
-        asked = {case.name for case in wanted}
-        order = with_needs(cases, wanted)
-        record = {}
+        left = [case for case in wanted if case.name not in record.cases]
+        missing = {case.name for case in left}
+        order = sorted(with_needs(cases, left), key=lambda case: case.slow)
         begun = time.perf_counter()
         for number, case in enumerate(order, 1):
             start = time.perf_counter()
             result = runner.run(case)
-            if case.name in asked:
-                record[case.name] = result
+            if case.name in missing:
+                record.add(case.name, result)
             seconds = time.perf_counter() - start
             tell(f"{number}/{len(order)} {case.name}: exit code {result['exit_code']}, {seconds:.1f} s", sys.stderr)
-        tell(f"{len(record)} cases in {time.perf_counter() - begun:.0f} s", sys.stderr)
+        tell(f"{len(left)} cases in {time.perf_counter() - begun:.0f} s", sys.stderr)
         if options.keep is not None:
             shutil.rmtree(options.keep, ignore_errors=True)
             shutil.copytree(scratch, options.keep)
-    return record, wanted
+    return wanted
