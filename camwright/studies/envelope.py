@@ -46,7 +46,7 @@ FOLLOWED = 5e-3
 POWER, APART = 4.0, 0.99
 """Greatest power of the cut length by which an edge is expected to go on beyond two nodes, of which one is shorter by this factor."""
 
-JUMP, LEAST_JUMP, HOLE = 10.0, 0.15, 1.02
+JUMP, LEAST_JUMP, HOLE = 10.0, 0.03, 1.02
 """Power of the cut length, and share of the line speed, beyond which an edge is taken to jump between two nodes; and factor by which line
 speeds above its lower node are looked at for a hole: where there is none the edge is about the upper one."""
 
