@@ -1,7 +1,11 @@
-"""``python -m camwright``: the command line."""
+"""The command ``camwright``, and ``python -m camwright``: the command line, ended quietly while it is still imported."""
 
 import sys
 
-from camwright.cli.main import main
+try:
+    from camwright.cli.main import main
+except KeyboardInterrupt:
+    sys.exit(130)
 
-sys.exit(main())
+if __name__ == "__main__":
+    sys.exit(main())

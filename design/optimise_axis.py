@@ -57,8 +57,6 @@ GROWN = 4.0
 MOST_SAMPLES = 2**15
 # Of more servos than that, three are looked at first, at the full line speed.
 FEW_SERVOS = 3
-# A line speed that is named for more samples than that is so much higher than need be: it is written with three digits.
-RAISED = 1.006
 # Cuts up to so many times the asked length, and line speeds down to such a share, are looked at for a way out.
 LONGEST, SLOWEST = 8.0, 0.02
 
@@ -109,7 +107,7 @@ def solve_axis(
     """
     machine, limits = task.machine, task.limits
     require_moving(machine, objective)
-    _require_samples(task.at_speed(min(shares) * task.cut.line_speed).cut, (*servos, *between))
+    _require_samples(task.cut, (*servos, *between), min(shares))
     cost = _cost(machine, objective)
 
     def designs(other: Task) -> bool:
@@ -190,20 +188,32 @@ def _servo_blind(task: Task, cost: ObjectiveName, designs: Callable[[Task], bool
         raise infeasible(placed, designs=designs) from error
 
 
-def _require_samples(cut: Cut, servos: tuple[Servo, ...]) -> None:
-    """Refuse a line that is so slow that the rows of a servo-aware design do not fit; a servo follows it well without one."""
+def _require_samples(cut: Cut, servos: tuple[Servo, ...], share: float = 1.0) -> None:
+    """Refuse a lowest line speed, a share of the cut's, for which the rows of a servo-aware design are too many.
+
+    A servo follows so slow a line well without one.
+    """
     shortest = min(servo.sample_time for servo in servos)
     past = max(memory(servo.loop) for servo in servos)
-    samples = past + math.ceil(cut.period / shortest)
-    if samples > MOST_SAMPLES:
-        slowest = cut.length / (shortest * (MOST_SAMPLES - past - 1)) * 60 * RAISED
-        raise InputError(
-            Message(
-                f"{{@line_speed}} = {cut.line_speed * 60:g} m/min: a servo-aware design looks at every sample of a cycle, {samples} "
-                f"here, the limit is {MOST_SAMPLES}; raise the line speed above {slowest:.3g} m/min or the sample time, or leave "
-                f"servo_aware out: on so slow a line the axis is near any smooth command, and the check shear_zone_error says how near"
-            )
+    samples = past + math.ceil(cut.period / share / shortest)
+    if samples <= MOST_SAMPLES:
+        return
+    slowest = cut.length / (shortest * (MOST_SAMPLES - past - 1))
+    at = " at {lowest}, the lowest of {@line_speeds}" if share < 1.0 else ""
+    begin = "begin {@line_speeds} above {slowest}, or " if share < 1.0 and cut.line_speed > slowest else ""
+    values = {"line_speed": cut.line_speed, "lowest": share * cut.line_speed}
+    least = {"slowest": slowest, "raised": slowest / share}
+    raise InputError(
+        Message(
+            f"{{@line_speed}} = {{line_speed}}: a servo-aware design looks at every sample of a cycle, {samples} here{at}, the limit is "
+            f"{MOST_SAMPLES}; {begin}raise the line speed above {{raised}}, or the sample time, or leave servo_aware out: on so slow a "
+            f"line the axis is near any smooth command, and the check shear_zone_error says how near",
+            (
+                *((name, Value(value, "m/s", 6)) for name, value in values.items()),
+                *((name, Value(value, "m/s", 6, "above")) for name, value in least.items()),
+            ),
         )
+    )
 
 
 def _within(problem: AxisProblem, limits: Limits) -> AxisProblem:

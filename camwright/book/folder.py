@@ -41,7 +41,7 @@ class BookFolder:
         return self.root / MANIFEST
 
     def begin(self, *, resume: bool) -> None:
-        """Make the folder ready; what was half-written is cleared away.
+        """Make the folder, for the journal to be opened in it.
 
         Raises
         ------
@@ -58,16 +58,16 @@ class BookFolder:
             advice = "leave out --resume and choose another --out" if resume else "choose another --out"
             raise InputError(f"{self.root}: not empty, and holds no book to go on with; {advice}")
         try:
-            self.clear()
-            self._aside.mkdir(parents=True)
+            self._work.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise InputError(
                 f"{self.root}: the folder of the book cannot be made: {error.strerror}; choose another --out"
             ) from error
 
     def clear(self) -> None:
-        """Remove what is being written."""
+        """Clear away what was half-written; for who holds the journal alone, else another book's writing would go."""
         shutil.rmtree(self._aside, ignore_errors=True)
+        self._aside.mkdir()
 
     def place(self, entry: Entry, texts: Mapping[str, str]) -> None:
         """Put the files of a combination into their place, all at once."""

@@ -107,6 +107,8 @@ def make_book(book: Book, root: Path, crew: Crew, *, resume: bool = False, told:
         return BookAnswer(book, counts, 0.0, peak_rss(), counts.designs, files)
     folder.begin(resume=resume)
     with Journal(folder.journal, book) as journal:
+        with _writing(root):
+            folder.clear()
         for number in [entry.number for entry in journal.entries() if not folder.holds(entry)]:
             journal.forget(number)
         known = journal.numbers()

@@ -8,6 +8,7 @@ import re
 import shutil
 import stat
 import tempfile
+import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,6 +17,9 @@ from camwright.profiles.errors import InputError
 
 _MANY = 100
 """Files from which on the whole disk is synchronised at once: one by one, ten thousand take a minute."""
+
+_WAIT = 30.0
+"""Seconds that a command waits for another one to have moved its files."""
 
 _DEVICES = re.compile(r"(?i)(con|prn|aux|nul|conin\$|conout\$|(com|lpt)[0-9¹²³])( *\.|:|$)")
 
@@ -144,7 +148,8 @@ def staged(directory: Path, settle: Callable[[Path], Changes] = no_changes) -> I
         new = aside / "new"
         new.mkdir()
         yield new
-        _move_all(new, directory, aside / "old", settle(new))
+        with _alone(directory, directory / ".camwright-moving"):
+            _move_all(new, directory, aside / "old", settle(new))
     except OSError as error:
         _take_back(aside, made)
         raise InputError(
@@ -230,14 +235,40 @@ def replaced(
         new = aside / "new"
         new.mkdir()
         yield new
-        if target.exists():
-            _carry(target, new, theirs(target))
-        flush(new)
-        _swap(new, target, aside / "old")
+        with _alone(directory, target.with_name(f".camwright-moving-{target.name}")):
+            _require_free(directory, target, ours)
+            if target.exists():
+                _carry(target, new, theirs(target))
+            flush(new)
+            _swap(new, target, aside / "old")
     except OSError as error:
         raise _refusal(directory, error) from error
     finally:
         shutil.rmtree(aside, ignore_errors=True)
+
+
+@contextlib.contextmanager
+def _alone(directory: Path, sign: Path) -> Iterator[None]:
+    """Move files while no other command does so in the same place: who comes second finds all that the first one left.
+
+    The sign is a directory, which only one can make on any file system, a shared drive too.
+    """
+    end = time.monotonic() + _WAIT
+    while True:
+        try:
+            sign.mkdir()
+            break
+        except FileExistsError as error:
+            if time.monotonic() > end:
+                raise InputError(
+                    f"{directory}: another camwright is moving its files here, or was killed while it did; nothing was written: "
+                    f"where none is at work, remove {sign} and run this again, or choose another --out"
+                ) from error
+            time.sleep(0.01)
+    try:
+        yield
+    finally:
+        sign.rmdir()
 
 
 def _carry(old: Path, new: Path, theirs: Mapping[str, str]) -> None:

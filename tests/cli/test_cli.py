@@ -10,6 +10,7 @@ import re
 import resource
 import subprocess
 import sys
+import tomllib
 from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
@@ -444,6 +445,22 @@ def test_a_failure_of_the_solver_has_its_exit_code(
     shown = capsys.readouterr().out
     assert (strict(shown)["status"] if shown else None) == status
     assert list(tmp_path.iterdir()) == []
+
+
+def test_who_stops_the_command_while_it_starts_sees_no_traceback() -> None:
+    """Its modules are imported before anything of it could catch the interruption."""
+    code = (
+        "import runpy, sys\n"
+        "class Stop:\n"
+        "    def find_spec(self, name, *_):\n"
+        "        if name == 'typer': raise KeyboardInterrupt\n"
+        "sys.meta_path.insert(0, Stop())\n"
+        "runpy.run_module('camwright', run_name='__main__')"
+    )
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (run.returncode, run.stdout, run.stderr) == (130, "", "")
+    project = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert project["scripts"] == {"camwright": "camwright.__main__:main"}
 
 
 def test_what_nobody_foresaw_ends_with_4_and_no_traceback(

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import json
 import os
+import threading
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from camwright.cli.main import main
-from camwright.house.owned import LIST, Work, owned
+from camwright.house import files
+from camwright.house.owned import LIST, Work, owned, read_list
 from camwright.jobs.job import BUNDLED_JOB
 from camwright.profiles.errors import InputError
 from camwright.studies.quick import quick_cam_text, read_cross_cut
@@ -189,6 +192,39 @@ def test_two_jobs_of_one_name_do_not_overwrite_each_other(
     assert main(["design", "b.toml", "--no-figures", "--quiet"]) == 0
     assert "what design made of an earlier state of 'paper-600'" in capsys.readouterr().err
     assert Path("out/paper-600/design.json").read_bytes() != before
+
+
+def test_commands_at_the_same_moment_write_one_after_another(tmp_path: Path) -> None:
+    """Each finds all that the one before left: no files of two works under one list, and every replacement is told."""
+    works = [replace(ONE, sha256=digit * 64) for digit in "12345678"]
+    ready = threading.Barrier(len(works))
+
+    def wrote(work: Work) -> list[str]:
+        ready.wait()
+        return write(tmp_path / "out", work, **{f"file{number}": work.sha256 for number in range(20)})
+
+    with ThreadPoolExecutor(len(works)) as pool:
+        notes = list(pool.map(wrote, works))
+    (entry,) = read_list(tmp_path / "out")
+    assert {(tmp_path / "out" / name).read_text() for name in entry.files} == {entry.sha256}
+    assert names(tmp_path / "out") == sorted(entry.files)
+    assert sorted(map(len, notes)) == [0] + [1] * (len(works) - 1)
+
+
+def test_a_command_that_was_killed_while_it_moved_its_files_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(files, "_WAIT", 0.02)
+    (tmp_path / ".camwright-moving").mkdir()
+    with pytest.raises(
+        InputError, match=r"another camwright is moving its files here, or was killed .* remove .*\.camwright-moving"
+    ):
+        write(tmp_path, cam="1")
+    assert names(tmp_path) == [".camwright-moving"]
+    (tmp_path / ".camwright-moving-recipe").mkdir()
+    with pytest.raises(InputError, match="nothing was written"), files.replaced(tmp_path / "recipe", lambda _: True):
+        pass
+    assert not (tmp_path / "recipe").exists()
 
 
 def test_markup_in_a_path_is_text(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

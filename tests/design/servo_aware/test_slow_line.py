@@ -9,6 +9,7 @@ from dataclasses import replace
 import pytest
 
 from camwright.design.optimise_axis import MOST_SAMPLES, _require_samples, solve_axis
+from camwright.jobs.wording import words
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InfeasibleError, InputError
 from camwright.profiles.limits import Limits
@@ -29,10 +30,28 @@ def test_a_crawling_line_is_refused_at_once_with_the_slowest_that_is_taken(servo
         solve_axis(TASK.with_cut(slow), "peak_acceleration", "shaped", (servo,))
     assert time.process_time() - began < 0.5
     assert MOST_SAMPLES == 32768
-    named = float(re.findall(r"above ([\d.]+) m/min", str(refused.value))[0]) / 60
+    (message,) = (words(each) for each in refused.value.messages)
+    named = float(re.findall(r"above ([\d.]+) m/min", message)[0]) / 60
     _require_samples(replace(CUT, line_speed=named), (servo,))
     with pytest.raises(InputError):
-        _require_samples(replace(CUT, line_speed=0.98 * named), (servo,))
+        _require_samples(replace(CUT, line_speed=0.9999 * named), (servo,))
+
+
+def test_a_range_that_begins_too_slow_is_told_where_it_may_begin() -> None:
+    """The job's own line speed was told to be the lowest of the range, and one that did not help to be enough."""
+    own = replace(CUT, line_speed=0.05)
+    with pytest.raises(InputError) as refused:
+        _require_samples(own, (SERVO,), 0.01)
+    (message,) = (words(each) for each in refused.value.messages)
+    assert re.match(
+        r"\[cut\] line_speed = 3 m/min: .* here at 0.03 m/min, the lowest of \[objective\] line_speeds, ", message
+    )
+    begin, raised = (float(each) / 60 for each in re.findall(r"above ([\d.]+) m/min", message))
+    _require_samples(own, (SERVO,), begin / own.line_speed)
+    _require_samples(replace(own, line_speed=raised), (SERVO,), 0.01)
+    for cut, share in ((own, 0.9999 * begin / own.line_speed), (replace(own, line_speed=0.9999 * raised), 0.01)):
+        with pytest.raises(InputError):
+            _require_samples(cut, (SERVO,), share)
 
 
 def test_a_job_that_no_shaped_command_does_is_refused_in_seconds() -> None:
