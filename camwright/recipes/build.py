@@ -23,6 +23,7 @@ from camwright.recipes.model import (
     Recipe,
     Refusal,
 )
+from camwright.recipes.production import found_ramps
 from camwright.recipes.ramp_tables import STEPS as START_STEPS
 from camwright.recipes.ramp_tables import recipe_table, start_tables
 from camwright.stored.design_file import StoredDesign
@@ -91,13 +92,14 @@ def make_recipe(
         An unknown target, one that cannot take the cam, or none that can.
     """
     job, profile = design.job, design.profile
-    values = expected(design, step)
+    ramps = found_ramps(design)
+    values = expected(design, ramps, step)
     results, refused = export_possible(profile, job, targets, step=step)
     if refused and (required or not results):
         raise InputError(*(f"{name}: {fault}" for name, faults in refused.items() for fault in faults))
     origin = provenance(job.sha256)
     libraries = origin["libraries"]
-    starts, start_texts = start_tables(design, targets, step)
+    starts, start_texts = start_tables(ramps, targets, step)
     recipe = Recipe(
         schema_version=RECIPE_VERSION,
         kind="camwright recipe",

@@ -11,6 +11,7 @@ import numpy as np
 from camwright.house.progress import Step, ignore
 from camwright.jobs.job import Job
 from camwright.jobs.servos import servos_of
+from camwright.production.ramps import Ramps
 from camwright.profiles.cut import Cut
 from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.polynomial.profile import CamProfile
@@ -62,8 +63,8 @@ class Expected:
     line_ramp: LineRampRecord
 
 
-def expected(design: StoredDesign, step: Step = ignore) -> Expected:
-    """Work out what a sheet says of a cam."""
+def expected(design: StoredDesign, ramps: Ramps | None, step: Step = ignore) -> Expected:
+    """Work out what a sheet says of a cam, and of the start and stop of its machine."""
     job, profile = design.job, design.profile
     step("checking")
     report = judge(profile, job.task, job.servo, servo_aware=job.servo_aware, slowest=job.slowest)
@@ -72,7 +73,7 @@ def expected(design: StoredDesign, step: Step = ignore) -> Expected:
     step("finding its line speeds")
     band = job_band(profile, job, report)
     step("finding how hard the line may ramp")
-    ramps = ramp_record(line_ramps(profile, job))
+    line_ramp = ramp_record(line_ramps(profile, job))
     step("finding the working range")
     return Expected(
         slave_start=job.task.slave_at_start,
@@ -84,9 +85,9 @@ def expected(design: StoredDesign, step: Step = ignore) -> Expected:
         lead_time=mean_lag(job.servo),
         speed_band=tuple(SpeedPart(*part, *binds) for part, binds in zip(band.parts, band.binds, strict=True)),
         working_range=working_range(job),
-        start_stop=start_stop(design),
+        start_stop=start_stop(design, ramps),
         marks=marks_of(design),
-        line_ramp=ramps,
+        line_ramp=line_ramp,
     )
 
 

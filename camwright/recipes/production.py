@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from camwright.house.numbers import in_print, shown, unit_shown, with_unit
 from camwright.production.marks import at_speeds
-from camwright.production.ramps import fastest_standing, ramps
+from camwright.production.ramps import Ramps, fastest_standing, ramps
 from camwright.profiles.errors import InfeasibleError
 from camwright.profiles.mark_range import MarkRange
 from camwright.profiles.ramp import Ramp
@@ -15,13 +15,18 @@ from camwright.recipes.release import marked, outside_note
 from camwright.stored.design_file import StoredDesign
 
 
-def start_stop(design: StoredDesign) -> StartStop:
-    """Design start and stop of a cam's machine; where there are none, say up to which line speed there are."""
-    job = design.job
+def found_ramps(design: StoredDesign) -> Ramps | None:
+    """Design start and stop of a cam's machine; ``None`` where there are none at its line speed."""
     try:
-        found = ramps(job, cam=design.profile)
+        return ramps(design.job, cam=design.profile)
     except InfeasibleError:
-        return StartStop(fastest_standing(job))
+        return None
+
+
+def start_stop(design: StoredDesign, found: Ramps | None) -> StartStop:
+    """Write start and stop of a cam's machine as a recipe holds them; where there are none, up to which line speed there are."""
+    if found is None:
+        return StartStop(fastest_standing(design.job))
     return StartStop(
         standing_up_to=found.fastest,
         park=float(found.stand.park),

@@ -16,28 +16,26 @@ from camwright.profiles.tables.cam_table import Units
 from camwright.profiles.tables.deviation import deviation
 from camwright.profiles.tables.targets import TARGETS
 from camwright.recipes.model import Profile, RampTables, Recipe, RecipeTable
-from camwright.recipes.ramp_tables import found_ramps, motions_of
+from camwright.recipes.ramp_tables import motions_of
 from camwright.recipes.recipe_file import RECIPE_FILE
 from camwright.recipes.table_faults import Fault, check_faults, motion_faults, table_faults
-from camwright.stored.design_file import StoredDesign
 
 _SAME = 1e-9
 """Part of its travel by which a motion designed anew may be off the recorded one: another processor."""
 
 
-def start_faults(recipe: Recipe, design: StoredDesign, data: Mapping[str, bytes | None]) -> Iterator[Fault]:
-    """Design start and stop anew, and judge their tables between the park and the cam.
+def start_faults(recipe: Recipe, found: Ramps | None, data: Mapping[str, bytes | None]) -> Iterator[Fault]:
+    """Compare the recorded motions with those designed anew, and judge their tables between the park and the cam.
 
     Parameters
     ----------
     recipe
         The recipe, of this version of camwright.
-    design
-        Its cam and job.
+    found
+        Start and stop of its machine, designed anew.
     data
         Contents of the folder's files by path.
     """
-    found = found_ramps(design)
     wanted = [] if found is None else list(KINDS)
     if [each.motion for each in recipe.start_tables] != wanted:
         yield Fault(RECIPE_FILE, "start_tables are not those of this cam")

@@ -9,13 +9,11 @@ import numpy as np
 from camwright.drives.export import Exported
 from camwright.house.progress import Step, ignore
 from camwright.production.ramp_tables import KINDS, RampKind, write_ramps
-from camwright.production.ramps import Ramps, ramps
-from camwright.profiles.errors import InfeasibleError
+from camwright.production.ramps import Ramps
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.recipes.expected import recipe_checks
 from camwright.recipes.manifest import sha256
 from camwright.recipes.model import Points, Profile, RampTables, RecipeTable, Refusal, TableFile, TableUnit
-from camwright.stored.design_file import StoredDesign
 
 FOLDER = "ramps"
 """Folder of these tables inside a recipe."""
@@ -25,21 +23,22 @@ STEPS = len(KINDS)
 
 
 def start_tables(
-    design: StoredDesign, targets: Sequence[str], step: Step = ignore
+    found: Ramps | None, targets: Sequence[str], step: Step = ignore
 ) -> tuple[tuple[RampTables, ...], dict[str, str]]:
     """Write start, stop and one piece on demand for the targets of a recipe.
 
     Parameters
     ----------
+    found
+        Start and stop of the machine; ``None`` where it has none at its line speed.
     targets
         Names of targets.
 
     Returns
     -------
     (tables, texts)
-        What the recipe holds, nothing where the machine cannot start and stop at its line speed; and the files' texts by path.
+        What the recipe holds, nothing where there are no start and stop; and the files' texts by path.
     """
-    found = found_ramps(design)
     if found is None:
         return (), {}
     written = write_ramps(found, targets, required=False, step=step)
@@ -53,14 +52,6 @@ def start_tables(
         for kind, profile in motions_of(found).items()
     )
     return records, {f"{FOLDER}/{name}": text for name, text in written.files.items()}
-
-
-def found_ramps(design: StoredDesign) -> Ramps | None:
-    """Design start and stop of a cam's machine; ``None`` where there are none at its line speed."""
-    try:
-        return ramps(design.job, cam=design.profile)
-    except InfeasibleError:
-        return None
 
 
 def motions_of(found: Ramps) -> dict[RampKind, CamProfile]:

@@ -22,6 +22,7 @@ from camwright.recipes.html import recipe_html
 from camwright.recipes.manifest import MANIFEST_FILE
 from camwright.recipes.model import Recipe, RecipeTable
 from camwright.recipes.pdf import recipe_pdf
+from camwright.recipes.production import found_ramps
 from camwright.recipes.ramp_faults import start_faults
 from camwright.recipes.recipe_file import (
     RECIPE_FILE,
@@ -107,8 +108,9 @@ def examine(directory: Path, key: Path | None = None) -> Verified:
         )
     else:
         design = stored_design(recipe)
-        faults += [Fault(RECIPE_FILE, what) for what in sheet_faults(recipe, expected(design))]
-        faults += start_faults(recipe, design, data)
+        ramps = found_ramps(design)
+        faults += [Fault(RECIPE_FILE, what) for what in sheet_faults(recipe, expected(design, ramps))]
+        faults += start_faults(recipe, ramps, data)
         faults += target_faults((*recipe.tables, *(table for motion in recipe.start_tables for table in motion.tables)))
         remade = [] if faults else list(_remade(recipe, data))
         faults += [other for other in remade if other.file == _PAGE]

@@ -14,7 +14,7 @@ from camwright.production.ramps import ramps
 from camwright.recipes.build import MadeRecipe, designed
 from camwright.recipes.catalogue import catalogue
 from camwright.recipes.compare import compare_recipes
-from camwright.recipes.production import mark_blocks, marks_of, start_blocks, start_stop
+from camwright.recipes.production import found_ramps, mark_blocks, marks_of, start_blocks, start_stop
 from camwright.recipes.recipe_file import parse_recipe
 from camwright.recipes.sheet import sheet
 from camwright.stored.design_file import StoredDesign
@@ -51,7 +51,8 @@ def test_the_sheet_has_both_sections(language: str, made: MadeRecipe) -> None:
 def test_a_machine_that_cannot_stop_between_cuts_says_up_to_which_speed(made: MadeRecipe) -> None:
     text = example("paper-600").path.read_text().replace('"600 mm"', '"450 mm"').replace('"80 m/min"', '"150 m/min"')
     job = parse_job(text, "job")
-    found = start_stop(designed(job))
+    design = designed(job)
+    found = start_stop(design, found_ramps(design))
     assert found.ramp_in is None
     assert found.standing_up_to * 60 == pytest.approx(138.24, abs=5e-3)
     words = catalogue("en")
