@@ -24,7 +24,7 @@ from typing import get_args
 import numpy as np
 
 from camwright.design.optimise import Solution, solve
-from camwright.design.returns import solver
+from camwright.design.returns import grids, polish, solver
 from camwright.design.returns.problem import return_problem
 from camwright.design.returns.scaling import motion_scale, scale_problem
 from camwright.design.returns.structure import extreme_motion, from_extreme, tidy
@@ -92,19 +92,19 @@ def is_extreme(result: Solution, job: Job) -> bool:
 def recorded_grids() -> Iterator[list[str]]:
     """Note which grids a design looks at: uniform, widened, fine, or shared with other arcs."""
     seen: list[str] = []
-    original = solver._on_grid
+    original = grids.on_grid
 
     def noting(problem, lengths, relax):  # type: ignore[no-untyped-def]
         uniform = bool(np.ptp(lengths) < 1e-12)
-        fine = len(lengths) in solver.FINE.values() and solver.FINE[solver._degree(problem)] == len(lengths)
+        fine = len(lengths) in grids.FINE.values() and grids.FINE[grids.degree_of(problem)] == len(lengths)
         seen.append("widened" if relax else "fine" if uniform and fine else "uniform" if uniform else "arcs")
         return original(problem, lengths, relax)
 
-    solver._on_grid = noting
+    polish.on_grid = solver.on_grid = noting
     try:
         yield seen
     finally:
-        solver._on_grid = original
+        polish.on_grid = solver.on_grid = original
 
 
 def measure(number: int, job: Job) -> dict[str, object]:

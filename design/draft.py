@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 from camwright.design.feasible.refusal import require_feasible
 from camwright.design.line.forms import keeps_ramp
+from camwright.design.returns.measures import objective_value
 from camwright.design.returns.problem import return_problem
-from camwright.design.returns.solver import draft_return, objective_value
+from camwright.design.returns.solver import draft_return
 from camwright.profiles.line import STEADY
 from camwright.profiles.objective import OBJECTIVES, MotionObjective
 from camwright.profiles.polynomial.profile import CamProfile

@@ -14,13 +14,11 @@ from camwright.design.line.refusal import ramp_infeasible
 from camwright.design.place import Placement
 from camwright.design.place_cost import place_for
 from camwright.design.returns.curve_limits import motor_limits, motor_speed_limits
+from camwright.design.returns.grids import grid_objective
 from camwright.design.returns.ipopt import SolveStatus
+from camwright.design.returns.measures import objective_value
 from camwright.design.returns.problem import ReturnProblem, return_problem
-from camwright.design.returns.solver import (
-    grid_objective,
-    objective_value,
-    solve_return,
-)
+from camwright.design.returns.solver import solve_return
 from camwright.design.servo_aware.axis_motion import AxisMotion
 from camwright.design.torque.least_speed import drawn_power, least_speed
 from camwright.design.torque.placing import place_by_objective

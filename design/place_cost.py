@@ -9,9 +9,9 @@ import numpy as np
 from camwright.design.feasible.feasibility import is_feasible, least_limit, margin
 from camwright.design.place import PEAK_PLACES, PEAK_RESOLUTION, PLACES, RESOLUTION, Placement, place_sync
 from camwright.design.returns.curve_limits import motor_limits, motor_speed_limits
+from camwright.design.returns.grids import grid_objective
 from camwright.design.returns.possible import possible_rms
 from camwright.design.returns.problem import return_problem
-from camwright.design.returns.solver import grid_objective
 from camwright.design.torque.within_curve import load
 from camwright.profiles.objective import CommandObjective, MotionObjective
 from camwright.profiles.returns import baseline

@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 
 from camwright.design.feasible.extremes import BEYOND, max_line_speed, placed_fastest
 from camwright.design.feasible.feasibility import binding_limit, least_factor, needed_limits
+from camwright.design.returns.measures import objective_value
 from camwright.design.returns.problem import return_problem
-from camwright.design.returns.solver import objective_value, solve_return
+from camwright.design.returns.solver import solve_return
 from camwright.profiles.cross_cutter import quintic_return
 from camwright.profiles.errors import InputError, SolverError
 from camwright.profiles.machines import Machine

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from camwright.design.returns.solver import objective_value
+from camwright.design.returns.measures import objective_value
 from camwright.design.servo_aware.axis_problem import AxisProblem
 from camwright.design.servo_aware.axis_response import PHASES
 from camwright.design.servo_aware.gathered_rows import LEAST_ERROR

@@ -7,9 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from camwright.design.returns.measures import ALLOWED_EXCESS, excess
 from camwright.design.returns.problem import ReturnProblem
 from camwright.design.returns.scaling import scale_problem
-from camwright.design.returns.solver import ALLOWED_EXCESS, excess, solve_return
+from camwright.design.returns.solver import solve_return
 from camwright.design.torque.finish import finish
 from camwright.design.torque.guesses import (
     ANYHOW,

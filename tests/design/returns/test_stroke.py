@@ -10,11 +10,12 @@ import pytest
 from scipy.optimize import linprog
 
 from camwright.design.optimise import solve
+from camwright.design.returns.grids import grid_objective
 from camwright.design.returns.least_peaks import least_peak_motion
+from camwright.design.returns.measures import kept
 from camwright.design.returns.possible import spare
 from camwright.design.returns.problem import return_problem
 from camwright.design.returns.scaling import ScaledProblem, motion_scale, scale_problem
-from camwright.design.returns.solver import _kept, grid_objective
 from camwright.design.returns.touching import touching_motions
 from camwright.profiles.cut import Cut
 from camwright.profiles.limits import Limits
@@ -130,7 +131,7 @@ def test_a_mean_square_that_touches_the_stroke_is_exact(stroke: float, length: f
     scale = motion_scale(problem)
     scaled_problem = scale_problem(problem, scale)
     solution = solve(task, "rms_acceleration")
-    motion = next(each for each in touching_motions(scaled_problem) if _kept(each, scaled_problem) is not None)
+    motion = next(each for each in touching_motions(scaled_problem) if kept(each, scaled_problem) is not None)
     assert len(motion.lengths) == solution.back.pieces == 3 + touches
     assert solution.status.name == "OPTIMAL"
     bound = lower_bound(solution.profile, task, "rms_acceleration").value
@@ -146,9 +147,9 @@ def test_a_mean_square_that_touches_the_stroke_is_exact(stroke: float, length: f
 def test_a_mean_square_whose_limits_bind_is_no_touching_one() -> None:
     free = scaled(CUT, LOOSE, "rms_acceleration")
     *_, motion = touching_motions(free)
-    assert _kept(motion, free) is not None
+    assert kept(motion, free) is not None
     tight = replace(free, greatest_slope=0.95 * float(np.abs(motion.accelerations).max()))
-    assert all(_kept(motion, tight) is None for motion in touching_motions(tight))
+    assert all(kept(motion, tight) is None for motion in touching_motions(tight))
     assert not list(touching_motions(scaled(CUT, LIMITS)))  # a peak
 
 
@@ -185,7 +186,7 @@ def test_between_ends_that_are_no_rests_it_is_that_of_a_grid(
     asked = scale_problem(problem, scale)
     motion = least_peak_motion(asked)
     assert motion is not None
-    profile = _kept(motion, asked)
+    profile = kept(motion, asked)
     assert profile is not None  # it keeps every limit
     value = max(abs(extremum.value) for extremum in profile.extrema(order))
     on_grid = grid_objective(problem) * problem.length**order / abs(scale)

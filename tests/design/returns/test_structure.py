@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 
 from camwright.design.returns import solver
 from camwright.design.returns.closed_starts import known_start
+from camwright.design.returns.grids import on_grid
+from camwright.design.returns.measures import excess, objective_value
 from camwright.design.returns.scaling import ScaledProblem
-from camwright.design.returns.solver import _on_grid, excess, objective_value
 from camwright.design.returns.structure import (
     SEVEN_ARCS,
     extreme_motion,
@@ -38,7 +39,7 @@ def test_seven_arcs_are_found_near_where_they_are(jerk: float, speed: float) -> 
     extreme = extreme_motion(problem)
     assert extreme is not None
     exact = from_extreme(extreme)
-    grid, success, _ = _on_grid(problem, np.full(40, 1 / 40), 0.0)
+    grid, success, _ = on_grid(problem, np.full(40, 1 / 40), 0.0)
     assert success
     start, arcs = read_cubic(grid, problem)
     assert arcs == SEVEN_ARCS

@@ -10,8 +10,9 @@ import pytest
 
 from camwright import load_job
 from camwright.design.optimise import solve
+from camwright.design.returns.measures import objective_value
 from camwright.design.returns.problem import return_problem
-from camwright.design.returns.solver import objective_value, solve_return
+from camwright.design.returns.solver import solve_return
 from camwright.design.torque.finish import finish
 from camwright.design.torque.guesses import ANYHOW, RESTING, from_profile, resting
 from camwright.design.torque.mesh import divide, remesh, spread
