@@ -17,7 +17,14 @@ from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
 from camwright.validation.servo.axis_run import AxisRun, ServoRun, hermite
 from camwright.validation.servo.lifting import SUBSTEPS
-from camwright.validation.servo.simulation import run_about, simulate, slow_axis, slow_cycle, slow_run
+from camwright.validation.servo.simulation import (
+    run_about,
+    simulate,
+    slow_axis,
+    slow_cycle,
+    slow_run,
+    slow_shear_zone_run,
+)
 from camwright.validation.servo.slow_axis import decided, humps
 
 ON_THE_LINE = 1e-9
@@ -259,6 +266,15 @@ def slow_sync_error(
 def greatest_shear_zone_error(profile: CamProfile, task: Task, servo: Servo) -> float:
     """Greatest magnitude of the sync error in the shear zone, at every sampling phase (m); arguments as in `servo_response`."""
     return greatest_sync_error(profile, task, servo, *shear_zone_of(task.cut))
+
+
+def worst_place(profile: CamProfile, task: Task, servo: Servo) -> float:
+    """Master position (m) in the shear zone where the sync error is greatest, of a first round; arguments as in `servo_response`."""
+    run = slow_shear_zone_run(profile, task.cut, servo, SUBSTEPS)
+    if run is None:
+        run = run_about(profile, task.cut, servo, shear_zone_of(task.cut))
+    master, error, _ = shear_zone_error(run, profile, task)
+    return float(master.ravel()[np.abs(error).argmax()])
 
 
 def shear_zone_of(cut: Cut) -> tuple[float, float]:

@@ -119,3 +119,34 @@ def test_the_worst_servo_is_that_of_all_phases(monkeypatch: pytest.MonkeyPatch) 
         every = shear_zone_errors(profile, task, drawn)
         assert worst_shear_zone_error(profile, task, drawn) == pytest.approx(every.max(), rel=1e-12)
     assert worst_shear_zone_error(profile, task, (replace(PAPER, position_gain=1e4), *drawn)) == math.inf
+
+
+@pytest.mark.parametrize(
+    ("machine", "law", "line_speed", "ahead"),
+    [
+        (KNIFE, "linear_return", 0.02, 0.0),
+        (KNIFE, "poly_3_4_5", 1e-4, 0.06),
+        (RotaryKnife(0.8, blades=2, sync="horizontal"), "poly_3_4_5", 1e-3, 0.0),
+        (LinearCarriage(0.8), "cycloid", 0.02, 0.06),
+        (CRANK, "poly_3_4_5", 0.02, 0.0),
+    ],
+)
+def test_the_worst_servo_on_a_slow_line_is_found_at_a_few_places(
+    machine: Machine, law: str, line_speed: float, ahead: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It was looked for in the whole shear zone of each of ten thousand servos: minutes at 0.1 mm/s."""
+    monkeypatch.setattr(monte_carlo, "_LOOKED_SLOW", 4)
+    cut = replace(CUT, length=0.7, line_speed=line_speed, sync_zone=0.1, shear_zone=0.04, shear_zone_at=ahead)
+    task = Task(machine, cut, FREE)
+    profile = baseline(law, task)
+    drawn = replace(RANGES, sample_time=(0.001, 0.002)).draw(replace(PAPER, velocity_feedforward=0.9), 24, 4)
+    assert len(monte_carlo._shown_parts(profile, task, drawn)) > 1
+    every = shear_zone_errors(profile, task, drawn)
+    assert worst_shear_zone_error(profile, task, drawn) == pytest.approx(every.max(), rel=1e-6, abs=1e-11)
+
+
+def test_a_slow_line_with_an_unstable_servo_has_no_bound() -> None:
+    task = Task(KNIFE, replace(CUT, line_speed=1e-4), FREE)
+    unstable = replace(PAPER, position_gain=300.0)
+    assert math.isinf(worst_shear_zone_error(baseline("cycloid", task), task, [unstable, PAPER]))
+    assert math.isinf(worst_shear_zone_error(baseline("cycloid", task), task, [unstable]))
