@@ -11,8 +11,11 @@ _MOST = 200
 _SPARE = 0.4
 """Room left beside a guess, in resolutions, for it to lie on the other side of the edge than the last length did."""
 
-_SLOW = 3
-"""After so many guesses in a row that leave more than half of a range its middle is looked at."""
+_ENDING = 0.9
+"""Share of the resolution beside an end, to which a guess within it is moved: that on the other side of the edge it ends the search."""
+
+_SLOW, _SLOWEST = 3, 6
+"""After so many guesses in a row that leave more than half of a range its middle is looked at; of guesses that may end the search."""
 
 
 def halved(
@@ -76,17 +79,21 @@ def narrowed(
     """
     before: tuple[float, float] | None = None
     moved: bool | None = None
-    slow, spare = 0, _SPARE * resolution * holds[0]
+    slow, spare, ending = 0, _SPARE * resolution * holds[0], _ENDING * resolution * holds[0]
     while (width := holds[0] - fails[0]) > resolution * holds[0] and holds[1] < -resolution:
         length = 0.5 * (fails[0] + holds[0])
-        if slow < _SLOW and width > 2.0 * spare:
+        if slow < _SLOWEST and width > 2.0 * spare:
             end, other = (fails, holds) if moved else (holds, fails)
             zero = zero_between(end, before) or zero_between(end, other)
             if zero is not None:
-                zero += spare if moved or moved is None else -spare
-                length = min(max(zero, fails[0] + spare), holds[0] - spare)
+                start, way = (holds[0], -1.0) if moved is False else (fails[0], 1.0)
+                step = max(way * (zero - start), 0.0) + spare
+                ends = step <= ending
+                if ends or slow < _SLOW:
+                    length = start + way * (ending if ends else min(step, width - spare))
         found = missed(length)
-        before = (fails if found > 0.0 else holds) if moved == (found > 0.0) else None
+        last, opposite = (fails, holds) if found > 0.0 else (holds, fails)
+        before = last if moved == (found > 0.0) or math.isinf(opposite[1]) else None
         moved = found > 0.0
         if moved:
             fails = length, found

@@ -12,6 +12,7 @@ from camwright.jobs.job import Job
 from camwright.jobs.servos import servos_of
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import SolverError
+from camwright.studies.cut_lengths import CutLengths
 from camwright.studies.least_length import AWARE_STEEP, least_length
 from camwright.validation.bounds import minimum_length as least
 
@@ -50,12 +51,19 @@ class AxisLengths:
     shaped_axis_limits: float | None
 
 
-def axis_lengths(job: Job) -> AxisLengths | None:
+def axis_lengths(job: Job, lengths: CutLengths | None = None) -> AxisLengths | None:
     """Find how short a job's machine can cut with its axis in sync.
 
     For a rotary knife whose edge runs at line speed in the sync zone; ``None`` for other machines, as
     `camwright.studies.cut_lengths.cut_lengths`.
     The ranges of ``[servo.tolerance]`` count for the servo-aware commands of a servo-aware job.
+
+    Parameters
+    ----------
+    job
+        The job.
+    lengths
+        Its minimum cut lengths by the published equations, where they are known.
 
     Raises
     ------
@@ -86,13 +94,14 @@ def axis_lengths(job: Job) -> AxisLengths | None:
         ends = max(shortest_return(job, command, shear), least_of_all), pitch * (1.0 - _LENGTH_RESOLUTION)
         return least_length(missed, near, ends, _LENGTH_RESOLUTION, AWARE_STEEP) if ends[0] < ends[1] else None
 
-    linear = least.linear_return_to_tolerance(job.task.with_cut(cut), job.servo).length
+    task = job.task.with_cut(cut)
+    linear = (lengths.linear_return if lengths else least.linear_return_to_tolerance(task, job.servo)).length
     in_sync = shortest("in_sync", _SOONER * linear)
     shaped = shortest("shaped", _SHAPED * (in_sync or pitch))
     strictly = _STRICTER * (in_sync or pitch), _STRICTER * (shaped or pitch)
     return AxisLengths(
         linear_return=linear,
-        poly_3_4_5=least.quintic_to_tolerance(job.task.with_cut(cut), job.servo).length,
+        poly_3_4_5=least.quintic_to_tolerance(task, job.servo).length,
         in_sync=in_sync,
         shaped=shaped,
         in_sync_axis_limits=shortest("in_sync", strictly[0], in_sync, axis_limits=True) if in_sync else None,

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from camwright.design.servo_aware.axis_problem import AxisProblem, thinned
+from camwright.design.servo_aware.axis_problem import AxisProblem
 from camwright.design.servo_aware.command_basis import Command
 from camwright.design.servo_aware.programme import AxisProgramme
 from camwright.jobs.job import Job
@@ -14,7 +14,8 @@ from camwright.jobs.servos import servos_of
 from camwright.profiles.errors import SolverError
 from camwright.studies.axis_lengths import AxisLengths, in_shear_zone, shortest_return, sync_zone_of
 from camwright.studies.axis_study import shares_of
-from camwright.studies.least_length import AWARE_STEEP, SketchedFirst, least_length
+from camwright.studies.least_length import AWARE_STEEP, least_length
+from camwright.studies.reach import WITHIN
 from camwright.validation.bounds.minimum_length import over_line_speeds
 
 _LENGTH_RESOLUTION = 1.5e-3
@@ -22,15 +23,6 @@ _LENGTH_RESOLUTION = 1.5e-3
 
 _LAW_SPEEDS = 13
 """Line speeds, evenly spread over the band, at which a return by a law is looked at."""
-
-_LOOKED = 6
-"""Each so many-th of the line speeds of a design is looked at while lengths are searched; at the length that is told, all."""
-
-_LONGER = 1.004
-"""Factor by which a length is made longer where it holds at those line speeds but not at all."""
-
-_TRIES = 8
-"""How often it is."""
 
 
 @dataclass(frozen=True)
@@ -93,7 +85,7 @@ def band_lengths(job: Job, single: AxisLengths | None, shortest: float | None = 
 
 
 def _servo_aware(job: Job, command: Command, single: float | None, shortest: float | None) -> float | None:
-    """Shortest cut of a servo-aware command, at some line speeds first, from what it is at one of them or the job's own, then at all."""
+    """Shortest cut of a servo-aware command, from what it is at one line speed or for the job's own design."""
     if single is None:
         return None
     cut, pitch, servos, shares = (
@@ -103,31 +95,19 @@ def _servo_aware(job: Job, command: Command, single: float | None, shortest: flo
         shares_of(job.slowest),
     )
     shear = sync_zone_of(cut, pitch)
-
     programme: AxisProgramme | None = None
 
-    def missed(length: float, looked: tuple[float, ...], *, sketch: bool = False) -> float:
+    def missed(length: float) -> float:
         nonlocal programme
         task = job.task.with_cut(in_shear_zone(cut, length, shear))
         try:
-            programme = AxisProgramme(
-                AxisProblem(task, command, servos, True, shares=looked, sketch=sketch), programme, own=True
-            )
+            programme = AxisProgramme(AxisProblem(task, command, servos, True, shares=shares), programme, own=True)
             return programme.missed(ratio=False)
         except SolverError:  # at the edge of what double precision resolves
             return np.inf
 
-    some = thinned(shares, _LOOKED)
     ends = shortest_return(job, command, shear), pitch * (1.0 - _LENGTH_RESOLUTION)
     if not ends[0] < ends[1]:
         return None
-    near = single if shortest is None or command != job.command else max(single, shortest)
-    by = SketchedFirst(lambda length: missed(length, some, sketch=True), lambda length: missed(length, shares))
-    best = least_length(by, near, ends, _LENGTH_RESOLUTION, AWARE_STEEP)
-    for _ in range(_TRIES):
-        if best is None or best >= pitch:
-            return None
-        if by.by_all(best) <= 0.0:
-            return best
-        best *= _LONGER
-    return None
+    near = single if shortest is None or command != job.command else max(single, WITHIN * shortest)
+    return least_length(missed, near, ends, _LENGTH_RESOLUTION, AWARE_STEEP)

@@ -17,8 +17,12 @@ _LEAST_STEP, _GREATEST_STEP, _GROWTH = 0.6, 1.25, 2.0
 """Bounds of these steps, in resolutions and as what the first share is taken to fall by, and by what each further one may and must be
 longer."""
 
-_FAR = 0.3
-"""A sketch that keeps its tolerance by so great a share, as a logarithm, needs no whole look until that place is told."""
+_FAR, _CLOSE = 0.3, 0.1
+"""A sketch that keeps its tolerance by so great a share, as a logarithm, needs no whole look until that place is told; nor does one that
+misses it by more than the other: what is near to it is worse on the whole."""
+
+_FLATTER = 0.4
+"""No step takes the share to fall by less than so much of what the one before took: near the edge it is not known so well."""
 
 _BEYOND = 1.1
 """Steps go so much farther than to where the share would be zero, to the other side of the edge."""
@@ -69,7 +73,7 @@ def least_length(
             holds = length, found
         zero = zero_between((length, found), before)
         if zero is not None and zero != length:
-            steep = abs(found) * length / (_BEYOND * abs(zero - length))
+            steep = max(abs(found) * length / (_BEYOND * abs(zero - length)), _FLATTER * steep)
         step = max(min(abs(found) / steep, longer * greatest), longer * _LEAST_STEP * resolution)
         length = min(length * (1.0 + step), high) if found > 0.0 else max(length / (1.0 + step), low)
         longer *= _GROWTH
@@ -77,9 +81,9 @@ def least_length(
 
 
 class SketchedFirst:
-    """By how much something is missed, as `least_length` asks: by a sketch, which misses no more than the whole; where that holds, by all.
+    """By how much something is missed, as `least_length` asks: by a sketch, which misses no more than the whole; near the edge, by all.
 
-    From the first place on where the sketch alone holds all is looked at: a line through values of both kinds leads nowhere.
+    From the first place on that is near to it and fails all is looked at: a line through values of both kinds leads nowhere.
 
     Parameters
     ----------
@@ -96,7 +100,7 @@ class SketchedFirst:
         """Say by how much is missed at a place."""
         if self._sketch is not None and not self._misled:
             missed = self._sketch(at)
-            if missed > 0.0 or missed < -_FAR:
+            if missed > _CLOSE or missed < -_FAR:
                 return missed
             self._misled = self.by_all(at) > 0.0
         return self.by_all(at)

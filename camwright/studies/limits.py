@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from camwright.design.feasible.extremes import Extremes, extremes, placed_fastest
 from camwright.house.progress import Step, ignore
+from camwright.house.threads import one_thread
 from camwright.jobs.job import Job
 from camwright.studies.axis_lengths import AxisLengths, axis_lengths
 from camwright.studies.band_lengths import BandLengths, band_lengths
@@ -62,6 +63,12 @@ def limits(job: Job, step: Step = ignore) -> MachineLimits:
     >>> round(found.lengths.eq10 * 1e3, 1)                                        # mm
     232.9
     """
+    with one_thread():
+        return _found(job, step)
+
+
+def _found(job: Job, step: Step) -> MachineLimits:
+    """Find them, as `limits` says."""
     step("finding how hard the line may ramp")
     ramps = designed_ramps(job)  # first, for it refuses at once what is too slow a line for a servo-aware design
     step("finding the highest line speed and the shortest cut")
@@ -71,7 +78,7 @@ def limits(job: Job, step: Step = ignore) -> MachineLimits:
     step("finding minimum cut lengths")
     lengths = cut_lengths(job)
     step("finding minimum cut lengths with the axis in sync")
-    axis = axis_lengths(job)
+    axis = axis_lengths(job, lengths)
     step("finding them over the band of line speeds")
     over_band = band_lengths(job, axis, within.min_cut_length if job.servo_aware else None)
     return MachineLimits(job, far, within, lengths, axis, over_band, ramps)

@@ -63,16 +63,20 @@ _FOLLOWED_STEEP, _RAMPED_STEEP = 9.0, 15.0
 """What the error of a servo-aware command is taken to grow by with the line speed, as `STEEP`, where an edge is followed; and that of a
 cam on a line that ramps."""
 
+_MADE_FOR = 1.03
+"""Factor of the line speed, and of what is cut off the length, to where the edge of a servo-aware job is expected."""
+
 _BELOW_END = 0.8
 """Accuracies below the end of the line speeds where an edge is followed that may be there: at the very end limits allow no command."""
 
 FOLLOWED_ACCURACY = 7e-3
 """Accuracy of an edge that is followed: one percent beyond it nothing designs."""
 
-_FLATTERED = 0.25
-"""Share of a coarse accuracy by which an edge is taken back before it is designed: cams of the first mesh settle a little sooner."""
+_FLATTERED = 0.25, 5e-4
+"""Share of an accuracy, and least share of itself, by which an edge is taken back before it is designed: cams of the first mesh settle a
+little sooner."""
 
-_WITHIN = 0.998
+WITHIN = 0.998
 """Factor by which the edge of a servo-aware job is told within what programmes allow: a design, whose rows are others, needs that room."""
 
 
@@ -143,8 +147,8 @@ def highest_speed(
     if perfect is None:
         return None, ""
     end = _end_of_speeds(job, perfect)
-    if near is None and job.servo_aware:  # a job is made for what its machine can do
-        near = min(job.cut.line_speed, end)
+    if near is None and job.servo_aware:  # a job is made for a little less than what its machine can do
+        near = min(job.cut.line_speed * _MADE_FOR, end)
     at = None if near is None else near / end
     found, failed = _kept(job, lambda share: job.task.designed_at(end * share), SLOWEST, accuracy, at, programmes)
     return (None if found is None else end if not failed else end * found), failed
@@ -181,7 +185,7 @@ def shortest_cut(job: Job, perfect: float | None, programmes: _Programmes | None
     if _shaped(job):
         by_speed = job.machine.pitch * job.cut.line_speed / job.limits.speed
         end = min(perfect, max(by_speed, job.cut.sync_zone * LEAST_ZONE))
-    near = min(1.0, end / job.cut.length) if job.servo_aware else None
+    near = min(1.0, end / job.cut.length * _MADE_FOR) if job.servo_aware else None
     found, failed = _kept(
         job, lambda share: job.task.with_length(end / share), 1.0 / LONGEST, near=near, programmes=programmes
     )
@@ -283,38 +287,51 @@ def _kept(
     if not failed:
         return found, failed
     beyond = at(1.0 if found is None else found * (1.0 + SERVO_AWARE_ACCURACY))
-    return None if found is None else found * _WITHIN, binding_of(job, beyond, programmes.last)
+    return None if found is None else found * WITHIN, binding_of(job, beyond, programmes.last)
 
 
 def _blind_edge(
     job: Job, at: Callable[[float], Task], least: float, accuracy: float, near: float | None
 ) -> tuple[float | None, str]:
-    """Find the edge of a job that is not servo-aware; of a line that ramps from that of one which keeps its speed.
+    """Find the edge of a job that is not servo-aware; of a line that ramps from that of one which keeps its speed."""
+    if near is None or not job.line.ramps:
+        objective = stand_in(job)
+        near, failed = _edge(lambda share: verdict(job, at(share).with_line(STEADY), objective), least, accuracy, near)
+        if near is None or not job.line.ramps:
+            return near, failed
+    return _ramped_edge(job, at, least, max(accuracy, RAMPED_ACCURACY), near)
 
-    Cams of a ramping line are searched with on a mesh; where the ramps are not what binds, the edge is that of the cam that is designed.
+
+def _ramped_edge(
+    job: Job, at: Callable[[float], Task], least: float, accuracy: float, near: float
+) -> tuple[float | None, str]:
+    """Find the edge of a line that ramps.
+
+    Where the ramps bind they are asked alone, which takes a third of the time. Where they do not, cams are searched with on a mesh, and the
+    edge is that of the cam that is designed.
     """
-    objective = stand_in(job)
+    objective, ramps_bind = stand_in(job), False
 
-    def edge(near: float | None, *, ramps: bool) -> tuple[float | None, str]:
-        return _edge(
-            lambda share: verdict(job, at(share) if ramps else at(share).with_line(STEADY), objective),
-            least,
-            accuracy,
-            near,
-            _RAMPED_STEEP if ramps and job.line.ramps else STEEP,
-        )
+    def whole(share: float) -> Verdict:
+        return verdict(job, at(share), objective)
 
-    if not job.line.ramps:
-        return edge(near, ramps=True)
-    if near is None:
-        near, failed = edge(None, ramps=False)
-        if near is None:
-            return None, failed
-    accuracy = max(accuracy, RAMPED_ACCURACY)
-    found, failed = edge(near, ramps=True)
-    tries = _TRIES if failed != RAMP else 0
-    if tries and failed and found is not None and accuracy > RAMPED_ACCURACY:
-        found *= 1.0 - _FLATTERED * accuracy
+    def looked(share: float) -> Verdict:
+        nonlocal ramps_bind
+        missed = _ramp_missed(at(share)) if ramps_bind else math.inf
+        if math.isfinite(missed):
+            return (RAMP if missed > 0.0 else ""), missed
+        found = whole(share)
+        ramps_bind = found[0] == RAMP
+        return found
+
+    back = max(_FLATTERED[0] * accuracy, _FLATTERED[1])
+    found, failed = _edge(looked, least, accuracy - back, near, _RAMPED_STEEP)
+    if failed == RAMP and found is not None and whole(found)[0]:
+        found, failed = _edge(whole, least, accuracy - back, found, _RAMPED_STEEP)
+    if failed in ("", RAMP) or found is None:
+        return found, failed
+    found *= 1.0 - back
+    tries = _TRIES
     while tries and found is not None and (fails := verdict(job, at(found), objective, thorough=True)[0]):
         tries -= 1
         found, failed = (found * (1.0 - 0.5 * accuracy) if tries and found > least else None), fails
@@ -383,11 +400,18 @@ def _missed(programme: AxisProgramme, *, ratio: bool) -> float:
 
 def binding_of(job: Job, task: Task, beside: AxisProgramme | None = None) -> str:
     """Name what a servo-aware design beyond the edge fails, where more than one thing does the first of them; programmes beside help."""
-    free = _problem(job, task, shares_of(job.slowest), axis_limits=False)
-    programme = AxisProgramme(free, beside, own=True)
-    missed = _missed(programme, ratio=_asks_ratio(job))
+    shares = shares_of(job.slowest)
+    free, some, programme = _problem(job, task, shares, axis_limits=False), thinned(shares, _LOOKED), beside
+
+    def by(problem: AxisProblem) -> float:
+        nonlocal programme
+        programme = AxisProgramme(problem, programme, own=True)
+        return _missed(programme, ratio=_asks_ratio(job))
+
+    sketch = replace(free, shares=some, sketch=True)
+    missed = SketchedFirst((lambda _: by(sketch)) if some != shares else None, lambda _: by(free))(1.0)
     if missed <= 0.0:
-        return _axis_limit(job, task, programme.last)
+        return _axis_limit(job, task, programme.last if programme else None)
     if job.slowest < 1.0 and _Programmes(job).misses(task, (1.0,)) <= 0.0:
         return BAND
     if (

@@ -139,18 +139,19 @@ class LaidSamples:
     def _pieces(self) -> tuple[NDArray[np.intp], FloatArray]:
         """In which step of the knots each sample lies, and where in it."""
         places, _, samples, splines = self._of
-        at = (places[:, None] - samples - splines.begin) / splines.step % (splines.cycle / splines.step)
-        piece = at.astype(np.intp)
-        return piece % self._turns, at - piece
+        at, turn = (places[:, None] - samples - splines.begin) / splines.step, splines.cycle / splines.step
+        at -= turn * np.floor(at / turn)  # a remainder takes ten times as long
+        piece = np.clip(at.astype(np.intp), 0, self._turns - 1)
+        return piece, at - piece
 
     def values(self, unknowns: FloatArray) -> FloatArray:
         """Give the command at the samples; of the unknowns that were asked for last they are kept."""
         if self._last is None or self._last[0] is not unknowns:
             piece, part = self._pieces
-            splines = self._of[3]
-            every = np.zeros(self._turns)
-            every[: splines.count] = unknowns
-            powers = _POWERS @ np.stack([np.roll(every, back) for back in range(_SUPPORT)])
+            every = np.zeros(self._turns + _SUPPORT - 1)  # those that began before the first step come before it
+            every[_SUPPORT - 1 :][: self._of[3].count] = unknowns
+            every[: _SUPPORT - 1] = every[self._turns :]
+            powers = _POWERS @ np.lib.stride_tricks.sliding_window_view(every, self._turns)[::-1]
             found = powers[3][piece]
             for power in powers[2::-1]:
                 found *= part
