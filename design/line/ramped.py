@@ -6,6 +6,7 @@ import numpy as np
 
 from camwright.design.line.forms import Form, greatest_form, ramp_forms
 from camwright.design.line.programme import MeshAnswer, least_ramp_share, solve_on_mesh
+from camwright.design.returns.measures import ALLOWED_EXCESS, excess
 from camwright.design.returns.problem import ReturnProblem
 from camwright.design.returns.scaling import ScaledProblem, motion_scale, scale_problem, unscale_profile
 from camwright.design.returns.structure import subdivide, tidy
@@ -63,7 +64,7 @@ def ramped_return(
     Returns
     -------
     CamProfile or None
-        The return over ``[0, length]`` from slave zero; ``None`` where no mesh has one.
+        The return over ``[0, length]`` from slave zero; ``None`` where no mesh has one that keeps the limits to rounding.
     """
     scale = motion_scale(problem)
     if abs(scale) <= NO_MOTION * problem.length:
@@ -82,7 +83,9 @@ def ramped_return(
     if OBJECTIVES[problem.objective].form == "peak":
         zone *= problem.length ** OBJECTIVES[problem.objective].order / abs(scale)
         motion = _smoothest(scaled, forms, motion, zone, unit)
-    return unscale_profile(tidy(_joined(motion), scaled, corners=False).profile(), problem, scale)
+    profile = _profile(motion, scaled)
+    # hardly any return is left where the solver cannot keep its margin
+    return unscale_profile(profile, problem, scale) if excess(profile, scaled) <= ALLOWED_EXCESS else None
 
 
 def ramp_share(task: Task, problem: ReturnProblem) -> float | None:
@@ -119,7 +122,7 @@ def _refined(problem: ScaledProblem, forms: tuple[Form, ...], lengths: FloatArra
     best: ScaledMotion | None = None
     for _ in range(ROUNDS):
         answer = solve_on_mesh(problem, lengths, forms, unit=unit)
-        if answer is None and best is not None:
+        if best is not None and (answer is None or excess(_profile(answer.motion, problem), problem) > ALLOWED_EXCESS):
             break
         best = None if answer is None else answer.motion
         worth = np.full(len(lengths), np.inf) if answer is None else _worth_halving(answer, problem)
@@ -147,6 +150,10 @@ def _worth_halving(answer: MeshAnswer, problem: ScaledProblem) -> FloatArray:
     else:
         stairs = np.maximum(steps[1:], steps[:-1]) / float(np.abs(jerk).max()) / STEP
     return np.asarray(np.maximum(stairs, answer.dear / COST))
+
+
+def _profile(motion: ScaledMotion, problem: ScaledProblem) -> CamProfile:
+    return tidy(_joined(motion), problem, corners=False).profile()
 
 
 def _joined(motion: ScaledMotion) -> ScaledMotion:

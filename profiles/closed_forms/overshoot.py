@@ -78,6 +78,13 @@ def least_overshoot(time: float, velocity: float, way: float, bounds: Bounds, en
         return _with_turn(time, velocity, way, bounds, share * hardest)
 
     found, good, bad = at(1.0), 1.0, 1.0
+    if (
+        found is None
+    ):  # as the quickest way back turns: near the end of what is possible no turn is much harder or softer
+        good = min(_turn(quickest) / hardest, 1.0)
+        found = at(good)
+    if found is None:
+        good = 1.0
     while found is None and good > 0.5 / TURNS:
         good, bad = good - 1.0 / TURNS, good
         found = at(max(good, 0.0))
@@ -116,13 +123,13 @@ def _with_turn(time: float, velocity: float, way: float, bounds: Bounds, turn: f
     if far is None or near is None:
         return None
     needed = -(way + 2 * out)
-    if needed < far.distance:
+    if needed < far.distance * (1 + _ROUNDING):
         return None
     if needed > near.distance:
         forwards = _forwards(rest, start, end, bounds, needed)
         return None if forwards is None else Overshoot(out, braking, (forwards, forwards), 1.0)
     span = near.distance - far.distance
-    return Overshoot(out, braking, (near, far), (needed - far.distance) / span if span > 0 else 1.0)
+    return Overshoot(out, braking, (near, far), max((needed - far.distance) / span, 0.0) if span > 0 else 1.0)
 
 
 def _forwards(time: float, start: State, end: State, bounds: Bounds, needed: float) -> Transfer | None:
@@ -141,6 +148,17 @@ def _forwards(time: float, start: State, end: State, bounds: Bounds, needed: flo
     least, greatest = _reached(found)
     room = _ROUNDING * abs(needed)
     return found if greatest <= room and least >= needed - room else None
+
+
+def _turn(way: Transfer) -> float:
+    """Deceleration at which a way turns first; none where it does not."""
+    v, a = way.start.velocity, way.start.acceleration
+    for t, j in way.phases:
+        turns = [turn for turn in _roots(v, a, j / 2) if 0 < turn <= t]
+        if turns:
+            return max(-(a + min(turns) * j), 0.0)
+        v, a = v + t * (a + t * j / 2), a + t * j
+    return 0.0
 
 
 def _reached(way: Transfer) -> tuple[float, float]:

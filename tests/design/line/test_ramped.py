@@ -12,10 +12,14 @@ from camwright import load_job
 from camwright.design.line.forms import greatest_form, keeps_ramp, ramp_forms
 from camwright.design.line.refusal import can_ramp
 from camwright.design.optimise import Solution, solve
+from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InfeasibleError
+from camwright.profiles.limits import Limits
 from camwright.profiles.line import STEADY, Line
+from camwright.profiles.machines import LinearCarriage
 from camwright.profiles.objective import CommandObjective, of_command
 from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
 from camwright.validation.bounds.optimality import lower_bound
 from camwright.validation.bounds.ramped import ramped_bound
@@ -216,6 +220,38 @@ def test_the_bound_of_a_steady_line_is_not_above_the_closed_form() -> None:
         found = ramped_bound(solution.profile, task, objective).value
         assert found <= solution.minimised
         assert found == pytest.approx(solution.minimised, rel=3e-4)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("stroke", "cut", "limits"),
+    [
+        (
+            0.8196,
+            Cut(
+                1.64111977873834, 0.15036957368181714, 0.7324993979239748, 0.14649987958479496, 0.5859995183391798, 0.01
+            ),
+            Limits(0.346423969612781, 0.39630321922625855, 1.9517596964182553, reversal=True),
+        ),
+        (
+            0.19246126003209418,
+            Cut(0.30333091037399107, 42.44 / 60, 0.18637138296284728, 0.037274276592569454, 0.14909710637027782, 4e-3),
+            Limits(12.413833034032242, 5554.889837454408, 34038.58710892522, reversal=True),
+        ),
+    ],
+)
+def test_a_carriage_that_is_left_hardly_any_return_keeps_its_limits_to_rounding(
+    stroke: float, cut: Cut, limits: Limits
+) -> None:
+    """The mesh of the second opinion exceeded the jerk by 3e-8 where its programme could not be solved to the end."""
+    task = Task(LinearCarriage(stroke=stroke, home=0.0), cut, limits)
+    time = cut.sync_zone / cut.line_speed
+    report = judge(
+        solve(task, "rms_jerk").profile,
+        task,
+        Servo(200.0 / time, 0.8, 40.0 / time, time / 1000, velocity_feedforward=1.0),
+    )
+    assert report.passed
 
 
 @pytest.mark.parametrize("name", MACHINES)

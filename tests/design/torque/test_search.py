@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from camwright import load_job
 from camwright.design.optimise import solve
@@ -30,6 +31,7 @@ from camwright.profiles.objective import CommandObjective
 from camwright.profiles.returns import assemble, quintic_between
 from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
+from camwright.validation.bounds.optimality import lower_bound
 from camwright.validation.motor import measure_motor
 from camwright.validation.report import judge
 
@@ -125,6 +127,26 @@ def test_a_frictionless_knife_draws_what_its_change_of_speed_asks(length: float)
     mean = 0.39 / (length - 0.13)  # without limits the speed jumps to what the return needs
     inertia = knife.inertia(0.0)
     assert energy == pytest.approx(0.5 * inertia * abs(mean**2 - 1.0), rel=1e-2)
+
+
+def test_a_carriage_draws_what_its_slowest_way_back_needs_where_the_jerk_alone_bends_it() -> None:
+    """From ``v`` to ``-w`` and back in arcs of the greatest jerk, ``w`` between; few turns are left within a share of 1e-4 of it."""
+    cut = Cut(0.477, 0.747, 0.0453, 0.009, 0.036, 9e-4)
+    machine = LinearCarriage(stroke=0.29, home=0.0, mass=13.5)
+    jerk, v, time = 330.5, cut.line_speed, cut.return_zone / cut.line_speed
+    task = Task(machine, cut, Limits(1.45, 220.0, jerk))
+
+    def ahead(w: float) -> float:
+        turning = 2.0 * math.sqrt((v + w) / jerk)
+        return turning * (v - w) - (time - 2.0 * turning) * w + cut.sync_zone
+
+    back = brentq(ahead, 0.0, v, xtol=1e-14)
+    least = 0.5 * 13.5 * (v**2 + back**2)
+    profile = solve(task, "energy").profile
+    energy = measure_motor(profile, task).energy
+    assert energy is not None
+    assert least * (1 - 1e-9) <= energy <= least * (1 + 1e-4)
+    assert least * (1 - 1e-8) <= lower_bound(profile, task, "energy").value <= least
 
 
 def test_energy_of_a_knife_that_rubs_is_at_least_what_the_friction_takes() -> None:

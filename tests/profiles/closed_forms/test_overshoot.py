@@ -10,7 +10,7 @@ from scipy.optimize import linprog
 
 from camwright.profiles.closed_forms.overshoot import Overshoot, least_overshoot
 from camwright.profiles.closed_forms.reach import greatest_reach
-from camwright.profiles.closed_forms.transfer import Bounds
+from camwright.profiles.closed_forms.transfer import Bounds, State, nearest
 
 
 def motion(found: Overshoot) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -101,3 +101,28 @@ def test_the_hardest_stop_is_the_least_of_all() -> None:
 
 def test_there_is_none_where_the_limits_do_not_bring_it_back() -> None:
     assert least_overshoot(0.5, 1.0, 1.0, Bounds(-2.0, 2.0, 5.0, 100.0)) is None
+
+
+@settings(deadline=None, max_examples=200)
+@given(
+    time=st.floats(0.1, 10.0),
+    backwards=st.floats(0.1, 3.0),
+    acceleration=st.floats(0.0, 2.0).map(lambda power: 10.0**power),
+    jerk=st.floats(0.5, 4.0).map(lambda power: 10.0**power),
+    short=st.floats(-12.0, -1.0).map(lambda power: 10.0**power),
+)
+def test_there_is_one_up_to_the_farthest_way_that_any_motion_covers(
+    time: float, backwards: float, acceleration: float, jerk: float, short: float
+) -> None:
+    """However few turns are left: near the farthest way they lie within a millionth of each other."""
+    bounds, ends = Bounds(-backwards, 2.0, acceleration, jerk), State(1.0, 0.0)
+    quickest = nearest(time, ends, ends, bounds)
+    if quickest is None or quickest.distance >= -1e-3:
+        return
+    way = -quickest.distance * (1.0 - short)
+    found = least_overshoot(time, 1.0, way, bounds)
+    assert found is not None
+    braking, (near, far) = found.braking, found.back
+    back = found.share * near.distance + (1.0 - found.share) * far.distance
+    assert 2.0 * braking.distance + back == pytest.approx(-way, rel=1e-9)
+    assert least_overshoot(time, 1.0, -quickest.distance * (1.0 + 1e-6), bounds) is None
