@@ -52,9 +52,8 @@ def run(
 def _view(answer: EnvelopeAnswer) -> RenderableType:
     """Show the highest line speed at each cut length."""
     units = answer.job.units
-    table = new_table(title=f"Highest line speed ({unit_shown('m/s', units)})", title_justify="left")
-    for name in (f"cut length\n{unit_shown('m', units)}", "optimised", "in tolerance", "quintic", "linear", "binds"):
-        table.add_column(name, justify="left" if name == "binds" else "right")
+    heads = (f"cut length\n{unit_shown('m', units)}", "optimised", "in tolerance", "quintic", "linear", "binds")
+    table = new_table(f"Highest line speed ({unit_shown('m/s', units)})", heads, ("binds",))
     for row in answer.envelope.rows:
         speeds = (row.optimised, answer.in_tolerance(row.length), row.quintic, row.linear)
         table.add_row(

@@ -45,11 +45,8 @@ def run(
 
 def _view(found: list[Example]) -> RenderableType:
     """Show the examples."""
-    table = new_table(
-        title="Example jobs: camwright examples NAME writes one here", title_justify="left", show_lines=True
-    )
-    for column in ("name", "machine", "about"):
-        table.add_column(column, overflow="fold")
+    heads = ("name", "machine", "about")
+    table = new_table("Example jobs: camwright examples NAME writes one here", heads, heads, show_lines=True)
     for each in found:
         table.add_row(each.name, each.machine, each.about)
     return table

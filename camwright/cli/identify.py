@@ -125,9 +125,8 @@ def _require_ours(out: Path) -> None:
 def _view(path: Path, trace: Trace, found: Identified, files: Sequence[Path]) -> RenderableType:
     """Show the servo, how well it is known, and how well it fits."""
     scale, unit = residual_unit(trace)
-    table = new_table(title=f"Servo of {one_line(path.name)}", title_justify="left")
-    for heading in ("parameter", "value", "unit", "95 % confidence"):
-        table.add_column(heading, justify="right" if heading == "value" else "left")
+    heads = ("parameter", "value", "unit", "95 % confidence")
+    table = new_table(f"Servo of {one_line(path.name)}", heads, {*heads} - {"value"})
     for name, (_, symbol, factor, written) in parameters_of(found).items():
         value, bounds = getattr(found.servo, name) * factor, found.confidence.get(name)
         spread = 0.0 if bounds is None else 0.5 * factor * (bounds[1] - bounds[0])

@@ -36,9 +36,8 @@ def run(
 
 def _view(keys: tuple[JobKey, ...]) -> RenderableType:
     """Show keys as a table."""
-    table = new_table(show_lines=True)
-    for column in ("key", "takes", "default", "meaning", "used in"):
-        table.add_column(column, overflow="fold")
+    heads = ("key", "takes", "default", "meaning", "used in")
+    table = new_table(headings=heads, left=heads, show_lines=True)
     for key in keys:
         place = f"[{key.table}] {key.name}" if key.table else key.name
         default = "required" if key.required else key.default or "none"

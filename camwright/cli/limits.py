@@ -36,9 +36,8 @@ def _view(found: MachineLimits) -> RenderableType:
     job, far, lengths, axis = found.job, found.far, found.lengths, found.axis
     units = job.units
     zone = with_unit(job.cut.sync_zone, "m", 4, units)
-    table = new_table(title="How fast, how short", title_justify="left")
-    for name in ("", "axis", "speed, length", "binds"):
-        table.add_column(name, no_wrap=name == "speed, length")
+    heads = ("", "axis", "speed, length", "binds")
+    table = new_table("How fast, how short", heads, heads, heads[2:3])
     fast = f"highest line speed at a cut length of {with_unit(job.cut.length, 'm', 4, units)}"
     short = f"shortest cut at {with_unit(job.cut.line_speed, 'm/s', units=units)} with a sync zone of {zone}"
     for axis_name, reached in (("perfect", far), ("in tolerance", found.within)):
@@ -59,14 +58,12 @@ def _view(found: MachineLimits) -> RenderableType:
 
 def _axis_view(lengths: AxisLengths, band: BandLengths | None, units: Units) -> RenderableType:
     """Show how short a piece can be cut with the axis within the tolerance, the sync zone chosen best each time."""
-    table = new_table(title="Minimum cut length with the axis in sync", title_justify="left")
     unit = unit_shown("m", units)
-    table.add_column("by")
-    table.add_column(f"limits of the command\n{unit}", justify="right")
-    table.add_column(f"of the axis too\n{unit}", justify="right")
+    heads = ["by", f"limits of the command\n{unit}", f"of the axis too\n{unit}"]
     if band is not None:
         low, high = (with_unit(speed, "m/s", units=units) for speed in band.line_speeds)
-        table.add_column(f"from {low} to {high}\n{unit}", justify="right")
+        heads.append(f"from {low} to {high}\n{unit}")
+    table = new_table("Minimum cut length with the axis in sync", heads, heads[:1])
     rows = (
         ("linear return (limit of speed alone)", lengths.linear_return, ""),
         ("polynomial 3-4-5", lengths.poly_3_4_5, ""),

@@ -108,11 +108,10 @@ def _view(
     """Show the ranges at the job's line speed and below, the loop, and the dead time."""
     units = found.job.units
     here = new_table(
-        title=f"A print mark at {with_unit(found.here.line_speed, 'm/s', units=units)} ({unit_shown('m', units)})",
-        title_justify="left",
+        f"A print mark at {with_unit(found.here.line_speed, 'm/s', units=units)} ({unit_shown('m', units)})",
+        ("what the controller does", "earliest", "latest", "by acceleration alone"),
+        ("what the controller does",),
     )
-    for name in ("what the controller does", "earliest", "latest", "by acceleration alone"):
-        here.add_column(name, justify="left" if name.startswith("what") else "right")
     for words, ends, alone in (
         ("next length, designed anew", found.here.redesign, None),
         ("phase of the master, cam as it is", found.here.master_phase, found.phase_alone),
@@ -122,9 +121,8 @@ def _view(
             here.add_row(words, "not in sync", "not in sync", "")
             continue
         here.add_row(words, *_ends(ends, units), "" if alone is None else " to ".join(_ends(alone, units)))
-    table = new_table(title=f"Earliest and latest over the line speed ({unit_shown('m', units)})", title_justify="left")
-    for name in (unit_shown("m/s", units), "designed anew", "phase", "offset"):
-        table.add_column(name, justify="right")
+    heads = (unit_shown("m/s", units), "designed anew", "phase", "offset")
+    table = new_table(f"Earliest and latest over the line speed ({unit_shown('m', units)})", heads)
     for each in found.by_speed:
         table.add_row(
             with_unit(each.line_speed, "m/s", units=units),

@@ -133,8 +133,7 @@ def _view(found: RecordedRun, path: Path, files: list[Path]) -> RenderableType:
 def _cuts(found: RecordedRun, units: Units) -> RenderableType:
     """List the cuts."""
     length, factor = unit_shown("m", units), units.shown["m"].factor
-    table = new_table(title="Cuts; a tool ahead of the material is positive", title_justify="left")
-    for name in (
+    heads = (
         "cut",
         f"line speed\n{unit_shown('m/s', units)}",
         f"sync error\n{length}",
@@ -142,8 +141,8 @@ def _cuts(found: RecordedRun, units: Units) -> RenderableType:
         f"command\n{length}",
         f"axis\n{length}",
         f"length\n{length}",
-    ):
-        table.add_column(name, justify="right")
+    )
+    table = new_table("Cuts; a tool ahead of the material is positive", heads)
     half = _MOST_SHOWN // 2
     some = found.cuts if len(found.cuts) <= _MOST_SHOWN else (*found.cuts[:half], *found.cuts[-half:])
     for cut in some:
@@ -162,9 +161,8 @@ def _cuts(found: RecordedRun, units: Units) -> RenderableType:
 def _kinds(found: RecordedRun, units: Units) -> RenderableType:
     """Show offset, drift and scatter of all, of the command and of the axis, beside what the job's servo would do."""
     length, factor = unit_shown("m", units), units.shown["m"].factor
-    table = new_table(title=f"Errors told apart ({length})", title_justify="left")
-    for name in ("", "offset", "drift a cut", "95 %", "scatter (σ)", "range"):
-        table.add_column(name, justify="left" if not name else "right")
+    heads = ("", "offset", "drift a cut", "95 %", "scatter (σ)", "range")
+    table = new_table(f"Errors told apart ({length})", heads, heads[:1])
 
     def value(each: float | None) -> str:
         return number(None if each is None else each * factor, 4)

@@ -49,11 +49,9 @@ def _value(check: Check, factor: float) -> str:
 
 def _table(checks: Sequence[Check], units: Units, *, sources: bool) -> WholeTable:
     """Lay out the checks."""
-    table = new_table("Checks")
-    for name in ("check", "", "value", "limit", "unit", "at"):
-        table.add_column(name, justify="right" if name in ("value", "limit", "at") else "left", no_wrap=True)
-    if sources:
-        table.add_column("source")
+    heads = ("check", "", "value", "limit", "unit", "at")
+    left = ("check", "", "unit", "source")
+    table = new_table("Checks", (*heads, "source") if sources else heads, left, heads)
     for check in checks:
         measure = units.measure(check.unit)
         table.add_row(

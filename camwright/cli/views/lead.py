@@ -17,18 +17,12 @@ if TYPE_CHECKING:
 def lead_view(job: Job, errors: Sequence[LengthError]) -> RenderableType:
     """Show the lead time that makes up for the mean lag, and where the cut falls at shares of the line speed."""
     servo = job.servo
-    table = new_table(
-        title=f"Where the cut falls; mean lag {mean_lag(servo) * 1e3:.4g} ms, lead time set {servo.lead_time * 1e3:.4g} ms",
-        title_justify="left",
-    )
     speed, length = job.units.shown["m/s"], job.units.shown["m"]
     lengths = (f"{each}\n{length.printed}" for each in ("fixed offset", "with that lead", "from cut to cut"))
-    for name in (
-        "line speed",
-        speed.printed,
-        *lengths,
-    ):
-        table.add_column(name, justify="right")
+    table = new_table(
+        f"Where the cut falls; mean lag {mean_lag(servo) * 1e3:.4g} ms, lead time set {servo.lead_time * 1e3:.4g} ms",
+        ("line speed", speed.printed, *lengths),
+    )
     for error in errors:
         table.add_row(
             f"{100 * error.share:g} %",

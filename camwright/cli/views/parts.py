@@ -14,12 +14,22 @@ if TYPE_CHECKING:
 
 
 def new_table(
-    title: str | Text | None = None, headings: Sequence[str] = (), left: Collection[str] = (), **look: Any
+    title: str | Text | None = None,
+    headings: Sequence[str] = (),
+    left: Collection[str] = (),
+    whole: Collection[str] = (),
+    **look: Any,
 ) -> WholeTable:
-    """Make an empty table, whose words are never cut; its columns hold numbers, at the right, but for those named in `left`."""
+    """Make an empty table, whose words are never cut; its columns hold numbers, at the right, but for those named in `left`.
+
+    Parameters
+    ----------
+    whole
+        Headings of columns whose lines are not divided between words.
+    """
     table = WholeTable(title, {"title_justify": "left", **look})
     for heading in headings:
-        table.add_column(heading, justify="left" if heading in left else "right")
+        table.add_column(heading, justify="left" if heading in left else "right", no_wrap=heading in whole)
     return table
 
 

@@ -56,10 +56,8 @@ def _parts(columns: list[Column]) -> list[list[Column]]:
 def _table(comparison: Comparison, columns: Sequence[Column]) -> WholeTable:
     """Lay out some columns."""
     what = OBJECTIVES[comparison.job.objective].words
-    table = new_table(f"Profiles, by {what}")
-    table.add_column("profile", no_wrap=True)
-    for heading, _ in columns:
-        table.add_column(heading, justify="right", no_wrap=True)
+    heads = ("profile", *(heading for heading, _ in columns))
+    table = new_table(f"Profiles, by {what}", heads, heads[:1], heads)
     for number_of, row in enumerate(comparison.rows):
         name = row.name if row.within_limits else f"{row.name} {_BROKEN}"
         cells = [cells[number_of] for _, cells in columns]

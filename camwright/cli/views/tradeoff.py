@@ -13,11 +13,11 @@ if TYPE_CHECKING:
 
 def tradeoff_view(result: TradeOff) -> RenderableType:
     """Show all profiles, each measure with its multiple of the best."""
-    table = new_table(f"Objectives and laws, by {words(result.sorted_by)}; × the best")
-    table.add_column("minimised, or law")
+    heads = ["minimised, or law"]
     for name in result.measures:
         unit = result.unit(name).replace("^2", "²").replace("^3", "³")
-        table.add_column(f"{words(name).replace('acceleration', 'acc.')}\n{unit}", justify="right")
+        heads.append(f"{words(name).replace('acceleration', 'acc.')}\n{unit}")
+    table = new_table(f"Objectives and laws, by {words(result.sorted_by)}; × the best", heads, heads[:1])
     for row in result.rows:
         title = words(row.name) if row.kind == "objective" else row.name
         cells = [_cell(row.values[measure], result.cost(row, measure)) for measure in result.measures]

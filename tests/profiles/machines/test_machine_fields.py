@@ -32,11 +32,11 @@ def test_every_field_says_what_it_is(machine: type[Machine]) -> None:
     for each in found:
         assert each.about.description
         if isinstance(each.about, Choice):
-            assert each.default in each.about.words
-        elif isinstance(each.about, Whole):
-            assert each.about.least <= each.default <= each.about.greatest
-        elif isinstance(each.about, Number):
-            assert each.about.above < each.default <= each.about.greatest
+            assert each.required or each.default in each.about.words
+        elif isinstance(each.about, Whole | Number):
+            least = each.about.least if isinstance(each.about, Whole) else math.nextafter(each.about.above, math.inf)
+            for value in (each.about.example, *(() if each.required else (each.default,))):
+                assert least <= value <= each.about.greatest
         elif not (each.required or each.free):
             assert each.default >= 0.0
     assert [each.name for each in found if each.free] == ([machine.place_name] if machine.place_name else [])
