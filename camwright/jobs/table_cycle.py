@@ -16,9 +16,9 @@ from camwright.profiles.tables.cam_table import CamTable, Units, make_table
 _FEWEST = 12
 """Points from which on a jump can be told from motion."""
 _JUMP = 0.5
-"""Part of the slave's range that one step must cover to be a jump."""
-_USUAL = 5.0
-"""By how many times a jump exceeds the steps beside it."""
+"""Part of the slave's range that one step must be off the ratios beside it to be a jump."""
+_USUAL = 4.0
+"""By how many times that exceeds the steps beside it."""
 _ALIKE = 1e-4
 """Part by which two ratios may differ to be one."""
 _PARTS = 12
@@ -159,14 +159,14 @@ def _unwrapped(
 ) -> tuple[CamTable, tuple[str, ...]]:
     """Take out the jumps of a slave that is counted modulo its pitch or its turn."""
     y = table.y
-    jumps = _jumps(y)
+    jumps, usual = _jumps(table.x, y)
     if not len(jumps) or job.machine.pitch <= 0:
         return table, ()
     steps = np.diff(y)
-    meant = np.array([_beside(steps, k) for k in jumps.tolist()]) - steps[jumps]
+    meant = usual - steps[jumps]
     modulus = float(np.median(np.abs(meant)))
     named = "" if units is None else f" {units.slave.symbol}"
-    slack = 2.0 * float(max(abs(_beside(steps, k)) for k in jumps.tolist()))
+    slack = 2.0 * float(np.abs(usual).max())
     if units is not None:
         ways = [way for way in (asked, job.machine.pitch, job.machine.slave_turn) if way]
         sizes = [way / units.slave.size for way in ways]
@@ -204,19 +204,26 @@ def _other_modulus(y: FloatArray, meant: FloatArray, slack: float, travels: list
     ]
 
 
-def _jumps(y: FloatArray) -> NDArray[np.intp]:
-    """Find the steps that are far too large for motion."""
-    steps = np.diff(y)
+def _jumps(x: FloatArray, y: FloatArray) -> tuple[NDArray[np.intp], FloatArray]:
+    """Find the steps that are far too large for motion, and what each would be by the ratios beside it.
+
+    A straight line over half the cycle, as a drive that knows lines takes the sync zone, is one long step at the ratio beside it.
+    """
+    steps, wide = np.diff(y), np.diff(x)
     if len(y) < _FEWEST:
-        return np.zeros(0, dtype=np.intp)
-    far = np.flatnonzero(np.abs(steps) > _JUMP * float(np.ptp(y)))
-    return far[[abs(steps[k]) > _USUAL * abs(_beside(steps, k)) for k in far.tolist()]]
+        return np.zeros(0, dtype=np.intp), np.zeros(0)
+    usual = _beside(steps / wide) * wide
+    off = np.abs(steps - usual)
+    jumps = np.flatnonzero((off > _JUMP * float(np.ptp(y))) & (off > _USUAL * np.abs(_beside(steps))))
+    return jumps, usual[jumps]
 
 
-def _beside(steps: FloatArray, k: int) -> float:
-    """Mean of the steps beside one."""
-    near = [float(steps[j]) for j in (k - 1, k + 1) if 0 <= j < len(steps)]
-    return sum(near) / len(near)
+def _beside(values: FloatArray) -> FloatArray:
+    """Mean of the values beside each."""
+    beside = np.zeros(len(values))
+    beside[1:-1] = 0.5 * (values[:-2] + values[2:])
+    beside[0], beside[-1] = values[1], values[-2]
+    return beside
 
 
 def _plain(value: float, slack: float) -> float:

@@ -21,6 +21,7 @@ from camwright.drives.running_cam import running_cam
 from camwright.figures.audit import audit_figures
 from camwright.house.owned import LIST
 from camwright.jobs.job import Job
+from camwright.jobs.table_cycle import whole_cycle
 from camwright.profiles.cut import Origin
 from camwright.profiles.errors import InputError
 from camwright.profiles.machines import CrankSlider
@@ -332,6 +333,26 @@ def test_a_jump_that_is_no_turn_is_refused(tmp_path: Path) -> None:
     y[60:] = 0.97 * y[60:] - 310.0  # by that it does not run on to the pitch
     with pytest.raises(InputError, match=r"the slave jumps by -0.31.* m at point 61, which is no whole turn of 0.4 m;"):
         audit(millimetres(tmp_path / "a.csv", x.tolist(), y.tolist()), JOB)
+
+
+@pytest.mark.parametrize("zone", [0.2, 0.26])
+@pytest.mark.parametrize("wrapped", [False, True])
+def test_a_straight_line_over_half_the_cycle_is_no_jump(zone: float, wrapped: bool) -> None:
+    """Drives that know lines take the sync zone as one long step; one that turns over within it is still found."""
+    job = replace(JOB, cut=replace(JOB.cut, sync_zone=zone))
+    x = np.append(np.linspace(0.0, 0.6 - zone, 200), 0.6)
+    y = baseline("poly_3_4_5", job.task)(x)
+    units = Units(Unit("m", 1.0), Unit("m", 1.0))
+    found = whole_cycle(make_table(x, y % 0.4 if wrapped else y, law="line", units=units), job, "a table")
+    np.testing.assert_allclose(found.table.y, y, atol=1e-12)
+    assert len(found.notes) == wrapped
+
+
+def test_a_table_of_lines_is_audited_as_it_was_written(tmp_path: Path) -> None:
+    (written,) = export_possible(PROFILE, JOB, ["lenze"])[0]
+    name, text = next(iter(written.files.items()))
+    (tmp_path / name).write_bytes(text.encode())
+    assert audit(tmp_path / name, JOB).judgement.passed
 
 
 @pytest.mark.parametrize(("turn", "within"), [(36_000, 0.15), (131_072, 0.05), (1_048_576, 0.01)])

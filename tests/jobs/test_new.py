@@ -116,7 +116,7 @@ def test_in_a_terminal_what_is_required_is_asked_with_the_example_offered(
     ("arguments", "message"),
     [
         (["new", "guillotine"], "there is no machine 'guillotine'; the machines are rotary_knife, linear_carriage,"),
-        (["new", "--like", "banana"], "there is no example 'banana'; the examples are chasing-shear,"),
+        (["new", "--like", "banana"], "there is no example 'banana'; the examples are "),
         (["new", "crank_slider", "--like", "paper-600"], "of a rotary_knife, not of a crank_slider"),
         (["new", "--stroke", "1 m"], "a rotary_knife job has no key 'machine.stroke'; camwright keys lists them"),
         (["new", "--length", "150"], '[cut] length = 150: a number without a unit; write e.g. "150 mm"'),
