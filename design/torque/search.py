@@ -293,7 +293,7 @@ def _guesses(task: TorqueTask, given: Sequence[CamProfile], count: int) -> Itera
         yield from resting(task, count // 2)
     if task.may_turn and rubs:
         yield from turning(task, count // 3)
-    elif task.problem.height < 0:
+    if task.problem.height < 0 or (task.may_turn and rubs):
         # where it turns a slave is at rest, so a stroke that it may not leave is kept there exactly
         for profile in profiles:
             turned = turning_from(profile, task, count // 3)

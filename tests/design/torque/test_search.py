@@ -149,6 +149,25 @@ def test_a_carriage_draws_what_its_slowest_way_back_needs_where_the_jerk_alone_b
     assert least * (1 - 1e-8) <= lower_bound(profile, task, "energy").value <= least
 
 
+def test_a_knife_that_rubs_and_must_turn_goes_no_further_than_it_must() -> None:
+    """No start converged, and the motion started from drew 28 % more; a reference of 40 starts of its own finds 2.507 J."""
+    knife = RotaryKnife(0.3562629455218391, gear_ratio=6.837, drum_inertia=0.0010966, drum_friction=0.35279763767439665)
+    pitch = 0.3562629455218391
+    cut = Cut(1.3763292189594516, 0.5351464877922543, 0.07193131946740951, 0.0144, 0.0576, 1.4e-3)
+    task = Task(knife, cut, Limits(0.5710464681156497, 1.13529153130924, 10.76413717281387, reversal=True))
+    solution = solve(task, "energy")
+    assert solution.agreement is not None
+    assert solution.agreement.converged > 0
+    profile = solution.profile
+    x = np.linspace(profile.start, profile.end, 20_001)
+    way = float(np.abs(np.diff(profile(x))).sum())
+    energy = measure_motor(profile, task).energy
+    assert way < 1.14 * pitch
+    # nothing is gained from the turns: the motor brakes less than the friction does
+    assert energy == pytest.approx(0.35279763767439665 * 2 * math.pi / pitch * way, rel=2e-3)
+    assert energy < 2.508
+
+
 def test_energy_of_a_knife_that_rubs_is_at_least_what_the_friction_takes() -> None:
     task = Task(KNIFE, CUT, LIMITS)
     energy = measure_motor(solve(task, "energy").profile, task).energy
