@@ -11,7 +11,7 @@ import numpy as np
 from camwright.design.returns.ipopt import QUIET
 from camwright.design.servo_aware.command_basis import CommandBasis
 from camwright.design.servo_aware.convex import Rows, sparse
-from camwright.design.torque.programme import LOBATTO
+from camwright.design.torque.layout import LOBATTO
 from camwright.profiles.errors import SolverError
 from camwright.profiles.objective import MotorObjective
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
 
 from camwright.design.feasible.feasibility import is_feasible
 from camwright.design.place import Placement, is_smooth
 from camwright.design.returns.problem import return_problem
 from camwright.design.torque.guesses import ANYHOW, from_path
 from camwright.design.torque.mesh import remesh
+from camwright.design.torque.parts import greatest_share
 from camwright.design.torque.path_starts import path_starts
 from camwright.design.torque.programme import TorqueAnswer, TorqueProgramme
 from camwright.design.torque.task import Aim, TorqueTask
@@ -72,7 +71,7 @@ def place_by_objective(task: Task, aim: Aim, curve: MotorCurve | None = None) ->
     ends = np.array([each.slave_at_sync_end for each in tasks])
     middle = TorqueTask(tasks[len(tasks) // 2], return_problem(tasks[len(tasks) // 2], "peak_acceleration"), aim, curve)
     zone = Zone((np.array([starts[0], ends[0]]), np.array([starts[-1], ends[-1]])))
-    able = _able(zone, middle, starts, ends)
+    able = greatest_share(middle, zone, starts, ends) <= 1.0
     programme = TorqueProgramme(middle, ANYHOW, (COARSE,), zone, SCANNED)
     answers: dict[int, TorqueAnswer] = {}
     for k in np.nonzero(able)[0].tolist():
@@ -148,14 +147,6 @@ def _middle(machine: Machine, answer: TorqueAnswer) -> float:
         at = 0.5 * (low + high)
         low, high = (at, high) if float(machine.tool(at)) < middle else (low, at)
     return 0.5 * (low + high)
-
-
-def _able(zone: Zone, task: TorqueTask, starts: FloatArray, ends: FloatArray) -> NDArray[np.bool_]:
-    """Tell at which places the sync zone itself keeps the limits."""
-    one, other = ca.SX.sym("s"), ca.SX.sym("e")
-    shares = zone.join(one, other, task).shares
-    greatest = ca.Function("greatest", [one, other], [ca.mmax(shares)]).map(len(starts))
-    return np.asarray(greatest(starts[None, :], ends[None, :])).ravel() <= 1.0
 
 
 def _at(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -56,6 +57,8 @@ AT_FLOOR = 1e-2
 """A peak beyond this share of its floor on a mesh does not reach it on a finer one."""
 REACHED = 1e-6
 """A peak within this share of its floor is the floor."""
+KEPT = 4
+"""Programmes that are kept: starts of a kind have one."""
 ZONE_PLACES = 1001
 """Places of the sync zone at which its torque is looked at."""
 SAME = 1e-7
@@ -232,7 +235,12 @@ def _value(task: TorqueTask, answer: TorqueAnswer, pattern: Pattern) -> float:
 
 
 def _programme(task: TorqueTask, pattern: Pattern, guess: Guess, iterations: int = MOST_ITERATIONS) -> TorqueProgramme:
-    return TorqueProgramme(task, pattern, tuple(len(mesh) for mesh in guess.mesh), iterations=iterations)
+    return _kept_programme(task, pattern, tuple(len(mesh) for mesh in guess.mesh), iterations)
+
+
+@lru_cache(KEPT)
+def _kept_programme(task: TorqueTask, pattern: Pattern, counts: tuple[int, ...], iterations: int) -> TorqueProgramme:
+    return TorqueProgramme(task, pattern, counts, iterations=iterations)
 
 
 def _distinct(answers: list[tuple[TorqueAnswer, Pattern]]) -> list[tuple[TorqueAnswer, Pattern]]:

@@ -89,6 +89,11 @@ class TorqueTask:
         return 1.0 + 0.0 * y if self.aim in MOTION_OBJECTIVES else self.machine.inertia(y)
 
     @property
+    def feels_motor(self) -> bool:
+        """Whether the motor's torque counts, in what is minimised or in what limits it."""
+        return self.curve is not None or self.aim not in MOTION_OBJECTIVES
+
+    @property
     def may_turn(self) -> bool:
         """Whether the slave may run backwards in the return."""
         return self.problem.least_ratio < 0.0

@@ -42,6 +42,7 @@ class MultiplierWatch(ca.Callback):
         self.most = MOST_MULTIPLIER
         self._sizes = {"x": unknowns, "f": 1, "g": rows, "lam_x": unknowns, "lam_g": rows, "lam_p": parameters}
         self.construct("multiplier_watch", {})
+        self._multipliers = int(self.index_in("lam_g"))
 
     def get_n_in(self) -> int:
         """Count what the solver hands over: its outputs."""
@@ -59,7 +60,12 @@ class MultiplierWatch(ca.Callback):
         """Give the shape of an input."""
         return ca.Sparsity.dense(self._sizes[ca.nlpsol_out(number)])
 
-    def eval(self, given: Sequence[ca.DM]) -> list[float]:
+    def has_eval_buffer(self) -> bool:
+        """Ask for the numbers where they lie: to make matrices of all of them every iteration takes longer than many a step."""
+        return True
+
+    def eval_buffer(self, given: Sequence[memoryview], answers: Sequence[memoryview]) -> int:
         """Tell whether to end: where a multiplier of a constraint has run away."""
-        multipliers = np.asarray(given[self.index_in("lam_g")])
-        return [float(not np.abs(multipliers).max(initial=0.0) < self.most)]
+        multipliers = np.frombuffer(given[self._multipliers])
+        np.frombuffer(answers[0])[0] = not np.abs(multipliers).max(initial=0.0) < self.most
+        return 0

@@ -10,7 +10,7 @@ import numpy as np
 from camwright.design.feasible.feasibility import is_feasible
 from camwright.design.returns.curve_limits import motor_speed_limits
 from camwright.design.returns.problem import return_problem
-from camwright.design.torque.programme import CURVE_DRAWN_IN
+from camwright.design.torque.parts import CURVE_DRAWN_IN
 from camwright.design.torque.search import TorqueSolution, solve_torque
 from camwright.design.torque.task import Aim, TorqueTask
 from camwright.profiles.errors import SolverError

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import casadi as ca
@@ -12,47 +13,37 @@ from camwright.design.torque.task import TorqueTask
 from camwright.profiles.polynomial.profile import FloatArray
 
 
-def available_torque(task: TorqueTask, velocity: Any, count: int) -> Any:
-    """Give the torque of the motor at a number of the slave's velocities, seen at the slave, in scalar symbols (`casadi.SX`)."""
+def available_torque(task: TorqueTask, velocity: Any) -> Any:
+    """Give the torque of the motor at a velocity of the slave, seen at the slave, in a scalar symbol (`casadi.SX`)."""
     if task.curve is None:
-        return ca.DM.inf(count)
+        return ca.SX.inf()
     speeds, torques = (ca.DM(list(column)) for column in zip(*task.curve.points, strict=True))
-    motor = ca.vertsplit(ca.fabs(velocity) * task.machine.motor_ratio)
-    return ca.vertcat(*[ca.pw_lin(each, speeds, torques) for each in motor]) * task.machine.motor_ratio
+    return ca.pw_lin(ca.fabs(velocity) * task.machine.motor_ratio, speeds, torques) * task.machine.motor_ratio
 
 
 @dataclass(frozen=True, eq=False)
-class Joined:
-    """What a sync zone between two slave coordinates means to a programme, scaled as there.
+class ZonePoint:
+    """What a sync zone asks at one of its points.
 
     Parameters
     ----------
-    closure
-        Zero where the tool travels the sync zone between the two.
-    states
-        Acceleration and velocity at the start of the return, and at its end.
-    travel
-        Travel of the return.
-    torque, power, available
-        Of the zone at its points, at the slave; the last is what the motor gives there.
-    weights
-        Of these points in a mean over time, the return counting as 1.
+    velocity, torque, available
+        Of the slave, at the slave; the last is what the motor gives there.
+    weight
+        Of the point in a mean over time, the return counting as 1, per weight of the point in a mean over the slave's way.
     shares
-        Shares of the limits of speed, acceleration and jerk that the zone uses at its points.
-    accelerations, jerks
-        Of the zone at its points.
+        Shares of the limits of speed, acceleration and jerk that the zone uses.
+    acceleration, jerk
+        Of the zone, scaled as in the programme.
     """
 
-    closure: Any
-    states: tuple[Any, Any, Any, Any]
-    travel: Any
+    velocity: Any
     torque: Any
-    power: Any
     available: Any
-    weights: Any
+    weight: Any
     shares: Any
-    accelerations: Any
-    jerks: Any
+    acceleration: Any
+    jerk: Any
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,42 +61,49 @@ class Zone:
     range: tuple[FloatArray, FloatArray]
     points: int = 12
 
-    def join(self, start: Any, end: Any, task: TorqueTask) -> Joined:
-        """Say what a zone between two slave coordinates means to a task's programme."""
-        machine, cut, limits, v = task.machine, task.cut, task.task.limits, task.cut.line_speed
-        length, scale = task.problem.length, task.scale
-        one, other, angle = (ca.SX.sym(name) for name in ("s", "e", "y"))
-        ratio = cut.sync_ratio / machine.tool_ratio(angle)
-        slope = ca.gradient(ratio, angle) * ratio
-        moves = ca.Function("moves", [angle], [ratio, slope, ca.gradient(slope, angle) * ratio])
+    @cached_property
+    def looks(self) -> tuple[FloatArray, FloatArray]:
+        """Points of the zone as shares of the slave's way through it, its ends last, and their weights."""
         node, weight = np.polynomial.legendre.leggauss(self.points)
-        # the points of the zone, then its two ends
-        y = ca.vertcat(one + (other - one) * ca.DM(0.5 + 0.5 * node), one, other)
-        ratios, slopes, bends = (ca.vec(part) for part in moves.map(self.points + 2)(y.T))
-        velocity, acceleration, jerk = v * ratios, v**2 * slopes, v**3 * bends
-        torque = machine.inertia(y) * acceleration + machine.inertia_slope(y) * velocity**2 / 2
+        return np.append(0.5 + 0.5 * node, [0.0, 1.0]), np.append(0.5 * weight, [0.0, 0.0])
+
+    def at(self, start: Any, end: Any, share: Any, task: TorqueTask) -> ZonePoint:
+        """Say what a zone between two slave coordinates asks at a share of the slave's way through it."""
+        machine, v, limits = task.machine, task.cut.line_speed, task.task.limits
+        length, unit = task.problem.length, task.problem.length / task.scale
+        y = start + (end - start) * share
+        ratio, slope, bend = _moves(y, task)
+        velocity, acceleration, jerk = v * ratio, v**2 * slope, v**3 * bend
         used = acceleration / limits.acceleration, jerk / limits.jerk
-        shares = ca.vertcat(velocity / limits.speed, used[0], -used[0], used[1], -used[1])
-        weights = ca.vertcat(ca.DM(0.5 * weight) * (other - one) / velocity[: self.points] / task.duration, 0, 0)
-        unit = length / scale
-        meet, leave = self.points, self.points + 1
-        parts = ca.Function(
-            "zone",
-            [one, other],
-            [
-                (machine.tool(other) - machine.tool(one)) / (cut.sync_ratio * cut.sync_zone) - 1.0,
-                slopes[leave] * length * unit,
-                ratios[leave] * unit,
-                slopes[meet] * length * unit,
-                ratios[meet] * unit,
-                (machine.pitch - (other - one)) / scale,
-                torque,
-                torque * velocity,
-                available_torque(task, velocity, self.points + 2),
-                weights,
-                shares,
-                slopes * length * unit,
-                bends * length**2 * unit,
-            ],
-        )(start, end)
-        return Joined(parts[0], (parts[1], parts[2], parts[3], parts[4]), *parts[5:])
+        return ZonePoint(
+            velocity,
+            machine.inertia(y) * acceleration + machine.inertia_slope(y) * velocity**2 / 2,
+            available_torque(task, velocity),
+            (end - start) / velocity / task.duration,
+            ca.vertcat(velocity / limits.speed, used[0], -used[0], used[1], -used[1]),
+            slope * length * unit,
+            bend * length**2 * unit,
+        )
+
+    def met(self, start: Any, end: Any, task: TorqueTask) -> tuple[Any, Any]:
+        """Say what a zone between two slave coordinates means to the return.
+
+        That is what is zero where the tool travels the sync zone between the two, and acceleration, velocity and position at the return's
+        start and its end.
+        """
+        machine, cut, unit = task.machine, task.cut, task.problem.length / task.scale
+        closure = (machine.tool(end) - machine.tool(start)) / (cut.sync_ratio * cut.sync_zone) - 1.0
+        states = []
+        for y, place in ((end, 0.0), (start, (machine.pitch - (end - start)) / task.scale)):
+            ratio, slope, _ = _moves(y, task)
+            states.append(ca.vertcat(slope * task.problem.length * unit, ratio * unit, place))
+        return closure, states
+
+
+def _moves(y: Any, task: TorqueTask) -> tuple[Any, Any, Any]:
+    """Ratio of the slave in sync at a slave coordinate, and its first two derivatives over the master."""
+    angle = ca.SX.sym("y")
+    ratio = task.cut.sync_ratio / task.machine.tool_ratio(angle)
+    slope = ca.gradient(ratio, angle) * ratio
+    moves = ca.Function("moves", [angle], [ratio, slope, ca.gradient(slope, angle) * ratio])
+    return tuple(moves(y))
