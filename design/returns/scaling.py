@@ -19,6 +19,8 @@ LEAST_PEAK = 4.0
 # A ramp shorter than this share of the return cannot be told from a jump: its ends lie only 1e9 roundings apart. A jerk limit that would
 # allow shorter ramps is lowered; the least peak acceleration then grows by this share of the time that the acceleration takes.
 SHORTEST_RAMP = 2e-7
+# The same between ends with accelerations of their own, which it changes by a small part only: by much shorter ramps.
+SHORTEST_CHANGE = 4e-6
 
 
 @dataclass(frozen=True)
@@ -91,7 +93,9 @@ def scale_problem(problem: ReturnProblem, scale: float) -> ScaledProblem:
         least_ratio=least_ratio,
         greatest_ratio=greatest_ratio,
         greatest_slope=min(problem.greatest_slope * length**2 / abs(scale), GREATEST_SCALED_ACCELERATION),
-        greatest_jerk=min(problem.greatest_jerk * length**3 / abs(scale), _sharpest(height, greatest_ratio)),
+        greatest_jerk=min(
+            problem.greatest_jerk * length**3 / abs(scale), _sharpest(height, greatest_ratio, _shortest(problem))
+        ),
         objective=problem.objective,
         drift=problem.start_ratio * length / scale,
         least_position=places[0],
@@ -108,23 +112,28 @@ def _scaled_ratios(problem: ReturnProblem, scale: float) -> tuple[float, float]:
     return max(least, -GREATEST_SCALED_SPEED), min(greatest, GREATEST_SCALED_SPEED)
 
 
-def _sharpest(height: float, greatest_ratio: float) -> float:
-    """Jerk of the scaled problem whose ramps are as short as `SHORTEST_RAMP` allows."""
+def _shortest(problem: ReturnProblem) -> float:
+    """Shortest ramp, as a share of the return."""
+    return SHORTEST_CHANGE if problem.start_slope or problem.end_slope else SHORTEST_RAMP
+
+
+def _sharpest(height: float, greatest_ratio: float, shortest: float) -> float:
+    """Jerk of the scaled problem whose ramps are as short as is allowed."""
     straight = least_acceleration(abs(height), 1.0, max(greatest_ratio, 1e-300), math.inf)
-    return max(LEAST_PEAK, straight if math.isfinite(straight) else 0.0) / SHORTEST_RAMP
+    return max(LEAST_PEAK, straight if math.isfinite(straight) else 0.0) / shortest
 
 
 def resolved(problem: ReturnProblem) -> ReturnProblem:
-    """Return the problem with the jerk limit that the design goes by: no higher than what `SHORTEST_RAMP` allows."""
+    """Return the problem with the jerk limit that the design goes by: no higher than what the shortest ramps allow."""
     scale = motion_scale(problem)
     if scale == 0.0:
         return problem
     length = problem.length
-    unit = abs(scale) / length**3
-    if problem.greatest_jerk <= LEAST_PEAK / SHORTEST_RAMP * unit:
+    unit, shortest = abs(scale) / length**3, _shortest(problem)
+    if problem.greatest_jerk <= LEAST_PEAK / shortest * unit:
         return problem
     height = (problem.height - problem.start_ratio * length) / scale
-    sharpest = _sharpest(height, _scaled_ratios(problem, scale)[1]) * unit
+    sharpest = _sharpest(height, _scaled_ratios(problem, scale)[1], shortest) * unit
     return problem if problem.greatest_jerk <= sharpest else replace(problem, greatest_jerk=sharpest)
 
 

@@ -69,3 +69,19 @@ def test_a_cut_of_12_m_is_measured_on_every_motion() -> None:
     y = task.slave_at_start + quintic(x)
     torque = 0.25 * (CRANK.inertia(y) * quintic(x, 2) + CRANK.inertia_slope(y) * quintic(x, 1) ** 2 / 2) / 10.0
     assert motor.peak_torque == pytest.approx(np.abs(torque).max(), rel=1e-4)
+
+
+@pytest.mark.parametrize("line_speed", [1e-4, 1e-2])
+@pytest.mark.parametrize(
+    ("machine", "cut"), [(RotaryKnife(0.376, blades=2, sync="horizontal"), None), (KNIFE, THICK), (CRANK, SHEAR)]
+)
+def test_a_least_peak_on_a_slow_line_joins_the_zone(
+    machine: RotaryKnife | CrankSlider, cut: Cut | None, line_speed: float
+) -> None:
+    """Ramps as short as a jerk limit of powers of ten above the motion allows left the slope of the zone by more than rounding."""
+    cut = cut or Cut(0.25, 0.6, 0.0409347, 0.015, 0.0259, 2e-4)
+    task = Task(machine, replace(cut, line_speed=line_speed), Limits(31.4, 400.0, 20_000.0))
+    found = solve(task, "peak_acceleration")
+    jumps = np.abs(found.profile.jumps(2)).max()
+    assert jumps <= 1e-10 * greatest_magnitude(found.profile, 2).value  # a tenth of what the check allows
+    assert found.minimised <= lower_bound(found.profile, task, "peak_acceleration").value * (1 + 2e-5)

@@ -14,7 +14,7 @@ from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.servo import Servo, spectral_radius
 from camwright.profiles.task import Task
 from camwright.validation.motion import require_period
-from camwright.validation.servo.lifting import lift_side_by_side, loops_of
+from camwright.validation.servo.lifting import SUBSTEPS, lift_side_by_side, loops_of
 from camwright.validation.servo.response import shear_zone_of, shear_zone_peaks, slow_sync_error, worst_place
 from camwright.validation.servo.simulation import PHASES, WHOLE_PART, memory_at, shear_zone_run
 
@@ -25,7 +25,7 @@ _VALUES = 2**17
 FEW_PHASES = 4
 """Sampling phases at which much is looked at first; some of all that count."""
 
-_LOOKED, _LOOKED_SLOW = 256, 32
+_LOOKED, _LOOKED_SLOW = 256, 8
 """Servos that are run at all phases, in the whole shear zone, at a time; fewer on a slow line."""
 
 _SHOWING = 8
@@ -57,7 +57,7 @@ def shear_zone_errors(profile: CamProfile, task: Task, servos: Sequence[Servo], 
     servos
         The servos, e.g. of `camwright.profiles.servo_tolerance.ServoTolerance.draw`.
     phases
-        Sampling phases, a multiple of 16 to compare with the response of one servo.
+        Sampling phases, a multiple of 16 to compare with the response of one servo; at most `SUBSTEPS` in closed form, as for that.
 
     Returns
     -------
@@ -79,7 +79,7 @@ def shear_zone_errors(profile: CamProfile, task: Task, servos: Sequence[Servo], 
     travel = task.cut.line_speed * np.array([servo.sample_time for servo in servos])
     within = np.ceil(task.cut.shear_zone / travel).astype(np.intp)
     for i in np.nonzero((past > 0) & (past + within > WHOLE_PART))[0].tolist():
-        closed = slow_sync_error(profile, task, servos[i], *shear_zone_of(task.cut), phases)
+        closed = slow_sync_error(profile, task, servos[i], *shear_zone_of(task.cut), min(phases, SUBSTEPS))
         if closed is not None:
             found[i], past[i] = closed, 0
     for group in _groups(past, within, phases):
