@@ -49,6 +49,8 @@ class Entry:
         Of the tool (m/s, m/s², m/s³).
     following_error, settling, shear_zone_error
         Of the servo (m).
+    worst_shear_zone_error
+        Greatest over the corners of the servo's ranges, too (m); None without ranges.
     failed_checks
         Names of the checks that failed, of the design and, after the target's name, of its tables.
     tables
@@ -82,6 +84,7 @@ class Entry:
     following_error: float | None = None
     settling: float | None = None
     shear_zone_error: float | None = None
+    worst_shear_zone_error: float | None = None
     failed_checks: tuple[str, ...] = ()
     tables: tuple[tuple[str, int], ...] = ()
     binding: str = ""

@@ -45,6 +45,7 @@ _TITLES = {
     "following_error_mm": "following error mm",
     "settling_mm": "settling mm",
     "shear_zone_error_mm": "shear-zone error mm",
+    "worst_shear_zone_error_mm": "worst servo mm",
     "released_m_per_min": "this cam released m/min",
     "failed_checks": "checks failed",
     "binding": "binds",
@@ -65,7 +66,7 @@ _TITLES = {
 _INCHES = {"_in": "in", "_ft_per_min": "ft/min", "_ft_per_s2": "ft/s²", "_ft_per_s3": "ft/s³"}
 """Units of an inch book by the endings of its columns."""
 
-_HEAD, _MIDDLE, _END = COLUMNS[:5], COLUMNS[5:17], ("binding", "folder")
+_HEAD, _MIDDLE, _END = COLUMNS[:5], COLUMNS[5:18], ("binding", "folder")
 
 _STATUS = {"passed": "passed", "check_failed": "check failed", "infeasible": "infeasible", "failed": "solver failed"}
 

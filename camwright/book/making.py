@@ -19,12 +19,13 @@ from camwright.drives.export import Exported, export_possible, export_report
 from camwright.house.json_text import to_json
 from camwright.house.provenance import provenance
 from camwright.jobs.job import Job
+from camwright.jobs.servos import servos_of
 from camwright.jobs.wording import error_words, unforeseen
 from camwright.production.marks import next_lengths
 from camwright.profiles.errors import InfeasibleError, InputError, SolverError
 from camwright.profiles.mark_range import MarkRange
 from camwright.stored.design_text import design_text
-from camwright.studies.axis_study import axis_study, solve_job
+from camwright.studies.axis_study import axis_study, solve_job, sync_error
 from camwright.studies.design import Design
 from camwright.studies.reach import highest_speed
 from camwright.studies.speed_band import SpeedBand, job_band
@@ -186,6 +187,7 @@ def _exported(number: int, design: Design, targets: Sequence[str], limit: Limit 
         following_error=servo.peak_following_error if servo else None,
         settling=servo.settling if servo else None,
         shear_zone_error=servo.shear_zone_error if servo else None,
+        worst_shear_zone_error=sync_error(design.profile, design.job) if len(servos_of(design.job)) > 1 else None,
         failed_checks=tuple(failed),
         tables=tuple((result.target.name, result.table.points) for result in results if result.passed),
         reason="; ".join(f"{name}: {fault}" for name, faults in refused.items() for fault in faults),

@@ -32,7 +32,7 @@ from camwright.profiles.task import Task
 MOST_DESIGNS = 100_000
 """Most combinations of a book."""
 
-LAYOUT = 1
+LAYOUT = 2
 """Version of the layout of a book's folder."""
 
 _LONGEST_NAME = 60

@@ -29,6 +29,7 @@ COLUMNS = (
     "following_error_mm",
     "settling_mm",
     "shear_zone_error_mm",
+    "worst_shear_zone_error_mm",
     "released_m_per_min",
     "tables",
     "failed_checks",
@@ -36,8 +37,9 @@ COLUMNS = (
     "reason",
     "folder",
 )
-"""Columns of the index, of a metric book. ``released_m_per_min`` are the line speeds at which this very cam passes every check; ``tables``
-names each target with the points of its table."""
+"""Columns of the index, of a metric book. ``worst_shear_zone_error_mm`` is that of the worst servo of the corners of ``[servo.tolerance]``;
+``released_m_per_min`` are the line speeds at which this very cam passes every check; ``tables`` names each target with the points of
+its table."""
 
 LIMIT_COLUMNS = (
     "length_mm",
@@ -100,6 +102,7 @@ def index_rows(book: Book, entries: Iterable[Entry]) -> Iterator[list[Cell]]:
             _times(entry.following_error, length),
             _times(entry.settling, length),
             _times(entry.shear_zone_error, length),
+            _times(entry.worst_shear_zone_error, length),
             _released(entry.speed_band, units),
             " ".join(f"{name}:{points}" for name, points in entry.tables) or None,
             "; ".join(entry.failed_checks) or None,

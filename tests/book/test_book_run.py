@@ -41,6 +41,7 @@ from camwright.profiles.task import Task
 from camwright.stored.design_file import read_design
 from camwright.validation.production.line_ramp import line_ramp
 from camwright.validation.report import ValidationReport, judge
+from camwright.validation.servo.response import greatest_shear_zone_error
 
 
 @pytest.fixture(scope="module")
@@ -325,6 +326,23 @@ def test_combinations_that_are_no_job_are_listed(tmp_path: Path) -> None:
 def test_a_book_of_nothing_that_works_is_infeasible(tmp_path: Path) -> None:
     book = plan_book(load_job(JOB), "250", "120", [])
     assert make_book(book, tmp_path / "book", inline_crew()).exit_code == 3
+
+
+def test_the_worst_servo_of_the_ranges_stands_beside_the_jobs_own(tmp_path: Path) -> None:
+    """A row failed by ``servo_tolerance`` while the one error that it gave was within the tolerance."""
+    text = JOB.read_text(encoding="utf-8") + '\n[servo.tolerance]\nbandwidth = "30 %"\n'
+    (tmp_path / "job.toml").write_text(text, encoding="utf-8")
+    make_book(plan_book(load_job(tmp_path / "job.toml"), "600", "100", []), tmp_path / "book", inline_crew())
+    (row,) = rows(tmp_path / "book")
+    assert row["failed_checks"] == "servo_tolerance"
+    stored = read_design(tmp_path / "book" / row["folder"] / "design.json")
+    worst = max(
+        greatest_shear_zone_error(stored.profile, stored.job.task, replace(stored.job.servo, bandwidth=120.0 * share))
+        for share in (0.7, 1.0, 1.3)
+    )
+    assert float(row["worst_shear_zone_error_mm"]) == pytest.approx(1e3 * worst, rel=1e-6)
+    assert float(row["shear_zone_error_mm"]) < 0.1 < float(row["worst_shear_zone_error_mm"])
+    assert "worst servo mm" in (tmp_path / "book" / "index.html").read_text(encoding="utf-8")
 
 
 def test_targets_that_cannot_take_a_cam_are_listed(tmp_path: Path) -> None:
