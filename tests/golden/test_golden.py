@@ -75,11 +75,10 @@ def test_a_killed_run_goes_on_where_it_stopped(tmp_path: Path) -> None:
     """A half line is dropped, a case that stands there is not run again, and other code is refused."""
     file = tmp_path / "half.jsonl"
     assert recorded(file, "targets-spoken").keys() == {"targets-spoken"}
-    kept = file.read_bytes().replace(b"codesys", b"as recorded")
+    kept = file.read_bytes()
     file.write_bytes(kept + b'{"targets": {"arg')
-    assert "3/3 misuse/book-targets" in golden("record", file, "--only", "targets").stderr
-    assert file.read_bytes().startswith(kept)
-    assert read(file).keys() == {"help/targets", "targets", "targets-spoken", "misuse/book-targets"}
+    assert "0 cases in" in golden("record", file, "--only", "targets-spoken").stderr
+    assert file.read_bytes() == kept
     file.write_bytes(kept.replace(b'"code": "', b'"code": "0'))
     refused = golden("record", file, "--only", "targets")
     assert refused.returncode == 1
