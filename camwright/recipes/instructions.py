@@ -52,7 +52,7 @@ def before(recipe: Recipe, words: Catalogue) -> list[Block]:
         "run",
     )
     items = [words(f"before.{key}", **values) for key in keys]
-    if outside_note((row.line_speed for row in recipe.speeds), recipe, words):
+    if recipe.released and outside_note((row.line_speed for row in recipe.speeds), recipe, words):
         items.append(words("before.outside"))
     return [{"kind": "checklist", "items": items}]
 

@@ -121,7 +121,7 @@ def outside_note(line_speeds: Iterable[float], recipe: Recipe, words: Catalogue)
     """Say what the mark means, where one of these line speeds (m/s) has it."""
     if all(released_at(recipe, line_speed) for line_speed in line_speeds):
         return []
-    return [text_block(words("speeds.outside"), strong=True)]
+    return [text_block(words("speeds.outside" if recipe.released else "speeds.failing"), strong=True)]
 
 
 def marked(text: str, recipe: Recipe, line_speed: float) -> str:

@@ -196,5 +196,8 @@ def _range(recipe: Recipe, words: Catalogue) -> list[Block]:
         for key, edge, unit, without in ends
     ]
     head = [words(key) for key in ("column.end", "column.value", "column.binding")]
-    note = words("range.note", released=released_speeds(recipe, words))
-    return [table_block(head, rows, left=3, widths=[2.2, 1.7, 1.0]), text_block(note)]
+    notes = [words("range.note")]
+    if recipe.speed_band:
+        key = "range.released" if recipe.released else "range.passes"
+        notes.append(words(key, released=released_speeds(recipe, words)))
+    return [table_block(head, rows, left=3, widths=[2.2, 1.7, 1.0]), *map(text_block, notes)]

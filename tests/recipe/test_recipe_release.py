@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from typing import cast
 
@@ -11,7 +12,7 @@ from camwright.house.language import Language
 from camwright.recipes.build import MadeRecipe
 from camwright.recipes.catalogue import catalogue
 from camwright.recipes.model import Recipe, SpeedPart
-from camwright.recipes.release import boxed, marked, status_text, warnings
+from camwright.recipes.release import boxed, marked, released_speeds, status_text, warnings
 from camwright.recipes.sheet import sheet
 
 OWN = 80 / 60
@@ -109,3 +110,22 @@ def test_what_failed_stands_beside_the_status(made: MadeRecipe) -> None:
     assert warnings(withheld, words) == [f"Not passed: {words.named('check', table.checks[0].name)} ({table.target})."]
     steps = next(each for each in sheet(withheld, words)["sections"] if each["key"] == "section.import")["blocks"][0]
     assert "checklist" not in [each["kind"] for each in steps["blocks"]]  # there is no file to import
+
+
+@pytest.mark.parametrize("language", ["en", "de", "zh"])
+@pytest.mark.parametrize("part", [SpeedPart(0.0, 0.5, "none", "settling"), None])
+def test_a_sheet_that_is_not_released_calls_no_line_speed_released(
+    made: MadeRecipe, language: Language, part: SpeedPart | None
+) -> None:
+    """It said so in the box, and below that the cam was released up to 31 m/min."""
+    words = catalogue(language)
+    recipe = replace(of(made, *([part] if part else [])), released=False)
+    text = json.dumps(sheet(recipe, words)["sections"], ensure_ascii=False)
+    for key in ("speeds.outside", "before.outside"):
+        assert words(key) not in text
+    assert words("speeds.failing") in text
+    assert words("range.released", released=released_speeds(recipe, words)) not in text
+    assert (words("range.passes", released=released_speeds(recipe, words)) in text) is bool(part)
+    assert words("range.released", released=released_speeds(made.recipe, words)) in json.dumps(
+        sheet(made.recipe, words)["sections"], ensure_ascii=False
+    )
