@@ -205,7 +205,9 @@ def infeasible_cases(examples: dict[str, str]) -> Iterator[Case]:
             yield Case(f"infeasible/{name}/limits", ("limits", job, "--json"), slow=True)
         yield Case(f"infeasible/{name}/objectives", ("compare", job, "--objectives", "--no-figures", "--json"))
         yield Case(
-            f"infeasible/{name}/envelope", ("envelope", job, "--points", "2", "--no-figures", "--json"), slow=True
+            f"infeasible/{name}/envelope",
+            ("envelope", job, "--points", "2", "--no-figures", "--out", f"runs/infeasible/{name}-envelope", "--json"),
+            slow=True,
         )
         recipe = ("recipe", job, "--targets", "csv", "--out", f"runs/infeasible/{name}")
         yield Case(f"infeasible/{name}/recipe", recipe, slow=True)
