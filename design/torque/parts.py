@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
 from typing import Any
 
@@ -256,6 +257,19 @@ def zone_numbers(task: TorqueTask, zone: Zone, start: float, end: float) -> list
     found = _zone_function(task, zone).map(len(shares))(*rows, shares[None, :])
     torque, velocity, weight = (np.asarray(part).ravel() for part in found)
     return [torque, torque * velocity, weights * weight]
+
+
+def zone_floor(task: TorqueTask, zone: Zone, start: float, end: float) -> float:
+    """Bound the objective, as `TorqueAnswer.value` has it, by what a sync zone between two slave coordinates needs; 0 for others."""
+    torque, power, weights = zone_numbers(task, zone, start, end)
+    match task.aim:
+        case "rms_torque":
+            return math.sqrt(float(weights @ torque**2) / (1.0 + float(weights.sum())))
+        case "peak_torque":
+            return float(np.abs(torque).max())
+        case "energy":
+            return float(weights @ np.maximum(power, 0.0))
+    return 0.0
 
 
 def greatest_share(task: TorqueTask, zone: Zone, starts: FloatArray, ends: FloatArray) -> FloatArray:

@@ -11,7 +11,7 @@ from camwright.design.place import Placement, is_smooth
 from camwright.design.returns.problem import return_problem
 from camwright.design.torque.guesses import ANYHOW, from_path
 from camwright.design.torque.mesh import remesh
-from camwright.design.torque.parts import greatest_share
+from camwright.design.torque.parts import greatest_share, zone_floor
 from camwright.design.torque.path_starts import path_starts
 from camwright.design.torque.programme import TorqueAnswer, TorqueProgramme
 from camwright.design.torque.task import Aim, TorqueTask
@@ -27,8 +27,10 @@ LEAST_PLACES = 3
 """Places with a smooth sync zone that a scan needs."""
 MARGIN = 0.01
 """Share of that range kept free at both ends: at a dead centre the crank would need infinite speed."""
-COARSE, FINE = 40, 120
-"""Intervals of the scan, and of the search about its best places."""
+COARSE, FINE, FINEST = 40, 120, 300
+"""Intervals of the scan, of the search about its best places, and of the last about the best of these, where meshes still tell."""
+SETTLED = 1e-3
+"""Share by which the search about the best places must be below the scan for the last to be made."""
 SCANNED = 1e-3
 """Accuracy of the solver on the scan, scaled: it tells valleys, whose floors are then looked for."""
 EDGE = 1e-6
@@ -71,18 +73,14 @@ def place_by_objective(task: Task, aim: Aim, curve: MotorCurve | None = None) ->
     ends = np.array([each.slave_at_sync_end for each in tasks])
     middle = TorqueTask(tasks[len(tasks) // 2], return_problem(tasks[len(tasks) // 2], "peak_acceleration"), aim, curve)
     zone = Zone((np.array([starts[0], ends[0]]), np.array([starts[-1], ends[-1]])))
-    able = greatest_share(middle, zone, starts, ends) <= 1.0
-    programme = TorqueProgramme(middle, ANYHOW, (COARSE,), zone, SCANNED)
-    answers: dict[int, TorqueAnswer] = {}
-    for k in np.nonzero(able)[0].tolist():
-        before = answers.get(k - 1)
-        found = _at(programme, middle, (float(starts[k]), float(ends[k])), before)
-        if found is not None:
-            answers[k] = found
+    answers, floors = _scan(middle, zone, starts, ends)
     valleys = [
         k
-        for k, answer in answers.items()
-        if all(answer.value <= answers[other].value for other in (k - 1, k + 1) if other in answers)
+        for k, answer in sorted(answers.items())
+        if all(
+            answer.value <= (answers[other].value if other in answers else floors[other])
+            for other in _beside(k, floors)
+        )
     ]
     best = min((answers[k].value for k in valleys), default=np.inf)
     found_valleys: list[TorqueAnswer] = []
@@ -94,6 +92,8 @@ def place_by_objective(task: Task, aim: Aim, curve: MotorCurve | None = None) ->
     if not found_valleys:
         return None
     deepest = min(found_valleys, key=lambda answer: answer.value)
+    if best > deepest.value * (1 + SETTLED):
+        deepest = down.finest(deepest)
     at = _middle(task.machine, deepest)
     apart = {round(_middle(task.machine, answer) / APART) for answer in found_valleys}
     apart |= {round(float(places[k]) / APART) for k in valleys if answers[k].value > best * (1 + NEAR)}
@@ -128,6 +128,13 @@ class _Descent:
             TorqueProgramme(middle, ANYHOW, (count,), zone, near=True) for count in (COARSE, FINE)
         )
         self._held = TorqueProgramme(middle, ANYHOW, (FINE,), zone)
+        self._middle, self._zone = middle, zone
+
+    def finest(self, answer: TorqueAnswer) -> TorqueAnswer:
+        """Answer about one of `floor` on the finest mesh; that one if there is none."""
+        programme = TorqueProgramme(self._middle, ANYHOW, (FINEST,), self._zone, near=True)
+        found = programme.solve(remesh(answer.guess, ANYHOW, (FINEST,)))
+        return found if found.success else answer
 
     def floor(self, answer: TorqueAnswer) -> TorqueAnswer:
         """Best answer about one at a place of the scan."""
@@ -147,6 +154,34 @@ def _middle(machine: Machine, answer: TorqueAnswer) -> float:
         at = 0.5 * (low + high)
         low, high = (at, high) if float(machine.tool(at)) < middle else (low, at)
     return 0.5 * (low + high)
+
+
+def _scan(
+    task: TorqueTask, zone: Zone, starts: FloatArray, ends: FloatArray
+) -> tuple[dict[int, TorqueAnswer], FloatArray]:
+    """Best answers with the zone at places, and what the zone itself costs at each.
+
+    None is looked for where the zone breaks a limit, or costs far more than the best.
+    """
+    programme = TorqueProgramme(task, ANYHOW, (COARSE,), zone, SCANNED)
+    pairs = list(zip(starts.tolist(), ends.tolist(), strict=True))
+    able = greatest_share(task, zone, starts, ends) <= 1.0
+    floors = np.array(
+        [zone_floor(task, zone, *pair) if fits else np.inf for fits, pair in zip(able, pairs, strict=True)]
+    )
+    answers: dict[int, TorqueAnswer] = {}
+    best = np.inf
+    for k in (int(np.argmin(floors)), *range(len(pairs))):
+        if able[k] and floors[k] <= best * (1 + NEAR) and k not in answers:
+            found = _at(programme, task, pairs[k], answers.get(k - 1))
+            if found is not None:
+                answers[k], best = found, min(best, found.value)
+    return answers, floors
+
+
+def _beside(k: int, places: FloatArray) -> list[int]:
+    """Places next to one."""
+    return [other for other in (k - 1, k + 1) if 0 <= other < len(places)]
 
 
 def _at(
