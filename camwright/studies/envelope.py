@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cache
 from itertools import pairwise
 from typing import Any
 
@@ -18,7 +17,7 @@ from camwright.house.provenance import provenance
 from camwright.jobs.job import Job
 from camwright.profiles.machines import Machine
 from camwright.profiles.objective import OBJECTIVES, MotionObjective, of_motion
-from camwright.studies.reach import ACCURACY, followed_speed, highest_speed, stand_in, verdict
+from camwright.studies.reach import ACCURACY, Programmes, followed_speed, highest_speed, stand_in, verdict
 
 SHORTEST, LONGEST = 0.5, 2.0
 """Cut lengths of the map as parts of the job's; none of them is shorter than `LEAST_ZONE` of the sync zone."""
@@ -32,7 +31,7 @@ STRAIGHT = 4e-3
 
 FINEST, FINE = 1e-4, 1e-3
 """Nodes of an edge are no closer, relative to the length: of a perfect axis, whose edge is a closed form, and where an edge is steep; of
-the axis in tolerance, of which each node is some designs. Where one of these takes a second the nodes are the cut lengths of the map."""
+the axis in tolerance, of which each node is some designs."""
 
 PROBE = 0.29
 """Where a part whose middle lies on the line is looked at once more: the line may cross a bent edge in its middle."""
@@ -50,6 +49,14 @@ JUMP, LEAST_JUMP, HOLE = 10.0, 0.03, 1.02
 """Power of the cut length, and share of the line speed, beyond which an edge is taken to jump between two nodes; and factor by which line
 speeds above its lower node are looked at for a hole: where there is none the edge is about the upper one."""
 
+SPARED, MISSED = 0.06, 0.03
+"""An edge is near where a design keeps the tolerance by no more than the first share, as a logarithm, or misses it by no more than the
+other: half a percent of the line speed."""
+
+CLOSEST, ALONE = 2e-2, 1.0
+"""Nodes of an edge that is followed with few designs are no closer, relative to the length; and where a node takes some seconds, so that
+those at the lengths of the map are the only ones."""
+
 STEEP = 5e-3
 """Share of the line speed by which an edge may change between nodes as close as `FINE`; by more at `FINEST` it jumps."""
 
@@ -65,8 +72,9 @@ class EnvelopeAnswer:
     quintic, perfect, within
         Highest line speeds (m/s) over cut lengths (m): with the quintic return, with a perfect axis, and with the axis in
         tolerance, which is what `design` would pass, designed anew; a crank's free sync zone placed where the line can run fastest, as the
-        map's rows tell. Lines with nodes so close that what lies between is true
-        to `STRAIGHT`, `within` where `sampled` is false; NaN where no line speed works. Where an edge jumps, two nodes have one length.
+        map's rows tell. Lines with nodes so close that what lies between is true to `STRAIGHT`, `within` of servo-aware jobs, of lines
+        that ramp and of cranks whose zone is free to a percent, the lower of two nodes where it bends; NaN where no line speed works.
+        Where an edge jumps, two nodes have one length.
     """
 
     job: Job
@@ -75,11 +83,6 @@ class EnvelopeAnswer:
     quintic: Edge
     perfect: Edge
     within: Edge
-
-    @property
-    def sampled(self) -> bool:
-        """Whether `within` is found at the lengths of the map alone, and drawn straight between them."""
-        return _dear(self.job)
 
     @property
     def unit(self) -> str:
@@ -120,7 +123,6 @@ class EnvelopeAnswer:
                 }
                 for row in self.envelope.rows
             ],
-            "axis_in_tolerance_at_lengths_only": self.sampled,
             "edges": {
                 name: [
                     {"length_mm": length * 1e3, "line_speed_m_per_min": None if math.isnan(speed) else speed * 60}
@@ -174,53 +176,89 @@ def envelope_answer(job: Job, points: int, step: Step = ignore) -> EnvelopeAnswe
     found = envelope(job.task, objective, lengths.tolist(), speeds.tolist(), step)
     step("the edges between the cut lengths")
 
-    @cache
-    def at(length: float) -> Job:
-        """Give the job at a cut length; a crank's free sync zone is where the line can run fastest."""
-        there = job.task.with_length(length)
-        return replace(job, machine=placed_fastest(there).machine, cut=there.cut)
-
-    @cache
-    def fastest(length: float) -> float | None:
-        return max_line_speed(at(length).task)
-
-    found_within: dict[float, float | None] = {}
-
-    def in_tolerance(length: float, expected: float) -> float | None:
-        """Begin at the perfect axis' edge where that is the edge of the next shorter length too, or is about what is expected."""
-        top, accuracy = fastest(length), ACCURACY if length in lengths else BETWEEN
-        accuracy = STRAIGHT if job.line.ramps else accuracy
-        shorter = max((each for each in found_within if each < length), default=None)
-        at_top = shorter is not None and found_within[shorter] == fastest(shorter)
-        if job.servo_aware:  # a job is made for about what its machine can do
-            if math.isnan(expected):
-                expected = job.cut.line_speed * length / job.cut.length
-            elif len(found_within) == 1 and shorter is not None:  # cycles of one time
-                expected *= length / shorter
-            found = followed_speed(at(length), top, expected)
-        elif (jump := at_jump(found_within, length)) is not None:
-            low, high = jump  # between there may be a hole, above which line speeds pass again: the edge is below it
-            there = at(length)
-            closed = not verdict(there, there.task.designed_at(low * HOLE), stand_in(there))[0]
-            found, _ = highest_speed(there, top, high if closed else low, accuracy)
-        elif at_top or math.isnan(expected) or top is None or expected >= (1.0 - STRAIGHT) * top:
-            found, _ = highest_speed(at(length), top, None, accuracy)
-        elif job.line.ramps:  # where the edge is not followed well that of a line which keeps its speed is nearer
-            share = (found_within.get(shorter) or 0.0) / (fastest(shorter) or top) if shorter is not None else 0.0
-            follows = abs(expected / top - share) <= FOLLOWED * share
-            found, _ = highest_speed(at(length), top, expected if follows else None, accuracy)
-        else:  # the line is as often on one side of the edge as on the other
-            found, _ = highest_speed(at(length), top, expected * (1.0 - 0.5 * accuracy), accuracy)
-        found_within[length] = found
-        return found
-
-    perfect = true_edge(lambda length, _: fastest(length), lengths.tolist(), FINEST)
-    within = true_edge(in_tolerance, lengths.tolist(), None if _dear(job) else FINE)
-    quintic = true_edge(lambda length, _: quintic_speed(at(length).task), lengths.tolist(), FINEST)
+    job_at = _Lengths(job, lengths.tolist())
+    perfect = true_edge(lambda length, _: job_at.fastest(length), lengths.tolist(), FINEST)
+    if job.servo_aware or job.line.ramps or not job.machine.placed:  # whose designs are dear
+        within = followed_edge(
+            job_at.in_tolerance, job_at.near, lengths.tolist(), ALONE if job.servo_aware else CLOSEST
+        )
+    else:
+        within = true_edge(job_at.in_tolerance, lengths.tolist(), FINE)
+    quintic = true_edge(lambda length, _: quintic_speed(job_at(length).task), lengths.tolist(), FINEST)
     return EnvelopeAnswer(job, objective, found, quintic, perfect, within)
 
 
-def true_edge(fastest: Callable[[float, float], float | None], lengths: list[float], finest: float | None) -> Edge:
+class _Lengths:
+    """The job at cut lengths, of which some are those of the map; and how fast its line can run there."""
+
+    def __init__(self, job: Job, lengths: list[float]) -> None:
+        self._job, self._lengths = job, lengths
+        self._at: dict[float, tuple[Job, float | None]] = {}
+        self._found: dict[float, float | None] = {}
+        self._programmes = Programmes(job)
+
+    def _known(self, length: float) -> tuple[Job, float | None]:
+        """Give the job at a cut length, a crank's free sync zone placed where the line can run fastest, and that speed (m/s)."""
+        if length not in self._at:
+            there = self._job.task.with_length(length)
+            job = replace(self._job, machine=placed_fastest(there).machine, cut=there.cut)
+            self._at[length] = job, max_line_speed(job.task)
+        return self._at[length]
+
+    def __call__(self, length: float) -> Job:
+        """Give the job at a cut length."""
+        return self._known(length)[0]
+
+    def fastest(self, length: float) -> float | None:
+        """Give the highest line speed of the perfect axis (m/s); ``None`` where none works."""
+        return self._known(length)[1]
+
+    def in_tolerance(self, length: float, expected: float) -> float | None:
+        """Find that of the axis in tolerance from about where it is expected; ``None`` where none works."""
+        self._found[length] = (self._aware if self._job.servo_aware else self._blind)(length, expected)
+        return self._found[length]
+
+    def near(self, length: float, speed: float) -> bool:
+        """Say whether that is near a line speed, by one design."""
+        (there, top), blind = self._known(length), not self._job.servo_aware
+        if top is None or (blind and speed > top):
+            return False
+        task = there.task.designed_at(speed)
+        failed, missed = verdict(there, task, stand_in(there)) if blind else self._programmes.verdict(task)
+        return -SPARED <= missed <= MISSED or (blind and not failed and speed >= (1.0 - STRAIGHT) * top)
+
+    def _aware(self, length: float, expected: float) -> float | None:
+        """Find the edge of a servo-aware job, which is made for about what its machine can do."""
+        cut = self._job.cut
+        if math.isnan(expected):
+            expected = cut.line_speed * length / cut.length
+        elif len(self._found) == 1:  # cycles of one time
+            expected *= length / next(iter(self._found))
+        return followed_speed(*self._known(length), expected, self._programmes)
+
+    def _blind(self, length: float, expected: float) -> float | None:
+        """Begin at the perfect axis' edge where that is the edge of the next shorter length too, or is about what is expected."""
+        there, top = self._known(length)
+        accuracy = ACCURACY if length in self._lengths else BETWEEN
+        accuracy = STRAIGHT if there.line.ramps else accuracy
+        shorter = max((each for each in self._found if each < length), default=None)
+        at_top = shorter is not None and self._found[shorter] == self.fastest(shorter)
+        near: float | None = expected * (
+            1.0 - 0.5 * accuracy
+        )  # the line is as often on one side of the edge as on the other
+        if (jump := at_jump(self._found, length)) is not None:
+            low, high = jump  # between there may be a hole, above which line speeds pass again: the edge is below it
+            near = low if verdict(there, there.task.designed_at(low * HOLE), stand_in(there))[0] else high
+        elif at_top or math.isnan(expected) or top is None or expected >= (1.0 - STRAIGHT) * top:
+            near = None
+        elif there.line.ramps:  # where the edge is not followed well that of a line which keeps its speed is nearer
+            share = (self._found.get(shorter) or 0.0) / (self.fastest(shorter) or top) if shorter is not None else 0.0
+            follows = length not in self._lengths or abs(expected / top - share) <= FOLLOWED * share
+            near = expected if follows else None
+        return highest_speed(there, top, near, accuracy)[0]
+
+
+def true_edge(fastest: Callable[[float, float], float | None], lengths: list[float], finest: float) -> Edge:
     """Follow a highest line speed over the cut length: nodes are added until the line between them is true.
 
     A part is true where two places between its ends lie on the line. What remains when nodes are as close as they may be is a jump: it is
@@ -234,7 +272,7 @@ def true_edge(fastest: Callable[[float, float], float | None], lengths: list[flo
     lengths
         First nodes, ascending.
     finest
-        Nodes are no closer than this share of the length, where the edge is not steep; ``None``: there are no others.
+        Nodes are no closer than this share of the length, where the edge is not steep.
     """
 
     def node(length: float, expected: float) -> tuple[float, float]:
@@ -259,18 +297,61 @@ def true_edge(fastest: Callable[[float, float], float | None], lengths: list[flo
                 return probe, middle
         return *between(left, middle, finest), middle, *between(middle, right, finest)
 
-    first: list[tuple[float, float]] = []
-    for length in lengths:
-        first.append(node(length, _expected(first, length)))
-    found = [first[0]]
-    for left, right in pairwise(first):
-        found += [*(between(left, right, finest) if finest is not None else ()), right]
+    found: list[tuple[float, float]] = []
+    for left, right in pairwise(_nodes(fastest, lengths)):
+        found += [*([] if found else [left]), *between(left, right, finest), right]
     return tuple(found)
 
 
-def _dear(job: Job) -> bool:
-    """Say whether designs of a job are too dear to follow its edge with the axis in tolerance between the lengths of the map."""
-    return job.servo_aware or job.line.ramps or not job.machine.placed
+def followed_edge(
+    fastest: Callable[[float, float], float | None],
+    near: Callable[[float, float], bool],
+    lengths: list[float],
+    closest: float,
+) -> Edge:
+    """Follow a highest line speed over the cut length with few designs: between two nodes it goes as a power of the length.
+
+    In the middle between them it is looked whether that is so; if not, the middle is a node. Between nodes as close as they may be, where
+    the edge bends, the lower of both is drawn.
+
+    Parameters
+    ----------
+    fastest, lengths
+        As in `true_edge`.
+    near
+        Whether the edge is near a line speed (m/s) at a cut length (m).
+    closest
+        Nodes are no closer than this share of the length.
+    """
+
+    def between(left: tuple[float, float], right: tuple[float, float]) -> Edge:
+        (shorter, low), (longer, high) = left, right
+        if math.isnan(low + high):
+            return ()
+        middle, expected = math.sqrt(shorter * longer), math.sqrt(low * high)
+        if near(middle, expected):
+            return tuple(
+                (shorter * (longer / shorter) ** share, low * (high / low) ** share) for share in (0.25, 0.5, 0.75)
+            )
+        if longer - shorter <= closest * longer:
+            return ((longer if low < high else shorter, min(low, high)),)
+        speed = fastest(middle, expected)
+        node = middle, math.nan if speed is None else speed
+        return *between(left, node), node, *between(node, right)
+
+    found: list[tuple[float, float]] = []
+    for left, right in pairwise(_nodes(fastest, lengths)):
+        found += [*([] if found else [left]), *between(left, right), right]
+    return tuple(found)
+
+
+def _nodes(fastest: Callable[[float, float], float | None], lengths: list[float]) -> list[tuple[float, float]]:
+    """Find a highest line speed at cut lengths, each from where those before lead to; NaN where none works."""
+    found: list[tuple[float, float]] = []
+    for length in lengths:
+        speed = fastest(length, _expected(found, length))
+        found.append((length, math.nan if speed is None else speed))
+    return found
 
 
 def at_jump(found: dict[float, float | None], length: float) -> tuple[float, float] | None:

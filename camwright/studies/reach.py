@@ -72,7 +72,10 @@ _BELOW_END = 0.8
 FOLLOWED_ACCURACY = 7e-3
 """Accuracy of an edge that is followed: one percent beyond it nothing designs."""
 
-_FLATTERED = 0.25, 5e-4
+_ENOUGH = 0.05
+"""Share of the tolerance, as a logarithm, that is kept at most where an edge is followed: half a percent of the line speed."""
+
+_FLATTERED = 0.25, 8e-4
 """Share of an accuracy, and least share of itself, by which an edge is taken back before it is designed: cams of the first mesh settle a
 little sooner."""
 
@@ -112,7 +115,7 @@ def reach(job: Job, far: Extremes) -> Reach:
     far
         The same for the perfect axis, which is the end of the search.
     """
-    programmes = _Programmes(job)
+    programmes = Programmes(job)
     speed, too_fast = highest_speed(job, far.max_line_speed, programmes=programmes)
     length, too_short = shortest_cut(job, far.min_cut_length, programmes)
     return Reach(speed, too_fast or far.line_speed_binding, length, too_short or far.cut_length_binding)
@@ -123,7 +126,7 @@ def highest_speed(
     perfect: float | None,
     near: float | None = None,
     accuracy: float = ACCURACY,
-    programmes: _Programmes | None = None,
+    programmes: Programmes | None = None,
 ) -> tuple[float | None, str]:
     """Find the highest line speed at the job's cut length that passes, and what fails beyond.
 
@@ -154,18 +157,18 @@ def highest_speed(
     return (None if found is None else end if not failed else end * found), failed
 
 
-def followed_speed(job: Job, perfect: float | None, near: float) -> float | None:
+def followed_speed(job: Job, perfect: float | None, near: float, programmes: Programmes) -> float | None:
     """Find the highest line speed of a servo-aware job (m/s) near where a cut length beside has it; ``None`` where none works.
 
     Every step is the whole design, with all line speeds and servos: from near by there are few. What fails beyond is not asked.
     """
     if perfect is None:
         return None
-    end, programmes = _end_of_speeds(job, perfect), _Programmes(job)
+    end = _end_of_speeds(job, perfect)
 
     def judged(share: float) -> Verdict:
-        missed = programmes.misses(job.task.designed_at(end * share), shares_of(job.slowest), between_of(job))
-        return (TOLERANCE if missed > 0.0 else ""), missed
+        failed, missed = programmes.verdict(job.task.designed_at(end * share))
+        return failed, 0.0 if -_ENOUGH <= missed <= 0.0 else missed
 
     at = min(near / end, 1.0 - _BELOW_END * FOLLOWED_ACCURACY)
     found, _ = _edge(judged, SLOWEST, FOLLOWED_ACCURACY, at, _FOLLOWED_STEEP)
@@ -177,7 +180,7 @@ def _end_of_speeds(job: Job, perfect: float) -> float:
     return max(perfect, job.limits.speed * job.cut.length / job.machine.pitch) if _shaped(job) else perfect
 
 
-def shortest_cut(job: Job, perfect: float | None, programmes: _Programmes | None = None) -> tuple[float | None, str]:
+def shortest_cut(job: Job, perfect: float | None, programmes: Programmes | None = None) -> tuple[float | None, str]:
     """Shortest cut at the job's line speed that passes (m), and what fails below it, empty where the perfect axis ends there."""
     if perfect is None:
         return None, ""
@@ -213,8 +216,7 @@ tolerance, as the logarithm of a share: infinite where that is not what decides.
 def verdict(job: Job, task: Task, objective: MotionObjective, *, thorough: bool = False) -> Verdict:
     """Design a task as the job would and judge it; a cam that bears the ramps of the line on a first mesh where it is not `thorough`."""
     if job.servo_aware:
-        missed = _Programmes(job).misses(task, shares_of(job.slowest), between_of(job))
-        return (TOLERANCE if missed > 0.0 else ""), missed
+        return Programmes(job).verdict(task)
     try:
         solution = solve(task, objective, suggest=False, thorough=thorough)
     except InfeasibleError as error:
@@ -258,7 +260,7 @@ def _kept(
     least: float,
     accuracy: float = ACCURACY,
     near: float | None = None,
-    programmes: _Programmes | None = None,
+    programmes: Programmes | None = None,
 ) -> tuple[float | None, str]:
     """Find the greatest share of the perfect axis' edge that passes, as `_edge`.
 
@@ -269,7 +271,7 @@ def _kept(
         return _blind_edge(job, at, least, accuracy, near)
     shares = shares_of(job.slowest)
     some, between = thinned(shares, _LOOKED), between_of(job)
-    programmes = programmes or _Programmes(job)
+    programmes = programmes or Programmes(job)
     missed = SketchedFirst(
         (lambda share: programmes.misses(at(share), some, sketch=True)) if some != shares or between else None,
         lambda share: programmes.misses(at(share), shares, between),
@@ -307,8 +309,8 @@ def _ramped_edge(
 ) -> tuple[float | None, str]:
     """Find the edge of a line that ramps.
 
-    Where the ramps bind they are asked alone, which takes a third of the time. Where they do not, cams are searched with on a mesh, and the
-    edge is that of the cam that is designed.
+    Where the ramps bind they are asked alone, which takes a third of the time. Where they do not, cams are searched with on a mesh, which
+    settle a little sooner than what is designed: the edge is taken back by that, and to `RAMPED_ACCURACY` is one where a design passes.
     """
     objective, ramps_bind = stand_in(job), False
 
@@ -331,14 +333,14 @@ def _ramped_edge(
     if failed in ("", RAMP) or found is None:
         return found, failed
     found *= 1.0 - back
-    tries = _TRIES
+    tries = _TRIES if accuracy <= RAMPED_ACCURACY else 0
     while tries and found is not None and (fails := verdict(job, at(found), objective, thorough=True)[0]):
         tries -= 1
         found, failed = (found * (1.0 - 0.5 * accuracy) if tries and found > least else None), fails
     return found, failed
 
 
-class _Programmes:
+class Programmes:
     """Programmes of a servo-aware job one after another, each with the rows that bound in the one before.
 
     The first is kept: the searches for the highest line speed and for the shortest cut both begin at the job.
@@ -348,6 +350,11 @@ class _Programmes:
         self._job = job
         self.last: AxisProgramme | None = None
         self._first: tuple[AxisProgramme, float] | None = None
+
+    def verdict(self, task: Task) -> Verdict:
+        """Judge a task at all line speeds of the job, with the servos between, as `verdict`."""
+        missed = self.misses(task, shares_of(self._job.slowest), between_of(self._job))
+        return (TOLERANCE if missed > 0.0 else ""), missed
 
     def misses(
         self, task: Task, shares: tuple[float, ...], between: tuple[Servo, ...] = (), *, sketch: bool = False
@@ -412,7 +419,7 @@ def binding_of(job: Job, task: Task, beside: AxisProgramme | None = None) -> str
     missed = SketchedFirst((lambda _: by(sketch)) if some != shares else None, lambda _: by(free))(1.0)
     if missed <= 0.0:
         return _axis_limit(job, task, programme.last if programme else None)
-    if job.slowest < 1.0 and _Programmes(job).misses(task, (1.0,)) <= 0.0:
+    if job.slowest < 1.0 and Programmes(job).misses(task, (1.0,)) <= 0.0:
         return BAND
     if (
         math.isinf(missed)

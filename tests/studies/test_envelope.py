@@ -12,16 +12,17 @@ import numpy as np
 import pytest
 
 from camwright import load_job
-from camwright.design.feasible.envelope import Envelope
 from camwright.profiles.machines import RotaryKnife
 from camwright.studies.envelope import (
+    CLOSEST,
     FINE,
     FINEST,
     Edge,
-    EnvelopeAnswer,
     _expected,
+    _nodes,
     at_jump,
     envelope_answer,
+    followed_edge,
     true_edge,
 )
 from camwright.studies.reach import TOLERANCE, Verdict, _edge, stand_in, verdict
@@ -91,9 +92,28 @@ def test_an_edge_ends_where_nothing_works() -> None:
     assert last <= 2.3 < first
 
 
-def test_no_nodes_between_where_a_node_takes_too_long() -> None:
-    edge = true_edge(lambda length, _: bend(length), LENGTHS, None)
-    assert [length for length, _ in edge] == LENGTHS
+KINKED: dict[str, Callable[[float], float]] = {
+    "power": lambda length: 0.5 * length**1.7,
+    "kink": lambda length: min(0.5 * length**3, 2.0),
+    "dent": lambda length: 2.0 + abs(length - 2.3),
+    "jump": lambda length: 2.0 if length < 2.347 else 3.0,
+}
+
+
+@pytest.mark.parametrize("name", sorted(KINKED))
+def test_an_edge_that_is_followed_with_few_designs_is_never_drawn_too_high(name: str) -> None:
+    shape, asked = KINKED[name], [0]
+
+    def near(length: float, speed: float) -> bool:
+        asked[0] += 1
+        return abs(speed / shape(length) - 1.0) <= 5e-3
+
+    edge = followed_edge(lambda length, _: shape(length), near, LENGTHS, CLOSEST)
+    assert [length for length, _ in edge] == sorted(length for length, _ in edge)
+    assert asked[0] == 3 if name == "power" else asked[0] <= 40
+    for length in np.random.default_rng(1).uniform(1.0, 4.0, 3000).tolist():
+        beside = [shape(length * (1 + aside)) for aside in (-CLOSEST, 0.0, CLOSEST)]
+        assert 0.99 * min(beside) <= drawn(edge, length) <= 1.01 * shape(length), length
 
 
 Asked = Callable[[float], Verdict]
@@ -145,7 +165,7 @@ def test_the_next_node_is_expected_where_a_power_of_the_length_goes_on() -> None
         expected.append(near)
         return 0.3 * length**1.5
 
-    true_edge(asked, LENGTHS, None)
+    _nodes(asked, LENGTHS)
     assert math.isnan(expected[0])
     assert expected[1:] == pytest.approx([0.3, 0.3 * 3.0**1.5, 0.3 * 4.0**1.5])
 
@@ -202,12 +222,3 @@ def test_the_upper_end_of_a_hole_is_no_edge() -> None:
     for factor, passes in ((0.99, True), (1.01, False)):
         there = job.task.with_length(length).designed_at(factor * edge)
         assert (not verdict(job, there, stand_in(job))[0]) is passes
-
-
-@pytest.mark.parametrize(
-    ("name", "sampled"),
-    [("paper-600", False), ("flying-saw", False), ("chasing-shear", True), ("ramping-line", True), ("short-cut", True)],
-)
-def test_an_edge_that_is_found_at_the_lengths_of_the_map_alone_says_so(name: str, sampled: bool) -> None:
-    answer = EnvelopeAnswer(load_job(EXAMPLES / f"{name}.toml"), "peak_acceleration", Envelope((), ()), (), (), ())
-    assert answer.to_dict()["axis_in_tolerance_at_lengths_only"] is sampled
