@@ -21,6 +21,9 @@ _FAR, _CLOSE = 0.3, 0.1
 """A sketch that keeps its tolerance by so great a share, as a logarithm, needs no whole look until that place is told; nor does one that
 misses it by more than the other: what is near to it is worse on the whole."""
 
+_DEEP = 1.25
+"""Shares that are kept by more than this, as a logarithm, are not told apart: no line leads from there to the edge."""
+
 _FLATTER = 0.4
 """No step takes the share to fall by less than so much of what the one before took: near the edge it is not known so well."""
 
@@ -56,13 +59,17 @@ def least_length(
         A length (m) that was looked at and holds, while one shorter by the resolution does not, as was seen or as follows where the share
         falls by no less than a share of the length; or the least of all. ``None`` where the longest fails.
     """
+
+    def seen(length: float) -> float:
+        return max(missed(length), -_DEEP)
+
     (low, high), length, longer = ends, min(max(near, ends[0]), ends[1]), 1.0
     fails: tuple[float, float] | None = None
     holds: tuple[float, float] | None = None
     greatest = _GREATEST_STEP / steep
     while fails is None or holds is None:
         before = fails or holds
-        found = missed(length)
+        found = seen(length)
         if found > 0.0:
             if length >= high:
                 return None
@@ -77,7 +84,7 @@ def least_length(
         step = max(min(abs(found) / steep, longer * greatest), longer * _LEAST_STEP * resolution)
         length = min(length * (1.0 + step), high) if found > 0.0 else max(length / (1.0 + step), low)
         longer *= _GROWTH
-    return narrowed(missed, fails, holds, resolution)[0]
+    return narrowed(seen, fails, holds, resolution)[0]
 
 
 class SketchedFirst:
