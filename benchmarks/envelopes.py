@@ -163,7 +163,8 @@ def wrong(job: Job, edge: Edge, random: np.random.Generator, *, checked: bool) -
         (left, low), (right, high) = edge[at], edge[at + 1]
         if math.isnan(low + high) or left == right:  # where there is none, and where it jumps
             continue
-        part = random.random()
+        # of an open place the lengths of the map are the only nodes
+        part = 0.0 if checked and not job.machine.placed else random.random()
         length, speed = left + part * (right - left), low + part * (high - low)
         for factor, possible in ((1 - ASIDE, True), (1 + ASIDE, False)):
             task = placed_fastest(judged.task.with_length(length)).designed_at(factor * speed)

@@ -96,17 +96,18 @@ def _mixed(colour: str, strength: float) -> str:
 
 
 def _edges(answer: EnvelopeAnswer, shown: FloatArray) -> list[Line]:
-    """Draw the highest line speeds, each with nodes so close that what is drawn is true everywhere."""
+    """Draw the highest line speeds: nodes are so close that what is drawn is true everywhere, or the legend says that it is not."""
     rows = answer.envelope.rows
     linear = [(row.length, np.nan if row.linear is None else row.linear) for row in rows]
     optimised = LINES["optimised"]
+    between = ", found at the map's lengths" if answer.sampled else ""
     return [
         stroked(stroke, np.array(edge) * shown, label)
         for edge, label, stroke in (
             (linear, "linear (speed limit only, eq. 8)", LINES["linear_return"]),
             (answer.quintic, "quintic, perfect axis", LINES["poly_3_4_5"]),
             (answer.perfect, "optimised, perfect axis", optimised),
-            (answer.within, "optimised, axis in tolerance", Stroke("#00304d", 2.2, (7.0, 4.0))),
+            (answer.within, f"optimised, axis in tolerance{between}", Stroke("#00304d", 2.2, (7.0, 4.0))),
         )
     ]
 

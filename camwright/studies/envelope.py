@@ -72,9 +72,9 @@ class EnvelopeAnswer:
     quintic, perfect, within
         Highest line speeds (m/s) over cut lengths (m): with the quintic return, with a perfect axis, and with the axis in
         tolerance, which is what `design` would pass, designed anew; a crank's free sync zone placed where the line can run fastest, as the
-        map's rows tell. Lines with nodes so close that what lies between is true to `STRAIGHT`, `within` of servo-aware jobs, of lines
-        that ramp and of cranks whose zone is free to a percent, the lower of two nodes where it bends; NaN where no line speed works.
-        Where an edge jumps, two nodes have one length.
+        map's rows tell. Lines with nodes so close that what lies between is true to `STRAIGHT`, `within` of servo-aware jobs and of lines
+        that ramp to a percent, the lower of two nodes where it bends, and straight between the lengths of the map where `sampled`;
+        NaN where no line speed works. Where an edge jumps, two nodes have one length.
     """
 
     job: Job
@@ -83,6 +83,11 @@ class EnvelopeAnswer:
     quintic: Edge
     perfect: Edge
     within: Edge
+
+    @property
+    def sampled(self) -> bool:
+        """Whether `within` is found at the lengths of the map alone, and drawn straight between them: a crank's whose zone is free."""
+        return not self.job.machine.placed
 
     @property
     def unit(self) -> str:
@@ -123,6 +128,7 @@ class EnvelopeAnswer:
                 }
                 for row in self.envelope.rows
             ],
+            "axis_in_tolerance_at_lengths_only": self.sampled,
             "edges": {
                 name: [
                     {"length_mm": length * 1e3, "line_speed_m_per_min": None if math.isnan(speed) else speed * 60}
@@ -178,10 +184,11 @@ def envelope_answer(job: Job, points: int, step: Step = ignore) -> EnvelopeAnswe
 
     job_at = _Lengths(job, lengths.tolist())
     perfect = true_edge(lambda length, _: job_at.fastest(length), lengths.tolist(), FINEST)
-    if job.servo_aware or job.line.ramps or not job.machine.placed:  # whose designs are dear
-        within = followed_edge(
-            job_at.in_tolerance, job_at.near, lengths.tolist(), ALONE if job.servo_aware else CLOSEST
-        )
+    if not job.machine.placed:  # each of its designs places the zone anew
+        within = tuple(_nodes(job_at.in_tolerance, lengths.tolist()))
+    elif job.servo_aware or job.line.ramps:  # whose designs are dear
+        closest = ALONE if job.servo_aware else CLOSEST
+        within = followed_edge(job_at.in_tolerance, job_at.near, lengths.tolist(), closest)
     else:
         within = true_edge(job_at.in_tolerance, lengths.tolist(), FINE)
     quintic = true_edge(lambda length, _: quintic_speed(job_at(length).task), lengths.tolist(), FINEST)

@@ -12,12 +12,14 @@ import numpy as np
 import pytest
 
 from camwright import load_job
+from camwright.design.feasible.envelope import Envelope
 from camwright.profiles.machines import RotaryKnife
 from camwright.studies.envelope import (
     CLOSEST,
     FINE,
     FINEST,
     Edge,
+    EnvelopeAnswer,
     _expected,
     _nodes,
     at_jump,
@@ -222,3 +224,9 @@ def test_the_upper_end_of_a_hole_is_no_edge() -> None:
     for factor, passes in ((0.99, True), (1.01, False)):
         there = job.task.with_length(length).designed_at(factor * edge)
         assert (not verdict(job, there, stand_in(job))[0]) is passes
+
+
+@pytest.mark.parametrize(("name", "sampled"), [("paper-600", False), ("chasing-shear", True), ("ramping-line", False)])
+def test_an_edge_that_is_found_at_the_lengths_of_the_map_alone_says_so(name: str, sampled: bool) -> None:
+    answer = EnvelopeAnswer(load_job(EXAMPLES / f"{name}.toml"), "peak_acceleration", Envelope((), ()), (), (), ())
+    assert answer.to_dict()["axis_in_tolerance_at_lengths_only"] is sampled
