@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -29,7 +30,7 @@ from camwright.design.torque.peaks import ABOVE, peaks, sharpened
 from camwright.design.torque.programme import MOST_ITERATIONS, Guess, TorqueAnswer, TorqueProgramme
 from camwright.design.torque.task import Pattern, TorqueTask
 from camwright.profiles.errors import SolverError
-from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.returns import quintic_between
 from camwright.profiles.task import Task
 
@@ -37,10 +38,13 @@ FIRST = 60
 """Intervals of the first look, all phases together."""
 SECOND = 120
 """Intervals of the second look, at the best of the first."""
-LADDER = (200, 300)
-"""Intervals of the meshes on which the best of these is taken further, until the objective settles."""
+LADDER = (200, 300, 450, 675, 1000, 1500)
+"""Intervals of the meshes on which the best of these is taken further, until the objective settles: hardly any but a slave that nearly
+coasts, whose torque is what its mesh leaves over, goes beyond the second."""
+GIVEN = 300
+"""Intervals on which a return that is given is measured."""
 SETTLED = 1e-4
-"""Share of the objective by which a finer mesh must still gain for another to be tried."""
+"""Share of the cycle's objective by which a finer mesh must still gain for another to be tried."""
 AGREEMENT = 1e-2
 """Starts whose objectives differ by less than this share on the first mesh have found the same optimum; its own error is as large."""
 NEAR = 0.05
@@ -162,14 +166,14 @@ def _taken_further(
     keep: Callable[[TorqueAnswer, Pattern], None],
 ) -> int:
     """Take an answer to finer meshes until it settles, then divide intervals where its peak hides; the iterations."""
-    iterations = 0
+    iterations, zone = 0, _zone_share(task)
     for count in LADDER:
         finer = _finer(task, pattern, answer, count, floor)
         iterations += finer.iterations
         if not finer.success:
             break
         keep(finer, pattern)
-        settled = finer.value > answer.value * (1 - SETTLED)
+        settled = _of_cycle(finer.value, zone) > _of_cycle(answer.value, zone) * (1 - SETTLED)
         answer = finer
         if settled:
             break
@@ -201,10 +205,34 @@ def _first_look(
 
 def zone_peak(task: Task) -> float:
     """Greatest magnitude of the torque or force that the sync zone asks for, at the slave."""
+    return float(np.abs(_zone_force(task)[1]).max())
+
+
+def _zone_force(task: Task) -> tuple[FloatArray, FloatArray]:
+    """Places of the sync zone, and the torque or force there, at the slave."""
     x = np.linspace(task.sync.start, task.sync.end, ZONE_PLACES)
     v, machine, y = task.cut.line_speed, task.machine, task.slave_at_sync_start + task.sync(x)
     inertial = machine.inertia(y) * task.sync(x, 2) + machine.inertia_slope(y) * task.sync(x, 1) ** 2 / 2
-    return float(np.abs(v**2 * inertial + machine.friction).max())
+    return x, v**2 * inertial + machine.friction
+
+
+def _zone_share(task: TorqueTask) -> tuple[float, int]:
+    """Give what the sync zone adds to the aim, as if it were the return's own, and the power in which both add up; nothing to a peak."""
+    x, force = _zone_force(task.task)
+    match task.aim:
+        case "rms_torque":
+            return math.sqrt(float(np.trapezoid(force**2, x)) / task.problem.length), 2
+        case "energy":
+            power = force * task.task.sync(x, 1) * task.cut.line_speed
+            return float(np.trapezoid(np.maximum(power, 0.0), x)) / task.problem.length, 1
+        case _:
+            return 0.0, 1
+
+
+def _of_cycle(value: float, zone: tuple[float, int]) -> float:
+    """Aim over the cycle, as a multiple of that over the return."""
+    share, power = zone
+    return float((value**power + share**power) ** (1 / power))
 
 
 def _finer(task: TorqueTask, pattern: Pattern, answer: TorqueAnswer, count: int, floor: float) -> TorqueAnswer:
@@ -260,7 +288,7 @@ def _given(task: TorqueTask, starts: Sequence[CamProfile]) -> list[tuple[float, 
     kept = []
     for back in starts:
         if _keeps_limits(back, task):
-            guess = from_profile(back, task, LADDER[-1])
+            guess = from_profile(back, task, GIVEN)
             value = (
                 float(peaks(guess, ANYHOW, task).max())
                 if task.aim == "peak_torque"

@@ -168,6 +168,24 @@ def test_a_knife_that_rubs_and_must_turn_goes_no_further_than_it_must() -> None:
     assert energy < 2.508
 
 
+def test_a_crank_that_nearly_coasts_is_taken_to_meshes_on_which_its_torque_settles() -> None:
+    """On 300 intervals its torque over the return was three times as high, and the cycle's 1.4 % above a reference of 40 starts."""
+    crank = CrankSlider(
+        0.0999187132763957,
+        0.20893939334372888,
+        0.0,
+        0.017165405774438605,
+        7.948662426951996,
+        1.58,
+        math.radians(109.775),
+    )
+    cut = Cut(0.48831993681738595, 0.38615264242535996, 0.085134, 0.017, 0.068, 1.7e-3, sync_ratio=0.9596217988446565)
+    task = Task(crank, cut, Limits(50.88775987282243, 657.3727627035062, 19509.922287347097))
+    solution = solve(task, "rms_torque")
+    reached = measure_motor(solution.profile, task).rms_torque
+    assert reached < 1.005 * lower_bound(solution.profile, task, "rms_torque").value
+
+
 def test_energy_of_a_knife_that_rubs_is_at_least_what_the_friction_takes() -> None:
     task = Task(KNIFE, CUT, LIMITS)
     energy = measure_motor(solve(task, "energy").profile, task).energy
@@ -241,7 +259,7 @@ def test_no_peak_hides_between_the_points_of_the_programme() -> None:
     solution = solve(task, "peak_torque")
     value = CRANK.motor_ratio * float(measure_motor(solution.profile, task).peak_torque or 0.0)
     assert value == pytest.approx(solution.minimised, rel=1e-5)
-    assert solution.profile.pieces < 400
+    assert solution.profile.pieces < 700
 
 
 @pytest.mark.slow
