@@ -131,10 +131,10 @@ class _Descent:
         self._middle, self._zone = middle, zone
 
     def finest(self, answer: TorqueAnswer) -> TorqueAnswer:
-        """Answer about one of `floor` on the finest mesh; that one if there is none."""
+        """Answer about one of `floor` on the finest mesh; that one if there is none, or one of another valley that is dearer."""
         programme = TorqueProgramme(self._middle, ANYHOW, (FINEST,), self._zone, near=True)
         found = programme.solve(remesh(answer.guess, ANYHOW, (FINEST,)))
-        return found if found.success else answer
+        return found if found.success and found.value <= answer.value * (1 + SETTLED) else answer
 
     def floor(self, answer: TorqueAnswer) -> TorqueAnswer:
         """Best answer about one at a place of the scan."""

@@ -124,9 +124,12 @@ def solve_torque(
     """
     profiles = list(starts) or [solve_return(replace(task.problem, objective="rms_acceleration"))[0]]
     first, iterations = _first_look(task, profiles, FIRST, floor)
-    if not first and task.curve is None:  # the limits can be kept, but on so coarse a mesh they could not
-        first, more = _first_look(task, profiles, SECOND, floor)
-        iterations += more
+    if not first and task.curve is None:  # the limits can be kept, but not so soon, or on so coarse a mesh
+        for count in (FIRST, SECOND):
+            first, more = _first_look(task, profiles, count, floor, MOST_ITERATIONS)
+            iterations += more
+            if first:
+                break
     accepted = keeps or (lambda _: True)
     found: list[tuple[float, CamProfile, float]] = []
 
@@ -191,12 +194,12 @@ def _taken_further(
 
 
 def _first_look(
-    task: TorqueTask, profiles: Sequence[CamProfile], count: int, floor: float
+    task: TorqueTask, profiles: Sequence[CamProfile], count: int, floor: float, patience: int = PATIENCE
 ) -> tuple[list[tuple[TorqueAnswer, Pattern]], int]:
     """Answers of the guesses of every kind on a mesh of a number of intervals, the best first, and the iterations of all."""
     # a start that takes long has none of the best ends, and its iterations are slow ones: a Hessian that must be corrected each time
     answers = [
-        (_programme(task, pattern, guess, PATIENCE).solve(guess, rough=True, floor=floor), pattern)
+        (_programme(task, pattern, guess, patience).solve(guess, rough=True, floor=floor), pattern)
         for pattern, guess in _guesses(task, profiles, count)
     ]
     good = sorted((entry for entry in answers if entry[0].success), key=lambda entry: entry[0].value)
