@@ -92,7 +92,7 @@ def place_by_objective(task: Task, aim: Aim, curve: MotorCurve | None = None) ->
     if not found_valleys:
         return None
     deepest = min(found_valleys, key=lambda answer: answer.value)
-    if middle.feels_motor and best > deepest.value * (1 + SETTLED):
+    if best > deepest.value * (1 + SETTLED):
         deepest = down.finest(deepest)
     at = _middle(task.machine, deepest)
     apart = {round(_middle(task.machine, answer) / APART) for answer in found_valleys}
