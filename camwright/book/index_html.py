@@ -20,15 +20,18 @@ h2 { font-size: 1.15em; margin: 1.6em 0 .4em; }
 dl { display: grid; grid-template-columns: max-content auto; gap: .1em 1em; margin: 0; }
 dt { color: #555; }
 dd { margin: 0; overflow-wrap: anywhere; }
+.wide { overflow: auto; max-height: 90vh; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
 th, td { padding: .15em .6em; border-bottom: 1px solid #ccc; text-align: left; vertical-align: top; }
 th { position: sticky; top: 0; background: #eee; border-bottom: 2px solid #555; }
 td.n { text-align: right; white-space: nowrap; }
 tr.infeasible td, tr.failed td { background: #f2f2f2; }
 tr.check_failed td:nth-child(5), tr.failed td:nth-child(5) { font-weight: bold; }
+@media (max-width: 40em) { body { margin: 1em; } dl { grid-template-columns: auto; } }
 @page { size: A4 landscape; margin: 12mm; }
 @media print {
   body { margin: 0; font-size: 8px; }
+  .wide { overflow: visible; max-height: none; }
   th { position: static; }
   tr { break-inside: avoid; }
 }
@@ -76,7 +79,8 @@ def html_pieces(
 ) -> Iterator[str]:
     """Write the page piece by piece; every text is escaped."""
     name = escape(book.name)
-    yield f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n<title>{name}: recipe book</title>\n'
+    yield '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+    yield f'<meta name="viewport" content="width=device-width">\n<title>{name}: recipe book</title>\n'
     yield f"<style>{_STYLE}</style>\n</head>\n<body>\n<h1>{name}: recipe book</h1>\n<dl>\n"
     for what, value in _facts(book, counts):
         yield f"<dt>{escape(what)}</dt><dd>{escape(value)}</dd>\n"
@@ -109,9 +113,9 @@ def _table(book: Book, columns: Sequence[str], rows: Iterable[str]) -> Iterator[
     """Write a table of rows that are written, its heads with the units of the book."""
     named = zip(columns, book.units.named(columns), strict=True)
     heads = "".join(f"<th>{escape(_title(metric, own))}</th>" for metric, own in named)
-    yield f"<table>\n<thead><tr>{heads}</tr></thead>\n<tbody>\n"
+    yield f'<div class="wide"><table>\n<thead><tr>{heads}</tr></thead>\n<tbody>\n'
     yield from rows
-    yield "</tbody>\n</table>\n"
+    yield "</tbody>\n</table></div>\n"
 
 
 def _title(metric: str, own: str) -> str:

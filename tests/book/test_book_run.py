@@ -158,6 +158,8 @@ def test_all_three_indexes_say_the_same(done: Path) -> None:
                 else:
                     assert (cell or "") == text
     page = (done / "index.html").read_text(encoding="utf-8")
+    assert '<meta name="viewport" content="width=device-width">' in page
+    assert page.count('<div class="wide"><table>') == page.count("<table>")  # wide tables scroll, the page does not
     assert "://" not in page  # nothing from a network
     for row in index:
         if row["folder"]:
