@@ -11,6 +11,7 @@ from camwright.design.feasible.refusal import infeasible, require_feasible
 from camwright.design.line.forms import keeps_ramp
 from camwright.design.line.ramped import ramped_return
 from camwright.design.line.refusal import ramp_infeasible
+from camwright.design.line.slow_line import at_least, at_most, is_slow
 from camwright.design.place import Placement
 from camwright.design.place_cost import place_for
 from camwright.design.returns.curve_limits import motor_limits, motor_speed_limits
@@ -145,7 +146,15 @@ def solve(task: Task, objective: CommandObjective, *, suggest: bool = True, thor
     require_moving(machine, objective)
     solution = _solve_steady(task.with_line(STEADY), objective, thorough)
     if not keeps_ramp(solution.profile, task):
-        return _solve_ramped(task, objective, solution, suggest, thorough)
+        found, as_good = _solve_slow(task, objective, solution, thorough)
+        if found is not None and as_good:
+            return found
+        try:
+            return _solve_ramped(task, objective, solution, suggest and found is None, thorough)
+        except InfeasibleError:
+            if found is None:
+                raise
+            return found  # the mesh has none
     if task.line.ramps and objective == "rms_jerk" and task.machine.guide is not None:
         # at the end of a stroke the jerk of the optimum steps at places that a grid of its own does not have
         other = _solve_ramped(task, objective, solution, suggest, thorough)
@@ -161,6 +170,23 @@ def _solve_steady(task: Task, objective: CommandObjective, thorough: bool) -> So
     back, status, value, iterations = _solve_motion(task, decisive, thorough)
     # of a slave that never leaves the line's speed it is 0, not −0
     return Solution(task.machine, assemble(back, task), back, status, objective, value + 0.0, iterations)
+
+
+def _solve_slow(
+    task: Task, objective: CommandObjective, steady: Solution, thorough: bool
+) -> tuple[Solution | None, bool]:
+    """Design within limits that leave the ramps what they take; gives also whether no cam that bears them is better, but for rounding."""
+    if motion_objective(task.machine, objective) is None or not is_slow(steady.back, task):
+        return None, False
+    within = at_most(task)
+    if not is_feasible(within):
+        return None, False
+    best = _solve_steady(within, objective, thorough)
+    leaves = at_least(task, best.back)
+    if leaves is None or not is_feasible(leaves):
+        return None, False
+    found = replace(_solve_steady(leaves, objective, thorough), status=SolveStatus.BEST_FOUND)
+    return (found if keeps_ramp(found.profile, task) else None), found.minimised <= best.minimised * (1.0 + KEPT_PEAK)
 
 
 def _solve_ramped(task: Task, objective: CommandObjective, steady: Solution, suggest: bool, thorough: bool) -> Solution:

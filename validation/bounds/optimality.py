@@ -9,7 +9,7 @@ function, so an error of the multipliers enters squared.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -88,7 +88,7 @@ def lower_bound(profile: CamProfile, task: Task, objective: ObjectiveName) -> Bo
         return motor_bound(profile, task, objective, motion)
     if objective == "sync_error":
         return Bound(math.nan, NONE)
-    steady = _steady_bound(profile, task, objective)
+    steady = _steady_bound(profile, _within_ratio(profile, task), objective)
     if not task.line.ramps or steady.value >= _reached(profile, task, objective) * (1.0 - SAME):
         return steady
     ramped = ramped_bound(profile, task, objective)
@@ -103,6 +103,16 @@ def _reached(profile: CamProfile, task: Task, objective: MotionObjective) -> flo
     else:
         value = math.sqrt(profile.mean_square(of.order, start, min(start + task.cut.return_zone, profile.end)))
     return of.over_time(value, task.cut.line_speed)
+
+
+def _within_ratio(profile: CamProfile, task: Task) -> Task:
+    """Give limits whose speed is no more than the line's own acceleration and jerk leave of the slave's, if a profile keeps it."""
+    v, line, limits = task.cut.line_speed, task.line, task.limits
+    taken = ((limits.acceleration, line.hardest), (limits.jerk, line.known_jerk))
+    ratio = min((room / own for room, own in taken if own), default=math.inf)
+    if ratio * v >= limits.speed or max(abs(each.value) for each in profile.extrema(1)) > ratio * (1.0 + SAME):
+        return task
+    return task.with_limits(replace(limits, speed=ratio * v))
 
 
 def _steady_bound(profile: CamProfile, task: Task, objective: MotionObjective) -> Bound:
@@ -146,8 +156,7 @@ def _braking(velocity: float, room: float, way: float, time: float, limits: Limi
     low, high = 0.0, given
     if not stops(given):
         return given * (1 - ROUNDING)
-    for _ in range(60):
-        middle = 0.5 * (low + high)
+    while low < (middle := 0.5 * (low + high)) < high:  # on a slow line far below what is given
         low, high = (low, middle) if stops(middle) else (middle, high)
     return low * (1 - ROUNDING)
 

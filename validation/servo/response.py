@@ -118,8 +118,13 @@ def _with_places(
     start = task.cut.return_start + task.cut.return_zone
     greatest = (zone, (zone[0], -zone[1]), (run.master, _following_sizes(run, profile, task)), shear)
     met = [start + place for place in (response.crossing, response.settling) if place is not None]
-    noise = _ROUNDING * max(abs(profile.advance), task.cut.length)
+    noise = _noise(profile, task)
     return response, [*met, *(place for master, size in greatest for place in humps(master, size, noise))]
+
+
+def _noise(profile: CamProfile, task: Task) -> float:
+    """Give the difference up to which errors are the same (m)."""
+    return _ROUNDING * max(abs(profile.advance), task.cut.length)
 
 
 _Curve = tuple[FloatArray, FloatArray]
@@ -258,8 +263,9 @@ def slow_sync_error(
         ratio, axis = found
         part = _in_sync(AxisRun(master, axis, ratio, even=False), profile, task, start, end)
         size = np.abs(part.error())
-        return float(size.max()), humps(part.master, size)
+        return float(size.max()), humps(part.master, size, noise)
 
+    noise = _noise(profile, task)
     return decided(slow, measure)
 
 

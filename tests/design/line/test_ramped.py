@@ -196,6 +196,41 @@ def test_a_ramp_that_comes_too_fast_is_refused_by_its_jerk() -> None:
     assert can_ramp(task.with_line(Line(5.0, None, softer)))
 
 
+SAW = load_job(EXAMPLES / "flying-saw.toml").task.with_line(Line(1.0, 5.0, 50.0))
+
+
+@pytest.mark.parametrize("line_speed", [1e-4, 1e-3, 0.01 / 60])
+def test_a_slow_line_needs_neither_a_mesh_nor_a_programme_for_its_bound(
+    line_speed: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for module in ("camwright.design.optimise.ramped_return", "camwright.validation.bounds.optimality.ramped_bound"):
+        monkeypatch.setattr(module, None)
+    task = SAW.at_speed(line_speed)
+    for objective in ("peak_acceleration", "rms_acceleration", "peak_jerk"):
+        found = solve(task, objective)
+        bound = lower_bound(found.profile, task, objective).value
+        assert keeps_ramp(found.profile, task)
+        assert bound <= found.minimised <= bound * (1.0 + 1e-6)
+
+
+@pytest.mark.slow
+def test_what_bears_the_ramps_of_a_line_is_designed_on_a_slower_one() -> None:
+    # all that the ramps ask grows with the line's speed: the cam of 30 m/min bears them at 5; no mesh had one there
+    task, quick = SAW.at_speed(5.0 / 60.0), SAW.at_speed(0.5)
+    other = solve(quick, "peak_acceleration", thorough=False).profile
+    assert keeps_ramp(other, quick)
+    assert keeps_ramp(other, task)
+    found = solve(task, "peak_acceleration", thorough=False)
+    assert keeps_ramp(found.profile, task)
+    bound = lower_bound(found.profile, task, "peak_acceleration").value
+    assert bound <= found.minimised <= 1.01 * bound
+
+
+def test_a_bound_is_told_of_a_sync_zone_that_bears_no_ramps() -> None:
+    steady = solve(SAW.with_line(STEADY), "peak_acceleration")
+    assert 0.0 < lower_bound(steady.profile, SAW.with_line(Line(10.0)), "peak_acceleration").value <= steady.minimised
+
+
 def test_a_wide_gap_is_looked_at_on_a_finer_mesh_and_to_a_vertex(monkeypatch: pytest.MonkeyPatch) -> None:
     task = paper(0.6, Line(3.0, 6.0))
     found = solve(task, "peak_jerk")

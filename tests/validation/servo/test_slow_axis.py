@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from camwright.profiles.cut import Cut
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import CrankSlider, LinearCarriage, Machine, RotaryKnife
-from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.returns import baseline
 from camwright.profiles.servo import Servo, spectral_radius
 from camwright.profiles.task import Task
@@ -23,8 +23,9 @@ from camwright.validation.servo import monte_carlo, simulation
 from camwright.validation.servo.axis_motion import axis_peaks
 from camwright.validation.servo.lead import length_errors
 from camwright.validation.servo.monte_carlo import shear_zone_errors
-from camwright.validation.servo.response import greatest_sync_error, servo_response
+from camwright.validation.servo.response import greatest_sync_error, servo_response, shear_zone_of
 from camwright.validation.servo.simulation import SUBSTEPS, simulate, slow_cycle, slow_run
+from camwright.validation.servo.slow_axis import Samples, SlowAxis
 
 FREE = Limits(math.inf, math.inf, math.inf)
 PAPER = Servo(120.0, 0.7, 35.0, 0.004, 1.0)
@@ -163,6 +164,23 @@ def test_any_line_speed_takes_little_time_and_memory(line_speed: float, length: 
         # at constant speed without dead time the axis is on the command; in the return it is late by what the acceleration takes
         assert response.shear_zone_error <= 1e-9
         assert response.settling is not None
+
+
+def test_what_is_rounding_is_not_looked_at_again_and_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    # with full feedforward the error of a crawling line is 1e-13 m at most: sixteen rounds went from hump to hump of its rounding
+    looks: list[int] = []
+    at = SlowAxis.at
+
+    def counted(axis: SlowAxis, samples: Samples) -> tuple[FloatArray, FloatArray]:
+        looks.append(len(samples))
+        return at(axis, samples)
+
+    monkeypatch.setattr(SlowAxis, "at", counted)
+    cut = Cut(3.0, 1e-4, 0.7, 0.1, 0.4, 2e-4)
+    task = Task(LinearCarriage(1.2), cut, replace(FREE, reversal=True))
+    error = greatest_sync_error(baseline("poly_3_4_5", task), task, PAPER, *shear_zone_of(cut))
+    assert error < 1e-12
+    assert len(looks) <= 6
 
 
 def test_the_response_of_a_crawling_line_is_its_own_expansion() -> None:
