@@ -339,8 +339,9 @@ def _make(directory: Path) -> list[Path]:
     try:
         missing = [place for place in (directory, *directory.parents) if not place.exists()]
         for place in reversed(missing):
-            place.mkdir()
-            made.append(place)
+            with contextlib.suppress(FileExistsError):  # another command made it at the same moment
+                place.mkdir()
+                made.append(place)
         if not directory.is_dir():
             raise NotADirectoryError(20, "a file is in the way")
     except (OSError, ValueError) as error:  # ValueError: a path with a null character
