@@ -259,7 +259,7 @@ def test_no_peak_hides_between_the_points_of_the_programme() -> None:
     solution = solve(task, "peak_torque")
     value = CRANK.motor_ratio * float(measure_motor(solution.profile, task).peak_torque or 0.0)
     assert value == pytest.approx(solution.minimised, rel=1e-5)
-    assert solution.profile.pieces < 700
+    assert solution.profile.pieces < 400
 
 
 @pytest.mark.slow
