@@ -97,41 +97,37 @@ def read_cam_csv(text: str, place: str) -> CamRows:
     if len(sheet.columns) == 1 and len(sheet.rows) >= FEWEST_LISTED:
         return _listed(sheet)
     at, notes = _roles(sheet)
-    x_unit = _unit(sheet, at["x"], "x", _X_UNITS)
-    y_unit = _unit(sheet, at["y"], "y", _Y_UNITS)
+    x_unit, y_unit = _unit(sheet, at["x"], "x", _X_UNITS), _unit(sheet, at["y"], "y", _Y_UNITS)
+    exact = _stated_derivatives(sheet, at, y_unit)
     fewest = _FEWEST_PLAIN if x_unit is None or y_unit is None else FEWEST_ROWS
-    _stated_derivatives(sheet, at, y_unit or "")
     if len(sheet.rows) < fewest:
         raise InputError(
             f"{place}: {len(sheet.rows)} rows; a cam table needs {fewest} at least, from the start to the end of a cycle"
         )
     columns = {name: sheet.numbers(column) for name, column in at.items() if name in ("x", "y", "dy/dx", "d2y/dx2")}
     columns, order_notes = _in_order(columns, sheet.lines, place)
-    notes += order_notes
-    exact = _stated_derivatives(sheet, at, y_unit or "")
     si = x_unit in _LENGTHS and (y_unit in _LENGTHS or y_unit == "rad")
-    if exact and not si:
-        exact = {}
-    words = None
-    if si:
-        columns["x"] = _si(columns["x"], _LENGTHS[str(x_unit)])
-        columns["y"] = columns["y"] if y_unit == "rad" else _si(columns["y"], _LENGTHS[str(y_unit)])
-    else:
-        words = (x_unit, y_unit)
-    dy, d2y = columns.get("dy/dx"), columns.get("d2y/dx2")
-    if exact and dy is not None and d2y is not None:
-        dy, d2y = _si(dy, exact["dy/dx"]), _si(d2y, exact["d2y/dx2"])
-    elif dy is not None and d2y is not None:
-        scaled = scaled_derivatives(columns["x"], columns["y"], dy, d2y)
-        columns["y"], dy, d2y = scaled if scaled is not None else (columns["y"], None, None)
-        notes += (
-            "velocity and acceleration are scaled so that they belong to the positions"
-            if scaled is not None
-            else "the columns of velocity and acceleration do not belong to the positions, and are not used",
-        )
-    else:
-        dy = d2y = None
-    return CamRows(columns["x"], columns["y"], dy, d2y, "rad" if y_unit == "rad" else "m", words, notes)
+    for name, unit in (("x", x_unit), ("y", y_unit)) if si else ():
+        columns[name] = _si(columns[name], _LENGTHS.get(str(unit), (1.0, 1.0)))
+    y, dy, d2y, more = _derivatives(columns, exact if si else {})
+    words = None if si else (x_unit, y_unit)
+    return CamRows(columns["x"], y, dy, d2y, "rad" if y_unit == "rad" else "m", words, (*notes, *order_notes, *more))
+
+
+def _derivatives(
+    columns: dict[str, FloatArray], exact: dict[str, tuple[float, float]]
+) -> tuple[FloatArray, FloatArray | None, FloatArray | None, tuple[str, ...]]:
+    """Give positions, ratio and ratio slope, by what makes them SI or scaled to the positions, and what to say of it."""
+    y, dy, d2y = columns["y"], columns.get("dy/dx"), columns.get("d2y/dx2")
+    if dy is None or d2y is None:
+        return y, None, None, ()
+    if exact:
+        return y, _si(dy, exact["dy/dx"]), _si(d2y, exact["d2y/dx2"]), ()
+    scaled = scaled_derivatives(columns["x"], y, dy, d2y)
+    if scaled is None:
+        unused = "the columns of velocity and acceleration do not belong to the positions, and are not used"
+        return y, None, None, (unused,)
+    return *scaled, ("velocity and acceleration are scaled so that they belong to the positions",)
 
 
 def _listed(sheet: Sheet) -> CamRows:
@@ -149,7 +145,6 @@ def _si(values: FloatArray, factor: tuple[float, float]) -> FloatArray:
 
 def _roles(sheet: Sheet) -> tuple[dict[str, int], tuple[str, ...]]:
     """Say which column is what."""
-    where = _where(sheet)
     at: dict[str, int] = {}
     for number, column in enumerate(sheet.columns):
         role = cam_role(column.name) if column.name else None
@@ -158,7 +153,7 @@ def _roles(sheet: Sheet) -> tuple[dict[str, int], tuple[str, ...]]:
         if role in at:
             first = sheet.columns[at[str(role)]].heading
             raise InputError(
-                f"{where}: column {role} stands there twice; leave one out ({first[:50]!r} and {column.heading[:50]!r})"
+                f"{sheet.where}: column {role} stands there twice; leave one out ({first[:50]!r} and {column.heading[:50]!r})"
             )
         at[str(role)] = number
     if ("x" not in at and "y" not in at) or len(sheet.columns) < 2:
@@ -166,25 +161,26 @@ def _roles(sheet: Sheet) -> tuple[dict[str, int], tuple[str, ...]]:
     if "x" not in at:  # master positions that are called an index are all there is
         counted = [k for k, column in enumerate(sheet.columns) if cam_role(column.name) == "index"]
         at |= {"x": counted[0]} if counted else {}
-    missing = [name for name in ("x", "y") if name not in at]
-    for name in missing:
-        left = [column for k, column in enumerate(sheet.columns) if k not in at.values()]
-        near = [(column, difflib.get_close_matches(column.name[:50], _NAMES, n=1)) for column in left]
-        if name == "x" and any(column.unit in _TIMES for column in left):
-            raise InputError(
-                f"{where}: column x is missing, a time stands there; write the master's position in its place, the line speed times that"
-            )
-        told = "; ".join(
-            f"there is no column {column.heading[:50]!r}" + (f"; did you mean {close[0]}?" if close else "")
-            for column, close in near[:3]
-        )
-        raise InputError(
-            f"{where}: column {name} is missing; {told + '; ' if told else ''}write a header like {_EXAMPLE}"
-        )
+    for name in ("x", "y"):
+        if name not in at:
+            raise _missing(sheet, name, [column for k, column in enumerate(sheet.columns) if k not in at.values()])
     if ("dy/dx" in at) != ("d2y/dx2" in at):
         only = at.pop("dy/dx", at.pop("d2y/dx2", 0))
         return at, (f"column {sheet.columns[only].heading!r} is not used: velocity and acceleration go together",)
     return at, ()
+
+
+def _missing(sheet: Sheet, name: str, left: list[Column]) -> InputError:
+    """Say that a column is missing, and which of those that are left it may be."""
+    if name == "x" and any(column.unit in _TIMES for column in left):
+        return InputError(
+            f"{sheet.where}: column x is missing, a time stands there; write the master's position in its place, the line speed times that"
+        )
+    told = ""
+    for column in left[:3]:
+        close = difflib.get_close_matches(column.name[:50], _NAMES, n=1)
+        told += f"there is no column {column.heading[:50]!r}; " + (f"did you mean {close[0]}?; " if close else "")
+    return InputError(f"{sheet.where}: column {name} is missing; {told}write a header like {_EXAMPLE}")
 
 
 def _by_order(sheet: Sheet) -> tuple[dict[str, int], tuple[str, ...]]:
@@ -212,23 +208,17 @@ def _by_order(sheet: Sheet) -> tuple[dict[str, int], tuple[str, ...]]:
     return {"x": numeric[0], "y": numeric[1]}, notes
 
 
-def _where(sheet: Sheet) -> str:
-    return f"{sheet.place}, line {sheet.heading}" if sheet.heading else sheet.place
-
-
 def _unit(sheet: Sheet, at: int, name: str, units: tuple[str, ...]) -> str | None:
     """Give a column's unit, one of those that it may have, or ``None`` if it has none."""
     column: Column = sheet.columns[at]
     if column.unit is None or is_unsized(column.unit):
         return None
     if not column.known or column.unit not in units:
-        raise InputError(
-            f"{_where(sheet)}: column {name} cannot be in {column.unit[:50]!r}; its unit is one of {', '.join(units)}"
-        )
+        raise sheet.not_in(name, column.unit, units)
     return column.unit
 
 
-def _stated_derivatives(sheet: Sheet, at: dict[str, int], y_unit: str) -> dict[str, tuple[float, float]]:
+def _stated_derivatives(sheet: Sheet, at: dict[str, int], y_unit: str | None) -> dict[str, tuple[float, float]]:
     """Give what makes the derivatives SI where both state a unit of theirs; nothing where they do not."""
     found: dict[str, tuple[float, float]] = {}
     for name in ("dy/dx", "d2y/dx2", "d3y/dx3"):
@@ -238,15 +228,13 @@ def _stated_derivatives(sheet: Sheet, at: dict[str, int], y_unit: str) -> dict[s
         known = None if unit is None else _DERIVATIVES[name].get(unit)
         if known is None:
             if unit is not None and sheet.columns[at[name]].name == name:
-                raise InputError(
-                    f"{_where(sheet)}: column {name} cannot be in {unit[:50]!r}; its unit is one of {', '.join(_DERIVATIVES[name])}"
-                )
+                raise sheet.not_in(name, unit, _DERIVATIVES[name])
             continue
         turned = y_unit == "rad" or y_unit in _TURNS
         if y_unit and str(unit).startswith("rad") != turned:
             slave = "an angle" if turned else "a length"
             raise InputError(
-                f"{_where(sheet)}: column {name} does not go with y, which is {slave}; write both in units of {slave}"
+                f"{sheet.where}: column {name} does not go with y, which is {slave}; write both in units of {slave}"
             )
         found[name] = known
     return found if {"dy/dx", "d2y/dx2"} <= set(found) else {}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import lru_cache
 from itertools import pairwise
 
@@ -110,9 +110,15 @@ def _pieces(
         yield x
         if points is not None:
             return
-    x = required
-    if len(x) > most:
-        return
+    if len(required) <= most:
+        yield from _grown(profile, target, required, allowed, points, most)
+
+
+def _grown(
+    profile: CamProfile, target: Target, x: FloatArray, allowed: FloatArray, points: int | None, most: int
+) -> Iterator[FloatArray]:
+    """Give more and more points, each next one where it is missed most, until they miss nothing or are the most."""
+    least = target.least_step * profile.length
     may = float(allowed[0]), float(allowed[1]), float(allowed[2])
     missed = list(_missed(profile, tuple(x.tolist()), may))
     shown = 0
@@ -182,12 +188,7 @@ def _subdivided(
         return np.concatenate(parts)
 
     if points is not None:
-        few, many = 1.0, 2.0 * points
-        while many - few > 0.25:
-            middle = 0.5 * (few + many)
-            few, many = (middle, many) if len(divided(middle)) <= points else (few, middle)
-        if len(divided(few)) <= points:
-            yield divided(few)
+        yield from _as_many(divided, points)
         return
     if carried.all():
         yield breaks
@@ -197,6 +198,16 @@ def _subdivided(
             yield x
         before = len(x)
         divisions *= _GROWTH
+
+
+def _as_many(divided: Callable[[float], FloatArray], points: int) -> Iterator[FloatArray]:
+    """Give the closest division that has no more than so many points, if there is one."""
+    few, many = 1.0, 2.0 * points
+    while many - few > 0.25:
+        middle = 0.5 * (few + many)
+        few, many = (middle, many) if len(divided(middle)) <= points else (few, middle)
+    if len(divided(few)) <= points:
+        yield divided(few)
 
 
 def _evenly(left: FloatArray, right: FloatArray, counts: NDArray[np.int64]) -> FloatArray:

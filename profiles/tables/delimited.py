@@ -5,7 +5,7 @@ from __future__ import annotations
 import collections
 import csv
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -119,6 +119,17 @@ class Sheet:
     heading: int
     comma: bool
 
+    @property
+    def where(self) -> str:
+        """Where the headings stand, for messages."""
+        return f"{self.place}, line {self.heading}" if self.heading else self.place
+
+    def not_in(self, name: str, unit: str, units: Collection[str]) -> InputError:
+        """Say that a column cannot be in a unit."""
+        return InputError(
+            f"{self.where}: column {name} cannot be in {unit[:50]!r}; its unit is one of {', '.join(units)}"
+        )
+
     def numbers(self, at: int, what: str = "") -> FloatArray:
         """Read a column.
 
@@ -180,43 +191,54 @@ def read_sheet(
     if not lines:
         raise InputError(f"{place}: there is no {kind} in it; write a header like {example} and rows below")
     separator = said or _separator([line for _, line in lines], is_number if layout is None else layout.holds)
-    comma = separator != ","
+    comma = separator != "," or any('"' in line for _, line in lines)
     split = [(number, _cells(line, separator)) for number, line in lines]
-    quoted = separator == "," and any('"' in line for _, line in lines)
-    comma = comma or quoted
-    if layout is None:
-        while len(split) > 1 and not any(any(sign.isdigit() for sign in cell) for cell in split[-1][1]):
-            split.pop()  # scopes end their files with a word
-        first = next((k for k, (_, cells) in enumerate(split) if _is_row(cells, comma)), len(split))
-        if first == len(split):  # no row of two numbers: a list
-            first = _list_start(split, comma)
-        elif separator == "," and not said:
-            _require_no_comma(split[first:], first, place)
-    else:
-        first = layout.above([cells for _, cells in split])
+    first = _first_row(split, comma, None if said else separator, layout, place)
     headings = split[:first]
     again = [_trimmed(cells) for _, cells in headings]
     rows = [
         (number, cells) for number, cells in split[first:] if _trimmed(cells) not in again
     ]  # headings of a further page
-    _require_no_groups(
-        place, [] if rows else [(number, _cells(line, sign)) for number, line in lines for sign in SEPARATORS]
-    )
+    if not rows:
+        _require_no_groups(place, [(number, _cells(line, sign)) for number, line in lines for sign in SEPARATORS])
     if layout is None:
         _require_no_spoilt_row(headings, comma, names, place)
-    width = _width(headings, rows)
-    if layout is not None:  # rows may end early, so their usual width says little
+        width = _width(headings, rows)
+    else:  # rows may end early, so their usual width says little, and cells at the end may be left out
         width = max((len(_trimmed(cells)) for _, cells in headings or rows), default=0)
+        rows = [(number, _padded(cells, max(width, len(cells)))) for number, cells in rows]
     headings = headings or _remarked(remarks[-1:], separator, width, names)
     columns, heading = _columns(headings, width, names)
-    named = len(_trimmed([column.heading for column in columns]))
-    if rows and heading and named < width and sum(names(column.name) is not None for column in columns) >= 2:
-        raise _spoilt(place, rows[0][0], _MISFIT.format(count=width, where="the header has", width=named))
-    if layout is not None:  # cells at the end of a row may be left out
-        rows = [(number, _padded(cells, width) if len(cells) < width else cells) for number, cells in rows]
+    if rows and heading:
+        _require_wide_header(columns, width, names, place, rows[0][0])
     kept = tuple(_row(cells, width, number, place, bool(headings)) for number, cells in rows)
     sheet = Sheet(place, columns, kept, tuple(number for number, _ in rows), heading, comma)
     return sheet if layout is not None else _without_units(sheet)
+
+
+def _first_row(
+    split: list[tuple[int, list[str]]], comma: bool, found: str | None, layout: Layout | None, place: str
+) -> int:
+    """Find the first row of numbers; words at the end, as of scopes, are taken off. A separator is given if it was found, not said."""
+    if layout is not None:
+        return layout.above([cells for _, cells in split])
+    while len(split) > 1 and not any(sign.isdigit() for cell in split[-1][1] for sign in cell):
+        split.pop()
+    first = next((k for k, (_, cells) in enumerate(split) if _is_row(cells, comma)), None)
+    if first is None:  # no row of two numbers: a list
+        return _list_start(split, comma)
+    if found == ",":
+        _require_no_comma(split[first:], first, place)
+    return first
+
+
+def _require_wide_header(
+    columns: Sequence[Column], width: int, names: Callable[[str], str | None], place: str, line: int
+) -> None:
+    """Refuse a header that names columns, but fewer than the rows have."""
+    named = len(_trimmed([column.heading for column in columns]))
+    if named < width and sum(names(column.name) is not None for column in columns) >= 2:
+        raise _spoilt(place, line, _MISFIT.format(count=width, where="the header has", width=named))
 
 
 def _remarked(

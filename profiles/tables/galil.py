@@ -30,24 +30,7 @@ def read(text: str, place: str) -> CamTable:
     InputError
         An entry is no number, is given twice or missing, there are entries of two slaves, or segments are widened.
     """
-    values: dict[int, tuple[float, int]] = {}
-    axes: set[int] = set()
-    intervals: dict[int, int] = {}
-    for number, line in enumerate(lines_of(text, place), start=1):
-        for command in (part.strip(" \t:") for part in line.split(";")):
-            if _REMARK.match(command):
-                break
-            entry, interval = _ENTRY.fullmatch(command), _INTERVAL.fullmatch(command)
-            if entry:
-                axes.add(_fill(values, entry, place, number))
-            elif interval:
-                intervals.setdefault(int(interval[1]), number)
-            elif _WIDENED.match(command):
-                raise refuse(
-                    place, number, "EW widens segments of the table, which is not read; write all points evenly spaced"
-                )
-            if len(axes) > 1:
-                raise refuse(place, number, "ET gives positions of more than one slave; leave those of one in the file")
+    values, intervals = _entries(text, place)
     if not values:
         raise refuse(place, None, "there is no line ET[0]=position in it")
     check_count(len(values), 2, MOST_POINTS, place)
@@ -68,6 +51,29 @@ def read(text: str, place: str) -> CamTable:
     )
     x = [float(k * (step or 1)) for k in range(len(values))]
     return make_table(x, [values[k][0] for k in range(len(values))], law="line", notes=(note,))
+
+
+def _entries(text: str, place: str) -> tuple[dict[int, tuple[float, int]], dict[int, int]]:
+    """Give the entries by their numbers, each with its line, and the master intervals with the lines where they are first given."""
+    values: dict[int, tuple[float, int]] = {}
+    axes: set[int] = set()
+    intervals: dict[int, int] = {}
+    for number, line in enumerate(lines_of(text, place), start=1):
+        for command in (part.strip(" \t:") for part in line.split(";")):
+            if _REMARK.match(command):
+                break
+            entry, interval = _ENTRY.fullmatch(command), _INTERVAL.fullmatch(command)
+            if entry:
+                axes.add(_fill(values, entry, place, number))
+            elif interval:
+                intervals.setdefault(int(interval[1]), number)
+            elif _WIDENED.match(command):
+                raise refuse(
+                    place, number, "EW widens segments of the table, which is not read; write all points evenly spaced"
+                )
+            if len(axes) > 1:
+                raise refuse(place, number, "ET gives positions of more than one slave; leave those of one in the file")
+    return values, intervals
 
 
 def _fill(values: dict[int, tuple[float, int]], entry: re.Match[str], place: str, number: int) -> int:

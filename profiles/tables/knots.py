@@ -103,21 +103,14 @@ def choose(
     InputError
         The number of points is out of the target's range, or the target cannot take the profile at all.
     """
-    if points is not None:
+    if points is not None and not target.min_points <= points <= (target.max_points or points):
         most = target.max_points or points
-        if not target.min_points <= points <= most:
-            raise InputError(f"{target.name} takes {target.min_points} to {most} points; {points} are asked for")
-    required = required_points(profile, zone_ends(profile) if zones is None else zones)
+        raise InputError(f"{target.name} takes {target.min_points} to {most} points; {points} are asked for")
     least, greatest = profile.extrema(2)
     peak = max(-least.value, greatest.value, 1e-300)
     allowed = np.array([accuracy.position, accuracy.ratio, accuracy.acceleration * peak])
     tried: list[tuple[float, int, FloatArray]] = []
-    places: Iterable[FloatArray]
-    if target.master_steps and units.master.symbol != _STEP:
-        places = _whole_steps(profile, target, units.master, points)
-    else:
-        places = candidates(profile, target, required, allowed, points)
-    for x in places:
+    for x in _places(profile, target, units.master, allowed, points, zones):
         table, rebuilt = _rebuilt(profile, target, units, x)
         bound = _misses(glance(profile, rebuilt, peak), accuracy)
         if points is None and bound <= 1.0:
@@ -197,6 +190,21 @@ def _sampled(
     return table, units.to_si(rebuild(stored))
 
 
+def _places(
+    profile: CamProfile,
+    target: Target,
+    master: Unit,
+    allowed: FloatArray,
+    points: int | None,
+    zones: Sequence[float] | None,
+) -> Iterable[FloatArray]:
+    """Give the places of points to try: whole steps of the master for a target that knows no others, else those of `choose`."""
+    if target.master_steps and master.symbol != _STEP:
+        return _whole_steps(profile, target, master, points)
+    required = required_points(profile, zone_ends(profile) if zones is None else zones)
+    return candidates(profile, target, required, allowed, points)
+
+
 def _whole_steps(profile: CamProfile, target: Target, master: Unit, points: int | None) -> list[FloatArray]:
     """Even spacings of whole counts of the master, wide ones first.
 
@@ -270,6 +278,8 @@ def table_units(
         have the units that the user named.
     """
     turned = units.slave.si == "rad"
+    if target.counts:
+        return _counted(target, profile, units, profile.advance if travel is None else travel, asked=asked)
     if target.name == "twincat-cnc":
         if asked:
             raise InputError(
@@ -277,29 +287,31 @@ def table_units(
             )
         slave = Unit("1e-4deg", math.radians(1e-4), "rad") if turned else Unit("1e-4mm", 1e-7)
         return Units(Unit("1e-4deg", profile.length / 3_600_000), slave)
-    if target.name == "csv" and asked:
+    if target.name == "csv":
+        metre = Unit("metre", 1.0)
+        if not asked:
+            return Units(metre, Unit("rad", 1.0, "rad") if turned else metre)
         if turned or not {units.master.symbol, units.slave.symbol} <= CSV_LENGTHS.keys():
             raise InputError(
                 f"csv takes {', '.join(CSV_LENGTHS)} by name for a slave that is a length, and writes rad for one that turns; "
                 f"got {units.master.symbol},{units.slave.symbol}"
             )
         return units
-    if target.counts:
-        if not asked:
-            return Units(
-                Unit(_STEP, profile.length), _finest(profile.advance if travel is None else travel, units.slave.si)
-            )
-        if not units.slave.counted:
-            raise InputError(
-                f"{target.name} stores whole counts of the slave, and {units.slave.symbol} is no count; write the size of one, as in "
-                '--units "mm,9.25 um", or the counts of a turn, as in --units mm,36000/rev'
-            )
-        return units if target.master_steps else Units(Unit(_STEP, profile.length), units.slave)
-    if target.name == "csv":
-        return Units(Unit("metre", 1.0), Unit("rad", 1.0, "rad") if turned else Unit("metre", 1.0))
     if target.name == "br":
         return Units(_whole(units.master, profile.length), _whole(units.slave, profile.advance))
     return units
+
+
+def _counted(target: Target, profile: CamProfile, units: Units, travel: float, *, asked: bool) -> Units:
+    """Give the units of a target that stores whole counts: the user's where they were asked for, else the finest that its numbers hold."""
+    if not asked:
+        return Units(Unit(_STEP, profile.length), _finest(travel, units.slave.si))
+    if not units.slave.counted:
+        raise InputError(
+            f"{target.name} stores whole counts of the slave, and {units.slave.symbol} is no count; write the size of one, as in "
+            '--units "mm,9.25 um", or the counts of a turn, as in --units mm,36000/rev'
+        )
+    return units if target.master_steps else Units(Unit(_STEP, profile.length), units.slave)
 
 
 def _whole(unit: Unit, length: float) -> Unit:

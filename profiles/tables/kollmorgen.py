@@ -60,7 +60,7 @@ def read(text: str, place: str) -> CamTable:
         elif state == 1 and first == "TABLE_END":
             state = 2
         elif state == 1:
-            if len(cells) < 3 or cells[2].upper() != "SPLINE":
+            if [cell.upper() for cell in cells[2:3]] != ["SPLINE"]:
                 raise refuse(place, number, f"{shown(line.strip())} is no row of the form x;y;SPLINE")
             x.append(real(cells[0], place, number, comma=True))
             y.append(real(cells[1], place, number, comma=True))
@@ -68,7 +68,7 @@ def read(text: str, place: str) -> CamTable:
         else:
             raise refuse(place, number, f"{shown(line.strip())} is not expected here")
     if state != 2:
-        raise refuse(place, None, f"the line {'TABLE_BEGIN' if state == 0 else 'TABLE_END'} is missing")
+        raise refuse(place, None, f"the line {('TABLE_BEGIN', 'TABLE_END')[state]} is missing")
     if cyclic is None:
         raise refuse(place, None, "the line CYCLIC;YES; or CYCLIC;NO; is missing")
     check_count(len(x), LEAST_POINTS, MOST_POINTS, place)

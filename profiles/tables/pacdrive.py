@@ -50,21 +50,7 @@ def write(table: CamTable, header: Header) -> dict[str, str]:
 
 def read(text: str, place: str) -> CamTable:
     """Points from assignments to ``astCamPoint[…]``."""
-    points: dict[int, dict[str, Value]] = {}
-    lines: dict[int, int] = {}
-    count: float | None = None
-    for entry in parse(text, place).assignments:
-        if entry.path[-1] == "dinumberofcampoints" and isinstance(entry.value, float):
-            count = entry.value
-        if len(entry.path) < 3 or not isinstance(entry.path[-2], int) or entry.path[-3] != "astcampoint":
-            continue
-        member, index = str(entry.path[-1]), entry.path[-2]
-        if member not in _KNOWN:
-            raise refuse(place, entry.line, f"the member {shown(member)} of a cam point is not read")
-        if member in points.setdefault(index, {}):
-            raise refuse(place, entry.line, f"{shown(member)} of point {index} is given twice")
-        points[index][member] = entry.value
-        lines.setdefault(index, entry.line)
+    points, lines, count = _points(text, place)
     indices = sorted(points)
     check_count(len(indices), 2, MOST_SEGMENTS + 1, place)
     for before, index in pairwise(indices):
@@ -81,6 +67,26 @@ def read(text: str, place: str) -> CamTable:
     columns = [[number_of(points[i].get(m), m, place, lines[i]) for i in indices] for m in _MEMBERS]
     check_ascending(columns[0], [lines[i] for i in indices], place)
     return make_table(*columns, units=units_in(text))
+
+
+def _points(text: str, place: str) -> tuple[dict[int, dict[str, Value]], dict[int, int], float | None]:
+    """Give the members of each point by its index, the line where it begins, and how many points there are said to be."""
+    points: dict[int, dict[str, Value]] = {}
+    lines: dict[int, int] = {}
+    count: float | None = None
+    for entry in parse(text, place).assignments:
+        if entry.path[-1] == "dinumberofcampoints" and isinstance(entry.value, float):
+            count = entry.value
+        if len(entry.path) < 3 or not isinstance(entry.path[-2], int) or entry.path[-3] != "astcampoint":
+            continue
+        member, index = str(entry.path[-1]), entry.path[-2]
+        if member not in _KNOWN:
+            raise refuse(place, entry.line, f"the member {shown(member)} of a cam point is not read")
+        if member in points.setdefault(index, {}):
+            raise refuse(place, entry.line, f"{shown(member)} of point {index} is given twice")
+        points[index][member] = entry.value
+        lines.setdefault(index, entry.line)
+    return points, lines, count
 
 
 TARGET = Target(

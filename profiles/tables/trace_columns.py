@@ -26,49 +26,63 @@ def columns_by_name(sheet: Sheet, master: bool, header: str) -> dict[str, list[i
     InputError
         A column is missing or there twice.
     """
-    where = f"{sheet.place}, line {sheet.heading}" if sheet.heading else sheet.place
-    at: dict[str, list[int]] = {"time": [], "command": [], "actual": []}
     scope = any(
         column.heading == "Name" for column in sheet.columns
     )  # whose times have that heading, whatever channels are called
-    for number, column in enumerate(sheet.columns):
-        role = trace_role(column.name) if column.name else None
-        if role in at and not (role == "time" and scope and column.heading != "Name"):
-            at[role].append(number)
-    names = [column.heading[:50] or column.name[:50] for column in sheet.columns]
-    lags = [k for k, column in enumerate(sheet.columns) if column.name and trace_role(column.name) == "lag"]
-    if lags and (at["command"] == []) != (at["actual"] == []):
-        at = {name: found for name, found in at.items() if found or name == "time"} | {"lag": lags}
+    at = _by_role(sheet, scope=scope)
     for name, found in at.items():
         if not found:
-            left = [names[k] for k, column in enumerate(sheet.columns) if trace_role(column.name) is None]
-            if name == "time" and left and left[0].strip().lower() in _CYCLES:
-                raise InputError(
-                    f"{where}: column {left[0]!r} counts cycles of the PLC, and how long one lasts is not in the file; write the time in "
-                    "its place, under time [ms]"
-                )
-            near = difflib.get_close_matches(
-                name, [word.lower().split("[")[0].strip() for word in left], n=1, cutoff=0.6
-            )
-            told = (
-                f"is it {near[0]!r}? "
-                if near
-                else (f"the columns are {', '.join(map(repr, names[:8]))}; " if any(names) else "")
-            )
-            raise InputError(f"{where}: there is no column {name}; {told}write a header like {header}, or {_SAY}")
+            raise _missing(sheet, name, header)
     if master and (masters := _masters(sheet)):
         at["master"] = masters
-    for name in at:
-        if len(at[name]) > 1 and not (name == "time" and scope):
-            exact = [k for k in at[name] if sheet.columns[k].name.strip().lower() == name]
-            exact = exact or [k for k in at[name] if is_position(sheet.columns[k].name)]
-            if len(exact) != 1:
-                both = " and ".join(repr(names[k]) for k in at[name][:2])
-                raise InputError(f"{where}: column {name} stands there twice ({both}); leave one out, or {_SAY}")
-            at[name] = exact
+    for name, found in at.items():
+        if len(found) > 1 and not (name == "time" and scope):
+            at[name] = _only(sheet, name, found)
     if len(at["time"]) > 1:
         at["time"] = _times_before(sheet, at)
     return at
+
+
+def _by_role(sheet: Sheet, *, scope: bool) -> dict[str, list[int]]:
+    """Find all columns of each role that must be filled; a lag stands for the position that is not there."""
+    roles = [trace_role(column.name) if column.name else None for column in sheet.columns]
+    at = {role: [k for k, own in enumerate(roles) if own == role] for role in ("time", "command", "actual", "lag")}
+    if scope:
+        at["time"] = [k for k in at["time"] if sheet.columns[k].heading == "Name"]
+    lags = at.pop("lag")
+    if lags and (at["command"] == []) != (at["actual"] == []):
+        at = {name: found for name, found in at.items() if found or name == "time"} | {"lag": lags}
+    return at
+
+
+def _missing(sheet: Sheet, name: str, header: str) -> InputError:
+    """Say that a column is missing, and which it may be."""
+    names = _called(sheet)
+    left = [names[k] for k, column in enumerate(sheet.columns) if trace_role(column.name) is None]
+    if name == "time" and left and left[0].strip().lower() in _CYCLES:
+        return InputError(
+            f"{sheet.where}: column {left[0]!r} counts cycles of the PLC, and how long one lasts is not in the file; write the time in "
+            "its place, under time [ms]"
+        )
+    near = difflib.get_close_matches(name, [word.lower().split("[")[0].strip() for word in left], n=1, cutoff=0.6)
+    told = f"the columns are {', '.join(map(repr, names[:8]))}; " if any(names) else ""
+    told = f"is it {near[0]!r}? " if near else told
+    return InputError(f"{sheet.where}: there is no column {name}; {told}write a header like {header}, or {_SAY}")
+
+
+def _only(sheet: Sheet, name: str, found: list[int]) -> list[int]:
+    """Give the one of several columns that has the very name, or else is called a position."""
+    exact = [k for k in found if sheet.columns[k].name.strip().lower() == name]
+    exact = exact or [k for k in found if is_position(sheet.columns[k].name)]
+    if len(exact) != 1:
+        both = " and ".join(repr(_called(sheet)[k]) for k in found[:2])
+        raise InputError(f"{sheet.where}: column {name} stands there twice ({both}); leave one out, or {_SAY}")
+    return exact
+
+
+def _called(sheet: Sheet) -> list[str]:
+    """Call the columns as messages do."""
+    return [column.heading[:50] or column.name[:50] for column in sheet.columns]
 
 
 def columns_chosen(sheet: Sheet, columns: str, master: bool) -> tuple[Sheet, dict[str, list[int]]]:

@@ -120,36 +120,33 @@ def read_trace_csv(
 
 def _factors(sheet: Sheet, at: dict[str, list[int]]) -> tuple[dict[str, float], SlaveUnit, tuple[str, ...]]:
     """Give what makes the columns SI, and the unit of positions; a servo does not depend on how long that is."""
-    where = f"{sheet.place}, line {sheet.heading}" if sheet.heading else sheet.place
     columns = {name: sheet.columns[found[-1]] for name, found in at.items()}
     positions = [name for name in _POSITIONS if name in columns]
     bare = all(columns[name].unit is None for name in positions)
-    factors: dict[str, float] = {}
-    for name, column in columns.items():
-        units = _UNITS[name]
-        if column.unit is None:
-            if name in _POSITIONS and bare:
-                factors[name] = 1e-3
-                continue
-            if name == "time" and sheet.rows and is_stamp(sheet.rows[0][at[name][-1]]):
-                raise InputError(
-                    f"{sheet.place}, line {sheet.lines[0]}: {sheet.rows[0][at[name][-1]].strip()[:40]!r} is a time of day; export the time "
-                    "since the start of the recording, e.g. time [ms]"
-                )
-            example = f"{name} [{'ms' if name == 'time' else 'mm'}]"
-            raise InputError(f"{where}: column {name} has no unit; write it in brackets, e.g. {example}")
-        if not column.known or column.unit not in units:
-            raise InputError(
-                f"{where}: column {name} cannot be in {column.unit[:50]!r}; its unit is one of {', '.join(units)}"
-            )
-        factors[name] = units[column.unit]
+    factors = {name: 1e-3 if bare and name in positions else _factor(sheet, name, at[name][-1]) for name in columns}
     kinds = {columns[name].unit in _ANGLES for name in positions}
     if len(kinds) > 1:
         raise InputError(
-            f"{where}: {positions[0]} and {positions[1]} are a length and an angle; give both as they are at one axis"
+            f"{sheet.where}: {positions[0]} and {positions[1]} are a length and an angle; give both as they are at one axis"
         )
     note = "the positions have no unit in the file: mm is taken, on which the servo's parameters do not depend (name it in the header)"
     return factors, "rad" if kinds.pop() else "m", (note,) if bare else ()
+
+
+def _factor(sheet: Sheet, name: str, at: int) -> float:
+    """Give what makes a column SI that must say its unit."""
+    column, units = sheet.columns[at], _UNITS[name]
+    if column.unit is not None:
+        if not column.known or column.unit not in units:
+            raise sheet.not_in(name, column.unit, units)
+        return units[column.unit]
+    if name == "time" and sheet.rows and is_stamp(sheet.rows[0][at]):
+        raise InputError(
+            f"{sheet.place}, line {sheet.lines[0]}: {sheet.rows[0][at].strip()[:40]!r} is a time of day; export the time "
+            "since the start of the recording, e.g. time [ms]"
+        )
+    example = f"{name} [{'ms' if name == 'time' else 'mm'}]"
+    raise InputError(f"{sheet.where}: column {name} has no unit; write it in brackets, e.g. {example}")
 
 
 def _require_equal_steps(time: FloatArray, lines: list[int], place: str) -> None:

@@ -147,14 +147,10 @@ def _table(kept: list[tuple[dict[str, Value], int, int]], text: str, place: str)
 
 def _gather(program: Program, place: str) -> dict[int, tuple[dict[str, Value], int]]:
     """Points by their index, from assignments and initial values."""
-    points: dict[int, tuple[dict[str, Value], int]] = {}
-    arrays: set[tuple[str | int, ...]] = set()
-    for array in program.arrays_of("MC_MotionFunctionPoint"):
-        arrays.add((array.name.lower(),))
-        for offset, item in enumerate(array.value if isinstance(array.value, list) else []):
-            if not isinstance(item, Struct):
-                raise refuse(place, array.line, "a point must be a list of ( member := value )")
-            points[array.bounds[0][0] + offset] = (dict(item.members), item.line)
+    arrays: set[tuple[str | int, ...]] = {
+        (array.name.lower(),) for array in program.arrays_of("MC_MotionFunctionPoint")
+    }
+    points = _initial(program, place)
     loose = [(str(entry.path[0]), entry.line) for entry in program.assignments if len(entry.path) == 1]
     for name, line in (*program.unplaced, *loose):
         if name in _MOTION_MEMBERS:
@@ -180,6 +176,17 @@ def _gather(program: Program, place: str) -> dict[int, tuple[dict[str, Value], i
         members[member] = entry.value
         if len(points) > MOST_READ:
             raise refuse(place, line, f"there are more than {MOST_READ} points")
+    return points
+
+
+def _initial(program: Program, place: str) -> dict[int, tuple[dict[str, Value], int]]:
+    """Points by their index, from initial values."""
+    points: dict[int, tuple[dict[str, Value], int]] = {}
+    for array in program.arrays_of("MC_MotionFunctionPoint"):
+        for offset, item in enumerate(array.value if isinstance(array.value, list) else []):
+            if not isinstance(item, Struct):
+                raise refuse(place, array.line, "a point must be a list of ( member := value )")
+            points[array.bounds[0][0] + offset] = (dict(item.members), item.line)
     return points
 
 
