@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
 
-from camwright.profiles.closed_forms.run_up import duration, heat, peak
 from camwright.profiles.closed_forms.transfer import State, Transfer
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.task import Task
@@ -48,7 +47,7 @@ class Ramp:
     @property
     def time(self) -> float:
         """Time that it takes (s)."""
-        return duration(self.way)
+        return self.way.time
 
     @property
     def master(self) -> float:
@@ -58,12 +57,12 @@ class Ramp:
     @property
     def peak_acceleration(self) -> float:
         """Greatest magnitude of the acceleration (slave unit over s²)."""
-        return peak(self.way)
+        return self.way.peak_acceleration
 
     @property
     def heat(self) -> float:
         """Integral of the squared acceleration over the time (slave unit² over s³): what heats the motor."""
-        return heat(self.way)
+        return self.way.heat
 
     @property
     def rms_acceleration(self) -> float:

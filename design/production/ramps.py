@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 from camwright.design.returns.curve_limits import motor_limits
 from camwright.profiles.closed_forms.overshoot import shortest_stop
 from camwright.profiles.closed_forms.run_up import (
-    backwards,
     coolest,
     gentlest,
     quickest,
@@ -83,7 +82,7 @@ def ramp_out(at: Stand, aim: Aim) -> Ramp | None:
 
     def found(limits: Limits) -> Transfer | None:
         way = _run_up(at.run_out, _reversed(at.out_of), limits, aim)
-        return None if way is None else backwards(way)
+        return None if way is None else way.backwards()
 
     return _best(at, aim, found)
 
@@ -96,7 +95,7 @@ def least_arcs(at: Stand) -> Arcs:
         return min((way for way in ways if way is not None), key=lambda way: way.distance, default=None)
 
     up, out, v = least(at.into), least(_reversed(at.out_of)), at.task.cut.line_speed
-    return Arcs(None if up is None else Ramp(up, v), None if out is None else Ramp(backwards(out), v))
+    return Arcs(None if up is None else Ramp(up, v), None if out is None else Ramp(out.backwards(), v))
 
 
 def can_start_and_stop(at: Stand) -> bool:

@@ -23,6 +23,7 @@ from camwright.profiles.closed_forms.transfer import (
     farthest,
     nearest,
 )
+from camwright.profiles.halving import halved
 
 TURNS = 24
 """Turns looked at first, evenly from the hardest to a full stop."""
@@ -81,7 +82,7 @@ def least_overshoot(time: float, velocity: float, way: float, bounds: Bounds, en
     if (
         found is None
     ):  # as the quickest way back turns: near the end of what is possible no turn is much harder or softer
-        good = min(_turn(quickest) / hardest, 1.0)
+        good = min(max(-next((turn for _, turn in quickest.turns()), 0.0), 0.0) / hardest, 1.0)
         found = at(good)
     if found is None:
         good = 1.0
@@ -114,7 +115,7 @@ def _with_turn(time: float, velocity: float, way: float, bounds: Bounds, turn: f
     """Return that turns with a given deceleration; None if that does not bring the carriage back in time."""
     braking = _braking(velocity, turn, bounds)
     out = braking.distance
-    rest = time - 2 * sum(t for t, _ in braking.phases)
+    rest = time - 2 * braking.time
     if rest <= 0:
         return None
     start, end = State(0.0, -turn), State(0.0, turn)
@@ -134,53 +135,16 @@ def _with_turn(time: float, velocity: float, way: float, bounds: Bounds, turn: f
 
 def _forwards(time: float, start: State, end: State, bounds: Bounds, needed: float) -> Transfer | None:
     """Way from turn to turn that goes back and some way forwards again; None if no such way stays between the turns."""
-    low, high = 0.0, bounds.greatest_velocity
-    found = farthest(time, start, end, bounds)
-    if found is None or found.distance < needed:
+
+    def within(top: float) -> Transfer | None:
+        found = farthest(time, start, end, replace(bounds, greatest_velocity=top))
+        return None if found is None or found.distance < needed else found
+
+    if within(bounds.greatest_velocity) is None:
         return None
-    for _ in range(_BISECTIONS):
-        middle = 0.5 * (low + high)
-        here = farthest(time, start, end, replace(bounds, greatest_velocity=middle))
-        if here is None or here.distance < needed:
-            low = middle
-        else:
-            high, found = middle, here
-    least, greatest = _reached(found)
+    found = within(halved(lambda top: within(top) is not None, bounds.greatest_velocity, 0.0, most=_BISECTIONS)[0])
     room = _ROUNDING * abs(needed)
-    return found if greatest <= room and least >= needed - room else None
-
-
-def _turn(way: Transfer) -> float:
-    """Deceleration at which a way turns first; none where it does not."""
-    v, a = way.start.velocity, way.start.acceleration
-    for t, j in way.phases:
-        turns = [turn for turn in _roots(v, a, j / 2) if 0 < turn <= t]
-        if turns:
-            return max(-(a + min(turns) * j), 0.0)
-        v, a = v + t * (a + t * j / 2), a + t * j
-    return 0.0
-
-
-def _reached(way: Transfer) -> tuple[float, float]:
-    """Least and greatest position on a way."""
-    s, v, a = 0.0, way.start.velocity, way.start.acceleration
-    places = [0.0]
-    for t, j in way.phases:
-        # it turns where the velocity is zero
-        turns = [turn for turn in _roots(v, a, j / 2) if 0 < turn < t]
-        places += [s + turn * (v + turn * (a / 2 + turn * j / 6)) for turn in turns]
-        s, v, a = s + t * (v + t * (a / 2 + t * j / 6)), v + t * (a + t * j / 2), a + t * j
-        places.append(s)
-    return min(places), max(places)
-
-
-def _roots(c: float, b: float, a: float) -> tuple[float, ...]:
-    """Real roots of ``a x² + b x + c``."""
-    square = b * b - 4 * a * c
-    if square < 0:
-        return ()
-    q = -0.5 * (b + math.copysign(math.sqrt(square), b))
-    return (*((q / a,) if a else ()), *((c / q,) if q else ()))
+    return None if found is None or found.reach()[1] > room or found.reach()[0] < needed - room else found
 
 
 def _braking(velocity: float, turn: float, bounds: Bounds) -> Transfer:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from camwright.profiles.closed_forms.transfer import State, Transfer
 from camwright.profiles.errors import InputError
 from camwright.profiles.halving import halved
 from camwright.profiles.polynomial.profile import CamProfile
@@ -60,21 +61,7 @@ class DoubleS:
         j = self.jerk
         phases = [(self.ramp, j), (self.hold, 0.0), (self.ramp, -j), (self.cruise, 0.0), (self.ramp, -j)]
         phases += [(self.hold, 0.0), (self.ramp, j)]
-        t, state = 0.0, (0.0, 0.0, 0.0)
-        breaks, rows = [0.0], []
-        for width, jerk in phases:
-            if t + width == t:
-                continue
-            s, v, a = state
-            rows.append([s, v, a / 2, jerk / 6])
-            state = (
-                s + width * (v + width * (a / 2 + width * jerk / 6)),
-                v + width * (a + width * jerk / 2),
-                a + width * jerk,
-            )
-            t += width
-            breaks.append(t)
-        return CamProfile.from_arrays(breaks, rows)
+        return Transfer(State(0.0, 0.0), tuple(phases)).profile()
 
 
 def fastest(distance: float, speed: float, acceleration: float, jerk: float) -> DoubleS:

@@ -97,7 +97,7 @@ def quickest(distance: float, end: State, bounds: Bounds) -> Transfer | None:
     if least is None or least.distance > distance * (1 + ROUNDING):
         return None
     forwards = Bounds(0.0, bounds.greatest_velocity, bounds.acceleration, bounds.jerk)
-    start = duration(least)
+    start = least.time
     if least.distance >= distance * (1 - ROUNDING):
         return least
 
@@ -113,37 +113,9 @@ def quickest(distance: float, end: State, bounds: Bounds) -> Transfer | None:
     return farthest(halved(reaches, late, start)[0], REST, end, forwards)
 
 
-def backwards(way: Transfer) -> Transfer:
-    """Return a motion run backwards in time, over the same distance: from a start it makes a stop."""
-    v, a = way.start.velocity, way.start.acceleration
-    for time, jerk in way.phases:
-        v, a = v + time * (a + time * jerk / 2), a + time * jerk
-    return Transfer(State(v, -a), tuple(reversed(way.phases)))
-
-
 def top_velocity(end: State, jerk: float) -> float:
     """Velocity that no way to a state can do without: its own, and more where it ends with a falling one."""
     return end.velocity + min(end.acceleration, 0.0) ** 2 / (2 * jerk)
-
-
-def duration(way: Transfer) -> float:
-    """Time that a motion takes."""
-    return sum(time for time, _ in way.phases)
-
-
-def heat(way: Transfer) -> float:
-    """Integral of the squared acceleration over the time."""
-    times, levels = way.corners()
-    return float(
-        sum(
-            h * (a * a + a * b + b * b) / 3 for h, a, b in zip(times[1:] - times[:-1], levels, levels[1:], strict=False)
-        )
-    )
-
-
-def peak(way: Transfer) -> float:
-    """Greatest magnitude of the acceleration."""
-    return float(abs(way.corners()[1]).max())
 
 
 def _within(top: float, end: State, bounds: Bounds) -> Transfer | None:

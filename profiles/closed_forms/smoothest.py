@@ -10,6 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 
+from camwright.profiles.halving import halved
+
 HALVINGS = 60
 TOUCHED, HELD = float(Fraction(8, 15)), 0.6
 """Mean speeds over the limit's: above the first the speed touches its limit in the middle, above the second it is held there."""
@@ -100,13 +102,12 @@ def _speed_bound(distance: float, speed: float) -> SmoothestMotion | None:
 
 def _acceleration_bound(distance: float, acceleration: float) -> SmoothestMotion | None:
     """Hold the acceleration; None where its limit is not reached, or leaves no motion."""
-    low, high = 0.0, 0.5
-    for _ in range(HALVINGS):
-        d = 0.5 * (low + high)
+
+    def enough(d: float) -> bool:
         r = _first(d)
-        enough = r + d < 0.5 and 2.0 * _half_way(r, d, acceleration) > distance
-        low, high = (d, high) if enough else (low, d)
-    d = low
+        return r + d < 0.5 and 2.0 * _half_way(r, d, acceleration) > distance
+
+    d = halved(enough, 0.0, 0.5, most=HALVINGS)[0]
     r = _first(d)
     hold = 0.5 - d - r
     if d <= 0.0 or hold <= 0.0 or abs(2.0 * _half_way(r, d, acceleration) - distance) > 1e-9 * distance:
@@ -157,11 +158,8 @@ def _jerk_and_speed_bound(distance: float, speed: float, jerk: float) -> Smoothe
         r = ramp(x)
         return jerk * (r**3 / 6 + r**2 * x / 2 + 0.35 * r * x**2 + x**3 / 20) + speed * (0.5 - r - x)
 
-    low, high = 0.0, min((12.0 * ratio) ** 0.5, 0.5)
-    for _ in range(HALVINGS):
-        x = 0.5 * (low + high)
-        low, high = (x, high) if ramp(x) + x < 0.5 and 2.0 * way(x) > distance else (low, x)
-    x = low
+    longest = min((12.0 * ratio) ** 0.5, 0.5)
+    x = halved(lambda x: ramp(x) + x < 0.5 and 2.0 * way(x) > distance, 0.0, longest, most=HALVINGS)[0]
     r = ramp(x)
     cruise = 1.0 - 2.0 * (r + x)
     if min(x, r, cruise) <= 0.0 or abs(2.0 * way(x) - distance) > 1e-9 * distance:
@@ -190,12 +188,9 @@ def _acceleration_and_speed_bound(distance: float, speed: float, acceleration: f
         way += (first + acceleration * hold) * e + 0.35 * acceleration * e**2
         return e, hold, first, 2.0 * (way + speed * (0.5 - e * (y + 1.0) - hold))
 
-    low, high = 1e-3, 0.5
-    for _ in range(HALVINGS):
-        y = 0.5 * (low + high)
-        low, high = (y, high) if parts(y)[3] > distance else (low, y)
-    e, hold, _, way = parts(low)
-    r = low * e
+    y = halved(lambda y: parts(y)[3] > distance, 1e-3, 0.5, most=HALVINGS)[0]
+    e, hold, _, way = parts(y)
+    r = y * e
     cruise = 1.0 - 2.0 * (r + hold + e)
     if min(hold, cruise) <= 0.0 or abs(way - distance) > 1e-9 * distance:
         return None

@@ -12,6 +12,7 @@ formulas of the special case from rest to rest. All arguments are in one consist
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -74,6 +75,23 @@ class Transfer:
         """Distance covered, signed."""
         return self._ends()[-1][0]
 
+    @property
+    def time(self) -> float:
+        """Time that it takes."""
+        return sum(time for time, _ in self.phases)
+
+    @property
+    def peak_acceleration(self) -> float:
+        """Greatest magnitude of the acceleration."""
+        return float(abs(self.corners()[1]).max())
+
+    @property
+    def heat(self) -> float:
+        """Integral of the squared acceleration over the time."""
+        times, levels = self.corners()
+        pieces = zip(times[1:] - times[:-1], levels, levels[1:], strict=False)
+        return float(sum(h * (a * a + a * b + b * b) / 3 for h, a, b in pieces))
+
     def _ends(self) -> list[tuple[float, float, float]]:
         """Position, velocity and acceleration at the start and at the end of each phase."""
         s, v, a = 0.0, self.start.velocity, self.start.acceleration
@@ -92,14 +110,16 @@ class Transfer:
                 lows.append(v - a * a / (2 * j))
         return min(lows)
 
-    def greatest_distance(self) -> float:
-        """Farthest that the way leads from its start, forwards; zero if it never does."""
-        ends = self._ends()
-        places = [s for s, _, _ in ends]
-        for (s, v, a), (t, j) in zip(ends, self.phases, strict=False):
-            turns = [turn for turn in _turns(v, a, j) if 0 < turn < t]
-            places += [s + turn * (v + turn * (a / 2 + turn * j / 6)) for turn in turns]
-        return max(places)
+    def reach(self) -> tuple[float, float]:
+        """Least and greatest position on the way, counted from its start."""
+        places = [*(s for s, _, _ in self._ends()), *(s for s, _ in self.turns())]
+        return min(places), max(places)
+
+    def turns(self) -> Iterator[tuple[float, float]]:
+        """Position and acceleration wherever it stands still for a moment, behind its start, one after the other."""
+        for (s, v, a), (t, j) in zip(self._ends(), self.phases, strict=False):
+            for turn in sorted(turn for turn in _turns(v, a, j) if 0 < turn <= t):
+                yield s + turn * (v + turn * (a / 2 + turn * j / 6)), a + turn * j
 
     def profile(self) -> CamProfile:
         """Return the way as a profile over time, from zero; phases of no length but for rounding are left out."""
@@ -117,6 +137,11 @@ class Transfer:
         """Return the same motion in the other direction."""
         start = State(-self.start.velocity, -self.start.acceleration)
         return Transfer(start, tuple((t, -j) for t, j in self.phases))
+
+    def backwards(self) -> Transfer:
+        """Return the same motion run backwards in time, over the same distance: of a start it makes a stop."""
+        _, v, a = self._ends()[-1]
+        return Transfer(State(v, -a), tuple(reversed(self.phases)))
 
     def corners(self) -> tuple[FloatArray, FloatArray]:
         """Give the times at which the jerk may change, from zero to the end, and the accelerations there; linear in between."""

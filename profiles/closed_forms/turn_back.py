@@ -78,4 +78,4 @@ def turns_within(velocity: float, room: float, way: float, bounds: Bounds) -> bo
     if shortest_stop(velocity, bounds) > room * (1 + ROUNDING):
         return False
     found = quickest_home(velocity, way, bounds)
-    return found is not None and found.greatest_distance() <= room * (1 + ROUNDING)
+    return found is not None and found.reach()[1] <= room * (1 + ROUNDING)

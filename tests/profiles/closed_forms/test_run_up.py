@@ -10,12 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from camwright.profiles.closed_forms.run_up import (
-    backwards,
     coolest,
-    duration,
     gentlest,
-    heat,
-    peak,
     quickest,
     shortest,
     top_velocity,
@@ -42,21 +38,21 @@ def ends(way: Transfer) -> tuple[float, float, float]:
 
 def test_the_machine_of_the_paper() -> None:
     least = shortest(SYNC, PAPER)
-    assert duration(least) * 1e3 == pytest.approx(54.4444, abs=1e-4)
-    assert duration(least) == pytest.approx(V / A + A / J, rel=1e-14)
+    assert least.time * 1e3 == pytest.approx(54.4444, abs=1e-4)
+    assert least.time == pytest.approx(V / A + A / J, rel=1e-14)
     assert least.distance * 1e3 == pytest.approx(36.2963, abs=1e-4)
     soft = gentlest(0.1, SYNC, PAPER)
-    assert peak(soft) == pytest.approx(9.07177, abs=1e-5)
-    assert duration(soft) == pytest.approx(0.15, rel=1e-14)
+    assert soft.peak_acceleration == pytest.approx(9.07177, abs=1e-5)
+    assert soft.time == pytest.approx(0.15, rel=1e-14)
 
 
 def test_a_run_up_no_faster_than_the_line_takes_what_is_left_at_its_speed() -> None:
     least = shortest(SYNC, PAPER)
     for factor in (1.0, 1.5, 4.0):
         way = quickest(factor * least.distance, SYNC, Bounds(0.0, V, A, J))
-        assert duration(way) == pytest.approx(duration(least) + (factor - 1) * least.distance / V, rel=1e-12)
+        assert way.time == pytest.approx(least.time + (factor - 1) * least.distance / V, rel=1e-12)
     way = quickest(1.5 * least.distance, SYNC, Bounds(0.0, V, A, J))
-    assert duration(way) * 1e3 == pytest.approx(68.06, abs=5e-3)
+    assert way.time * 1e3 == pytest.approx(68.06, abs=5e-3)
 
 
 def test_too_short_a_way_has_no_motion() -> None:
@@ -66,8 +62,8 @@ def test_too_short_a_way_has_no_motion() -> None:
 
 def test_a_slow_end_does_not_reach_the_acceleration() -> None:
     least = shortest(State(0.01, 0.0), PAPER)
-    assert duration(least) == pytest.approx(2 * math.sqrt(0.01 / J), rel=1e-14)
-    assert peak(least) == pytest.approx(math.sqrt(0.01 * J), rel=1e-14)
+    assert least.time == pytest.approx(2 * math.sqrt(0.01 / J), rel=1e-14)
+    assert least.peak_acceleration == pytest.approx(math.sqrt(0.01 * J), rel=1e-14)
 
 
 def test_an_end_beyond_the_limits_has_no_motion() -> None:
@@ -80,8 +76,8 @@ def test_an_end_beyond_the_limits_has_no_motion() -> None:
 def test_the_coolest_start_without_limits() -> None:
     free = Bounds(0.0, 10.0, 1e6, 1e12)
     way = coolest(0.1, SYNC, free)
-    assert heat(way) == pytest.approx(4 * V**3 / (9 * 0.1), rel=1e-4)
-    assert duration(way) == pytest.approx(3 * 0.1 / V, rel=1e-4)
+    assert way.heat == pytest.approx(4 * V**3 / (9 * 0.1), rel=1e-4)
+    assert way.time == pytest.approx(3 * 0.1 / V, rel=1e-4)
 
 
 def naive_least_distance(end: State, acceleration: float, jerk: float) -> float:
@@ -118,12 +114,12 @@ def test_every_way_meets_its_end_and_keeps_the_limits(
         low, high = profile.extrema(1)
         assert low.value >= -1e-9 * v
         assert high.value <= bounds.greatest_velocity * (1 + 1e-9)
-        assert peak(found) <= a * (1 + 1e-9)
+        assert found.peak_acceleration <= a * (1 + 1e-9)
         assert max(abs(each.value) for each in profile.extrema(3)) <= j * (1 + 1e-9)
     soft, cool, quick = (find(way, end, bounds) for find in (gentlest, coolest, quickest))
-    assert peak(soft) <= min(peak(cool), peak(quick)) * (1 + 1e-9)
-    assert heat(cool) <= min(heat(soft), heat(quick)) * (1 + 1e-7)
-    assert duration(quick) <= min(duration(soft), duration(cool)) * (1 + 1e-9)
+    assert soft.peak_acceleration <= min(cool.peak_acceleration, quick.peak_acceleration) * (1 + 1e-9)
+    assert cool.heat <= min(soft.heat, quick.heat) * (1 + 1e-7)
+    assert quick.time <= min(soft.time, cool.time) * (1 + 1e-9)
 
 
 @given(speeds, accelerations, jerks, shares)
@@ -137,10 +133,10 @@ def test_least_distance_is_that_of_the_velocities(v: float, a: float, j: float, 
 def test_backwards_twice_is_the_same(v: float, a: float, j: float, share: float) -> None:
     end = State(v, share * min(a, math.sqrt(2 * j * v)))
     way = shortest(end, Bounds(0.0, 10 * top_velocity(end, j), a, j))
-    stop = backwards(way)
+    stop = way.backwards()
     assert stop.distance == pytest.approx(way.distance, rel=1e-9)
     assert ends(stop)[1:] == pytest.approx((0.0, 0.0), abs=1e-6 * a)
-    assert backwards(stop).phases == way.phases
+    assert stop.backwards().phases == way.phases
 
 
 def by_ruckig(distance: float, end: State, bounds: Bounds) -> float:
@@ -169,7 +165,7 @@ def referee(count: int, seed: int) -> float:
         end, bounds = State(v, 0.0), Bounds(0.0, v * chance.uniform(1.0, 2.5), a, j)
         # at the least way itself Ruckig's rounding decides whether it backs up
         distance = shortest(end, bounds).distance * chance.choice((1.0 + 1e-9, chance.uniform(1.0, 5.0)))
-        worst = max(worst, abs(duration(quickest(distance, end, bounds)) - by_ruckig(distance, end, bounds)))
+        worst = max(worst, abs(quickest(distance, end, bounds).time - by_ruckig(distance, end, bounds)))
     return worst
 
 

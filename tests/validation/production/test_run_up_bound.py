@@ -8,10 +8,7 @@ from hypothesis import strategies as st
 
 from camwright.profiles.closed_forms.run_up import (
     coolest,
-    duration,
     gentlest,
-    heat,
-    peak,
     quickest,
     shortest,
     top_velocity,
@@ -29,7 +26,11 @@ def test_bounds_are_below_and_near(v: float, a: float, j: float, share: float, f
     least = shortest(end, bounds)
     assert least_way(end, a, j) == pytest.approx(least.distance, rel=1e-6)
     way = factor * least.distance
-    found = peak(gentlest(way, end, bounds)), heat(coolest(way, end, bounds)), duration(quickest(way, end, bounds))
+    found = (
+        gentlest(way, end, bounds).peak_acceleration,
+        coolest(way, end, bounds).heat,
+        quickest(way, end, bounds).time,
+    )
     bound = least_peak(way, end, j), least_heat(way, end, a, j), least_time(way, end, a, j)
     assert all(low <= high * (1 + 1e-7) for low, high in zip(bound, found, strict=True))
     assert bound[0] == pytest.approx(
@@ -42,8 +43,8 @@ def test_bounds_are_below_and_near(v: float, a: float, j: float, share: float, f
 def test_bounds_prove_starts_to_an_even_speed(v: float, a: float, j: float, factor: float) -> None:
     end, bounds = State(v, 0.0), Bounds(0.0, v, a, j)
     way = factor * shortest(end, bounds).distance
-    assert least_heat(way, end, a, j) == pytest.approx(heat(coolest(way, end, bounds)), rel=1e-3)
-    assert least_time(way, end, a, j) == pytest.approx(duration(quickest(way, end, bounds)), rel=1e-3)
+    assert least_heat(way, end, a, j) == pytest.approx(coolest(way, end, bounds).heat, rel=1e-3)
+    assert least_time(way, end, a, j) == pytest.approx(quickest(way, end, bounds).time, rel=1e-3)
 
 
 def test_no_way_is_enough_for_an_end_beyond_the_limits() -> None:
@@ -60,4 +61,4 @@ def test_a_turn_is_proved(v: float, room: float, j: float) -> None:
     if found is None:
         assert bound > 100.0 * (1 - 1e-6)
     else:
-        assert bound <= peak(found) * (1 + 1e-9)
+        assert bound <= found.peak_acceleration * (1 + 1e-9)
