@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.tables.cam_table import CamTable, PieceLaw, make_table
-from camwright.profiles.tables.interpolation import in_format, quintics
+from camwright.profiles.tables.interpolation import in_float32, quintics
 from camwright.profiles.tables.number_formats import literal
-from camwright.profiles.tables.st_program import Value, Word, number_of
+from camwright.profiles.tables.st_program import Struct, Value, Word, assigned_to, numbers_of
 from camwright.profiles.tables.structured_text import parse
 from camwright.profiles.tables.target import (
     Header,
@@ -18,10 +16,8 @@ from camwright.profiles.tables.target import (
     units_in,
 )
 from camwright.profiles.tables.text import (
-    check_ascending,
-    check_count,
+    check_points,
     refuse,
-    shown,
 )
 
 MOST_SECTIONS = 130
@@ -74,35 +70,26 @@ def check_periods(table: CamTable) -> None:
 
 def read(text: str, place: str) -> CamTable:
     """Sections from assignments to ``Section[…]``, up to the last point."""
-    sections: dict[int, tuple[dict[str, Value], int]] = {}
     known = {member.lower() for member in _MEMBERS} | {"mode", "type", "inflectionpoint"}
-    for entry in parse(text, place).assignments:
-        if len(entry.path) < 3 or not isinstance(entry.path[-2], int) or entry.path[-3] != "section":
-            continue
-        member, index = str(entry.path[-1]), entry.path[-2]
-        if member not in known:
-            raise refuse(place, entry.line, f"McCamSectionType has no member {shown(member)}")
-        members, _ = sections.setdefault(index, ({}, entry.line))
-        if member in members:
-            raise refuse(place, entry.line, f"{shown(member)} of section {index} is given twice")
-        members[member] = entry.value
-    kept: list[tuple[dict[str, Value], int, int]] = []
-    for position, (index, (members, line)) in enumerate(sorted(sections.items())):
+    unread = "McCamSectionType has no member {}"
+    sections = assigned_to(parse(text, place), known, place, "section", "section", unread)
+    kept: list[Struct] = []
+    laws: list[int] = []
+    for position, (index, section) in enumerate(sections.items()):
         if index != position:
-            raise refuse(place, line, f"section {position} is missing")
-        if not _is(members.get("mode"), "mccamsectref_absolute", 0):
-            raise refuse(place, line, "sections are read with absolute positions only (mcCAMSECTREF_ABSOLUTE)")
-        law = _law(members.get("type"), place, line)
-        kept.append((members, line, law))
-        if law == _LAST:
+            raise refuse(place, section.line, f"section {position} is missing")
+        if not _is(section.members.get("mode"), "mccamsectref_absolute", 0):
+            raise refuse(place, section.line, "sections are read with absolute positions only (mcCAMSECTREF_ABSOLUTE)")
+        kept.append(section)
+        laws.append(_law(section.members.get("type"), place, section.line))
+        if laws[-1] == _LAST:
             break
-    if kept and kept[-1][2] != _LAST:
-        raise refuse(place, kept[-1][1], "the terminator is missing: a section of the type mcCAMSECTLAW_LAST_POINT")
-    check_count(len(kept), 2, MOST_SECTIONS, place)
-    columns = [[number_of(m.get(name.lower()), name, place, line) for m, line, _ in kept] for name in _MEMBERS]
-    check_ascending(columns[0], [line for _, line, _ in kept], place)
-    laws: list[PieceLaw] = ["line" if law == _LINE else "quintic" for _, _, law in kept[:-1]]
-    return make_table(*columns, law=tuple(laws), units=units_in(text))
+    if kept and laws[-1] != _LAST:
+        raise refuse(place, kept[-1].line, "the terminator is missing: a section of the type mcCAMSECTLAW_LAST_POINT")
+    columns = numbers_of(kept, _MEMBERS, place)
+    check_points(columns[0], [section.line for section in kept], place, MOST_SECTIONS)
+    pieces: list[PieceLaw] = ["line" if law == _LINE else "quintic" for law in laws[:-1]]
+    return make_table(*columns, law=tuple(pieces), units=units_in(text))
 
 
 def _is(value: Value | None, name: str, number: int) -> bool:
@@ -123,11 +110,7 @@ def _law(value: Value | None, place: str, line: int) -> int:
 
 def rebuild(table: CamTable) -> CamProfile:
     """Points in float32, between them quintics (or lines) in float64."""
-    stored = in_format(table, "float32")
-    if not np.all(np.diff(stored.x) > 0):
-        i = int(np.argmax(np.diff(stored.x) <= 0))
-        raise InputError(f"points {i + 1} and {i + 2} have the same master position in float32; use fewer points")
-    return quintics(stored)
+    return quintics(in_float32(table))
 
 
 TARGET = Target(

@@ -91,11 +91,10 @@ def write_cam_csv(profile: CamProfile, points: int, comments: Sequence[str], sla
     return "\n".join(lines) + "\n"
 
 
-def rebuild(x: FloatArray, y: FloatArray, dy: FloatArray | None = None, d2y: FloatArray | None = None) -> CamProfile:
-    """Make the profile that a table stands for.
+def rebuild(x: FloatArray, y: FloatArray, dy: FloatArray, d2y: FloatArray) -> CamProfile:
+    """Make the profile that a table stands for: on each interval the quintic through both ends' values.
 
-    With ratio and ratio slope: on each interval the quintic through both ends' values. It is made as the cubic of
-    linear acceleration plus a correction by what that cubic misses at the right end,
+    It is made as the cubic of linear acceleration plus a correction by what that cubic misses at the right end,
 
         ``y = y0 + d0 s + a0 s²/2 + (a1 - a0)/(6 h) s³ + r0 P(s/h) + r1 h Q(s/h)``,
         ``P = 10 u³ - 15 u⁴ + 6 u⁵``, ``Q = -4 u³ + 7 u⁴ - 3 u⁵``,
@@ -103,24 +102,13 @@ def rebuild(x: FloatArray, y: FloatArray, dy: FloatArray | None = None, d2y: Flo
     with the residuals ``r1`` of the ratio and ``r0`` of the position. Residuals at rounding level count as zero: a
     table of cubic pieces gives those cubics, without the noise that differences of positions would put on the jerk.
 
-    With positions only: the cubic spline of continuous ratio and ratio slope, also at the seam of the repeated cycle.
-
     Parameters
     ----------
     x, y
         Master and slave positions (m), shape ``(n,)``; ``x`` increases.
     dy, d2y
-        Ratio, and ratio slope (1/m), both or neither.
-
-    Raises
-    ------
-    InputError
-        The arrays differ in length, or only one of the derivatives is given.
+        Ratio, and ratio slope (1/m).
     """
-    if (dy is None) != (d2y is None) or len({len(column) for column in (x, y, dy, d2y) if column is not None}) != 1:
-        raise InputError("a table needs x and y, with both or none of dy/dx and d2y/dx2, all of one length")
-    if dy is None or d2y is None:
-        return _spline(x, y)
     h = np.diff(x)
     y0, y1, d0, d1, a0, a1 = y[:-1], y[1:], dy[:-1], dy[1:], d2y[:-1], d2y[1:]
     third = (a1 - a0) / (6 * h)
@@ -143,17 +131,4 @@ def rebuild(x: FloatArray, y: FloatArray, dy: FloatArray | None = None, d2y: Flo
         ],
         axis=1,
     )
-    return CamProfile(x.copy(), table)
-
-
-def _spline(x: FloatArray, y: FloatArray) -> CamProfile:
-    """Make the periodic cubic spline through the rows, the slave advancing by the same amount each cycle."""
-    from scipy.interpolate import CubicSpline
-
-    slope = (y[-1] - y[0]) / (x[-1] - x[0])
-    rest = y - y[0] - slope * (x - x[0])
-    rest[-1] = rest[0]  # equal but for rounding
-    table = CubicSpline(x, rest, bc_type="periodic").c[::-1].T.copy()
-    table[:, 0] = y[:-1]
-    table[:, 1] += slope
     return CamProfile(x.copy(), table)

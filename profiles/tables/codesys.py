@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from camwright.profiles.tables.cam_table import CamTable, PieceLaw, make_table
-from camwright.profiles.tables.interpolation import by_law
 from camwright.profiles.tables.number_formats import literal
 from camwright.profiles.tables.st_program import (
     Call,
@@ -12,6 +11,7 @@ from camwright.profiles.tables.st_program import (
     Struct,
     Value,
     number_of,
+    numbers_of,
     only,
     structs_of,
 )
@@ -25,6 +25,7 @@ from camwright.profiles.tables.target import (
 from camwright.profiles.tables.text import (
     check_ascending,
     check_count,
+    check_points,
     refuse,
     shown,
 )
@@ -75,9 +76,8 @@ def _xyva(program: Program, array: Declaration, place: str) -> CamTable:
         for member in struct.members:
             if member not in known:
                 raise refuse(place, struct.line, f"SMC_CAMXYVA has no member {shown(member)}")
-    columns = [[number_of(s.members.get(member.lower()), member, place, s.line) for s in structs] for member in _XYVA]
-    check_count(len(structs), 2, MOST_POINTS, place)
-    check_ascending(columns[0], [s.line for s in structs], place)
+    columns = numbers_of(structs, _XYVA, place)
+    check_points(columns[0], [s.line for s in structs], place, MOST_POINTS)
     _check_reference(program, len(structs), columns[0], place, ("xyva", 3.0))
     return make_table(*columns)
 
@@ -115,8 +115,7 @@ def _xy(program: Program, place: str) -> CamTable:
             raise refuse(place, array.line, "each entry of Table must be a pair [master, slave]")
         x.append(number_of(item[0], "a master position", place, array.line))
         y.append(number_of(item[1], "a slave position", place, array.line))
-    check_count(len(x), 2, MOST_POINTS, place)
-    check_ascending(x, [array.line] * len(x), place)
+    check_points(x, [array.line] * len(x), place, MOST_POINTS)
     law: PieceLaw = "line"
     for declaration in program.declarations:
         if declaration.type == "mc_cam_ref" and isinstance(declaration.value, Struct):
@@ -200,7 +199,6 @@ TARGET = Target(
     law="quintic",
     spacing="pieces",
     max_points=MOST_POINTS,
-    number_format="float64",
     evidence=(
         "MC_CAM_REF, SMC_CAM_TYPE: library documentation SM3_Basic; SMC_CAMXYVA: Lenze PLC Designer SoftMotion manual, "
         "p. 105. The declaration is composed from the documented types and has been through no compiler. That at most "
@@ -218,7 +216,6 @@ TARGET = Target(
     endings=("_codesys.st",),
     write=write,
     read=read,
-    rebuild=by_law,
 )
 
 BUILDER = Target(
@@ -228,7 +225,6 @@ BUILDER = Target(
     law="quintic",
     spacing="pieces",
     max_points=MOST_POINTS,
-    number_format="float64",
     evidence=(
         "CODESYS SoftMotion documentation, page 'Creating Cams Programmatically', with its example. That Bound's "
         "fourth value is the ratio slope follows from the order (X, Y, V, A) in which the page lists the boundary "
@@ -242,5 +238,4 @@ BUILDER = Target(
     endings=("_cambuilder.st",),
     write=write_builder,
     read=read_builder,
-    rebuild=by_law,
 )

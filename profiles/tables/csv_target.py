@@ -118,7 +118,6 @@ TARGET = Target(
     law="quintic",
     spacing="pieces",
     max_points=MOST_POINTS,
-    number_format="float64",
     evidence="camwright's own layout; no drive imports it as it stands.",
     steps=(
         "Read the file with a script or a spreadsheet: the header names columns and units.",

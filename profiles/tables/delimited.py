@@ -39,7 +39,7 @@ _MISFIT = (
 )
 _SAMPLE = 200
 """Lines that the separator is judged by."""
-_WIDEST = 400
+WIDEST = 400
 _ONE_OR_TWO = re.compile(r"[+-]?[0-9]{1,15}(?:,[0-9]{0,15})?;?")
 """A number with a decimal comma, or two numbers; it is one where one name stands above."""
 FEWEST_LISTED = 12
@@ -195,9 +195,9 @@ def read_sheet(
     split = [(number, _cells(line, separator)) for number, line in lines]
     first = _first_row(split, comma, None if said else separator, layout, place)
     headings = split[:first]
-    again = [_trimmed(cells) for _, cells in headings]
+    again = [trimmed(cells) for _, cells in headings]
     rows = [
-        (number, cells) for number, cells in split[first:] if _trimmed(cells) not in again
+        (number, cells) for number, cells in split[first:] if trimmed(cells) not in again
     ]  # headings of a further page
     if not rows:
         _require_no_groups(place, [(number, _cells(line, sign)) for number, line in lines for sign in SEPARATORS])
@@ -205,7 +205,7 @@ def read_sheet(
         _require_no_spoilt_row(headings, comma, names, place)
         width = _width(headings, rows)
     else:  # rows may end early, so their usual width says little, and cells at the end may be left out
-        width = max((len(_trimmed(cells)) for _, cells in headings or rows), default=0)
+        width = max((len(trimmed(cells)) for _, cells in headings or rows), default=0)
         rows = [(number, _padded(cells, max(width, len(cells)))) for number, cells in rows]
     headings = headings or _remarked(remarks[-1:], separator, width, names)
     columns, heading = _columns(headings, width, names)
@@ -236,7 +236,7 @@ def _require_wide_header(
     columns: Sequence[Column], width: int, names: Callable[[str], str | None], place: str, line: int
 ) -> None:
     """Refuse a header that names columns, but fewer than the rows have."""
-    named = len(_trimmed([column.heading for column in columns]))
+    named = len(trimmed([column.heading for column in columns]))
     if named < width and sum(names(column.name) is not None for column in columns) >= 2:
         raise _spoilt(place, line, _MISFIT.format(count=width, where="the header has", width=named))
 
@@ -248,7 +248,7 @@ def _remarked(
     for number, line in remarks:
         for sign in (separator, *SEPARATORS):
             cells = _cells(line, sign)
-            if len(_trimmed(cells)) == width > 1 and sum(names(split_unit(cell)[0]) is not None for cell in cells) >= 2:
+            if len(trimmed(cells)) == width > 1 and sum(names(split_unit(cell)[0]) is not None for cell in cells) >= 2:
                 return [(number, cells)]
     return []
 
@@ -354,7 +354,8 @@ def _cells(line: str, separator: str) -> list[str]:
         return line.split(separator)
 
 
-def _trimmed(cells: Sequence[str]) -> list[str]:
+def trimmed(cells: Sequence[str]) -> list[str]:
+    """Take empty cells off the end of a row."""
     count = len(cells)
     while count and not cells[count - 1].strip():
         count -= 1
@@ -386,7 +387,7 @@ def _require_no_spoilt_row(
 def _list_start(split: Sequence[tuple[int, list[str]]], comma: bool) -> int:
     """Find where a list of one number a line begins, if the text ends with one."""
     start = len(split)
-    while start and len(filled := _trimmed(split[start - 1][1])) == 1 and is_number(filled[0], comma):
+    while start and len(filled := trimmed(split[start - 1][1])) == 1 and is_number(filled[0], comma):
         start -= 1
     return start if len(split) - start >= FEWEST_LISTED else len(split)
 
@@ -406,16 +407,16 @@ def _require_no_comma(rows: Sequence[tuple[int, list[str]]], above: int, place: 
 
 def _width(headings: Sequence[tuple[int, list[str]]], rows: Sequence[tuple[int, list[str]]]) -> int:
     """Count the columns: those of most rows, or of a heading that names more but the rows' empty cells."""
-    usual = collections.Counter(len(_trimmed(cells)) for _, cells in rows).most_common(1)
+    usual = collections.Counter(len(trimmed(cells)) for _, cells in rows).most_common(1)
     width = usual[0][0] if usual else 0
-    named = len(_trimmed(headings[-1][1])) if headings else 0
+    named = len(trimmed(headings[-1][1])) if headings else 0
     written = max((len(cells) for _, cells in rows), default=0)
-    return min(named if width < named <= max(written, width + 1) or not width else width, _WIDEST)
+    return min(named if width < named <= max(written, width + 1) or not width else width, WIDEST)
 
 
 def _row(cells: list[str], width: int, number: int, place: str, named: bool) -> tuple[str, ...]:
     """Bring a row to the number of columns: empty cells at its end are no cells."""
-    filled = _trimmed(cells)
+    filled = trimmed(cells)
     if len(filled) > width or len(cells) < width:
         count = len(filled) if len(filled) > width else len(cells)
         where = "the header has" if named else "most rows have"
@@ -433,7 +434,7 @@ def _columns(
     """Name the columns: the lowest line that names two, with a row of units below it."""
     lines: list[tuple[int, list[str]]] = []
     for number, cells in headings:  # a unit may stand alone below the names
-        if len(_trimmed(cells)) > 1 or width == 1 or (lines and is_unit_row(cells)):
+        if len(trimmed(cells)) > 1 or width == 1 or (lines and is_unit_row(cells)):
             lines.append((number, _padded(cells, width)))
     if not lines:
         return (Column(""),) * width, 0

@@ -7,7 +7,7 @@ import re
 from camwright.profiles.errors import InputError
 from camwright.profiles.tables.cam_table import CamTable, make_table
 from camwright.profiles.tables.interpolation import chords
-from camwright.profiles.tables.target import Target, not_written
+from camwright.profiles.tables.target import Target
 from camwright.profiles.tables.text import check_count, integer, lines_of, real, refuse, shown
 
 MOST_POINTS = 16_000
@@ -105,14 +105,10 @@ LAYOUT = Target(
     law="line",
     spacing="equidistant",
     max_points=MOST_POINTS,
-    number_format="float64",
     evidence=(
         "EP (master interval): Optima command reference, p. 82. ET[n] by index, one entry an interval: application note 2311. "
         "Even spacing, straight lines between the points, EW: application note 2444."
     ),
-    steps=(),
-    endings=(),
-    write=not_written,
     read=read,
     rebuild=chords,
 )

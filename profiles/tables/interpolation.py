@@ -24,6 +24,15 @@ def in_format(table: CamTable, number_format: NumberFormat) -> CamTable:
     )
 
 
+def in_float32(table: CamTable) -> CamTable:
+    """Store a table as `in_format`; refused where two points fall on one master position."""
+    x = rounded(table.x, "float32")
+    if not np.all(np.diff(x) > 0):
+        i = int(np.argmax(np.diff(x) <= 0))
+        raise InputError(f"points {i + 1} and {i + 2} have the same master position in float32; use fewer points")
+    return in_format(table, "float32")
+
+
 def quintics(table: CamTable) -> CamProfile:
     """Lines, cubics through position and ratio, and quintics through position, ratio and ratio slope of the knots, in the table's units.
 

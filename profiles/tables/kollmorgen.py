@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from camwright.profiles.errors import InputError
 from camwright.profiles.tables.cam_table import CamTable, make_table
-from camwright.profiles.tables.interpolation import by_law
 from camwright.profiles.tables.number_formats import decimals
 from camwright.profiles.tables.target import Header, Target, companion
 from camwright.profiles.tables.text import (
-    check_ascending,
     check_count,
+    check_points,
     lines_of,
     real,
     refuse,
@@ -71,8 +70,7 @@ def read(text: str, place: str) -> CamTable:
         raise refuse(place, None, f"the line {('TABLE_BEGIN', 'TABLE_END')[state]} is missing")
     if cyclic is None:
         raise refuse(place, None, "the line CYCLIC;YES; or CYCLIC;NO; is missing")
-    check_count(len(x), LEAST_POINTS, MOST_POINTS, place)
-    check_ascending(x, numbers, place)
+    check_points(x, numbers, place, MOST_POINTS, LEAST_POINTS)
     return make_table(x, y, law="spline", periodic=cyclic)
 
 
@@ -82,8 +80,6 @@ TARGET = Target(
     interpolation="cubic spline, taken as cyclic",
     law="spline",
     spacing="free",
-    max_points=None,
-    number_format="float64",
     evidence=(
         "KAS online help, pages 'Import Cam Profile' (complete sample), 'Cam Profile Segments', 'Cam Table'. That "
         "SPLINE is cubic and that a cyclic cam is smooth to the second derivative across its seam is inferred from the "
@@ -100,6 +96,5 @@ TARGET = Target(
     endings=("_kas.csv", "_kas.txt"),
     write=write,
     read=read,
-    rebuild=by_law,
     min_points=LEAST_POINTS,
 )

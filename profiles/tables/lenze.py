@@ -8,8 +8,7 @@ from camwright.profiles.tables.interpolation import chords
 from camwright.profiles.tables.number_formats import decimals
 from camwright.profiles.tables.target import Header, Target, units_in
 from camwright.profiles.tables.text import (
-    check_ascending,
-    check_count,
+    check_points,
     lines_of,
     real,
     refuse,
@@ -50,8 +49,7 @@ def read(text: str, place: str) -> CamTable:
         x.append(values[0])
         y.append(values[1])
         numbers.append(number)
-    check_count(len(x), 2, MOST_POINTS, place)
-    check_ascending(x, numbers, place)
+    check_points(x, numbers, place, MOST_POINTS)
     notes = ("the third column (acceleration feed-forward) is not judged",) if forward else ()
     return make_table(x, y, law="line", units=units_in(text), notes=notes)
 
@@ -67,8 +65,6 @@ TARGET = Target(
     interpolation="not documented; judged as straight lines",
     law="line",
     spacing="free",
-    max_points=None,
-    number_format="float64",
     evidence=(
         "File format with sample: Lenze manual 566345, p. 14. The interpolation and a limit of points are not given "
         "there; straight lines are assumed for the judgement."

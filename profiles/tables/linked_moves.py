@@ -11,8 +11,7 @@ from numpy.polynomial import Polynomial
 
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.profiles.tables.cam_table import CamTable, PieceLaw, make_table
-from camwright.profiles.tables.interpolation import by_law
-from camwright.profiles.tables.target import Target, not_written
+from camwright.profiles.tables.target import Target
 from camwright.profiles.tables.text import refuse, shown
 from camwright.profiles.tables.trio_program import Numbers, numbered_statements
 
@@ -227,7 +226,6 @@ LAYOUT = Target(
     law="line",
     spacing="free",
     max_points=2 * (_PARTS + 2) * MOST_MOVES + 1,
-    number_format="float64",
     evidence=(
         "MOVELINK and FLEXLINK: Trio's BASIC reference (ramps are distances or percentages of the link axis, shortened in proportion by "
         "MOVELINK where they are longer than it; the base distance of both is moved evenly throughout; the bits 10 to 12 of the options "
@@ -235,9 +233,5 @@ LAYOUT = Target(
         "accelerations that the reference gives beside straight ramps: 1.55, 2.42, 2.16, 1.86, of which these curves have 1.571, 2.461, "
         "2.188, 1.875."
     ),
-    steps=(),
-    endings=(),
-    write=not_written,
     read=read,
-    rebuild=by_law,
 )

@@ -12,13 +12,12 @@ import numpy as np
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import CamProfile, join
 from camwright.profiles.tables.cam_table import CamTable, PieceLaw, make_table
-from camwright.profiles.tables.interpolation import in_format, quintics
+from camwright.profiles.tables.interpolation import in_float32, quintics
 from camwright.profiles.tables.number_formats import decimals
 from camwright.profiles.tables.splines import clamped_spline
 from camwright.profiles.tables.target import Header, Target, units_in
 from camwright.profiles.tables.text import (
-    check_ascending,
-    check_count,
+    check_points,
     integer,
     real,
     refuse,
@@ -198,9 +197,8 @@ def _cam(tag: _Tag, tags: list[_Tag], text: str, place: str) -> CamTable:
     if tag.elements and "".join(tag.compact).strip():
         _require_same(tag, _used(rows), _used(_compact(tag, place)), place)
     used = _used(rows)
-    check_count(len(used), 2, MOST_POINTS, place)
     x, y = [row[0] for row in used], [row[1] for row in used]
-    check_ascending(x, [row[3] for row in used], place)
+    check_points(x, [row[3] for row in used], place, MOST_POINTS)
     laws: list[PieceLaw] = ["line" if row[2] == _LINEAR else "spline" for row in used[:-1]]
     ratio = np.full(len(x), np.nan)
     for at, end in ((0, "Start"), (-1, "End")):
@@ -314,9 +312,8 @@ def _profile(tag: _Tag, text: str, place: str) -> CamTable:
         last = [master, c1, c2, c3]
     while len(knots) > 2 and knots[-1][:2] == (0.0, 0.0):
         knots.pop()
-    check_count(len(knots), 2, MOST_POINTS, place)
     columns = [list(column) for column in zip(*knots, strict=True)]
-    check_ascending(columns[0], [tag.line] * len(knots), place)
+    check_points(columns[0] if knots else [], [tag.line] * len(knots), place, MOST_POINTS)
     note = "read from the coefficients that the controller computed"
     return make_table(*columns, units=units_in(text), notes=(note,))
 
@@ -340,11 +337,8 @@ def rebuild(table: CamTable) -> CamProfile:
     """
     if "quintic" in table.laws:
         return quintics(table)
-    stored = in_format(table, "float32")
+    stored = in_float32(table)
     x, y = stored.x, stored.y
-    if not np.all(np.diff(x) > 0):
-        i = int(np.argmax(np.diff(x) <= 0))
-        raise InputError(f"points {i + 1} and {i + 2} have the same master position in float32; use fewer points")
     chord = np.diff(y) / np.diff(x)
     parts: list[CamProfile] = []
     first = 0
@@ -374,7 +368,6 @@ TARGET = Target(
     interpolation="clamped cubic spline, smooth to the ratio slope, with the start and end slopes given to MCCP",
     law="spline",
     spacing="free",
-    max_points=None,
     number_format="float32",
     evidence=(
         "CAM, CAM_PROFILE_EXTENDED: Studio 5000 documentation; MCCP: MOTION-RM002; form of the tag and of its import: "

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
-
 from camwright.profiles.tables.cam_table import CamTable, make_table
-from camwright.profiles.tables.interpolation import by_law
 from camwright.profiles.tables.number_formats import literal
-from camwright.profiles.tables.st_program import Value, Word, number_of
+from camwright.profiles.tables.st_program import Word, assigned_to, in_turn, numbers_of
 from camwright.profiles.tables.structured_text import parse
 from camwright.profiles.tables.target import (
     Header,
@@ -16,16 +13,15 @@ from camwright.profiles.tables.target import (
     units_in,
 )
 from camwright.profiles.tables.text import (
-    check_ascending,
-    check_count,
+    check_points,
     refuse,
-    shown,
 )
 
 MOST_SEGMENTS = 32
 
 _MEMBERS = ("lrx", "lry", "lrm", "lrk")
 _KNOWN = frozenset([*_MEMBERS, "etcamtype"])
+_UNREAD = "the member {} of a cam point is not read"
 
 
 def write(table: CamTable, header: Header) -> dict[str, str]:
@@ -50,43 +46,21 @@ def write(table: CamTable, header: Header) -> dict[str, str]:
 
 def read(text: str, place: str) -> CamTable:
     """Points from assignments to ``astCamPoint[…]``."""
-    points, lines, count = _points(text, place)
-    indices = sorted(points)
-    check_count(len(indices), 2, MOST_SEGMENTS + 1, place)
-    for before, index in pairwise(indices):
-        if index != before + 1:
-            raise refuse(place, lines[index], f"the points have a gap: {index} follows {before}")
-    for index in indices[:-1]:
-        law = points[index].get("etcamtype")
+    program = parse(text, place)
+    counts = [entry.value for entry in program.assignments if entry.path[-1] == "dinumberofcampoints"]
+    points = in_turn(assigned_to(program, _KNOWN, place, "astcampoint", unread=_UNREAD), place)
+    for point in points[:-1]:
+        law = point.members.get("etcamtype")
         if not (isinstance(law, Word) and law.last == "poly5com"):
-            raise refuse(place, lines[index], "the section's etCamType is not Poly5Com; no other is read")
+            raise refuse(place, point.line, "the section's etCamType is not Poly5Com; no other is read")
+    count = next((value for value in reversed(counts) if isinstance(value, float)), None)
+    columns = numbers_of(points, _MEMBERS, place)
+    check_points(columns[0], [point.line for point in points], place, MOST_SEGMENTS + 1)
     if count is None:
         raise refuse(place, None, "diNumberOfCamPoints is not set")
-    if count not in (len(indices), len(indices) - 1):
-        raise refuse(place, None, f"diNumberOfCamPoints is {count:g}, but there are {len(indices)} points")
-    columns = [[number_of(points[i].get(m), m, place, lines[i]) for i in indices] for m in _MEMBERS]
-    check_ascending(columns[0], [lines[i] for i in indices], place)
+    if count not in (len(points), len(points) - 1):
+        raise refuse(place, None, f"diNumberOfCamPoints is {count:g}, but there are {len(points)} points")
     return make_table(*columns, units=units_in(text))
-
-
-def _points(text: str, place: str) -> tuple[dict[int, dict[str, Value]], dict[int, int], float | None]:
-    """Give the members of each point by its index, the line where it begins, and how many points there are said to be."""
-    points: dict[int, dict[str, Value]] = {}
-    lines: dict[int, int] = {}
-    count: float | None = None
-    for entry in parse(text, place).assignments:
-        if entry.path[-1] == "dinumberofcampoints" and isinstance(entry.value, float):
-            count = entry.value
-        if len(entry.path) < 3 or not isinstance(entry.path[-2], int) or entry.path[-3] != "astcampoint":
-            continue
-        member, index = str(entry.path[-1]), entry.path[-2]
-        if member not in _KNOWN:
-            raise refuse(place, entry.line, f"the member {shown(member)} of a cam point is not read")
-        if member in points.setdefault(index, {}):
-            raise refuse(place, entry.line, f"{shown(member)} of point {index} is given twice")
-        points[index][member] = entry.value
-        lines.setdefault(index, entry.line)
-    return points, lines, count
 
 
 TARGET = Target(
@@ -96,7 +70,6 @@ TARGET = Target(
     law="quintic",
     spacing="pieces",
     max_points=MOST_SEGMENTS + 1,
-    number_format="float64",
     evidence=(
         "ST_MultiCam, ST_CamPoint: Machine Expert online help, PD_PacDriveLib. That lrK is d²y/dx² follows from its "
         "name, 'curvature'. diNumberOfCamPoints counts the sections in the help's example of three points; whether it "
@@ -114,5 +87,4 @@ TARGET = Target(
     endings=("_pacdrive.st",),
     write=write,
     read=read,
-    rebuild=by_law,
 )

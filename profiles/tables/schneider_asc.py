@@ -119,8 +119,6 @@ TARGET = Target(
     interpolation="cubic spline with given slopes at both ends, through evenly spaced values",
     law="spline",
     spacing="equidistant",
-    max_points=None,
-    number_format="float64",
     evidence=(
         "File format with sample: Machine Expert online help, Motion Sizer File Formats; that both ends are among the "
         "values was calculated from the sample. No limit of points is documented. Whether slopes are scaled is not "

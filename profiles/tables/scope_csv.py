@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from camwright.profiles.tables.column_words import bare_unit
-from camwright.profiles.tables.delimited import LONGEST_LINE, Column, Sheet
+from camwright.profiles.tables.delimited import LONGEST_LINE, WIDEST, Column, Sheet, trimmed
 from camwright.profiles.tables.numbers import number_in
 from camwright.profiles.tables.text import refuse
 
@@ -20,7 +20,6 @@ _TICKS = re.compile(r"[0-9]{16,20}")
 """A time of day as Windows counts it, in steps of 100 ns."""
 _TICK = 1e-4
 """The same in ms."""
-_WIDEST = 400
 
 
 def is_scope(text: str) -> bool:
@@ -58,23 +57,23 @@ def read_scope(text: str, place: str) -> Sheet:
     heading, names = heads[-1]
     if len(heads) == 1 and any(cells[0] == _FILE for _, cells in split[:first]):
         raise refuse(place, None, f"no row of names has times beside the channels: {_NO_TIMES}")
-    width = len(_filled(names))
+    width = len(trimmed(names))
     keys = {cells[0]: [*cells, *[""] * width] for _, cells in split[:first]}
     units = keys.get("Unit", [""] * width)
     columns = tuple(
         Column("time", "ms", heading=_KEY) if name == _KEY else Column(name, bare_unit(unit), heading=name)
         for name, unit in zip(names[:width], units, strict=False)
     )
-    if width > _WIDEST or width < 2:
+    if width > WIDEST or width < 2:
         raise refuse(place, heading, f"there are {width} columns; export the channels of command and actual position")
     rows, numbers = _rows(split[first:], width, place)
     if (
         rows
-        and len(_filled(split[first][1])) < len(columns)
+        and len(trimmed(split[first][1])) < len(columns)
         and not any(column.heading == _KEY for column in columns[1:])
     ):
         raise refuse(
-            place, split[first][0], f"{len(_filled(split[first][1]))} cells where the names are {width}: {_NO_TIMES}"
+            place, split[first][0], f"{len(trimmed(split[first][1]))} cells where the names are {width}: {_NO_TIMES}"
         )
     sheet = Sheet(place, columns, _in_ms(columns, rows), numbers, heading, comma)
     return _without_copies(sheet)
@@ -93,20 +92,13 @@ def used_rows(sheet: Sheet, used: Sequence[int]) -> Sheet:
     return replace(sheet, rows=tuple(sheet.rows[k] for k in kept), lines=tuple(sheet.lines[k] for k in kept))
 
 
-def _filled(cells: Sequence[str]) -> list[str]:
-    count = len(cells)
-    while count and not cells[count - 1]:
-        count -= 1
-    return list(cells[:count])
-
-
 def _rows(split: Sequence[tuple[int, list[str]]], width: int, place: str) -> tuple[list[list[str]], tuple[int, ...]]:
     """Bring the rows to one width; the mark of the end is none."""
     rows, numbers = [], []
     for number, cells in split:
         if cells[0] == "EOF" and not any(cells[1:]):
             break
-        filled = _filled(cells)
+        filled = trimmed(cells)
         if len(filled) > width:
             raise refuse(
                 place,

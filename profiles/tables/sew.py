@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from camwright.profiles.tables.cam_table import CamTable, make_table
-from camwright.profiles.tables.interpolation import by_law
 from camwright.profiles.tables.number_formats import decimals
 from camwright.profiles.tables.target import Header, Target, companion
 from camwright.profiles.tables.text import (
-    check_ascending,
-    check_count,
+    check_points,
     integer,
     lines_of,
     real,
@@ -49,8 +47,7 @@ def read(text: str, place: str) -> CamTable:
         numbers.append(number)
     if count != len(x):
         raise refuse(place, None, f"the first line says {count} points, but {len(x)} follow")
-    check_count(len(x), 2, MOST_READ, place)
-    check_ascending(x, numbers, place)
+    check_points(x, numbers, place, MOST_READ)
     return make_table(x, y, law="spline")
 
 
@@ -61,7 +58,6 @@ TARGET = Target(
     law="spline",
     spacing="free",
     max_points=MOST_SPLINE,
-    number_format="float64",
     evidence=(
         "SEW online documentation 59467761163 (file, limits) and 57491440523 (interpolation). What closes the spline "
         "at its ends is not said; cyclic is inferred. Its cubic interpolation of up to 16383 points is not written: "
@@ -78,5 +74,4 @@ TARGET = Target(
     endings=("_sew.txt", "_sew_head.txt"),
     write=write,
     read=read,
-    rebuild=by_law,
 )

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
-
 from camwright.profiles.tables.cam_table import CamTable, make_table
-from camwright.profiles.tables.interpolation import by_law
 from camwright.profiles.tables.number_formats import literal
 from camwright.profiles.tables.st_program import (
-    Assignment,
     Program,
     Struct,
-    Value,
-    number_of,
+    assigned_to,
+    in_turn,
+    numbers_of,
     only,
     structs_of,
 )
@@ -24,8 +21,7 @@ from camwright.profiles.tables.target import (
     units_in,
 )
 from camwright.profiles.tables.text import (
-    check_ascending,
-    check_count,
+    check_points,
     refuse,
     shown,
 )
@@ -82,9 +78,8 @@ def read(text: str, place: str) -> CamTable:
     if not structs:
         raise refuse(place, None, "there are neither basic points of LCamHdl nor points of a cam with a value")
     members = _BASIC if basic else _POINT
-    columns = [[number_of(s.members.get(m.lower()), m, place, s.line) for s in structs] for m in members]
-    check_count(len(structs), 2, MOST_BASIC if basic else MOST_POINTS, place)
-    check_ascending(columns[0], [s.line for s in structs], place)
+    columns = numbers_of(structs, members, place)
+    check_points(columns[0], [s.line for s in structs], place, MOST_BASIC if basic else MOST_POINTS)
     return make_table(*columns, law="quintic" if basic else "spline", units=units_in(text))
 
 
@@ -99,28 +94,7 @@ def _structs(program: Program, type_name: str, members: tuple[str, ...], place: 
                 if member not in known:
                     raise refuse(place, struct.line, f"{type_name} has no member {shown(member)}")
         return structs
-    return _assigned(program.assignments, known, place)
-
-
-def _assigned(assignments: tuple[Assignment, ...], known: set[str], place: str) -> list[Struct]:
-    points: dict[int, Struct] = {}
-    names: set[tuple[str | int, ...]] = set()
-    for entry in assignments:
-        if len(entry.path) < 3 or not isinstance(entry.path[-2], int) or entry.path[-1] not in known:
-            continue
-        names.add(entry.path[:-2])
-        if len(names) > 1:
-            raise refuse(place, entry.line, "the text fills more than one array of points; leave one in the file")
-        empty: dict[str, Value] = {}
-        members = points.setdefault(entry.path[-2], Struct(empty, entry.line)).members
-        if str(entry.path[-1]) in members:
-            raise refuse(place, entry.line, f"{shown(str(entry.path[-1]))} of point {entry.path[-2]} is given twice")
-        members[str(entry.path[-1])] = entry.value
-    ordered = sorted(points.items())
-    for (before, _), (index, struct) in pairwise(ordered):
-        if index != before + 1:
-            raise refuse(place, struct.line, f"the points have a gap: {index} follows {before}")
-    return [struct for _, struct in ordered]
+    return in_turn(assigned_to(program, known, place), place)
 
 
 _LOADING = (
@@ -138,7 +112,6 @@ TARGET = Target(
     law="quintic",
     spacing="pieces",
     max_points=MOST_BASIC,
-    number_format="float64",
     evidence=(
         "LCamHdl_typeBasicPoint, the limit of 51 points and the form of the array: documentation of the repository "
         "simatic-ax/lcamhdl. The array is in the form of SIMATIC AX; the form of TIA Portal's external sources was not "
@@ -153,7 +126,6 @@ TARGET = Target(
     endings=("_lcamhdl.st",),
     write=write,
     read=read,
-    rebuild=by_law,
 )
 
 POINTS = Target(
@@ -163,7 +135,6 @@ POINTS = Target(
     law="spline",
     spacing="free",
     max_points=MOST_POINTS,
-    number_format="float64",
     evidence=(
         "TO_Cam_Struct_PointData, InterpolationSettings, limits: TIA Portal information system, 'Using "
         "S7-1500/S7-1500T Synchronous operation functions'; form of the array: sample of simatic-ax/lcamhdl. That "
@@ -181,5 +152,4 @@ POINTS = Target(
     endings=("_to_cam.st",),
     write=write_points,
     read=read,
-    rebuild=by_law,
 )

@@ -6,11 +6,10 @@ import re
 
 from camwright.profiles.tables.cam_table import CamTable, make_table
 from camwright.profiles.tables.column_words import cam_role
-from camwright.profiles.tables.interpolation import by_law
 from camwright.profiles.tables.st_program import Declaration
 from camwright.profiles.tables.structured_text import parse
-from camwright.profiles.tables.target import Target, not_written, units_in
-from camwright.profiles.tables.text import check_ascending, check_count, refuse, shown
+from camwright.profiles.tables.target import Target, units_in
+from camwright.profiles.tables.text import check_points, refuse, shown
 
 MOST_POINTS = 20_000
 _REALS = frozenset({"lreal", "real"})
@@ -48,8 +47,7 @@ def read(text: str, place: str) -> CamTable:
     x, y = (_numbers(found[role], place) for role in _WHO)
     if len(x) != len(y):
         raise refuse(place, found["y"].line, f"there are {len(x)} master positions but {len(y)} slave positions")
-    check_count(len(x), 3, MOST_POINTS, place)
-    check_ascending(x, [found["x"].line] * len(x), place)
+    check_points(x, [found["x"].line] * len(x), place, MOST_POINTS, 3)
     note = "the text does not say what lies between the points: a cubic spline is assumed"
     return make_table(x, y, law="spline", units=units_in(text), notes=(note,))
 
@@ -75,11 +73,6 @@ LAYOUT = Target(
     law="spline",
     spacing="free",
     max_points=MOST_POINTS,
-    number_format="float64",
     evidence="The export of the cam editor Quintic (public source): MasterPos and SlavePos, ARRAY[1..n] OF LREAL := [...].",
-    steps=(),
-    endings=(),
-    write=not_written,
     read=read,
-    rebuild=by_law,
 )

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 from camwright.profiles.tables.text import refuse, shown
 
@@ -106,6 +108,60 @@ def structs_of(declaration: Declaration, place: str) -> list[Struct]:
             f"the array {shown(declaration.name)} has {high - low + 1} places but {len(value)} values",
         )
     return [item for item in value if isinstance(item, Struct)]
+
+
+def assigned_to(
+    program: Program, known: Collection[str], place: str, array: str = "", noun: str = "point", unread: str = ""
+) -> dict[int, Struct]:
+    """Gather what is assigned to members of an array's elements, by index.
+
+    Parameters
+    ----------
+    known
+        Members, in lower case.
+    array
+        Name of the array; any whose elements have such members where not given.
+    noun
+        What messages call an element.
+    unread
+        What is said of another member of that array, with a place for it.
+
+    Raises
+    ------
+    InputError
+        The text fills more than one array, a member twice, or one that is not known.
+    """
+    found: dict[int, Struct] = {}
+    arrays: set[tuple[str | int, ...]] = set()
+    for entry in program.assignments:
+        if len(entry.path) < 3 or not isinstance(entry.path[-2], int) or (array and entry.path[-3] != array):
+            continue
+        member, index = str(entry.path[-1]), entry.path[-2]
+        if member not in known:
+            if array:
+                raise refuse(place, entry.line, unread.format(shown(member)))
+            continue
+        arrays.add(entry.path[:-2])
+        if len(arrays) > 1:
+            raise refuse(place, entry.line, "the text fills more than one array of points; leave one in the file")
+        members = found.setdefault(index, Struct({}, entry.line)).members
+        if member in members:
+            raise refuse(place, entry.line, f"{shown(member)} of {noun} {index} is given twice")
+        members[member] = entry.value
+    return dict(sorted(found.items()))
+
+
+def in_turn(points: Mapping[int, Struct], place: str) -> list[Struct]:
+    """List points in the order of their indices, of which none may be missing."""
+    for (before, _), (index, struct) in pairwise(points.items()):
+        if index != before + 1:
+            raise refuse(place, struct.line, f"the points have a gap: {index} follows {before}")
+    return list(points.values())
+
+
+def numbers_of(structs: Sequence[Struct], members: Sequence[str], place: str) -> list[list[float]]:
+    """Take members of structures as columns of numbers."""
+    return [[number_of(s.members.get(m.lower()), m, place, s.line) for s in structs] for m in members]
 
 
 def only(declarations: list[Declaration], what: str, place: str) -> Declaration:

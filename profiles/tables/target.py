@@ -13,6 +13,7 @@ import numpy as np
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.tables.cam_table import CamTable, Unit, Units
+from camwright.profiles.tables.interpolation import by_law
 from camwright.profiles.tables.number_formats import NumberFormat
 
 Spacing = Literal["pieces", "free", "equidistant"]
@@ -184,7 +185,7 @@ def companion(lines: list[str], steps: tuple[str, ...]) -> str:
     return "\n".join([*lines, "", *(f"{i}. {step}" for i, step in enumerate(steps, start=1))]) + "\n"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Target:
     """A drive or controller that takes cam tables.
 
@@ -235,14 +236,14 @@ class Target:
     interpolation: str
     law: Literal["quintic", "spline", "line"]
     spacing: Spacing
-    max_points: int | None
-    number_format: NumberFormat
+    max_points: int | None = None
+    number_format: NumberFormat = "float64"
     evidence: str
-    steps: tuple[str, ...]
-    endings: tuple[str, ...]
-    write: Callable[[CamTable, Header], dict[str, str]]
+    steps: tuple[str, ...] = ()
+    endings: tuple[str, ...] = ()
+    write: Callable[[CamTable, Header], dict[str, str]] = not_written
     read: Callable[[str, str], CamTable]
-    rebuild: Callable[[CamTable], CamProfile]
+    rebuild: Callable[[CamTable], CamProfile] = by_law
     tested_on_controller: bool = False
     min_points: int = 2
     least_step: float = 0.0

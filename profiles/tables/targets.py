@@ -97,23 +97,18 @@ def target_of(name: str) -> Target:
     InputError
         There is none.
     """
-    found = TARGETS.get(name.lower())
-    if found is None:
-        raise InputError(f"there is no target {name[:40]!r}; the targets are {', '.join(TARGETS)}")
-    return found
+    return _named(name, TARGETS, "target")
 
 
 def layout_of(name: str) -> Target:
-    """Look up a layout that is read, by its name in any case.
+    """Look up a layout that is read, as `target_of`."""
+    return _named(name, LAYOUTS, "layout")
 
-    Raises
-    ------
-    InputError
-        There is none.
-    """
-    found = LAYOUTS.get(name.lower())
+
+def _named(name: str, among: dict[str, Target], what: str) -> Target:
+    found = among.get(name.lower())
     if found is None:
-        raise InputError(f"there is no layout {name[:40]!r}; the layouts are {', '.join(LAYOUTS)}")
+        raise InputError(f"there is no {what} {name[:40]!r}; the {what}s are {', '.join(among)}")
     return found
 
 

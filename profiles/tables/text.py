@@ -148,6 +148,12 @@ def integer(text: str, place: str, line: int) -> int:
     return int(text)
 
 
+def check_points(x: list[float], lines: list[int], place: str, most: int | None, least: int = 2) -> None:
+    """Refuse too few or too many points, or master positions that do not increase strictly."""
+    check_count(len(x), least, most, place)
+    check_ascending(x, lines, place)
+
+
 def check_ascending(x: list[float], lines: list[int], place: str) -> None:
     """Refuse master positions that do not increase strictly, naming the line of the first that does not."""
     for k in range(1, len(x)):

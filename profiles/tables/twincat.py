@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from camwright.profiles.tables.cam_table import CamTable, PieceLaw, make_table
-from camwright.profiles.tables.interpolation import by_law
 from camwright.profiles.tables.number_formats import literal
 from camwright.profiles.tables.st_program import (
     Program,
@@ -299,7 +298,6 @@ TARGET = Target(
     law="quintic",
     spacing="pieces",
     max_points=MOST_ROWS,
-    number_format="float64",
     evidence=(
         "MC_MotionFunctionPoint, MC_MotionFunctionType, MC_MotionPointType, MC_CAM_REF: infosys TF5050 (1003721995, "
         "1003744011, 1003586955); greatest number of rows: ADS specification (713131531); form of the assignments: a "
@@ -320,7 +318,6 @@ TARGET = Target(
     endings=("_twincat.st",),
     write=write,
     read=read,
-    rebuild=by_law,
     states_laws=True,
 )
 
@@ -331,7 +328,6 @@ POSITIONS = Target(
     law="spline",
     spacing="free",
     max_points=MOST_ROWS,
-    number_format="float64",
     evidence=(
         "MC_CAM_REF with an n × 2 array, MC_InterpolationType: infosys TF5050 (1003586955, 1003709323). The "
         "documentation says 'tangential or cyclic depending on table'; that a repeated cam becomes cyclic is inferred."
@@ -345,5 +341,4 @@ POSITIONS = Target(
     endings=("_twincat_table.st",),
     write=write_positions,
     read=read,
-    rebuild=by_law,
 )

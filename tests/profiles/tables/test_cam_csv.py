@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.interpolate import BPoly, CubicSpline
+from scipy.interpolate import BPoly
 
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
-from camwright.profiles.laws import law
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import RotaryKnife
 from camwright.profiles.polynomial.profile import CamProfile
@@ -113,32 +111,6 @@ def test_rows_with_derivatives_are_quintics_as_scipys() -> None:
         )
 
 
-def test_rows_of_positions_are_a_periodic_spline() -> None:
-    profile = baseline("poly_4_5_6_7", Task(KNIFE, CUT, FREE))
-    x = np.linspace(0.0, CUT.length, 181)
-    table = rebuild(x, profile(x))
-    assert np.abs(table.jumps(1)).max() < 1e-10
-    assert np.abs(table.jumps(2)).max() < 1e-7
-    assert table.advance == pytest.approx(KNIFE.pitch, rel=1e-14)
-    fine = np.linspace(0.0, CUT.length, 1001)
-    np.testing.assert_allclose(table(fine), profile(fine), atol=1e-8)
-    line = profile(x) - x * KNIFE.pitch / CUT.length
-    line[-1] = line[0]
-    twin = CubicSpline(x, line, bc_type="periodic")
-    np.testing.assert_allclose(table(fine), twin(fine) + fine * KNIFE.pitch / CUT.length, atol=1e-15)
-
-
-def test_the_spline_converges_with_the_fourth_power() -> None:
-    exact = law("poly_4_5_6_7").add_line(1.0)
-    fine = np.linspace(0.0, 1.0, 4001)
-    errors = []
-    for count in (21, 41, 81, 161):
-        x = np.linspace(0.0, 1.0, count)
-        errors.append(float(np.abs(rebuild(x, exact(x))(fine) - exact(fine)).max()))
-    orders = [math.log2(a / b) for a, b in pairwise(errors)]
-    assert all(3.5 < order < 4.5 for order in orders), orders
-
-
 @pytest.mark.parametrize(
     "header",
     ["x [mm],y [mm]", "x_mm,y_mm", "x (mm), y (mm)", " x [ mm ] ,y[mm]", "\ufeffx [mm],y [mm]", "# note\n\nx_mm,y_mm"],
@@ -189,11 +161,3 @@ def test_what_is_no_table_is_refused_with_its_line(text: str, message: str) -> N
     with pytest.raises(InputError) as caught:
         read_cam_csv(text, "t.csv")
     assert message in str(caught.value)
-
-
-def test_arrays_that_do_not_belong_together_are_refused() -> None:
-    x = np.arange(4.0)
-    with pytest.raises(InputError, match=r"both or none of dy/dx and d2y/dx2"):
-        rebuild(x, x, x)
-    with pytest.raises(InputError, match="all of one length"):
-        rebuild(x, x[:3])
