@@ -26,7 +26,6 @@ MOST_POINTS = 32_767
 CSV_LENGTHS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "um": 1e-6, "in": 0.0254, "ft": 0.3048}
 """Units that a user may name for this table: metres by name."""
 
-_METRIC = "x [mm],y [mm],dy/dx [1],d2y/dx2 [1/m]"
 _TURNED = "x [mm],y [rad],dy/dx [rad/m],d2y/dx2 [rad/m^2]"
 
 
@@ -42,36 +41,18 @@ def write(table: CamTable, header: Header) -> dict[str, str]:
         raise InputError("a CSV table states millimetres: say what the units of this table are")
     master, slave = table.units.master.size, table.units.slave.size
     turned = table.units.slave.si == "rad"
-    if {table.units.master.symbol, table.units.slave.symbol} <= CSV_LENGTHS.keys():
-        return {f"{header.identifier}_cam.csv": _in_units(table, table.units, header)}
-    columns = (
-        _millimetres(table.x * master),
-        table.y * slave if turned else _millimetres(table.y * slave),
-        table.ratio * (slave / master),
-        table.ratio_slope * (slave / master**2),
+    x, y, shown = table.x, table.y, table.units
+    if not {shown.master.symbol, shown.slave.symbol} <= CSV_LENGTHS.keys():
+        x, y = _millimetres(x * master), y * slave if turned else _millimetres(y * slave)
+        shown = Units(Unit("mm", 1e-3), Unit("rad", 1.0, "rad") if turned else Unit("mm", 1e-3))
+    written = CamTable(
+        x, y, table.ratio * (slave / master), table.ratio_slope * (slave / master**2), table.laws, shown, table.periodic
     )
+    columns = (written.x, written.y, written.ratio, written.ratio_slope)
     rows = [",".join(map(repr, row)) for row in zip(*((column + 0.0).tolist() for column in columns), strict=True)]
-    unit = Unit("rad", 1.0, "rad") if turned else Unit("mm", 1e-3)
-    metric = CamTable(
-        columns[0], columns[1], columns[2], columns[3], table.laws, Units(Unit("mm", 1e-3), unit), table.periodic
-    )
-    head = [f"# {line}" for line in header.lines(TARGET.title, metric)]
-    lines = [*head, _TURNED if turned else _METRIC, *rows]
+    title = f"x [{shown.master.symbol}],y [{shown.slave.symbol}],dy/dx [1],d2y/dx2 [1/m]"
+    lines = [*(f"# {line}" for line in header.lines(TARGET.title, written)), _TURNED if turned else title, *rows]
     return {f"{header.identifier}_cam.csv": "\n".join(lines) + "\n"}
-
-
-def _in_units(table: CamTable, units: Units, header: Header) -> str:
-    """Write a table in units that the user named; its derivatives in those that the readers know."""
-    master, slave = units.master, units.slave
-    columns = (
-        table.x,
-        table.y,
-        table.ratio * (slave.size / master.size),
-        table.ratio_slope * (slave.size / master.size**2),
-    )
-    rows = [",".join(map(repr, row)) for row in zip(*((column + 0.0).tolist() for column in columns), strict=True)]
-    title = f"x [{master.symbol}],y [{slave.symbol}],dy/dx [1],d2y/dx2 [1/m]"
-    return "\n".join([*(f"# {line}" for line in header.lines(TARGET.title, table)), title, *rows]) + "\n"
 
 
 def read(text: str, place: str) -> CamTable:
