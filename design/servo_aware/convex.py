@@ -1,12 +1,8 @@
-"""Linear and quadratic programmes with dense rows: HiGHS for the former, least squares for the latter, qpOASES behind them."""
+"""Linear and quadratic programmes with dense rows: by simplex methods the former, by least squares or an interior point the latter."""
 
 from __future__ import annotations
 
-import contextlib
-import io
-from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from functools import partial
 from typing import Any
 
 import casadi as ca
@@ -28,19 +24,13 @@ _TOLERANCE = 1e-9
 
 _HIGHS: dict[str, Any] = {
     "output_flag": False,
+    "presolve": "off",
+    "simplex_strategy": 4,
     "threads": 1,
     "parallel": "off",
     "primal_feasibility_tolerance": _TOLERANCE,
     "dual_feasibility_tolerance": _TOLERANCE,
     "simplex_iteration_limit": 10_000,  # ten times what a programme takes; where many vertices are equally good it has none of its own
-}
-# Roads to the vertex, tried in turn after the dual: where one ends with rows broken by rounding, another need not.
-_HIGHS_ROADS: tuple[dict[str, Any], ...] = ({}, {"presolve": "off"}, {"simplex_strategy": 4})
-_QPOASES: dict[str, Any] = {
-    "printLevel": "none",
-    "sparse": False,
-    "hessian_type": "posdef",
-    "initialStatusBounds": "inactive",
 }
 # More rows than these are asked of our own methods first: linear programmes of the simplex method, quadratic ones of the
 # interior-point one.
@@ -146,7 +136,7 @@ class ConvexProgramme:
         rows = self.rows()
         few = len(rows.matrix) <= (MANY if square is None else MANY_SQUARE) and not (self.own and square is None)
         if square is not None:
-            return _quadratic(rows, cost, square) if few else _many(rows, cost, square)
+            return _quadratic(rows, cost, square, few=few)
         return _linear(rows, cost) if few else self._many_linear(rows, cost)
 
     def _many_linear(self, rows: Rows, cost: FloatArray) -> FloatArray | None:
@@ -202,32 +192,10 @@ class Rows:
         return float((np.maximum(values - self.high, self.low - values) - self.accepted).max())
 
 
-_Road = Callable[[FloatArray, FloatArray, FloatArray, FloatArray], tuple[FloatArray | None, str]]
-"""What solves a linear programme of a matrix, bounds of its rows and a cost: the answer, or nothing, and the status."""
-
-
-def _many(rows: Rows, cost: FloatArray, square: FloatArray) -> FloatArray | None:
-    """Solve a quadratic programme of many rows by the interior-point method; by least squares where that comes to no end."""
-    found = interior_point(rows.matrix, rows.low, rows.high, cost, square)
-    if found is not None and rows.missed(found) <= 0.0:
-        return found
-    if isinstance(dual_simplex(*rows.one_sided, np.zeros(len(cost))), NoPoint):
-        return None
-    nearest = _nearest(rows, cost, square)
-    if nearest is not None:
-        return nearest
-    raise SolverError("an interior-point method ended a servo-aware design without an answer; report this job")
-
-
 def _linear(rows: Rows, cost: FloatArray) -> FloatArray | None:
     """Solve a linear programme; its answer is refined where it breaks rows by rounding."""
     status = ""
-    roads: list[_Road] = [
-        _by_its_dual,
-        _by_our_own,
-        *(partial(_by_simplex, options=options) for options in _HIGHS_ROADS),
-    ]
-    for road in roads:
+    for road in (_by_its_dual, _by_our_own):
         found, factor = np.zeros(len(cost)), 1.0
         for _ in range(1 + _REFINEMENTS):
             low, high = (factor * (side - rows.matrix @ found) for side in (rows.low, rows.high))
@@ -254,17 +222,14 @@ def _by_its_dual(
     above, below = np.isfinite(high), np.isfinite(low)
     columns = sparse(np.vstack([-matrix[above], matrix[below]]).T)
     prices = np.concatenate([high[above], -low[below]])
-    answer, status = _ask(
-        "highs",
-        {"highs": _HIGHS | {"presolve": "off", "simplex_strategy": 4}},
-        prices,
-        columns,
-        (cost, cost),
-        (0.0, np.inf),
-    )
-    if answer is None:  # no answer of a programme is too much of its dual, and the other way round
+    form = {"h": ca.Sparsity(len(prices), len(prices)), "a": columns.sparsity()}
+    solver = ca.conic("camwright", "highs", form, {"highs": _HIGHS, "error_on_fail": False})
+    answer = solver(g=prices, a=columns, lba=cost, uba=cost, lbx=0.0, ubx=np.inf)
+    statistics = solver.stats()
+    status = str(statistics.get("solver_stats", statistics).get("return_status", ""))
+    if not statistics["success"]:  # no answer of a programme is too much of its dual, and the other way round
         return None, {_UNBOUNDED: _INFEASIBLE, _INFEASIBLE: _UNBOUNDED}.get(status, status)
-    return answer["lam_a"], status
+    return np.asarray(answer["lam_a"], dtype=np.float64).ravel(), status
 
 
 def _by_our_own(
@@ -277,32 +242,24 @@ def _by_our_own(
     return (None, _UNBOUNDED) if found is None else (found.x, "")
 
 
-def _by_simplex(
-    matrix: FloatArray, low: FloatArray, high: FloatArray, cost: FloatArray, options: dict[str, Any]
-) -> tuple[FloatArray | None, str]:
-    """Ask HiGHS for the programme as it stands."""
-    answer, status = _ask("highs", {"highs": _HIGHS | options}, cost, sparse(matrix), (low, high), (-np.inf, np.inf))
-    return None if answer is None else answer["x"], status
+def _quadratic(rows: Rows, cost: FloatArray, square: FloatArray, *, few: bool) -> FloatArray | None:
+    """Solve a quadratic programme by least squares, one of many rows by an interior point; by the other where rounding forbids that."""
 
+    def nearest() -> FloatArray | None:
+        return least_distance(_definite(square), cost, rows.matrix, rows.low, rows.high)
 
-def _quadratic(rows: Rows, cost: FloatArray, square: FloatArray) -> FloatArray | None:
-    """Solve a quadratic programme by least squares, or by qpOASES where rounding leaves these without an answer."""
-    nearest = _nearest(rows, cost, square)
-    if nearest is not None:
-        return nearest
-    matrix, definite = sparse(rows.matrix), sparse(_definite(square))
-    answer, status = _ask("qpoases", _QPOASES, cost, matrix, (rows.low, rows.high), (-np.inf, np.inf), definite)
-    if answer is not None and rows.missed(answer["x"]) <= 0.0:
-        return answer["x"]
-    if _linear(rows, np.zeros(len(cost))) is None:
-        return None
-    raise SolverError(f"qpOASES ended a servo-aware design with {status!r}; report this job")
+    def within() -> FloatArray | None:
+        return interior_point(rows.matrix, rows.low, rows.high, cost, square)
 
-
-def _nearest(rows: Rows, cost: FloatArray, square: FloatArray) -> FloatArray | None:
-    """Solve a quadratic programme by least squares; ``None`` where rounding leaves no answer."""
-    found = least_distance(_definite(square), cost, rows.matrix, rows.low, rows.high)
-    return found if found is not None and rows.missed(found) <= 0.0 else None
+    for number, road in enumerate((nearest, within) if few else (within, nearest)):
+        found = road()
+        if found is not None and rows.missed(found) <= 0.0:
+            return found
+        if not number and isinstance(dual_simplex(*rows.one_sided, np.zeros(len(cost))), NoPoint):
+            return None
+    raise SolverError(
+        "neither least squares nor an interior point ended a servo-aware design with an answer; report this job"
+    )
 
 
 def _definite(square: FloatArray) -> FloatArray:
@@ -317,32 +274,3 @@ def sparse(matrix: FloatArray) -> ca.DM:
     starts = np.searchsorted(columns, np.arange(matrix.shape[1] + 1))
     pattern = ca.Sparsity(matrix.shape[0], matrix.shape[1], starts.tolist(), rows.tolist())
     return ca.DM(pattern, matrix.T[columns, rows])
-
-
-def _ask(
-    plugin: str,
-    options: dict[str, Any],
-    cost: FloatArray,
-    rows: ca.DM,
-    between: tuple[FloatArray, FloatArray],
-    bounds: tuple[float, float],
-    quadratic: ca.DM | None = None,
-) -> tuple[dict[str, FloatArray] | None, str]:
-    """Minimise with one of CasADi's solvers; nothing and its status where it found no answer."""
-    square = ca.DM(len(cost), len(cost)) if quadratic is None else quadratic
-    form = {"h": square.sparsity(), "a": rows.sparsity()}
-    with _silenced():
-        solver = ca.conic("camwright", plugin, form, options | {"error_on_fail": False})
-        answer = solver(h=square, g=cost, a=rows, lba=between[0], uba=between[1], lbx=bounds[0], ubx=bounds[1])
-    statistics = solver.stats()
-    status = str(statistics.get("solver_stats", statistics).get("return_status", ""))
-    if not statistics["success"]:
-        return None, status
-    return {name: np.asarray(answer[name], dtype=np.float64).ravel() for name in ("x", "lam_a")}, status
-
-
-@contextlib.contextmanager
-def _silenced() -> Iterator[None]:
-    """Keep qpOASES' banner, which no option of it turns off, from standard output."""
-    with contextlib.redirect_stdout(io.StringIO()):
-        yield
