@@ -60,10 +60,10 @@ CHANGES = (
     Change("recorded values", "sheet_faults.py", "\nSAME = 1e-6\n", "\nSAME = 1e-2\n"),
     Change("places of the sync zone", "place.py", "\nPLACES = 9\n", "\nPLACES = 3\n"),
     Change("standing", "motor.py", "\n_STANDING = 1e-9\n", "\n_STANDING = 0.1\n"),
-    Change("twice the allowance in a report", "report.py", "value <= limit + allowed", "value <= limit + 2 * allowed"),
+    Change("twice the allowance in a report", "check.py", "value <= limit + room", "value <= limit + 2 * room"),
     # by behaviour, not by the name of a constant
     Change("twice the allowance of a table", "rebuilt.py", "allowed = 1.0 + ALLOWANCE", "allowed = 1.0 + 2 * ALLOWANCE"),
-    Change("no allowance in a report", "report.py", "value <= limit + allowed", "value <= limit"),
+    Change("no allowance in a report", "check.py", "value <= limit + room", "value <= limit"),
     Change("twice the tolerance of verify", "sheet_faults.py", "<= share * abs(recorded)", "<= 2 * share * abs(recorded)"),
     Change("twice the threshold of standing", "motor.py", "<= _STANDING * ", "<= 2 * _STANDING * "),
     Change("one place less", "place.py", "greatest - margin, places)", "greatest - margin, places - 1)"),

@@ -37,3 +37,10 @@ class Check:
     unit: str
     at: float | None
     source: str
+
+    @classmethod
+    def at_most(
+        cls, name: str, value: float, limit: float, unit: str, source: str, at: float | None = None, room: float = 0.0
+    ) -> Check:
+        """Judge a value that must not exceed a limit by more than some room for rounding."""
+        return cls(name, value <= limit + room, value, limit, unit, at, source)

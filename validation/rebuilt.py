@@ -166,10 +166,6 @@ def each_cut(whole: CamProfile, task: Task, cuts: int) -> list[CamProfile]:
     return [whole.restrict(ends[k], ends[k + 1]).shift(-ends[k], -k * pitch).over(0.0, length) for k in range(cuts)]
 
 
-def _at_most(name: str, value: float, limit: float, unit: str, at: float | None, source: str) -> Check:
-    return Check(name, value <= limit, value, limit, unit, at, source)
-
-
 def _closing(rebuilt: CamProfile, task: Task, cuts: int, wraps: int, run: int) -> list[Check]:
     """Give what period and advance are off, the latter added up over a run, and steps at the joins."""
     machine, cut = task.machine, task.cut
@@ -180,31 +176,15 @@ def _closing(rebuilt: CamProfile, task: Task, cuts: int, wraps: int, run: int) -
     of = "" if cuts == 1 else f" of {cuts} cuts"
     zone = task.slave_at_sync_start + task.sync(np.linspace(0.0, cut.sync_zone, 33))
     lever = float(np.abs(machine.tool_ratio(zone)).max())
+    off = wraps * abs(rebuilt.length - cuts * cut.length) / cuts
+    period = f"period{of} against cut length over {wraps} wraps, {number}"
+    closure = f"advance{of} against pitch, at the tool in sync, over a run of {run} cuts, {number}"
+    allowed = _STEP * position_scale(rebuilt, machine)
+    joins = "no jump of the position at any join"
     return [
-        _at_most(
-            "period",
-            wraps * abs(rebuilt.length - cuts * cut.length) / cuts,
-            cut.sync_tolerance,
-            "m",
-            None,
-            f"period{of} against cut length over {wraps} wraps, {number}",
-        ),
-        _at_most(
-            "closure",
-            run * lost * lever,
-            cut.sync_tolerance,
-            "m",
-            None,
-            f"advance{of} against pitch, at the tool in sync, over a run of {run} cuts, {number}",
-        ),
-        _at_most(
-            "position_joins",
-            step.value,
-            _STEP * position_scale(rebuilt, machine),
-            machine.slave_unit,
-            step.at,
-            "no jump of the position at any join",
-        ),
+        Check.at_most("period", off, cut.sync_tolerance, "m", period),
+        Check.at_most("closure", run * lost * lever, cut.sync_tolerance, "m", closure),
+        Check.at_most("position_joins", step.value, allowed, machine.slave_unit, joins, step.at),
     ]
 
 
@@ -267,16 +247,16 @@ def _sync(run: CamProfile, task: Task, wraps: int, count: float, sample_time: fl
         slip = np.abs(machine.tool_ratio(found) * run(x, 1) / cut.sync_ratio - 1.0)
     ratio, ratio_at = greatest(slip, x, cycle)
     return [
-        _at_most("sync_position", worst, cut.sync_tolerance, "m", at, f"tool against material, {wraps} wraps"),
-        _at_most(
+        Check.at_most("sync_position", worst, cut.sync_tolerance, "m", f"tool against material, {wraps} wraps", at),
+        Check.at_most(
             "sync_ratio",
             ratio,
             cut.sync_tolerance / cut.sync_zone,
             "1",
-            ratio_at,
             "speed of the tool in the sync zone (S1), against the sync tolerance over the sync zone"
             + ("; over a sample time, beyond one count" if count > 0.0 else "")
             + ("; not beside ends of the zone that are no points of the table" if any(margins) else ""),
+            ratio_at,
         ),
     ]
 
@@ -334,10 +314,14 @@ def _limits(
     sampled_how = "differences at the servo's sample time"
     backward = limits.speed if task.reverses else ALLOWANCE * v * scale
     return [
-        _at_most("speed", v * speed.value, allowed * limits.speed, f"{unit}/s", speed.at, "exact"),
-        _at_most("acceleration", acceleration, allowed * limits.acceleration + shake, f"{unit}/s^2", at, how + made[0]),
-        _at_most("jerk", jerk, allowed * limits.jerk + jolt, f"{unit}/s^3", jerk_at, sampled_how + made[1]),
-        _at_most("reversal", max(0.0, -v * least.value), backward, f"{unit}/s", least.at, "greatest backward speed"),
+        Check.at_most("speed", v * speed.value, allowed * limits.speed, f"{unit}/s", "exact", speed.at),
+        Check.at_most(
+            "acceleration", acceleration, allowed * limits.acceleration + shake, f"{unit}/s^2", how + made[0], at
+        ),
+        Check.at_most("jerk", jerk, allowed * limits.jerk + jolt, f"{unit}/s^3", sampled_how + made[1], jerk_at),
+        Check.at_most(
+            "reversal", max(0.0, -v * least.value), backward, f"{unit}/s", "greatest backward speed", least.at
+        ),
     ]
 
 
@@ -362,16 +346,8 @@ def _stroke(cycle: CamProfile, task: Task) -> list[Check]:
     least, greatest = cycle.extrema(0)
     below, above = low - task.slave_at_start - least.value, task.slave_at_start + greatest.value - high
     over, at = (below, least.at) if below >= above else (above, greatest.at)
-    return [
-        _at_most(
-            "stroke",
-            float(over),
-            task.cut.sync_tolerance,
-            "m",
-            at,
-            "how far the carriage goes beyond its stroke, negative inside",
-        )
-    ]
+    source = "how far the carriage goes beyond its stroke, negative inside"
+    return [Check.at_most("stroke", float(over), task.cut.sync_tolerance, "m", source, at)]
 
 
 def _shear_zone(cycles: list[CamProfile], task: Task, servo: Servo) -> Check:

@@ -162,51 +162,38 @@ def judge(
     )
 
 
-def _at_most(name: str, value: float, limit: float, allowed: float, unit: str, at: float | None, source: str) -> Check:
-    return Check(name, value <= limit + allowed, value, limit, unit, at, source)
-
-
 def _closure(profile: CamProfile, machine: Machine) -> list[Check]:
     """Closure of the cycle and continuity at every join, the seam included."""
-    step, ratio, slope = (greatest_jump(profile, order) for order in (0, 1, 2))
-    unit = machine.slave_unit
+    unit, turned = machine.slave_unit, machine.slave_unit == "rad"
     least, greatest = profile.extrema(0)
+    joins = (
+        ("position_joins", POSITION_JUMP * position_scale(profile, machine), unit, "position at any join"),
+        (
+            "ratio_joins",
+            RATIO_JUMP * ratio_scale(profile, machine),
+            "rad/m" if turned else "1",
+            "ratio at any join or the seam (acceleration bounded)",
+        ),
+        (
+            "ratio_slope_joins",
+            SLOPE_JUMP * slope_scale(profile),
+            "rad/m^2" if turned else "1/m",
+            "ratio slope at any join or the seam (jerk bounded)",
+        ),
+    )
+    jumps = [greatest_jump(profile, order) for order in range(3)]
     return [
-        _at_most(
+        Check.at_most(
             "position_closure",
             abs(profile.advance - machine.pitch),
             CLOSURE * (machine.pitch or greatest.value - least.value),
-            0.0,
             unit,
-            profile.end,
             "the slave advances by the pitch in one cycle" if machine.pitch else "the slave comes back in one cycle",
+            profile.end,
         ),
-        _at_most(
-            "position_joins",
-            step.value,
-            POSITION_JUMP * position_scale(profile, machine),
-            0.0,
-            unit,
-            step.at,
-            "no jump of the position at any join",
-        ),
-        _at_most(
-            "ratio_joins",
-            ratio.value,
-            RATIO_JUMP * ratio_scale(profile, machine),
-            0.0,
-            "1" if unit == "m" else "rad/m",
-            ratio.at,
-            "no jump of the ratio at any join or the seam (acceleration bounded)",
-        ),
-        _at_most(
-            "ratio_slope_joins",
-            slope.value,
-            SLOPE_JUMP * slope_scale(profile),
-            0.0,
-            "1/m" if unit == "m" else "rad/m^2",
-            slope.at,
-            "no jump of the ratio slope at any join or the seam (jerk bounded)",
+        *(
+            Check.at_most(name, jump.value, allowed, per, f"no jump of the {what}", jump.at)
+            for jump, (name, allowed, per, what) in zip(jumps, joins, strict=True)
         ),
     ]
 
@@ -224,36 +211,27 @@ def _motion(profile: CamProfile, task: Task, motion: MotionMeasures) -> list[Che
         source = f"peak of the {name}, exact, at every master position"
         if value is None:
             return Check(name, False, None, limit, unit + per, unbounded.at, source)
-        return _at_most(
-            name, value, limit, ALLOWANCE * limit, unit + per, greatest_magnitude(profile, order).at, source
-        )
+        place = greatest_magnitude(profile, order).at
+        return Check.at_most(name, value, limit, unit + per, source, place, ALLOWANCE * limit)
 
     ratio_jump = greatest_jump(profile, 1)
     jump = greatest_jump(profile, 2) if motion.peak_acceleration is not None else ratio_jump
-    sync = _at_most(
-        "sync_ratio",
-        in_sync.value,
-        SYNC_RATIO,
-        0.0,
-        "1",
-        in_sync.at,
-        "k = 1 in the whole sync zone (S1)"
-        if cut.sync_ratio == 1.0
-        else f"tool at {cut.sync_ratio:g} times the line speed in the whole sync zone",
-    )
+    source = f"tool at {cut.sync_ratio:g} times the line speed in the whole sync zone"
+    source = "k = 1 in the whole sync zone (S1)" if cut.sync_ratio == 1.0 else source
+    sync = Check.at_most("sync_ratio", in_sync.value, SYNC_RATIO, "1", source, in_sync.at)
     return [
         *(() if cut.shaped else (sync,)),  # a shaped command is judged by its axis alone
         bounded("speed", motion.peak_speed, limits.speed, "/s", 1, ratio_jump),
         bounded("acceleration", motion.peak_acceleration, limits.acceleration, "/s^2", 2, ratio_jump),
         bounded("jerk", motion.peak_jerk, limits.jerk, "/s^3", 3, jump),
-        _at_most(
+        Check.at_most(
             "reversal",
             backward,
             limits.speed if reverses else 0.0,
-            ALLOWANCE * (limits.speed if reverses else v * ratio_scale(profile, machine)),
             f"{unit}/s",
-            least.at,
             "greatest backward speed; 0 unless reversal is allowed or the machine comes back",
+            least.at,
+            ALLOWANCE * (limits.speed if reverses else v * ratio_scale(profile, machine)),
         ),
     ]
 
@@ -268,16 +246,10 @@ def _stroke(profile: CamProfile, task: Task) -> list[Check]:
     middle, stroke = low + 0.5 * (high - low), high - low
     least, greatest = profile.extrema(0)
     behind, ahead = middle - (start + least.value), start + greatest.value - middle
+    source = "greatest distance of the carriage from the middle of its stroke"
+    at = least.at if behind > ahead else greatest.at
     return [
-        _at_most(
-            "stroke",
-            max(behind, ahead),
-            0.5 * stroke,
-            ALLOWANCE * stroke,
-            machine.slave_unit,
-            least.at if behind > ahead else greatest.at,
-            "greatest distance of the carriage from the middle of its stroke",
-        )
+        Check.at_most("stroke", max(behind, ahead), 0.5 * stroke, machine.slave_unit, source, at, ALLOWANCE * stroke)
     ]
 
 
@@ -286,30 +258,19 @@ def _motor(profile: CamProfile, task: Task, motor: MotorMeasures) -> list[Check]
     curve = task.limits.motor
     if curve is None:
         return []
-    top, source = (
-        curve.top_speed,
+    top, most = curve.top_speed, curve.points[0][1]
+    source = "peak speed of the motor, exact, against the end of its torque-speed curve"
+    at = greatest_magnitude(profile, 1).at
+    checks = [Check.at_most("motor_speed", motor.peak_speed, top, "rad/s", source, at, ALLOWANCE * top)]
+    name, source = (
+        "motor_torque",
         "torque against what the motor gives at its speed, where that is nearest or exceeded most",
     )
-    checks = [
-        _at_most(
-            "motor_speed",
-            motor.peak_speed,
-            top,
-            ALLOWANCE * top,
-            "rad/s",
-            greatest_magnitude(profile, 1).at,
-            "peak speed of the motor, exact, against the end of its torque-speed curve",
-        )
-    ]
     if motor.peak_torque is not None:
         torque, available = greatest_load(profile, task, curve)
-        checks.append(
-            _at_most("motor_torque", torque.value, available, ALLOWANCE * curve.points[0][1], "N m", torque.at, source)
-        )
+        checks.append(Check.at_most(name, torque.value, available, "N m", source, torque.at, ALLOWANCE * most))
     elif task.machine.moves_something:
-        checks.append(
-            Check("motor_torque", False, None, curve.points[0][1], "N m", greatest_jump(profile, 1).at, source)
-        )
+        checks.append(Check(name, False, None, most, "N m", greatest_jump(profile, 1).at, source))
     return checks
 
 
@@ -345,47 +306,34 @@ def _servo(response: ServoResponse | None, cut: Cut, *, transition: bool) -> lis
     settled = needed is not None and needed <= cut.sync_zone
     equation = "eq. 6" if shear > 0 else "eq. 5"
     error = response.shear_zone_error if response else None
-    in_shear = Check(
-        "shear_zone_error",
-        error is not None and error <= cut.sync_tolerance,
-        error,
-        cut.sync_tolerance,
-        "m",
-        None,
-        "tool against material in the shear zone, at every sampling phase",
-    )
-    if not transition:
-        return [in_shear]
-    return [
-        Check(
+    follows = response.peak_following_error if response else None
+    zone, rule = cut.sync_zone, f"l_t + l_j <= l_s ({equation}) with l_t"
+    rows: list[tuple[str, bool, float | None, float | None, str]] = [
+        (
             "following_error",
             response is not None,
-            response.peak_following_error if response else None,
-            None,
-            "m",
+            follows,
             None,
             "greatest command minus axis, at every sampling phase (S1's servo)",
         ),
-        Check(
+        (
             "crossing",
-            settled or (crossed is not None and crossed <= cut.sync_zone),
+            settled or (crossed is not None and crossed <= zone),
             crossed,
-            cut.sync_zone,
-            "m",
-            None,
-            f"l_t + l_j <= l_s ({equation}) with l_t to the first crossing of the ideal line, or settled before",
+            zone,
+            f"{rule} to the first crossing of the ideal line, or settled before",
         ),
-        Check(
-            "settling",
-            settled,
-            needed,
-            cut.sync_zone,
-            "m",
-            None,
-            f"l_t + l_j <= l_s ({equation}) with l_t the settling length to the sync tolerance",
+        ("settling", settled, needed, zone, f"{rule} the settling length to the sync tolerance"),
+        (
+            "shear_zone_error",
+            error is not None and error <= cut.sync_tolerance,
+            error,
+            cut.sync_tolerance,
+            "tool against material in the shear zone, at every sampling phase",
         ),
-        in_shear,
     ]
+    kept = rows if transition else rows[-1:]
+    return [Check(name, passed, value, limit, "m", None, source) for name, passed, value, limit, source in kept]
 
 
 def _axis(profile: CamProfile, task: Task, servo: Servo, slowest: float) -> list[Check]:
@@ -402,7 +350,7 @@ def _axis(profile: CamProfile, task: Task, servo: Servo, slowest: float) -> list
         return found
     worst = float(line_speed_errors(profile, task, [servo], speeds).max())
     source = f"tool against material in the shear zone at {_SPEEDS} line speeds from {slowest * v:.4g} m/s, at every sampling phase"
-    return [_at_most("sync_over_line_speeds", worst, task.cut.sync_tolerance, 0.0, "m", None, source), *found]
+    return [Check.at_most("sync_over_line_speeds", worst, task.cut.sync_tolerance, "m", source), *found]
 
 
 def _minimum_lengths(response: ServoResponse | None, task: Task) -> list[Check]:
@@ -438,13 +386,12 @@ def _minimum_lengths(response: ServoResponse | None, task: Task) -> list[Check]:
             None,
             "minimum cut length (eq. 10) with l_t the settling length to the sync tolerance",
         ),
-        _at_most(
+        Check.at_most(
             "physical_cut_length",
             physical(task.with_cut(as_one)).length / s,
             cut.length,
-            ALLOWANCE * cut.length,
             "m",
-            None,
             "shortest cut length of a perfect axis under limits of speed, acceleration and jerk",
+            room=ALLOWANCE * cut.length,
         ),
     ]

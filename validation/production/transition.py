@@ -29,15 +29,12 @@ def judge_transition(profile: CamProfile, zero: float, task: Task) -> tuple[Chec
     task
         Machine and limits; the cut's line speed is that at which they are to hold.
     """
-    v, limits, unit = task.cut.line_speed, task.limits, task.machine.slave_unit
+    v, limits, unit, least = task.cut.line_speed, task.limits, task.machine.slave_unit, task.least_velocity
     slowest, fastest = (extremum.value * v for extremum in profile.extrema(1))
     checks = [
         _at_most("speed", max(abs(slowest), abs(fastest)), limits.speed, f"{unit}/s"),
-        Check(
-            "reversal", slowest >= task.least_velocity - _ALLOWED * limits.speed, slowest, task.least_velocity, f"{unit}/s",
-            None, "exact",
-        ),
-    ]  # fmt: skip
+        Check("reversal", slowest >= least - _ALLOWED * limits.speed, slowest, least, f"{unit}/s", None, "exact"),
+    ]
     for order, name, limit in ((2, "acceleration", limits.acceleration), (3, "jerk", limits.jerk)):
         peak = max(abs(extremum.value) for extremum in profile.extrema(order)) * v**order
         checks.append(_at_most(name, peak, limit, f"{unit}/s^{order}"))
@@ -47,8 +44,8 @@ def judge_transition(profile: CamProfile, zero: float, task: Task) -> tuple[Chec
         checks.append(_at_most(name, float(steps[order]), allowed[order], (unit, f"{unit}/s", f"{unit}/s^2")[order]))
     if task.machine.guide is not None:
         low, high = task.machine.guide
-        least, greatest = (zero + extremum.value for extremum in profile.extrema(0))
-        beyond = max(low - least, greatest - high, 0.0)
+        behind, ahead = (zero + extremum.value for extremum in profile.extrema(0))
+        beyond = max(low - behind, ahead - high, 0.0)
         checks.append(_at_most("stroke", beyond, _ALLOWED * (high - low), unit))
     if limits.motor is not None:
         checks.append(_at_most("motor", _load(profile, zero, task), 1.0, "1"))
