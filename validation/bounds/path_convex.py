@@ -12,6 +12,7 @@ points an interval.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,7 +26,7 @@ _SHARES = 0.5 * _WEIGHTS
 INTERVALS = 250
 SEARCH = 60, 1e-10
 """Steps of Newton's method at most, and the least share of a step that is tried."""
-HALVINGS = 50
+HALVINGS = 26
 # Powers of e of the prices looked at, times that of a typical motion; and typical motions, as multiples of the straight line.
 LEAST, GREATEST = -18.0, 14.0
 FACTORS = (0.5, 1.0, 2.0, 5.0)
@@ -91,17 +92,21 @@ class PathDual:
     def __init__(self, task: PathTask, tail: float = 0.0, search: tuple[int, float] = SEARCH) -> None:
         self._steps, self._least = search
         self._grid = _grid(task, tail)
+        self._ended = False
 
     def best(self) -> float:
         """Greatest value over the price of time."""
         line = self._grid.ends[0] + (self._grid.ends[1] - self._grid.ends[0]) * (np.arange(INTERVALS) + 0.5) / INTERVALS
         typical = float(line.mean())
         unit = typical ** (8 / 3) / float(self._grid.half.mean()) / (self._grid.width * INTERVALS) ** 2
-        p, greatest = np.zeros(INTERVALS + 1), 0.0
         low, high = LEAST, GREATEST
+        p, value, time = self.at_price(unit * math.exp(low), np.zeros(INTERVALS + 1), line)
+        greatest = max(value, 0.0)
+        if self._ended and time <= self._grid.time:  # there is more time than the softest motion takes
+            return greatest
         for _ in range(HALVINGS):
             middle = 0.5 * (low + high)
-            price = unit * float(np.exp(middle))
+            price = unit * math.exp(middle)
             p, value, time = self.at_price(price, p, line)
             greatest = max(greatest, value)
             low, high = (middle, high) if time > self._grid.time else (low, middle)
@@ -141,7 +146,7 @@ class PathDual:
         """Newton's method for one price: ``p``, the value, and the time that the motion takes which the price asks for."""
         from scipy.linalg import solveh_banded
 
-        h, value = self._grid.width, self._value(p, price)
+        h, value, self._ended = self._grid.width, self._value(p, price), False
         for _ in range(self._steps):
             z, _, curve, _ = self._parts(p, price)
             rise = np.zeros(len(p))
@@ -167,6 +172,7 @@ class PathDual:
                 break
             p, value = p + share * step, new
             if gain < ENOUGH * max(abs(value), 1e-300):
+                self._ended = True
                 break
         *_, pace = self._parts(p, price)
         return p, value, h * float(pace.sum())

@@ -17,26 +17,35 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.validation.bounds.path_task import PathTask
 
-KNOTS = (16, 8)
+KNOTS = (20, 6)
 """Pieces of the spline along the path, and across it."""
-ASKED = (60, 24)
+ASKED = (60, 18)
 """Places at which the inequality is asked for."""
-LOOKED = (240, 90)
+LOOKED = (320, 90)
 """Places at which it is looked at afterwards."""
 ROUNDS, MORE = 2, 300
 """How often the places where it is broken most are added, and how many of them."""
 SMALL = 1e-3
 """What broken inequalities may cost, as a share of the bound."""
-LEVELS, FINE = 5, 2e-2
+LEVELS, FINE = 5, 1.5e-2
 """How many levels are tried for the greatest that is proved, and to what share of the one given."""
 HOPELESS, TOWARDS = 0.8, 0.6
 """Share of the level tried next where little was proved; how far between what is proved and what is not the others lie."""
+ACCURACY = 1e-4
+"""Accuracy of the cone programmes (scaled): what they leave broken is looked at afterwards."""
+ENOUGH = {"square": 0.98, "drawn": 0.99, "peak": 0.0}
+"""Share of a level that need not be made any better; a peak's is proved or not."""
+MOST = 1.1
+"""Multiple of the level that is asked for at most: where no motion at all is in a tube its spline would run away."""
 REGULAR = 1e-9
 """Weight that keeps what no place asks for from running away."""
 
@@ -190,78 +199,103 @@ def _proved(task: PathTask, tube_of: Callable[[PathTask, float], Tube], kind: st
 def _bound(task: PathTask, tube: Tube, kind: str, level: float, least: float) -> float:
     """Best bound of a spline in a tube, less what it is broken by; for a peak positive where the level is proved to be too low.
 
-    What comes to less than ``least`` even if it were not broken is not made any better.
+    What comes to less than ``least`` even if it were not broken is not made any better, nor what is near enough to the level.
     """
     spline = _Spline(task, tube)
-    x, y = spline.places(*ASKED)
-    far_x, far_y = spline.places(*LOOKED)
+    x, energy = (part.ravel() for part in spline.places(*ASKED))
+    far_x, far_energy = spline.places(*LOOKED)
     ends = spline.ends()
     value, unit = -math.inf, task.time if kind == "peak" else level
     for _ in range(ROUNDS):
-        weights = _best(spline, x, y, kind, level)
+        weights = _best(spline, x, energy, kind, level)
         if weights is None:
             break
-        broken = _broken(spline, far_x, far_y, weights, kind, level)
+        broken = _broken(spline, far_x, far_energy, weights, kind, level)
         # a motion passes each place once, at the worst energy at most
-        worst_there = np.maximum(broken.reshape(LOOKED[1], LOOKED[0]).max(axis=0), 0.0)
-        cost = float(np.trapezoid(worst_there, far_x[: LOOKED[0]])) * spline.whole
+        worst_there = np.maximum(broken.max(axis=0), 0.0)
+        cost = float(np.trapezoid(worst_there, far_x[0])) * spline.whole
         value = max(value, float(ends @ weights) - cost)
-        if cost <= SMALL * unit or value + cost < least or value >= (0.0 if kind == "peak" else level):
+        if cost <= SMALL * unit or value + cost < least or value >= ENOUGH[kind] * level:
             break
-        worst = np.argsort(broken)[-MORE:]
-        x, y = np.append(x, far_x[worst]), np.append(y, far_y[worst])
+        worst = np.argsort(broken, axis=None)[-MORE:]
+        x, energy = np.append(x, far_x.ravel()[worst]), np.append(energy, far_energy.ravel()[worst])
     return value
 
 
 class _Spline:
-    """Values and derivatives of a tensor spline over ``s`` and a power of the kinetic energy, and of ``λ``, at places of a tube."""
+    """A tensor spline over ``s`` and a power of the kinetic energy, and ``λ``, on a tube."""
 
     def __init__(self, task: PathTask, tube: Tube) -> None:
         self._task, self._tube = task, tube
         self._s = task.stretched
         self.whole = float(self._s[-1])
         self._range = float(tube.low.min()) ** _POWER, float(tube.high.max()) ** _POWER
-        self._knots = tuple(
-            np.concatenate([np.zeros(3), np.linspace(0.0, 1.0, count + 1), np.ones(3)]) for count in KNOTS
-        )
 
     def places(self, along: int, across: int) -> tuple[FloatArray, FloatArray]:
-        """Places in the tube: shares of the path, and kinetic energies."""
-        grid = np.meshgrid(0.5 - 0.5 * np.cos(np.pi * np.linspace(0, 1, along)), np.linspace(0.0, 1.0, across))
-        x, share = (part.ravel() for part in grid)
-        low, high = (np.interp(x * self.whole, self._s, part) ** _POWER for part in (self._tube.low, self._tube.high))
+        """Places in the tube: shares of the path, a column for each, and kinetic energies (J)."""
+        line = 0.5 - 0.5 * np.cos(np.pi * np.linspace(0, 1, along))
+        low, high = (
+            np.interp(line * self.whole, self._s, part) ** _POWER for part in (self._tube.low, self._tube.high)
+        )
         floor = (1e-6 * max(self._task.energies)) ** _POWER
-        return x, np.maximum(low + share * (high - low), floor) ** (1 / _POWER)
+        energy = np.maximum(low + np.linspace(0.0, 1.0, across)[:, None] * (high - low), floor) ** (1 / _POWER)
+        return np.broadcast_to(line, energy.shape), energy
 
     def inertia(self, x: FloatArray) -> FloatArray:
         """Inertia at shares of the path."""
         return np.interp(x * self.whole, self._s, self._task.inertia)
 
-    def rubbed(self, x: FloatArray) -> FloatArray:
+    def _rubbed(self, x: FloatArray) -> FloatArray:
         """Energy that friction takes per stretched length, at shares of the path."""
         return self._task.friction * np.sqrt(self.inertia(x) / 2)
 
-    def rows(self, x: FloatArray, energy: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Give derivatives over ``s`` and over the kinetic energy, a row for each place; the column of ``λ`` is zero."""
-        bottom, top = self._range
-        y = np.clip((energy**_POWER - bottom) / (top - bottom), 0.0, 1.0)
-        dy = _POWER * energy ** (_POWER - 1) / (top - bottom)
-        along, across = _values(self._knots[0], x, 0), _values(self._knots[1], y, 0)
-        by_s = _products(_values(self._knots[0], x, 1), across) / self.whole
-        by_energy = _products(along, _values(self._knots[1], y, 1)) * dy[:, None]
-        none = np.zeros((len(x), 1))
-        return np.hstack([by_s, none]), np.hstack([by_energy, none])
+    def rows(self, x: FloatArray, energy: FloatArray) -> tuple[NDArray[np.intp], FloatArray, FloatArray]:
+        """Give a row for each place: which weights count, that of ``λ`` the last, and their factors in two sums.
+
+        The sums are ``φ_s - F √(I/2) φ_E + λ (I/2) E^(-1/2)`` and ``φ_E``.
+        """
+        y, steep = self._across(energy)
+        (i, at_x), (j, at_y) = _local(KNOTS[0], x), _local(KNOTS[1], y)
+        columns = (i[:, None, None] + np.arange(4)[:, None]) * (KNOTS[1] + 3) + j[:, None, None] + np.arange(4)
+        slope = _products(at_x[0], at_y[1] * steep[:, None])
+        linear = _products(at_x[1], at_y[0]) / self.whole - self._rubbed(x)[:, None] * slope
+        return (
+            np.column_stack([columns.reshape(len(x), -1), np.full(len(x), self.size - 1)]),
+            np.column_stack([linear, self.inertia(x) / 2 / np.sqrt(energy)]),
+            np.column_stack([slope, np.zeros(len(x))]),
+        )
 
     def values(self, x: FloatArray, energy: FloatArray, weights: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Give what the rows of places come to with weights, the linear part with that of ``λ``, without making them."""
+        """Give what the two sums come to with weights, at places as `places` gives them, without their rows."""
+        y, steep = self._across(energy)
+        i, at_x = _local(KNOTS[0], x[0])
+        sheet = weights[:-1].reshape(KNOTS[0] + 3, KNOTS[1] + 3)[i[:, None] + np.arange(4)]
+        column = np.arange(len(i))
+        j = np.minimum((y * KNOTS[1]).astype(np.intp), KNOTS[1] - 1)
+        d = y - j / KNOTS[1]
+        inner = np.arange(KNOTS[1])[:, None] + np.arange(4)
+        # of each column and piece across the Taylor coefficients
+        by_s, value = (
+            np.einsum("cpi,pki->cpk", np.einsum("ci,cij->cj", of, sheet)[:, inner], _pieces(KNOTS[1]))
+            for of in (at_x[1] / self.whole, at_x[0])
+        )
+        zero, one, two, three = np.moveaxis(by_s[column, j], -1, 0)
+        linear = zero + d * (one + d * (two + d * three))
+        _, one, two, three = np.moveaxis(value[column, j], -1, 0)
+        slope = (one + d * (2.0 * two + d * 3.0 * three)) * steep
+        linear += weights[-1] * self.inertia(x[0]) / 2 / np.sqrt(energy) - self._rubbed(x[0]) * slope
+        return linear, slope
+
+    @property
+    def size(self) -> int:
+        """Number of weights."""
+        return (KNOTS[0] + 3) * (KNOTS[1] + 3) + 1
+
+    def _across(self, energy: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Where kinetic energies lie across the tube, from 0 to 1, and the derivative of that."""
         bottom, top = self._range
-        y = np.clip((energy**_POWER - bottom) / (top - bottom), 0.0, 1.0)
-        dy = _POWER * energy ** (_POWER - 1) / (top - bottom)
-        sheet = weights[:-1].reshape(KNOTS[0] + 3, KNOTS[1] + 3)
-        by_s = (_values(self._knots[0], x, 1) @ sheet * _values(self._knots[1], y, 0)).sum(axis=1) / self.whole
-        by_energy = (_values(self._knots[0], x, 0) @ sheet * _values(self._knots[1], y, 1)).sum(axis=1) * dy
-        by_s = by_s + weights[-1] * self.inertia(x) / 2 / np.sqrt(energy)
-        return by_s - self.rubbed(x) * by_energy, by_energy
+        place = np.clip((energy**_POWER - bottom) / (top - bottom), 0.0, 1.0)
+        return place, _POWER * energy ** (_POWER - 1) / (top - bottom)
 
     def rises(self) -> tuple[FloatArray, FloatArray]:
         """Coefficients of the spline's derivative across the tube, a row each, and the least of them for ``φ_E >= -1`` everywhere.
@@ -270,7 +304,7 @@ class _Spline:
         that is linear in the share. Those of no place of the tube are left out.
         """
         bottom, top = self._range
-        along, across = self._knots
+        along, across = (_knots(count) for count in KNOTS)
         room = top - bottom
         middle = 0.5 * (across[2:-3] + across[3:-2])
         low, high = (side**_POWER for side in (self._tube.low, self._tube.high))
@@ -282,7 +316,7 @@ class _Spline:
                 first, last = (bottom + room * float(across[k]) for k in (j + 1, j + 4))
                 if last < bounds[0] or first > bounds[1]:
                     continue
-                row = np.zeros((KNOTS[0] + 3) * (KNOTS[1] + 3) + 1)
+                row = np.zeros(self.size)
                 at = i * (KNOTS[1] + 3) + j
                 row[at : at + 2] = np.array([-3.0, 3.0]) / (across[j + 4] - across[j + 1])
                 rows.append(row)
@@ -291,11 +325,16 @@ class _Spline:
 
     def ends(self) -> FloatArray:
         """Give what the bound is made of: the spline at the start less that at the end, less ``λ`` times the time."""
-        bottom, top = self._range
-        energy = np.array(self._task.energies)
-        y = np.clip((energy**_POWER - bottom) / (top - bottom), 0.0, 1.0)
-        both = _products(_values(self._knots[0], np.array([0.0, 1.0]), 0), _values(self._knots[1], y, 0))
-        return np.append(both[0] - both[1], -self._task.time)
+        found = np.zeros(self.size)
+        for x, energy, sign in zip((0.0, 1.0), self._task.energies, (1.0, -1.0), strict=True):
+            (i, along), (j, across) = (
+                _local(count, np.array([at]))
+                for count, at in zip(KNOTS, (x, self._across(np.asarray(energy))[0]), strict=True)
+            )
+            sheet = found[:-1].reshape(KNOTS[0] + 3, KNOTS[1] + 3)
+            sheet[i[0] : i[0] + 4, j[0] : j[0] + 4] += sign * np.outer(along[0], across[0])
+        found[-1] = -self._task.time
+        return found
 
     @property
     def stands(self) -> bool:
@@ -307,22 +346,30 @@ _POWER = 0.5
 """Power of the kinetic energy across the tube: the speed."""
 
 
-def _values(knots: FloatArray, x: FloatArray, order: int) -> FloatArray:
+def _knots(count: int) -> FloatArray:
+    return np.concatenate([np.zeros(3), np.linspace(0.0, 1.0, count + 1), np.ones(3)])
+
+
+@lru_cache
+def _pieces(count: int) -> FloatArray:
+    """Taylor coefficients, at the start of each of so many even pieces, of the four cubic B-splines that live there."""
     from scipy.interpolate import BSpline
 
-    basis = BSpline(knots, np.eye(len(knots) - 4), 3)
-    return np.asarray(basis(x, nu=order))
+    splines = BSpline(_knots(count), np.eye(count + 3), 3)
+    taylor = np.stack([splines(_knots(count)[3:-4], nu=order) / math.factorial(order) for order in range(4)])
+    return np.stack([taylor[:, k, k : k + 4] for k in range(count)])
+
+
+def _local(count: int, x: FloatArray) -> tuple[NDArray[np.intp], FloatArray]:
+    """First of the four B-splines that live at places, and their values and derivatives, a row for each place."""
+    piece = np.minimum((x * count).astype(np.intp), count - 1)
+    d = (x - piece / count)[:, None]
+    zero, one, two, three = np.moveaxis(_pieces(count)[piece], 1, 0)
+    return piece, np.stack([zero + d * (one + d * (two + d * three)), one + d * (2.0 * two + d * 3.0 * three)])
 
 
 def _products(along: FloatArray, across: FloatArray) -> FloatArray:
-    return np.asarray(np.einsum("ij,ik->ijk", along, across).reshape(len(along), -1))
-
-
-def _parts(spline: _Spline, x: FloatArray, energy: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Linear part ``φ_s - F √(I/2) φ_E + λ (I/2) E^(-1/2)`` and ``φ_E``, a row for each place."""
-    by_s, by_energy = spline.rows(x, energy)
-    by_s[:, -1] = spline.inertia(x) / 2 / np.sqrt(energy)
-    return by_s - spline.rubbed(x)[:, None] * by_energy, by_energy
+    return (along[:, :, None] * across[:, None, :]).reshape(len(along), -1)
 
 
 def _broken(
@@ -333,50 +380,58 @@ def _broken(
     if kind == "square":  # φ_z² 9/64 with φ_z = φ_E 4/3 z^(1/3)
         return np.asarray(0.25 * slope**2 * np.sqrt(energy) - linear)
     if kind == "peak":
-        return np.asarray(level * np.sqrt(spline.inertia(x) / 2) * np.abs(slope) - linear)
+        return np.asarray(level * np.sqrt(spline.inertia(x[0]) / 2) * np.abs(slope) - linear)
     return -linear
 
 
 def _best(spline: _Spline, x: FloatArray, energy: FloatArray, kind: str, level: float) -> FloatArray | None:
     """Solve the cone programme on given places; None where the solver does not end."""
     import clarabel
-    from scipy.sparse import csc_array
+    from scipy.sparse import csc_array, csr_array, eye_array, vstack
 
-    linear, slope = _parts(spline, x, energy)
-    count, size = len(x), linear.shape[1]
+    count, size = len(x), spline.size
     # the spline in units of the level, over time where the level is a torque
     unit = np.full(size, level)
     unit[-1] = level / spline.ends()[-1] * -1.0
-    linear, slope = linear * unit, slope * unit
+    per_place = level / spline.whole
+    columns, linear, slope = spline.rows(x, energy)
+    linear, slope = (factors * unit[columns] / per_place for factors in (linear, slope))
     goal = -(spline.ends() * unit) / level
+
+    def rows(*each: FloatArray) -> Any:
+        """Rows of the programme, so many for each place."""
+        of, starts = np.repeat(columns, len(each), axis=0), np.arange(len(each) * count + 1) * columns.shape[1]
+        return csr_array((np.stack(each, axis=1).ravel(), of.ravel(), starts), shape=(len(each) * count, size))
+
     if kind == "square":
-        scale = level / spline.whole
-        rows = np.empty((3 * count, size))
-        rows[0::3] = rows[1::3] = -0.5 * linear / scale
-        rows[2::3] = -0.5 * slope * (energy**0.25)[:, None] / math.sqrt(scale)
+        steep = -0.5 * slope * (math.sqrt(per_place) * energy**0.25)[:, None]
+        blocks = [rows(-0.5 * linear, -0.5 * linear, steep)]
         right = np.tile([0.5, -0.5, 0.0], count)
         cones = [clarabel.SecondOrderConeT(3)] * count
     elif kind == "drawn":
-        scale = level / spline.whole
         rises, least = spline.rises()
         rises, most = rises * unit / level, -least / level
-        rows = np.vstack([-linear / scale, rises, -rises])
+        blocks = [rows(-linear), csr_array(rises), csr_array(-rises)]
         right = np.concatenate([np.zeros(count + len(most)), most])
         cones = [clarabel.NonnegativeConeT(len(right))]
     else:
         push = level * np.sqrt(spline.inertia(x) / 2)[:, None] * slope
-        rows = np.vstack([push - linear, -push - linear]) / (level / spline.whole)
-        bounded = np.vstack([np.eye(size), -np.eye(size)])
-        rows = np.vstack([rows, bounded])
+        blocks = [rows(push - linear, -push - linear), eye_array(size), -eye_array(size)]
         right = np.concatenate([np.zeros(2 * count), np.ones(2 * size)])
         cones = [clarabel.NonnegativeConeT(2 * count + 2 * size)]
+    if kind != "peak":
+        blocks.append(csr_array(-goal[None, :]))
+        right = np.append(right, MOST)
+        cones = [*cones, clarabel.NonnegativeConeT(1)]
     if spline.stands:
-        rows = np.vstack([rows, np.append(np.zeros(size - 1), -1.0)])
+        blocks.append(csr_array(([-1.0], ([0], [size - 1])), shape=(1, size)))
         right = np.append(right, 0.0)
         cones = [*cones, clarabel.NonnegativeConeT(1)]
     settings = clarabel.DefaultSettings()
-    settings.verbose = False
-    regular = csc_array(REGULAR * np.eye(size))
-    answer = clarabel.DefaultSolver(regular, goal, csc_array(rows), right, cones, settings).solve()
+    settings.verbose = settings.presolve_enable = settings.iterative_refinement_enable = False
+    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = ACCURACY
+    regular, matrix = csc_array(REGULAR * eye_array(size)), csc_array(vstack(blocks))
+    matrix.eliminate_zeros()
+    answer = clarabel.DefaultSolver(regular, goal, matrix, right, cones, settings).solve()
     weights = np.asarray(answer.x) * unit
     return weights if np.isfinite(weights).all() else None

@@ -21,6 +21,8 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(3)
 
 CELLS = 200
 HALVINGS = 60
+ACCURACY = 1e-6
+"""Accuracy of the cone programme: its multipliers bound whatever they are."""
 
 
 def least_square_limited(task: PathTask) -> float:
@@ -106,7 +108,8 @@ def _multipliers(task: PathTask) -> tuple[FloatArray, FloatArray, float] | None:
         cones += [clarabel.SecondOrderConeT(3)] * n
     goal = np.concatenate([np.zeros(2 * n + 1), np.full(n, h), np.zeros(n)])
     settings = clarabel.DefaultSettings()
-    settings.verbose = False
+    settings.verbose = settings.presolve_enable = settings.iterative_refinement_enable = False
+    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = ACCURACY
     size = 4 * n + 1
     answer = clarabel.DefaultSolver(
         csc_array((size, size)), goal, csc_array(vstack(blocks)), np.concatenate(sides), cones, settings
