@@ -14,6 +14,7 @@ from camwright.design.optimise import (
     require_moving,
     solve,
 )
+from camwright.design.place import place_beside
 from camwright.design.place_cost import place_for
 from camwright.design.returns.curve_limits import motor_limits, motor_speed_limits
 from camwright.design.returns.ipopt import SolveStatus
@@ -75,6 +76,7 @@ def solve_axis(
     """Design the cycle of a cutting machine whose axis keeps to the material in the shear zone.
 
     The limits hold for the command, and for the axis too wherever the tolerance can then still be kept; `Solution.axis` says whether.
+    A free place is that of the servo-blind design, or for a shaped command a better one beside it.
 
     Parameters
     ----------
@@ -119,6 +121,17 @@ def solve_axis(
     if command == "in_sync" or not machine.placed:
         blind = _servo_blind(task, cost, designs if suggest else None)
     placed = machine if blind is None else blind.machine
+    if command == "shaped" and not machine.placed and cost != "sync_error":
+
+        def at_full_speed(there: Task) -> float:
+            try:
+                return solve_axis(there, objective, command, servos[:1], suggest=False).minimised
+            except (InfeasibleError, InputError, SolverError):
+                return math.inf
+
+        placed = place_beside(
+            task.with_machine(placed), at_full_speed, 1 if OBJECTIVES[cost].of == "motor" else 3
+        ).machine
     structure = None if blind is None or command == "shaped" else blind.back
     problem = AxisProblem(task.with_machine(placed), command, servos, True, structure, between, shares=shares)
     order = OBJECTIVES[cost].order

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from functools import lru_cache
 
@@ -191,17 +192,18 @@ def test_a_motors_curve_is_kept() -> None:
     assert held.minimised >= free.minimised * (1 - 1e-6)
 
 
-def test_a_crank_that_is_free_is_placed_as_for_the_servo_blind_design() -> None:
+def test_a_crank_that_is_free_is_placed_for_its_axis() -> None:
+    """Where it is placed without a servo costs a quarter more at least; no place beside the one found is better by a hundredth."""
     crank = CrankSlider(0.15, 0.6, 0.0)
-    cut = replace(CUT, length=0.9, line_speed=0.5, sync_zone=0.15, shear_zone_at=0.1, sync_tolerance=5e-4, shaped=True)
-    limits = Limits(31.0, 400.0, 20_000.0)
-    stiff = Servo(600.0, 0.8, 150.0, 0.001, 1.0)
-    solution = solve_axis(Task(crank, cut, limits), "peak_acceleration", "shaped", (stiff,))
-    assert solution.machine == solve(Task(crank, cut, limits), "peak_acceleration").machine
-    assert (
-        servo_response(solution.profile, Task(solution.machine, cut, LIMITS), stiff).shear_zone_error
-        <= cut.sync_tolerance
-    )
+    cut = replace(CUT, length=0.9, line_speed=0.5, sync_zone=0.15, shear_zone_at=0.1, sync_tolerance=2e-4, shaped=True)
+    free, servo = Task(crank, cut, Limits(31.0, 400.0, 20_000.0)), Servo(200.0, 0.7, 60.0, 0.004, 1.0)
+    found = solve_axis(free, "peak_acceleration", "shaped", (servo,))
+    placed, blind = free.with_machine(found.machine), solve(free, "peak_acceleration").machine
+    steps = math.radians(3.0) * np.array([-2, -1, 1, 2])
+    tasks = [free.with_machine(blind), *(free.placed_at(placed.machine.place + step) for step in steps.tolist())]
+    there, *beside = [solve_axis(task, "peak_acceleration", "shaped", (servo,)).minimised for task in tasks]
+    assert found.minimised < min(0.8 * there, 1.01 * min(beside))
+    assert servo_response(found.profile, placed, servo).shear_zone_error <= cut.sync_tolerance
 
 
 def test_an_unstable_servo_is_refused() -> None:
