@@ -290,13 +290,14 @@ def _assembled(scan: SpeedScan, speeds: FloatArray, rows: FloatArray, at_top: st
 def _end(scan: SpeedScan, inside: float, outside: float) -> tuple[float, str]:
     """Find where a part ends between a line speed that passes and one that does not, and what fails there.
 
-    Found at the phases of the scan first, then taken inwards until it passes at more of them, which never see less.
+    Found at the phases of the scan first, then taken inwards until it passes at more of them, which never see less; not past where it
+    began without looking there, nor past the job's own line speed.
     """
 
     def excess(speed: float, phases: int) -> FloatArray:
         return np.asarray(scan.excess(np.array([speed]), phases)[0])
 
-    passing, failing = excess(inside, PHASES), excess(outside, PHASES)
+    begun, passing, failing = inside, excess(inside, PHASES), excess(outside, PHASES)
     low, high = _size(passing), max(_size(failing), 0.0)
     while abs(outside - inside) > ACCURACY * inside:
         part = min(max(low / (low - high), _ASIDE), 1.0 - _ASIDE)  # as if it rose evenly from end to end
@@ -310,9 +311,11 @@ def _end(scan: SpeedScan, inside: float, outside: float) -> tuple[float, str]:
     step = ACCURACY * (-1.0 if outside > inside else 1.0)
     for _ in range(_STEPS_INWARDS):
         found = excess(inside, _EDGE_PHASES)
-        if not (found > 1.0).any():
-            break
-        inside, failing, step = inside * (1.0 + step), found, 2.0 * step
+        if inside == scan.task.cut.line_speed or not (found > 1.0).any():
+            break  # the job's own line speed is as it was judged
+        inwards = inside * (1.0 + step)
+        inside = begun if min(inside, inwards) < begun < max(inside, inwards) else inwards
+        failing, step = found, 2.0 * step
     return inside, NAMES[_worst(failing)]
 
 

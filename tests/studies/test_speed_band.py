@@ -120,6 +120,15 @@ def test_a_shaped_cam_is_released_about_its_own_line_speed_only() -> None:
     assert not band.holds(0.5 * own)
 
 
+def test_a_shaped_cam_whose_own_line_speed_is_its_slowest_is_released_at_it() -> None:
+    """Just below it the cam passes at the phases of the scan alone; the end that passes at more phases lies at it, not beyond."""
+    job = replace(PAPER, servo_aware=True, slowest=1.0, cut=replace(PAPER.cut, shaped=True))
+    profile = solve_job(job).profile
+    ((low, high),) = band_of(profile, job).parts
+    own = job.cut.line_speed
+    assert (1.0 - 2 * ACCURACY) * own <= low <= own < high
+
+
 def test_the_corners_of_the_servo_narrow_the_band_and_are_named() -> None:
     profile = solve_job(parse_job(SHAPED, "shaped.toml")).profile
     ranges = '[servo.tolerance]\nbandwidth = "0.1 %"\n[objective]'
