@@ -14,6 +14,7 @@ from camwright.bender.calibration import Calibration
 from camwright.bender.drawing import Drawing
 from camwright.bender.job import BenderJob
 from camwright.bender.program_file import COLLISIONS, ROUNDING, BentOutline
+from camwright.house.numbers import number
 from camwright.profiles.notice import Notice, Number
 from camwright.validation.bender.collision import MOST_REPORTED
 from camwright.validation.check import Check
@@ -111,7 +112,7 @@ def size_words(found: Drawing) -> str:
 def check_words(check: Check) -> str:
     """Value and limit of a check in words."""
     unit = "" if check.unit == "1" else f" {check.unit}"
-    return f"{check.value:.3g}{unit}, allowed {check.limit:.3g}"
+    return f"{number(check.value, 3)}{unit}, allowed {number(check.limit, 3)}"
 
 
 def collision_lines(outline: BentOutline, job: BenderJob) -> list[str]:

@@ -14,6 +14,7 @@ from camwright.cli.views.line_ramps import plc_words
 from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.drives.audit import MEASURES, Audit, audit, audit_answer
 from camwright.figures.audit import audit_figures
+from camwright.house.numbers import number
 from camwright.house.output import Voice, complain
 from camwright.house.owned import owned
 from camwright.jobs.job import load_job
@@ -67,16 +68,16 @@ def _view(result: Audit, file: Path, files: list[Path]) -> RenderableType:
         mark, shown = " *" if result.is_sampled(measure) else "", units.measure(unit + power)
         table.add_row(
             f"{title} ({shown.printed}){mark}",
-            f"{own * shown.factor:.5g}",
-            f"{best * shown.factor:.5g}",
+            number(own * shown.factor),
+            number(best * shown.factor),
             "–" if saving is None else f"{round(saving * 100, 1) + 0.0:.1f} %",
         )
     reports = (result.report, result.optimum_report)
-    slips = [f"{1e6 * report.motion.sync_ratio_error:.4g}" for report in reports]
+    slips = [number(1e6 * report.motion.sync_ratio_error, 4) for report in reports]
     table.add_row("sync error of the tool's speed (1e-6)", *slips, "")
     servos, length = [report.servo for report in reports], units.shown["m"]
     for title, name in (("following error", "peak_following_error"), ("shear-zone error", "shear_zone_error")):
-        values = ["unstable" if servo is None else f"{length.factor * getattr(servo, name):.4g}" for servo in servos]
+        values = ["unstable" if servo is None else number(length.factor * getattr(servo, name), 4) for servo in servos]
         table.add_row(f"{title} of the servo ({length.printed})", *values, "")
     notes = [new_text(f"Note: {note}") for note in result.notes]
     if any(result.is_sampled(measure) for measure in MEASURES):

@@ -25,7 +25,7 @@ from camwright.cli.views.seams import seams_view
 from camwright.drives.options import chosen_targets
 from camwright.figures.line_plan import line_plan_figure
 from camwright.house.files import fill
-from camwright.house.numbers import converted, unit_shown, with_unit
+from camwright.house.numbers import number, shown, unit_shown, with_unit
 from camwright.house.output import Voice, complain
 from camwright.house.owned import Work, owned
 from camwright.jobs.job import load_job
@@ -116,16 +116,16 @@ def _views(study: ListStudy) -> list[RenderableType]:
         failed = [check.name for check in cam.report.checks if not check.passed]
         cams.add_row(
             str(cam.number),
-            f"{converted(cam.length, 'm', units):.6g}",
+            shown(cam.length, "m", 6, units),
             str(int((planned.of == cam.number - 1).sum())),
-            f"{converted(cam.line_speed, 'm/s', units):.5g}",
+            shown(cam.line_speed, "m/s", 5, units),
             "yes" if cam.bears_ramps else "no",
             new_text(f"FAILED: {', '.join(failed)}", "bold red") if failed else new_text("passed", "green"),
         )
     made = [change for change in planned.changes.values() if change.times]
     changes = new_table("Changes", ("from", "to", "how", f"line speed\n{speed}", "times"), left=("how",))
     for change in made[:_MOST_SHOWN]:
-        at = f"{converted(change.line_speed, 'm/s', units):.5g}"
+        at = shown(change.line_speed, "m/s", 5, units)
         changes.add_row(str(change.before), str(change.after), _HOW[change.how], at, str(change.times))
     return [cams, *([changes] if made else []), seams_view(study.tables, units), new_text(_said(study, len(made)))]
 
@@ -137,8 +137,8 @@ def _said(study: ListStudy, changes: int) -> str:
     line = planned.job.line
     jerk = "" if line.jerk is None else f" and {with_unit(line.jerk, 'm/s^3', 4, units)}"
     lines = [
-        f"{plan.time:.5g} s on a line that ramps with {with_unit(line.acceleration or 0.0, 'm/s^2', 4, units)}{jerk}",
-        f"{planned.time_at_slowest:.5g} s at the slowest piece's speed",
+        f"{number(plan.time)} s on a line that ramps with {with_unit(line.acceleration or 0.0, 'm/s^2', 4, units)}{jerk}",
+        f"{number(planned.time_at_slowest)} s at the slowest piece's speed",
         f"scrap {with_unit(planned.asked.scrap, 'm', 5, units)}",
     ]
     if changes > _MOST_SHOWN:

@@ -199,12 +199,12 @@ def _axis(design: Design) -> list[RenderableType]:
 
 def _um(length: float) -> str:
     """Write a length in micrometres."""
-    return f"{length * 1e6:.4g}"
+    return number(length * 1e6, 4)
 
 
 def _line_speeds(axis: AxisStudy) -> str:
     """Say for which line speeds a servo-aware design is made."""
-    low, high = (f"{speed * 60:.4g}" for speed in axis.line_speeds)
+    low, high = (number(speed * 60, 4) for speed in axis.line_speeds)
     if low == high:
         return f"at {high} m/min only"
     return f"at every line speed from {low} to {high} m/min ({len(axis.used)} of them carry it)"

@@ -12,7 +12,7 @@ from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import new_table, stacked
 from camwright.figures.envelope import envelope_figure
 from camwright.house.files import fill
-from camwright.house.numbers import converted, unit_shown
+from camwright.house.numbers import shown, unit_shown
 from camwright.house.output import Voice, complain
 from camwright.house.owned import owned
 from camwright.jobs.job import load_job
@@ -57,8 +57,8 @@ def _view(answer: EnvelopeAnswer) -> RenderableType:
     for row in answer.envelope.rows:
         speeds = (row.optimised, answer.in_tolerance(row.length), row.quintic, row.linear)
         table.add_row(
-            f"{converted(row.length, 'm', units):.5g}",
-            *("–" if speed is None else f"{converted(speed, 'm/s', units):.5g}" for speed in speeds),
+            shown(row.length, "m", 5, units),
+            *(shown(speed, "m/s", 5, units) for speed in speeds),
             row.binding,
         )
     return table

@@ -16,6 +16,7 @@ from camwright.drives.options import chosen_targets, parse_targets
 from camwright.drives.speed_tables import named, speed_tables, speed_tables_answer
 from camwright.drives.table_files import TableFiles, export
 from camwright.house.files import read_text
+from camwright.house.numbers import number
 from camwright.house.output import Voice, complain
 from camwright.house.owned import Work, write_owned
 from camwright.jobs.job import Job
@@ -129,9 +130,9 @@ def _view(written: TableFiles, directory: Path) -> RenderableType:
         table.add_row(
             result.target.name,
             str(result.table.points),
-            f"{result.position_error * 1e6:.3g}" + ("" if result.accurate else " *"),
-            f"{off.ratio * 1e6:.3g}",
-            "unbounded" if off.acceleration is None else f"{off.acceleration * 100:.3g}",
+            number(result.position_error * 1e6, 3) + ("" if result.accurate else " *"),
+            number(off.ratio * 1e6, 3),
+            number(None if off.acceleration is None else off.acceleration * 100, 3, without="unbounded"),
             "passed" if result.passed else "failed: " + ", ".join(failed),
             "\n".join(result.files) or "not released",
         )

@@ -17,7 +17,7 @@ from camwright.figures.family import family_figure
 from camwright.house.files import fill
 from camwright.house.json_text import to_json
 from camwright.house.language import Language
-from camwright.house.numbers import converted, number, unit_shown, with_unit
+from camwright.house.numbers import shown, unit_shown, with_unit
 from camwright.house.output import Voice, complain
 from camwright.house.owned import Work, owned
 from camwright.house.picture_files import write_pictures
@@ -118,9 +118,9 @@ def _views(found: Family) -> list[RenderableType]:
             failed = ["servo_tolerance"]
         cams.add_row(
             str(cam.number),
-            f"{converted(low, 'm/s', units):.5g}",
-            f"{converted(top, 'm/s', units):.5g}",
-            number(converted(max(cam.errors), "m", units)),
+            shown(low, "m/s", 5, units),
+            shown(top, "m/s", 5, units),
+            shown(max(cam.errors), "m", units=units),
             new_text(f"FAILED: {', '.join(failed)}", "bold red") if failed else new_text("passed", "green"),
         )
     return [
@@ -150,8 +150,8 @@ def _switching_view(found: Family) -> RenderableType:
         failed = sorted({check.name for checks in each.checks for check in checks if not check.passed})
         table.add_row(
             f"{each.changes[0].before} and {each.changes[0].after}",
-            f"{converted(each.up, 'm/s', units):.5g}",
-            f"{converted(each.down, 'm/s', units):.5g}",
+            shown(each.up, "m/s", 5, units),
+            shown(each.down, "m/s", 5, units),
             _HOW[each.how],
             new_text("passed", "green") if each.passed else new_text(f"FAILED: {', '.join(failed)}", "bold red"),
         )

@@ -13,6 +13,7 @@ from camwright.cli.options import Json, Quiet, TraceColumns, option_quantity
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.house.files import read_bytes, require_plain, write_files
+from camwright.house.numbers import number
 from camwright.house.output import Voice
 from camwright.profiles.errors import InputError
 from camwright.profiles.trace import Trace
@@ -133,6 +134,6 @@ def _view(path: Path, trace: Trace, found: Identified, files: Sequence[Path]) ->
         note = origin_of(found, name) if bounds is None else range_text(bounds, factor, "")
         words = name.replace("_", " ")
         table.add_row(words if symbol == words else f"{words} {symbol}", rounded(value, spread), written, note)
-    ending = f"fit {found.fit:.6f}, residual {found.residual * scale:.3g} {unit} rms over {found.rows} rows"
+    ending = f"fit {found.fit:.6f}, residual {number(found.residual * scale, 3)} {unit} rms over {found.rows} rows"
     notes = [new_text(f"Note: {note}") for note in found.notes]
     return stacked(table, new_text(ending), *notes, *([files_view(files)] if files else []))

@@ -213,7 +213,7 @@ def _tables_view(tables: RampTables) -> RenderableType:
                 kind,
                 result.target.name,
                 str(result.table.points),
-                f"{result.position_error * 1e6:.3g}",
+                number(result.position_error * 1e6, 3),
                 "failed: " + ", ".join(failed) if failed else "passed",
                 "\n".join(result.files) or "not released",
             )

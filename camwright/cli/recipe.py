@@ -224,10 +224,8 @@ def _compare_view(before: Path, after: Path, changes: list[Change]) -> Renderabl
 
 def _short(value: Any) -> str:
     """Write a value for the terminal; of checksums the first digits."""
-    if value is None:
-        return "–"
-    if isinstance(value, float):
-        return f"{value:.6g}"
+    if value is None or isinstance(value, float):
+        return number(value, 6)
     if isinstance(value, dict):
         return "\n".join(f"{path} {digest[:12]}" for path, digest in value.items()) or "not released"
     return str(value).replace("_", " ")

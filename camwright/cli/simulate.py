@@ -142,7 +142,7 @@ def _views(study: ShiftStudy) -> list[RenderableType]:
         "of all\nservos",
     )
     table = new_table(
-        f"{job.name}: {answer['pieces']} pieces in {study.cut_times[-1]:.6g} s ({unit})", heads, left=("",)
+        f"{job.name}: {answer['pieces']} pieces in {number(study.cut_times[-1], 6)} s ({unit})", heads, left=("",)
     )
     for motion in MOTIONS:
         found = answer[motion]

@@ -24,7 +24,7 @@ from camwright.cli.views.checks import checks_view
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import new_table, new_text, stacked
 from camwright.figures.trace import trace_figure
-from camwright.house.numbers import Units, number, unit_shown
+from camwright.house.numbers import Units, number, shown, unit_shown
 from camwright.house.output import Voice, complain
 from camwright.house.owned import owned
 from camwright.house.picture_files import write_pictures
@@ -148,10 +148,10 @@ def _cuts(found: RecordedRun, units: Units) -> RenderableType:
     for cut in some:
         if cut.number == len(found.cuts) - half + 1 and len(found.cuts) > _MOST_SHOWN:
             table.add_row("…", *[""] * 6)
-        errors = (f"{value * factor:z.4f}" for value in (cut.error, cut.greatest, cut.command, cut.axis))
+        errors = (f"{off * factor:z.4f}".replace("-", "−") for off in (cut.error, cut.greatest, cut.command, cut.axis))
         table.add_row(
             str(cut.number),
-            f"{cut.line_speed * units.shown['m/s'].factor:.4g}",
+            shown(cut.line_speed, "m/s", 4, units),
             *errors,
             "–" if cut.length is None else f"{cut.length * factor:.4f}",
         )

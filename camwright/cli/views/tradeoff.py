@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camwright.cli.views.parts import new_table, new_text, stacked
+from camwright.house.numbers import number
 from camwright.studies.tradeoff import TradeOff, words
 
 if TYPE_CHECKING:
@@ -33,6 +34,5 @@ def tradeoff_view(result: TradeOff) -> RenderableType:
 
 def _cell(value: float | None, cost: float | None) -> str:
     """Write a value and its multiple of the best."""
-    if value is None:
-        return "unbounded"
-    return f"{value:.4g}" if cost is None else f"{value:.4g} ×{cost:.2f}"
+    text = number(value, 4, without="unbounded")
+    return text if cost is None else f"{text} ×{cost:.2f}"
