@@ -329,7 +329,7 @@ def _infeasible(problem: AxisProblem, settles: _Ways | None) -> InfeasibleError:
     excess = (needed - tolerance) * 1e3
     text = (
         f"{{@sync_tolerance}} = {{tolerance}}: no {problem.command} command within the limits holds the axis to it in the shear zone and "
-        f"the ratio of the axis to {_percent(cut, tolerance)} (twice the tolerance over the shear zone); the least that one holds is "
+        f"the ratio of the axis to {_percent(cut, tolerance)} (twice the tolerance over the shear zone); the least found to be held is "
         f"{{needed}} and {_percent(cut, needed)}, {{excess}} too much, whatever the axis does elsewhere"
         + ("; the error alone is held to {alone}: the ratio binds" if by_ratio else "")
         + ("" if kept is None or kept == cut.line_speed else "; one is held to it from {line_speeds} up")

@@ -166,7 +166,7 @@ def _head(design: Design) -> list[str]:
     if starts is not None:
         lines.append(
             f"{starts.agreeing} of {starts.converged} starts agree, spread {starts.spread:.1e}, KKT residual "
-            f"{starts.residual:.1e}; {starts.valleys} local minima over the place of the sync zone"
+            f"{starts.residual:.1e}; local minima over the place of the sync zone: {starts.valleys}"
         )
     return [*lines, *machine.remarks(design.job.cut)]
 
