@@ -23,7 +23,7 @@ from camwright.design.returns.solver import solve_return
 from camwright.design.servo_aware.axis_motion import AxisMotion
 from camwright.design.torque.least_speed import drawn_power, least_speed
 from camwright.design.torque.placing import place_by_objective
-from camwright.design.torque.search import solve_torque, zone_peak
+from camwright.design.torque.search import TorqueSolution, solve_torque, zone_peak
 from camwright.design.torque.task import TorqueTask
 from camwright.design.torque.within_curve import keeps_curve, least_load, solve_within_curve
 from camwright.profiles.cut import Cut
@@ -223,16 +223,22 @@ def _solve_torque_ramped(task: Task, objective: CommandObjective, start: CamProf
         [start],
         floor,
     )
-    agreement = Agreement(found.starts, found.agreeing, found.spread, found.residual, 1)
+    return _searched(found, task, objective, found.value, iterations)
+
+
+def _searched(
+    found: TorqueSolution, task: Task, objective: CommandObjective, value: float, iterations: int = 0
+) -> Solution:
+    """Make the cycle of what a search from several starts found."""
     return Solution(
         task.machine,
         assemble(found.back, task),
         found.back,
         SolveStatus.BEST_FOUND,
         objective,
-        found.value,
+        value,
         iterations + found.iterations,
-        agreement,
+        Agreement(found.starts, found.agreeing, found.spread, found.residual, 1),
     )
 
 
@@ -314,13 +320,7 @@ def _solve_for_motor(task: Task, objective: CommandObjective, suggest: bool, tho
         within = solve_within_curve(task, decisive or objective, starts)
         if within is not None:
             value = within.value if decisive is None else _over_time(within.back, decisive, task.cut)
-            profile = assemble(within.back, task)
-            agreed = Agreement(within.starts, within.agreeing, within.spread, within.residual, 1)
-            found.append(
-                Solution(
-                    machine, profile, within.back, SolveStatus.BEST_FOUND, objective, value, within.iterations, agreed
-                )
-            )
+            found.append(_searched(within, task, objective, value))
     if not found and task.line.ramps and is_feasible(task):
         raise ramp_infeasible(task, suggest=suggest)
     if not found:
@@ -401,11 +401,7 @@ def _solve_torque(task: Task, objective: CommandObjective) -> Solution:
         given.append(solve_return(replace(problem, objective="rms_acceleration"))[0])
     floor = zone_peak(task) if objective == "peak_torque" else 0.0
     found = solve_torque(TorqueTask(task, problem, objective), starts=given, floor=floor)
-    agreement = Agreement(found.starts, found.agreeing, found.spread, found.residual, 1)
-    profile = assemble(found.back, task)
-    return Solution(
-        machine, profile, found.back, SolveStatus.BEST_FOUND, objective, found.value, found.iterations, agreement
-    )
+    return _searched(found, task, objective, found.value)
 
 
 def _solve_free_place(task: Task, objective: CommandObjective, suggest: bool, thorough: bool) -> Solution:

@@ -129,8 +129,7 @@ class ChangeRows:
         """Axis, or a derivative of it over the master, at places (m), each at `_TIMES` times after a sample."""
         servo, v = axis.servo, axis.task.cut.line_speed
         times = np.arange(_TIMES) * (servo.sample_time / _TIMES)
-        weights = [servo_weights(servo.loop, float(time)) for time in times]
-        each = np.array([(w.position, w.velocity, w.acceleration)[order] for w in weights]) / v**order
+        each = np.array([servo_weights(servo.loop, float(time))[order] for time in times]) / v**order
         samples = servo.sample_time * np.arange(each.shape[1])
         seen = places[:, None, None] - v * ((times + servo.delay)[:, None] + samples)
         matrix = np.empty((len(places) * _TIMES, self.basis.matrix.shape[1]))

@@ -7,13 +7,14 @@ in which the cam before it ends, and from its sync zone on it is the new cam's o
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from camwright.design.feasible.feasibility import edge
 from camwright.design.returns.possible import is_possible
-from camwright.design.returns.problem import ReturnProblem
+from camwright.design.returns.problem import ReturnProblem, return_problem
 from camwright.design.returns.scaling import resolved
 from camwright.design.returns.solver import solve_return
 from camwright.profiles.objective import MotionObjective
@@ -98,21 +99,15 @@ def transition_problem(
     end_slope = float(after.profile(after.zone_start, 2))
     task = within_ramps(after.task.at_speed(line_speed), max(abs(slope), abs(end_slope)) * line_speed**2)
     start, zone = place - after.zero, after.zone_start
-    least, greatest = float("-inf"), float("inf")
-    if task.machine.guide is not None:
-        least, greatest = (limit - place for limit in task.machine.guide)
-    return ReturnProblem(
+    least, greatest = (limit - place for limit in task.machine.guide or (-math.inf, math.inf))
+    return replace(
+        return_problem(task, objective),
         length=zone,
         height=float(after.profile(zone)) - start,
         start_ratio=ratio,
         end_ratio=float(after.profile(zone, 1)),
         start_slope=slope,
         end_slope=end_slope,
-        least_ratio=task.least_ratio,
-        greatest_ratio=task.greatest_ratio,
-        greatest_slope=task.greatest_slope,
-        greatest_jerk=task.greatest_jerk,
-        objective=objective,
         least_position=least,
         greatest_position=greatest,
     )

@@ -12,7 +12,6 @@ from camwright.design.servo_aware.command_basis import CommandBasis
 from camwright.design.servo_aware.servo_weights import (
     greatest_gains,
     memory,
-    sampled_states,
     servo_weights,
     state_weights,
 )
@@ -208,8 +207,7 @@ class Axis:
 
     def _weights(self, time: float, order: int) -> FloatArray:
         """Weights of the command's samples for the axis or a derivative over the master, a time (s) after a sample."""
-        weights = servo_weights(self.servo.loop, time)
-        return (weights.position, weights.velocity, weights.acceleration)[order] / self.task.cut.line_speed**order
+        return np.asarray(servo_weights(self.servo.loop, time)[order] / self.task.cut.line_speed**order)
 
 
 @dataclass(frozen=True, eq=False)
@@ -255,7 +253,8 @@ def _edge_states(axis: Axis, profile: CamProfile) -> tuple[FloatArray, FloatArra
     past = memory(axis.servo.loop)
     newest = zone.edges - axis.task.cut.line_speed * (zone.edge_times + axis.servo.delay)
     commands = _before(profile, tuple(newest.tolist()), axis.sample, shared(past) + 1)
-    return sampled_states(axis.servo, commands[:, : past + 1])
+    found = commands[:, : past + 1] @ state_weights(axis.servo.loop, past)
+    return found[:, :3], found[:, 3]
 
 
 def shared(past: int) -> int:

@@ -11,7 +11,6 @@ which stays linear when the command's samples are themselves linear in unknowns.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -31,21 +30,6 @@ from camwright.profiles.servo import (
 FORGOTTEN = 1e-14
 # Most samples of the past that a servo may need: a slower one has no use as an axis in sync, and its rows would fill the memory.
 MOST_SAMPLES = 20_000
-
-
-@dataclass(frozen=True, eq=False)
-class ServoWeights:
-    """Weights of the command's samples, newest first, a time after a sampling instant.
-
-    Parameters
-    ----------
-    position, velocity, acceleration
-        Weights for the axis' position (1), velocity (1/s) and acceleration (1/s²), shape ``(samples,)``.
-    """
-
-    position: FloatArray
-    velocity: FloatArray
-    acceleration: FloatArray
 
 
 @lru_cache(maxsize=1024)
@@ -77,8 +61,11 @@ def memory(servo: Servo) -> int:
 
 
 @lru_cache(maxsize=4096)
-def servo_weights(servo: Servo, time: float) -> ServoWeights:
-    """Weights at a time ``0 <= time <= dT`` (s) after a sampling instant; dead time and lead are the caller's."""
+def servo_weights(servo: Servo, time: float) -> FloatArray:
+    """Weights of the command's samples, newest first, a time ``0 <= time <= dT`` (s) after a sampling instant, shape ``(3, samples)``.
+
+    For the axis' position (1), velocity (1/s) and acceleration (1/s²). Dead time and lead are the caller's.
+    """
     past = _past_states(servo.loop, memory(servo.loop))
     part = sample_plant(servo.loop, time)
     after = part.transition.copy()
@@ -86,27 +73,7 @@ def servo_weights(servo: Servo, time: float) -> ServoWeights:
     rows = past @ after.T
     for number, weight in enumerate(servo.drive):
         rows[number] += weight * part.input
-    return ServoWeights(rows[:, 2].copy(), rows[:, 1].copy(), rows[:, 0].copy())
-
-
-def sampled_states(servo: Servo, samples: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """State of the plant at a sampling instant, and the velocity reference that is held from there.
-
-    Parameters
-    ----------
-    servo
-        The servo; dead time and lead are the caller's.
-    samples
-        The command's samples, newest first, shape ``(n, memory + 1)``.
-
-    Returns
-    -------
-    (states, reference)
-        Shapes ``(n, 3)`` and ``(n,)``, as in `camwright.profiles.servo.SampledPlant`.
-    """
-    states = samples @ _past_states(servo.loop, samples.shape[1] - 1)
-    drive = np.array(servo.drive)
-    return states, samples[:, : len(drive)] @ drive - servo.position_gain * states[:, 2]
+    return np.ascontiguousarray(rows.T[::-1])
 
 
 @lru_cache(maxsize=512)
@@ -157,8 +124,8 @@ def greatest_gains(servo: Servo, order: int, substeps: int) -> tuple[float, floa
     """
     up = down = 0.0
     for time in np.arange(substeps) * (servo.sample_time / substeps):
-        weights = servo_weights(servo, float(time))
-        sums = np.cumsum(weights.velocity) if order == 1 else np.cumsum(np.cumsum(weights.acceleration))
+        sums = np.cumsum(servo_weights(servo, float(time))[order])
+        sums = sums if order == 1 else np.cumsum(sums)
         sums *= servo.sample_time**order
         up = max(up, float(sums[sums > 0.0].sum()))
         down = max(down, -float(sums[sums < 0.0].sum()))

@@ -11,6 +11,7 @@ import math
 from collections.abc import Callable
 
 from camwright.profiles.closed_forms.transfer import Bounds, State, farthest, nearest
+from camwright.profiles.halving import halved
 from camwright.profiles.task import Task
 
 ROUNDING = 1e-9
@@ -49,10 +50,5 @@ def _least(task: Task, bounds: Callable[[float], Bounds], most: float) -> float:
         far, near = farthest(time, start, end, within), nearest(time, start, end, within)
         return far is not None and near is not None and near.distance - spare <= task.height <= far.distance + spare
 
-    low, high = 0.0, most * (1 + ROUNDING)
-    if not possible(high):
-        return math.inf
-    for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if possible(middle) else (middle, high)
-    return low * (1 - ROUNDING)
+    high = most * (1 + ROUNDING)
+    return halved(possible, high, 0.0, most=HALVINGS)[1] * (1 - ROUNDING) if possible(high) else math.inf

@@ -9,6 +9,7 @@ import numpy as np
 from camwright.profiles.closed_forms.overshoot import least_overshoot
 from camwright.profiles.closed_forms.reach import greatest_reach, least_acceleration
 from camwright.profiles.closed_forms.transfer import Bounds
+from camwright.profiles.halving import halved
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.profiles.task import Task
 
@@ -33,13 +34,7 @@ def farthest_speed(task: Task) -> float:
     height = task.height - pace * time
     limits = task.limits
     room = (limits.speed - pace) if height > 0 else pace - task.least_velocity
-    low, high = 0.0, room
-    for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        if _possible(task, middle, pace, time, height):
-            high = middle
-        else:
-            low = middle
+    low = halved(lambda change: _possible(task, change, pace, time, height), room, 0.0, most=HALVINGS)[1]
     return pace + math.copysign(low, height)
 
 

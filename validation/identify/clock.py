@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from camwright.profiles.halving import halved
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.profiles.servo import Servo
 from camwright.validation.identify.fit import CONFIDENCE, ROUNDS, Minimum, TraceFit, coordinate, value_at, without
@@ -296,10 +297,5 @@ def _quantile(weights: FloatArray, centres: FloatArray, widths: FloatArray, shar
 
     low = float((centres - 2.0 * CONFIDENCE * widths).min() - 1e-12)
     high = float((centres + 2.0 * CONFIDENCE * widths).max() + 1e-12)
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        if float(weights @ ndtr((middle - centres) / widths)) < share:
-            low = middle
-        else:
-            high = middle
-    return 0.5 * (low + high)
+    ends = halved(lambda at: float(weights @ ndtr((at - centres) / widths)) < share, low, high, most=60)
+    return 0.5 * sum(ends)

@@ -21,6 +21,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from camwright.profiles.halving import halved
 from camwright.profiles.mark_range import MarkRange
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.task import Task
@@ -181,9 +182,5 @@ def _farthest(kept: Callable[[float], bool], end: float) -> float | None:
             return None if end > 0 else end
         good = bad
         bad = min(1.5 * bad, end) if end > 0 else max(1.5 * bad, end)
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (good + bad)
-        if middle in (good, bad):
-            break
-        good, bad = (middle, bad) if kept(middle) else (good, middle)
+    good, _ = halved(kept, good, bad, most=_HALVINGS)
     return good if abs(good) > NOTHING else 0.0

@@ -14,8 +14,8 @@ from camwright.design.servo_aware.servo_weights import (
     MOST_SAMPLES,
     greatest_gains,
     memory,
-    sampled_states,
     servo_weights,
+    state_weights,
 )
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
@@ -73,9 +73,9 @@ def test_weighted_samples_are_the_plain_loop(servo: Servo, part: float) -> None:
     weights = servo_weights(servo, part * servo.sample_time)
     newest_first = command[::-1]
     position, velocity, acceleration = plain_loop(servo, command.tolist(), part)
-    assert weights.position[:12] @ newest_first == pytest.approx(position, abs=1e-9)
-    assert weights.velocity[:12] @ newest_first == pytest.approx(velocity, abs=1e-7)
-    assert weights.acceleration[:12] @ newest_first == pytest.approx(acceleration, abs=1e-5)
+    assert weights[0][:12] @ newest_first == pytest.approx(position, abs=1e-9)
+    assert weights[1][:12] @ newest_first == pytest.approx(velocity, abs=1e-7)
+    assert weights[2][:12] @ newest_first == pytest.approx(acceleration, abs=1e-5)
 
 
 @given(
@@ -86,20 +86,19 @@ def test_a_standing_command_is_reached_and_a_steady_one_lags_as_eq_2_says(
 ) -> None:
     servo = Servo(bandwidth, damping, gain, sample, feedforward)
     weights = servo_weights(servo, 0.5 * sample)
-    ages = -sample * np.arange(len(weights.position))
-    assert weights.position.sum() == pytest.approx(1.0, abs=1e-11)
-    assert weights.velocity.sum() == pytest.approx(0.0, abs=1e-8)
-    assert weights.acceleration.sum() == pytest.approx(0.0, abs=1e-6)
+    ages = -sample * np.arange(len(weights[0]))
+    assert weights[0].sum() == pytest.approx(1.0, abs=1e-11)
+    assert weights[1].sum() == pytest.approx(0.0, abs=1e-8)
+    assert weights[2].sum() == pytest.approx(0.0, abs=1e-6)
     # c = t: at half a sample past the newest one the axis is at that time less (1 - alpha) / K
     lag = (1.0 - feedforward) / gain
-    assert weights.position @ ages == pytest.approx(0.5 * sample - lag, abs=1e-11)
-    assert weights.velocity @ ages == pytest.approx(1.0, abs=1e-8)
+    assert weights[0] @ ages == pytest.approx(0.5 * sample - lag, abs=1e-11)
+    assert weights[1] @ ages == pytest.approx(1.0, abs=1e-8)
 
 
 def test_position_is_continuous_over_a_sampling_instant() -> None:
     end, start = servo_weights(PAPER, PAPER.sample_time), servo_weights(PAPER, 0.0)
-    for name in ("position", "velocity", "acceleration"):
-        before, after = getattr(end, name), getattr(start, name)
+    for before, after in zip(end, start, strict=True):
         # at an instant the newest sample has no part in the state yet
         assert after[0] == 0.0
         assert np.abs(after[1:] - before[:-1]).max() <= 1e-12 * np.abs(before).max()
@@ -107,7 +106,7 @@ def test_position_is_continuous_over_a_sampling_instant() -> None:
 
 def test_what_is_left_out_is_forgotten() -> None:
     weights = servo_weights(PAPER, 0.001)
-    assert np.abs(weights.position[-20:]).max() < 1e-12
+    assert np.abs(weights[0][-20:]).max() < 1e-12
 
 
 def test_the_sum_is_the_validations_simulation() -> None:
@@ -115,7 +114,7 @@ def test_the_sum_is_the_validations_simulation() -> None:
     run = simulate(profile, CUT, PAPER)
     for phase, point in ((0, 0), (3, 41), (11, 500)):
         sub = point % 8
-        weights = servo_weights(PAPER, sub * PAPER.sample_time / 8).position
+        weights = servo_weights(PAPER, sub * PAPER.sample_time / 8)[0]
         x = run.master[phase, point]
         past = x - CUT.line_speed * (sub * PAPER.sample_time / 8 + PAPER.sample_time * np.arange(len(weights)))
         assert weights @ profile(past, outside="repeat") == pytest.approx(run.axis[phase, point], abs=1e-11)
@@ -138,7 +137,8 @@ def test_a_servo_that_hardly_forgets_is_refused() -> None:
 
 def response(servo: Servo, time: float, samples: FloatArray, order: int) -> FloatArray:
     """Axis, or a derivative over time, a time after a sampling instant, from the state and the reference held there."""
-    states, reference = sampled_states(servo, samples)
+    found = samples @ state_weights(servo.loop, samples.shape[1] - 1)
+    states, reference = found[:, :3], found[:, 3]
     part = sample_plant(servo.loop, time)
     return np.asarray(states @ part.transition[2 - order] + part.input[2 - order] * reference)
 
@@ -151,7 +151,7 @@ def test_the_response_at_several_times_is_that_of_the_weights(order: int) -> Non
     found = [response(servo, time, row[None], order)[0] for time, row in zip(times.tolist(), samples, strict=True)]
     for time, row, value in zip(times.tolist(), samples, found, strict=True):
         weights = servo_weights(servo.loop, time)
-        expected = row @ (weights.position, weights.velocity, weights.acceleration)[order]
+        expected = row @ weights[order]
         assert value == pytest.approx(expected, abs=1e-12 * 120**order)
 
 
