@@ -134,7 +134,7 @@ def programme(task: Task, objective: str) -> float:
     if problem.status != "optimal":
         return math.nan
     value = float(problem.value) if of.form == "peak" else math.sqrt(max(0.0, float(problem.value)))
-    zone = max(abs(each.value) for each in sync.extrema(of.order)) * v**of.order if of.form == "peak" else 0.0
+    zone = sync.peak(of.order) * v**of.order if of.form == "peak" else 0.0
     return max(value * unit, zone)
 
 

@@ -357,7 +357,7 @@ def moving_excess(profile: CamProfile, task: Task) -> float:
     least, greatest = profile.extrema(1)
     over = [greatest.value / task.greatest_ratio - 1, (task.least_ratio - least.value) / task.greatest_ratio]
     for order, limit in ((2, task.greatest_slope), (3, task.greatest_jerk)):
-        over.append(max(abs(each.value) for each in profile.extrema(order)) / limit - 1)
+        over.append(profile.peak(order) / limit - 1)
     return max(over)
 
 

@@ -63,6 +63,6 @@ def draft(task: Task, objective: MotionObjective) -> Draft:
     of, profile = OBJECTIVES[objective], assemble(back, task)
     value = of.over_time(objective_value(back, objective), task.cut.line_speed)
     if of.form == "peak":
-        zone = max(abs(extremum.value) for extremum in task.sync.extrema(of.order))
+        zone = task.sync.peak(of.order)
         value = max(value, of.over_time(zone, task.cut.line_speed))
     return Draft(profile, value, exact and keeps_ramp(profile, task))

@@ -202,7 +202,7 @@ def _solve_ramped(task: Task, objective: CommandObjective, steady: Solution, sug
     decisive = motion_objective(task.machine, objective)
     problem = return_problem(task, decisive or "rms_acceleration")
     of = OBJECTIVES[problem.objective]
-    zone = max(abs(extremum.value) for extremum in task.sync.extrema(of.order)) if of.form == "peak" else 0.0
+    zone = task.sync.peak(of.order) if of.form == "peak" else 0.0
     sync_bears = keeps_ramp(task.sync, task)
     back = ramped_return(task, problem, steady.back, zone, thorough=thorough) if sync_bears else None
     profile = None if back is None else assemble(back, task)
@@ -254,7 +254,7 @@ def _solve_motion(task: Task, objective: MotionObjective, thorough: bool) -> tup
         iterations += more
     if OBJECTIVES[objective].form != "peak":
         return back, status, _over_time(back, objective, task.cut), iterations
-    zone = max(abs(extremum.value) for extremum in task.sync.extrema(OBJECTIVES[objective].order))
+    zone = task.sync.peak(OBJECTIVES[objective].order)
     if not _unique(problem):
         back = _smoothest(problem, back, zone)
     zone_value = OBJECTIVES[objective].over_time(zone, task.cut.line_speed)

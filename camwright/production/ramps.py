@@ -100,7 +100,7 @@ class Ramps:
     def peak_acceleration(self) -> float:
         """Greatest acceleration of the one-shot cam (slave unit over s²)."""
         v = self.job.cut.line_speed
-        zone = max(abs(end.value) for end in self.stand.zone.extrema(2)) * v**2
+        zone = self.stand.zone.peak(2) * v**2
         return max(self.ramp_in.peak_acceleration, self.ramp_out.peak_acceleration, zone)
 
     @cached_property

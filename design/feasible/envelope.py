@@ -16,7 +16,6 @@ from camwright.profiles.errors import InputError, SolverError
 from camwright.profiles.machines import Machine
 from camwright.profiles.message import Message, Value
 from camwright.profiles.objective import OBJECTIVES, MotionObjective
-from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import assemble, quintic_between
 from camwright.profiles.task import Task
 
@@ -195,7 +194,7 @@ def quintic_speed(task: Task) -> float | None:
     place = back.extrema(0)
     if place[0].value < problem.least_position or place[1].value > problem.greatest_position:
         return None
-    speed, slope, jerk = max(high.value, -low.value), _peak(cycle, 2), _peak(cycle, 3)
+    speed, slope, jerk = max(high.value, -low.value), cycle.peak(2), cycle.peak(3)
     bounds = [limits.speed / speed]
     bounds += [math.sqrt(limits.acceleration / slope)] if slope > 0 else []
     bounds += [math.cbrt(limits.jerk / jerk)] if jerk > 0 else []
@@ -224,7 +223,3 @@ def _own_edge(task: Task, fastest: Callable[[Task], float | None]) -> float | No
 
     factor = least_factor(works)
     return task.cut.line_speed / factor if math.isfinite(factor) else None
-
-
-def _peak(profile: CamProfile, order: int) -> float:
-    return max(abs(extremum.value) for extremum in profile.extrema(order))

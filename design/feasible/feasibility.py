@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import lru_cache
 
 from camwright.design.returns.curve_limits import motor_limits
 from camwright.design.returns.possible import is_possible
@@ -22,7 +21,6 @@ from camwright.profiles.errors import InputError
 from camwright.profiles.halving import halved
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import Machine
-from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.task import Task
 
 LIMIT_NAMES = ("speed", "acceleration", "jerk")
@@ -91,19 +89,12 @@ def demands(task: Task) -> tuple[Demand, ...]:
     for each in motor_limits(task.machine, task.limits):
         try:
             problem = return_problem(task.with_limits(each), "peak_acceleration")
-            ratio, slope, jerk = _sync_peaks(task.sync)
+            ratio, slope, jerk = task.sync.extrema(1)[1].value, task.sync.peak(2), task.sync.peak(3)
         except InputError:
             return ()
         shares = (ratio / problem.greatest_ratio, slope / problem.greatest_slope, jerk / problem.greatest_jerk)
         found.append(Demand(problem, shares))
     return tuple(found)
-
-
-@lru_cache(maxsize=256)
-def _sync_peaks(sync: CamProfile) -> tuple[float, float, float]:
-    """Greatest ratio, ratio slope and its slope in a sync zone, as magnitudes."""
-    slope, jerk = (max(abs(extremum.value) for extremum in sync.extrema(order)) for order in (2, 3))
-    return sync.extrema(1)[1].value, slope, jerk
 
 
 def is_feasible(task: Task) -> bool:

@@ -71,7 +71,7 @@ def ramped_return(
         return CamProfile.from_arrays([0.0, problem.length], [[0.0, problem.height / problem.length]])
     scaled = scale_problem(problem, scale)
     forms = tuple(_scaled(form, problem.length, scale) for form in ramp_forms(task))
-    peak = 0.0 if start is None else max(abs(each.value) for each in start.extrema(2))
+    peak = 0.0 if start is None else start.peak(2)
     unit = peak * problem.length**2 / abs(scale) or 1.0
     if thorough:
         motion = _refined(scaled, forms, _first_mesh(start, problem.length), unit)

@@ -25,7 +25,7 @@ JERK_LEFT = 1e-3
 
 def is_slow(back: CamProfile, task: Task) -> bool:
     """Whether an arc of a return's own at the limit of the jerk is next to nothing."""
-    return _slope(back) <= SHORT * task.greatest_jerk * back.length
+    return back.peak(2) <= SHORT * task.greatest_jerk * back.length
 
 
 def at_most(task: Task) -> Task:
@@ -35,7 +35,7 @@ def at_most(task: Task) -> Task:
 
 def at_least(task: Task, back: CamProfile) -> Task | None:
     """Limits within which every cam bears the line's ramps, for a motion of about the peak acceleration of a return; or none."""
-    slope, v = ROOM * _slope(back), task.cut.line_speed
+    slope, v = ROOM * back.peak(2), task.cut.line_speed
     acceleration = slope * v**2
     jerk = task.limits.jerk - 3.0 * v * task.line.hardest * slope
     if acceleration >= task.limits.acceleration or jerk <= 0.0:
@@ -43,10 +43,6 @@ def at_least(task: Task, back: CamProfile) -> Task | None:
     within = _within(task, task.limits.acceleration - acceleration, (1.0 - JERK_LEFT) * jerk, acceleration, jerk)
     left = jerk - task.line.known_jerk * within.greatest_ratio
     return within.with_limits(replace(within.limits, jerk=left))
-
-
-def _slope(back: CamProfile) -> float:
-    return max(abs(extremum.value) for extremum in back.extrema(2))
 
 
 def _within(task: Task, from_ramp: float, from_jerk: float, acceleration: float, jerk: float) -> Task:

@@ -18,7 +18,6 @@ from camwright.profiles.errors import InfeasibleError
 from camwright.profiles.limits import Limits
 from camwright.profiles.line import STEADY
 from camwright.profiles.objective import CommandObjective
-from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.task import Task
 
 _ROUNDS = 4
@@ -70,7 +69,7 @@ def solve_drawn_in(task: Task, objective: CommandObjective) -> Solution | None:
         for _ in range(_ROUNDS):
             if keeps_ramp(found.profile, task.with_machine(found.machine)):
                 return replace(found, status=SolveStatus.BEST_FOUND)
-            ratio, slope = (_SPARE * _peak(found.profile, order) for order in (1, 2))
+            ratio, slope = (_SPARE * found.profile.peak(order) for order in (1, 2))
             limits = drawn_in(task, ratio, slope * task.cut.line_speed**2)
             if limits is None:
                 return None
@@ -78,8 +77,3 @@ def solve_drawn_in(task: Task, objective: CommandObjective) -> Solution | None:
     except InfeasibleError:
         return None
     return None
-
-
-def _peak(profile: CamProfile, order: int) -> float:
-    """Greatest magnitude of a derivative over the master."""
-    return max(abs(extremum.value) for extremum in profile.extrema(order))

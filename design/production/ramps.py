@@ -174,7 +174,7 @@ def fastest_line(at: Stand, works: Callable[[Stand], bool]) -> float | None:
 def zone_kept(at: Stand) -> bool:
     """Whether the sync zone itself keeps the limits at the line speed."""
     v = at.task.cut.line_speed
-    peaks = [max(abs(end.value) for end in at.zone.extrema(order)) * v**order for order in (1, 2, 3)]
+    peaks = [at.zone.peak(order) * v**order for order in (1, 2, 3)]
     return any(
         speed <= each.speed * (1 + ALLOWED)
         and acceleration <= each.acceleration * (1 + ALLOWED)

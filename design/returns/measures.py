@@ -23,8 +23,7 @@ def objective_value(back: CamProfile, objective: MotionObjective) -> float:
     of = OBJECTIVES[objective]
     if of.form == "rms":
         return math.sqrt(back.mean_square(of.order))
-    least, greatest = back.extrema(of.order)
-    return max(-least.value, greatest.value, 0.0)
+    return back.peak(of.order)
 
 
 def excess(profile: CamProfile, problem: ScaledProblem) -> float:
@@ -49,7 +48,7 @@ def _greatest(profile: CamProfile) -> tuple[float, float, float, float]:
     """Least and greatest ratio, and the greatest magnitudes of its slope and of that slope's slope, exactly."""
     if profile.degree > 3:
         low, high = profile.extrema(1)
-        slope, jerk = (max(abs(extremum.value) for extremum in profile.extrema(order)) for order in (2, 3))
+        slope, jerk = (profile.peak(order) for order in (2, 3))
         return low.value, high.value, slope, jerk
     # pieces of cubics, all at once: the ratio is extreme at a node or where its slope, a straight line, is zero
     width = np.diff(profile.breaks)

@@ -30,9 +30,7 @@ SAMPLED = 1e-6
 
 def keeps_curve(profile: CamProfile, task: Task, curve: MotorCurve) -> bool:
     """Tell whether the motor reaches the speed of a cycle and gives the torque that it needs, at each of its speeds."""
-    fastest = (
-        task.cut.line_speed * task.machine.motor_ratio * max(abs(extremum.value) for extremum in profile.extrema(1))
-    )
+    fastest = task.cut.line_speed * task.machine.motor_ratio * profile.peak(1)
     return fastest <= curve.top_speed * (1 + ROUNDING) and load(profile, task, curve) <= 1.0 - SAMPLED
 
 

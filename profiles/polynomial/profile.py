@@ -261,6 +261,10 @@ class CamProfile:
         self._peaks[order] = extremum(int(values.argmin())), extremum(int(values.argmax()))
         return self._peaks[order]
 
+    def peak(self, order: int = 0) -> float:
+        """Greatest magnitude of a derivative, as `extrema` has it."""
+        return max(abs(extremum.value) for extremum in self.extrema(order))
+
     def roots(self, order: int = 0) -> FloatArray:
         """Master positions inside the pieces where a derivative is zero, ascending.
 

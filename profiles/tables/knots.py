@@ -106,8 +106,7 @@ def choose(
     if points is not None and not target.min_points <= points <= (target.max_points or points):
         most = target.max_points or points
         raise InputError(f"{target.name} takes {target.min_points} to {most} points; {points} are asked for")
-    least, greatest = profile.extrema(2)
-    peak = max(-least.value, greatest.value, 1e-300)
+    peak = max(profile.peak(2), 1e-300)
     allowed = np.array([accuracy.position, accuracy.ratio, accuracy.acceleration * peak])
     tried: list[tuple[float, int, FloatArray]] = []
     for x in _places(profile, target, units.master, allowed, points, zones):

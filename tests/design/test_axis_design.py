@@ -33,7 +33,7 @@ RANGES = ServoTolerance((108.0, 132.0), (0.63, 0.77), (33.25, 36.75), (0.004, 0.
 
 
 def peak_acceleration(solution: Solution, cut: Cut) -> float:
-    return max(abs(each.value) for each in solution.profile.extrema(2)) * cut.line_speed**2
+    return solution.profile.peak(2) * cut.line_speed**2
 
 
 @pytest.mark.parametrize(("command", "dearer"), [("shaped", 0.5), ("in_sync", 1.3)])

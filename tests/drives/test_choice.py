@@ -46,7 +46,7 @@ def naive(profile: CamProfile, target: str, accuracy: Accuracy) -> Choice:
     """Look at every candidate closely, one after the other."""
     units = table_units(TARGETS[target], profile, UNITS)
     required = required_points(profile, zone_ends(profile))
-    peak = max(abs(extremum.value) for extremum in profile.extrema(2))
+    peak = profile.peak(2)
     allowed = np.array([accuracy.position, accuracy.ratio, accuracy.acceleration * peak])
     best: tuple[float, Choice] | None = None
     for x in candidates(profile, TARGETS[target], required, allowed, None):
@@ -80,7 +80,7 @@ def test_the_choice_is_that_of_looking_at_every_candidate(target: str, name: str
 def test_a_glance_is_a_lower_bound_of_the_deviation(target: str, name: str) -> None:
     profile = knife(name)
     choice = chosen(target, name)
-    peak = max(abs(extremum.value) for extremum in profile.extrema(2))
+    peak = profile.peak(2)
     low, true = glance(profile, choice.rebuilt, peak), choice.deviation
     assert 0 <= low.position <= true.position
     assert 0 <= low.ratio <= true.ratio

@@ -86,7 +86,7 @@ def bent_bound(profile: CamProfile, task: Task, objective: MotionObjective) -> B
     table = OBJECTIVES[objective]
     if table.form != "peak":
         return mean_square_bound(profile, task, objective)
-    zone = max(abs(extremum.value) for extremum in task.sync.extrema(table.order))
+    zone = task.sync.peak(table.order)
     own = table.over_time(zone, task.cut.line_speed)
     back = least_bent_acceleration(task) if table.order == 2 else least_bent_jerk(task)
     return Bound(own, ZONE) if own >= back or not math.isfinite(back) else Bound(back, BENT)

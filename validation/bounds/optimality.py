@@ -99,7 +99,7 @@ def _reached(profile: CamProfile, task: Task, objective: MotionObjective) -> flo
     """Objective of a profile over time: a peak of the cycle, a root mean square of the return."""
     of, start = OBJECTIVES[objective], task.cut.return_start
     if of.form == "peak":
-        value = max(abs(each.value) for each in profile.extrema(of.order))
+        value = profile.peak(of.order)
     else:
         value = math.sqrt(profile.mean_square(of.order, start, min(start + task.cut.return_zone, profile.end)))
     return of.over_time(value, task.cut.line_speed)
@@ -110,7 +110,7 @@ def _within_ratio(profile: CamProfile, task: Task) -> Task:
     v, line, limits = task.cut.line_speed, task.line, task.limits
     taken = ((limits.acceleration, line.hardest), (limits.jerk, line.known_jerk))
     ratio = min((room / own for room, own in taken if own), default=math.inf)
-    if ratio * v >= limits.speed or max(abs(each.value) for each in profile.extrema(1)) > ratio * (1.0 + SAME):
+    if ratio * v >= limits.speed or profile.peak(1) > ratio * (1.0 + SAME):
         return task
     return task.with_limits(replace(limits, speed=ratio * v))
 

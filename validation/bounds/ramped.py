@@ -124,7 +124,7 @@ def ramped_bound(profile: CamProfile, task: Task, objective: MotionObjective) ->
     ends = [abs(each.value) for each in back.extrema(of.order)]
     own = (math.sqrt(back.mean_square(of.order)) if of.form == "rms" else max(ends)) * task.cut.line_speed**of.order
     found = _on_mesh(back, task, objective, INTERVALS)
-    zone = task.cut.line_speed**of.order * max(abs(each.value) for each in task.sync.extrema(of.order))
+    zone = task.cut.line_speed**of.order * task.sync.peak(of.order)
     least = zone if of.form == "peak" else 0.0
     if not max(found, least) >= own * (1.0 - WIDE):  # wide, or not a number
         found = float(np.fmax(found, _on_mesh(back, task, objective, FINER)))
@@ -141,7 +141,7 @@ def _on_mesh(
     A peak's programme is linear: ``exactly`` solves it to a vertex, which takes three times as long.
     """
     length, v, of, start = task.cut.return_zone, task.cut.line_speed, OBJECTIVES[objective], back.start
-    unit = max(abs(each.value) for each in back.extrema(2)) * length**2 or 1.0
+    unit = back.peak(2) * length**2 or 1.0
     nodes = _Nodes(_mesh((back.breaks - start) / length, intervals))
     equal = list(_ends(nodes, task, unit))
     own = back.mean_square(of.order) * (length**of.order / unit) ** 2 if of.form == "rms" else 1.0

@@ -49,7 +49,7 @@ def torque_ramp(parts: CamProfile, task: Task, way: float, speeds: Sequence[floa
     width = np.diff(parts.breaks)
     local = width[:, None] * np.linspace(0.0, 1.0, PLACES + 2)
     piece = np.broadcast_to(np.arange(len(width))[:, None], local.shape)
-    fastest = max(abs(each.value) for each in parts.extrema(1))
+    fastest = parts.peak(1)
 
     def bound(piece: NDArray[np.intp], local: FloatArray, speed: float) -> FloatArray:
         return _bound(parts, task, curve, way, speed, piece, local, _STANDING * fastest)

@@ -36,7 +36,7 @@ def judge_transition(profile: CamProfile, zero: float, task: Task) -> tuple[Chec
         Check("reversal", slowest >= least - _ALLOWED * limits.speed, slowest, least, f"{unit}/s", None, "exact"),
     ]
     for order, name, limit in ((2, "acceleration", limits.acceleration), (3, "jerk", limits.jerk)):
-        peak = max(abs(extremum.value) for extremum in profile.extrema(order)) * v**order
+        peak = profile.peak(order) * v**order
         checks.append(_at_most(name, peak, limit, f"{unit}/s^{order}"))
     steps = [np.abs(profile.jumps(order, seam=False)).max(initial=0.0) * v**order for order in range(3)]
     allowed = (_SMOOTH * profile.length, _SMOOTH * limits.speed, _SMOOTH * limits.acceleration)

@@ -54,7 +54,7 @@ def test_a_zone_costs_what_its_own_profile_says() -> None:
 def test_the_share_of_a_limit_is_that_of_the_zones_own_profile() -> None:
     v, limits = TASK.cut.line_speed, TASK.limits
     shares = [
-        max(abs(each.value) for each in TASK.sync.extrema(order)) * v**order / limit
+        TASK.sync.peak(order) * v**order / limit
         for order, limit in ((1, limits.speed), (2, limits.acceleration), (3, limits.jerk))
     ]
     found = greatest_share(asked("energy"), ZONE, np.array(ENDS[:1]), np.array(ENDS[1:]))

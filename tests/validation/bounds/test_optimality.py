@@ -47,7 +47,7 @@ def measured(profile: CamProfile, cut: Cut, objective: str) -> float:
     unit = cut.line_speed**order
     if objective.startswith("rms"):
         return unit * math.sqrt(profile.mean_square(order, cut.return_start, cut.return_start + cut.return_zone))
-    return unit * max(abs(extremum.value) for extremum in profile.extrema(order))
+    return unit * profile.peak(order)
 
 
 def keeps(profile: CamProfile, cut: Cut, limits: Limits) -> bool:
@@ -56,7 +56,7 @@ def keeps(profile: CamProfile, cut: Cut, limits: Limits) -> bool:
     if any(np.abs(profile.jumps(order)).max() > 1e-9 for order in (0, 1, 2)):
         return False
     low, high = profile.extrema(1)
-    peaks = [max(abs(extremum.value) for extremum in profile.extrema(order)) for order in (2, 3)]
+    peaks = [profile.peak(order) for order in (2, 3)]
     return (
         high.value * v <= limits.speed
         and low.value * v >= (-limits.speed if limits.reversal else 0.0)

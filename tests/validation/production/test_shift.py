@@ -141,4 +141,4 @@ def test_a_longer_piece_stretches_the_return_and_keeps_zone_and_ends() -> None:
     rate = np.diff(table(x)) / step
     bend = np.diff(rate) / step
     assert np.abs(np.diff(rate)).max() < 1e-3  # neither position nor speed steps
-    assert np.abs(bend).max() < 1.2 * max(abs(each.value) for each in profile.extrema(2))
+    assert np.abs(bend).max() < 1.2 * profile.peak(2)
