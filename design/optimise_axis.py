@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from camwright.design.feasible.refusal import infeasible, require_feasible
+from camwright.design.feasible.refusal import infeasible
 from camwright.design.line.refusal import ramp_infeasible
 from camwright.design.optimise import (
     Solution,
@@ -22,44 +22,27 @@ from camwright.design.servo_aware.axis_motion import AxisMotion, design_axis, mo
 from camwright.design.servo_aware.axis_problem import AxisProblem, thinned
 from camwright.design.servo_aware.command_basis import Command
 from camwright.design.servo_aware.programme import AxisProgramme
-from camwright.design.servo_aware.rows import RATIO
+from camwright.design.servo_aware.refusal import LOOKED, axis_infeasible
 from camwright.design.servo_aware.servo_weights import memory
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import (
-    Covered,
     InfeasibleError,
     InputError,
     SolverError,
-    Suggestion,
 )
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import Machine
-from camwright.profiles.message import Message, Value, part_of
+from camwright.profiles.message import Message, Value
 from camwright.profiles.objective import OBJECTIVES, ObjectiveName, of_command
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import assemble
 from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
 
-# Suggested values are searched to this share, and stand aside by it from the edge; and to that one where there are many line speeds, of
-# which each so many-th is looked at for a way out.
-ASIDE, ASIDE_EACH, LOOKED = 2e-3, 4e-2, 6
-# What works by a programme alone is designed; where that fails it is taken further by these factors.
-FURTHER = (1.0, 1.02, 1.1)
-# Shares of the least tolerance that a programme keeps, tried in turn.
-WIDER = (1.0 + ASIDE, 1.01, 1.1, 1.5)
-# What binds where the error alone can be held to the tolerance, and the ratio of the axis cannot be held to what goes with it.
-AXIS_RATIO = "axis_ratio"
 # Rounds after which a job that is not proved to be impossible is designed.
 HOPELESS = 3
-# So much faster grows what is looked at.
-GROWN = 4.0
 # Samples that a servo remembers and those of a cycle, together, that are looked at.
 MOST_SAMPLES = 2**15
-# Of more servos than that, three are looked at first, at the full line speed.
-FEW_SERVOS = 3
-# Cuts up to so many times the asked length, and line speeds down to such a share, are looked at for a way out.
-LONGEST, SLOWEST = 8.0, 0.02
 
 
 def solve_axis(
@@ -155,7 +138,7 @@ def solve_axis(
                 lambda: solve_axis(task, objective, command, servos, between, fewer, suggest=False)
             )
 
-        raise _infeasible(loosest, (lambda cut: designs(task.with_cut(cut)), narrower) if suggest else None)
+        raise axis_infeasible(loosest, (lambda cut: designs(task.with_cut(cut)), narrower) if suggest else None)
     motion = min(motions, key=lambda each: each.value)
     status = blind.status if blind is not None and not motion.programmes else SolveStatus.BEST_FOUND
     return _solution(motion, status, task.with_machine(placed), objective, order)
@@ -293,145 +276,3 @@ def _from_mid_sync(profile: CamProfile, task: Task) -> CamProfile:
     sync = task.sync
     in_sync = task.height + float(sync(0.5 * cut.sync_zone)) - float(sync(sync.start))
     return profile.roll(at).shift(slave=float(profile(at)) - in_sync)
-
-
-_Ways = tuple[Callable[[Cut], bool], Callable[[tuple[float, ...]], bool]]
-"""What tells whether another cut can be designed, and whether the cut can for fewer line speeds."""
-
-
-def _infeasible(problem: AxisProblem, settles: _Ways | None) -> InfeasibleError:
-    """Say by how much the tolerance is missed, and, of a way to tell whether a cut can be designed, what would keep it."""
-    cut = problem.task.cut
-    tolerance = cut.sync_tolerance
-    share = AxisProgramme(problem).least_share()
-    if share is None:
-        if problem.structure is None:
-            require_feasible(problem.task, suggest=settles is not None)
-            if problem.task.line.ramps:
-                raise ramp_infeasible(problem.task, suggest=settles is not None)
-            raise SolverError(
-                "a servo-aware design found no command that keeps the limits although the job allows one; report this job"
-            )
-        only = assemble(problem.structure, problem.task.from_return())
-        share = motion_of(AxisProgramme(problem), only, axis_limits=False).error / tolerance
-    needed = max(1.0, share) * tolerance
-    kept, suggestions = None, tuple[Suggestion, ...]()
-    if settles is not None:  # what is offered keeps the limits of the axis too
-        strict = replace(problem, axis_limits=True)
-        kept, suggestions = _kept_part(strict, settles[1]), tuple(_suggestions(strict, needed, settles[0]))
-    if kept is not None:
-        suggestions = (*suggestions[:1], Suggestion("line_speeds", kept * 60, "m/min"), *suggestions[1:])
-    ways = "; ".join(
-        f"{each.change}{' from' if each.change == 'line_speeds' else ''} {{{each.change}}}" for each in suggestions
-    )
-    alone = AxisProgramme(problem).solve("sync_error", None)
-    by_ratio = alone is not None and alone[1] <= 1.0
-    excess = (needed - tolerance) * 1e3
-    text = (
-        f"{{@sync_tolerance}} = {{tolerance}}: no {problem.command} command within the limits holds the axis to it in the shear zone and "
-        f"the ratio of the axis to {_percent(cut, tolerance)} (twice the tolerance over the shear zone); the least found to be held is "
-        f"{{needed}} and {_percent(cut, needed)}, {{excess}} too much, whatever the axis does elsewhere"
-        + ("; the error alone is held to {alone}: the ratio binds" if by_ratio else "")
-        + ("" if kept is None or kept == cut.line_speed else "; one is held to it from {line_speeds} up")
-        + (f"; what works, the axis within its limits: {ways}" if ways else "")
-    )
-    values = (
-        ("tolerance", Value(tolerance, "m", 6)),
-        ("needed", Value(needed, "m", 6)),
-        ("excess", Value(needed - tolerance, "m", 4)),
-        *((("alone", Value(alone[1] * tolerance, "m", 3)),) if alone is not None and by_ratio else ()),
-    )
-    return InfeasibleError(
-        Message(text, (*values, *((each.change, _offered(each, cut)) for each in suggestions))),
-        AXIS_RATIO if by_ratio else "sync_tolerance",
-        excess,
-        "mm",
-        suggestions,
-        Covered(None if kept is None else (kept, cut.line_speed)),
-    )
-
-
-def _offered(suggestion: Suggestion, cut: Cut) -> Value:
-    """Give the value of a suggestion for a `Message`: as it was designed in its unit, in another one beyond it."""
-    chosen = f"{suggestion.value:.6g} {suggestion.unit}"
-    if suggestion.change in ("line_speed", "line_speeds"):
-        return Value(
-            suggestion.value / 60.0, "m/s", 6, "below" if suggestion.change == "line_speed" else "above", chosen
-        )
-    up = suggestion.change == "sync_tolerance" or suggestion.value > cut.length * 1e3
-    return Value(suggestion.value / 1e3, "m", 6, "above" if up else "below", chosen)
-
-
-def _suggestions(problem: AxisProblem, needed: float, settles: Callable[[Cut], bool]) -> Iterator[Suggestion]:
-    """Search a tolerance, a line speed and a cut length that work, each alone and each designed once; ``needed`` (m) is too small."""
-    cut = problem.task.cut
-    share = AxisProgramme(problem).least_share()
-    needed = needed if share is None else max(needed, share * cut.sync_tolerance)
-    for factor in WIDER:
-        if settles(replace(cut, sync_tolerance=factor * needed)):
-            yield Suggestion("sync_tolerance", factor * needed * 1e3, "mm")
-            break
-    changes: tuple[tuple[str, str, float, float, Callable[[float], Cut]], ...] = (
-        ("line_speed", "m/min", 60.0, 1 / SLOWEST, lambda share: cut.designed_at(cut.line_speed / share)),
-        ("length", "mm", 1e3, LONGEST, lambda share: replace(cut, length=share * cut.length)),
-    )
-    for name, unit, per, most, changed in changes:
-
-        def works(share: float, changed: Callable[[float], Cut] = changed) -> bool:
-            return _works(replace(problem, task=problem.task.with_cut(changed(share)), structure=None))
-
-        found = _nearest(works, most, ASIDE if len(problem.shares) == 1 else ASIDE_EACH)
-        if found is None:
-            continue
-        for factor in FURTHER:
-            other = changed(found * factor)
-            if settles(other):
-                yield Suggestion(name, getattr(other, name) * per, unit)
-                break
-
-
-def _kept_part(problem: AxisProblem, settles: Callable[[tuple[float, ...]], bool]) -> float | None:
-    """Search the least line speed (m/s) from which up to the full one a command keeps the tolerance; designed once."""
-    shares = problem.shares
-    low, high = 0, len(shares)  # so many work, or are not known to; so many do not
-    while high - low > 1:
-        middle = (low + high) // 2
-        if _works(replace(problem, shares=shares[:middle])):
-            low = middle
-        else:
-            high = middle
-    if not low or len(shares) == 1 or not settles(shares[:low]):
-        return None
-    return shares[low - 1] * problem.task.cut.line_speed
-
-
-def _percent(cut: Cut, tolerance: float) -> str:
-    """Error of the ratio that goes with a tolerance."""
-    return part_of(RATIO * tolerance / cut.shear_zone).removesuffix(" of") if cut.shear_zone else "any"
-
-
-def _works(problem: AxisProblem) -> bool:
-    """Whether a command brings the axis into the tolerance at some of the line speeds; what is offered is designed for all of them."""
-    some = replace(problem, between=(), shares=thinned(problem.shares, LOOKED))
-    try:
-        # who cannot serve a few servos does not serve all, which takes several times as long to see
-        if len(some.servos) > FEW_SERVOS:
-            few = replace(some, servos=(some.servos[0], some.servos[1], some.servos[-1]), shares=some.shares[:1])
-            if not AxisProgramme(few).reaches():
-                return False
-        return bool(AxisProgramme(some).reaches())
-    except (InputError, SolverError):
-        return False
-
-
-def _nearest(works: Callable[[float], bool], most: float, aside: float) -> float | None:
-    """Least share above 1 found to work, to a share of itself: grown until it does, then bisected; ``None`` if none does up to ``most``."""
-    low, high = 1.0, 1.0 + aside
-    while not works(high):
-        low, high = high, 1.0 + GROWN * (high - 1.0)
-        if high > most:
-            return None
-    while high - low > aside * high:
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if works(middle) else (middle, high)
-    return high

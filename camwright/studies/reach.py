@@ -9,11 +9,11 @@ from dataclasses import dataclass, replace
 from camwright.design.feasible.extremes import Extremes
 from camwright.design.line.ramped import ramp_share
 from camwright.design.optimise import motion_objective, solve
-from camwright.design.optimise_axis import AXIS_RATIO
 from camwright.design.returns.curve_limits import motor_limits
 from camwright.design.returns.problem import return_problem
 from camwright.design.servo_aware.axis_problem import AxisProblem, thinned
 from camwright.design.servo_aware.programme import AxisProgramme
+from camwright.design.servo_aware.refusal import AXIS_RATIO
 from camwright.jobs.job import Job
 from camwright.jobs.servos import between_of, servos_of
 from camwright.profiles.errors import InfeasibleError, InputError, SolverError
