@@ -12,7 +12,6 @@ from camwright.design.production.transition import RunningCam
 from camwright.design.servo_aware.axis_response import Axis
 from camwright.design.servo_aware.command_basis import INTERVALS, ROBUST_SHARE, Command, CommandBasis, clamped
 from camwright.design.servo_aware.rows import AxisRows
-from camwright.design.servo_aware.servo_weights import servo_weights
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray, join
 from camwright.profiles.servo import Servo
 
@@ -30,9 +29,6 @@ _MOST_PLACES = 512
 
 _AXIS_MARGIN = 1e-3
 """Share by which the limits of the axis are drawn in, as rows stand at single places."""
-
-_GATHERED = 2**18
-"""Samples of the past that are gathered at a time."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,20 +123,8 @@ class ChangeRows:
 
     def _rows(self, axis: Axis, places: FloatArray, order: int) -> tuple[FloatArray, FloatArray]:
         """Axis, or a derivative of it over the master, at places (m), each at `_TIMES` times after a sample."""
-        servo, v = axis.servo, axis.task.cut.line_speed
-        times = np.arange(_TIMES) * (servo.sample_time / _TIMES)
-        each = np.array([servo_weights(servo.loop, float(time))[order] for time in times]) / v**order
-        samples = servo.sample_time * np.arange(each.shape[1])
-        seen = places[:, None, None] - v * ((times + servo.delay)[:, None] + samples)
-        matrix = np.empty((len(places) * _TIMES, self.basis.matrix.shape[1]))
-        constant = np.empty(len(matrix))
-        step = max(1, _GATHERED // each.size)
-        for first in range(0, len(places), step):
-            part = seen[first : first + step]
-            rows = slice(first * _TIMES, (first + len(part)) * _TIMES)
-            known = np.broadcast_to(each, part.shape).reshape(-1, each.shape[1])
-            matrix[rows], constant[rows] = self._sums(part.reshape(-1, each.shape[1]), known)
-        return matrix, constant
+        times = np.arange(_TIMES) * (axis.servo.sample_time / _TIMES)
+        return axis.rows(self._sums, np.repeat(places, _TIMES), np.tile(times, len(places)), order)
 
     def _sums(self, places: FloatArray, weights: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Weighted sums of the command through the change; shapes ``(rows, samples)``, as `CommandBasis.rows`."""

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
 
-from camwright.design.servo_aware.command_basis import CommandBasis
 from camwright.design.servo_aware.servo_weights import (
     greatest_gains,
     memory,
@@ -26,6 +26,10 @@ _STRIDE = PHASES // SUBSTEPS
 _NEWTON, _NEWTON_ENDS = 12, 1e-11
 # Most samples of the past that are gathered at a time, and what a number of samples is rounded up to.
 _MOST_VALUES, _SHARED = 2**18, 32
+
+
+Sums = Callable[[FloatArray, FloatArray], tuple[FloatArray, FloatArray]]
+"""What makes of places and weights, shapes ``(rows, samples)``, rows over unknowns, as ``(matrix, constant)``."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,13 +95,13 @@ class Axis:
             edges.append(deviation)
         return np.minimum(*edges), np.maximum(*edges)
 
-    def rows(
-        self, basis: CommandBasis, places: FloatArray, times: FloatArray, order: int = 0
-    ) -> tuple[FloatArray, FloatArray]:
+    def rows(self, sums: Sums, places: FloatArray, times: FloatArray, order: int = 0) -> tuple[FloatArray, FloatArray]:
         """Axis, or its ratio (1) or ratio slope (2), as rows over the unknowns of a command.
 
         Parameters
         ----------
+        sums
+            Weighted sums of the command over its unknowns, as `CommandBasis.rows`.
         places
             Master positions (m).
         times
@@ -105,17 +109,15 @@ class Axis:
         order
             Derivative over the master.
         """
-        matrix, constant = np.empty((len(places), basis.matrix.shape[1])), np.empty(len(places))
         known, index = np.unique(times, return_inverse=True)
         weights = np.array([self._weights(float(time), order) for time in known])
         samples = self.servo.sample_time * np.arange(weights.shape[1])
         step = max(1, _MOST_VALUES // len(samples))
+        found = []
         for part in (slice(start, start + step) for start in range(0, len(places), step)):
             past = (times[part] + self.servo.delay)[:, None] + samples
-            matrix[part], constant[part] = basis.rows(
-                places[part, None] - self.task.cut.line_speed * past, weights[index[part]]
-            )
-        return matrix, constant
+            found.append(sums(places[part, None] - self.task.cut.line_speed * past, weights[index[part]]))
+        return np.concatenate([matrix for matrix, _ in found]), np.concatenate([constant for _, constant in found])
 
     def on_grid(self, profile: CamProfile, first: int, count: int, order: int = 0) -> FloatArray:
         """Response on the common grid, at every phase.

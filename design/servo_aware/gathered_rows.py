@@ -272,7 +272,7 @@ class OwnRows:
     def _make(self, axis: Axis, order: int, places: FloatArray, times: FloatArray) -> None:
         """Make rows at places (m) and times since the sampling instant before (s)."""
         low, high = self.problem.own_limits(axis)[order]
-        matrix, constant = axis.rows(self.problem.basis, places, times, order)
+        matrix, constant = axis.rows(self.problem.basis.rows, places, times, order)
         room, ones = high * AXIS_MARGIN, np.ones(len(matrix))
         origin = np.column_stack([np.full((len(matrix), 2), (order, axis.share)), places, times])
         self.rows.append(AxisRows(matrix, constant, (low + room) * ones, (high - room) * ones, origin))

@@ -110,7 +110,7 @@ def test_rows_are_the_response(name: str, command: Command, order: int) -> None:
     steps = np.tile(np.arange(60.0), 8)
     subs = np.repeat(np.arange(8.0), 60)
     matrix, constant = axis.rows(
-        basis, np.multiply(steps, axis.sample / 16), np.multiply(subs, LATE.sample_time / 8), order
+        basis.rows, np.multiply(steps, axis.sample / 16), np.multiply(subs, LATE.sample_time / 8), order
     )
     size = np.abs(response).max()
     assert matrix @ unknowns + constant == pytest.approx(response.ravel(), abs=1e-10 * size)

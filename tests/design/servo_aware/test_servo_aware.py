@@ -71,10 +71,10 @@ def rows_of_its_own(command: Command, places: int, *, banded: bool) -> tuple[Flo
     start, end = axis.shear_zone
     at, after = (part.ravel() for part in np.meshgrid(np.linspace(start, end, places), np.arange(16) * 0.004 / 16))
     if banded:
-        matrix, constant = axis.rows(basis, at, after)
+        matrix, constant = axis.rows(basis.rows, at, after)
         room = CUT.sync_tolerance * (1 - BAND_MARGIN)
         between(matrix, constant - axis.ideal(at)[0], -room, room)
-        matrix, constant = axis.rows(basis, at, after, 1)
+        matrix, constant = axis.rows(basis.rows, at, after, 1)
         room *= RATIO / CUT.shear_zone
         between(matrix, constant - 1.0, -room, room)
     return np.vstack(matrices), np.concatenate(highs), at
@@ -134,7 +134,7 @@ def test_the_least_sync_error_is_that_of_scipy(command: Command) -> None:
     assert found is not None
     matrix, high, at = rows_of_its_own(command, 9, banded=False)
     basis, axis = command_basis(Task(KNIFE, CUT, LIMITS), command), Axis(Task(KNIFE, CUT, LIMITS), PAPER)
-    error, constant = axis.rows(basis, at, np.repeat(np.arange(16) * 0.004 / 16, 9))
+    error, constant = axis.rows(basis.rows, at, np.repeat(np.arange(16) * 0.004 / 16, 9))
     error, constant = error / CUT.sync_tolerance, (constant - axis.ideal(at)[0]) / CUT.sync_tolerance
     ones = np.ones((len(error), 1))
     answer = linprog(

@@ -86,7 +86,7 @@ def test_rows_are_the_axis(name: str, command: Command, *, robust: bool) -> None
     found, unknowns = table(name, command, 0.4, robust=robust)
     points = np.arange(0, len(found.points.places), 7)
     rows = found.band_rows(points)
-    matrix, constant = found.axis.rows(found._basis, found.points.places[points], found.points.times[points])
+    matrix, constant = found.axis.rows(found._basis.rows, found.points.places[points], found.points.times[points])
     ideal = found.axis.ideal(found.points.places[points])[0]
     assert np.abs(rows.matrix @ unknowns + rows.constant - (matrix @ unknowns + constant - ideal)).max() <= 1e-11
     low, high = found.axis.band(found.points.places[points], found.axis.task.cut.sync_tolerance)
@@ -95,7 +95,9 @@ def test_rows_are_the_axis(name: str, command: Command, *, robust: bool) -> None
     assert found.begun
     if found.axis.task.cut.shear_zone:
         slopes = found.ratio_rows(points)
-        matrix, constant = found.axis.rows(found._basis, found.points.places[points], found.points.times[points], 1)
+        matrix, constant = found.axis.rows(
+            found._basis.rows, found.points.places[points], found.points.times[points], 1
+        )
         off = matrix @ unknowns + constant - found.axis.ideal(found.points.places[points])[1]
         assert np.abs(slopes.matrix @ unknowns + slopes.constant - off).max() <= 1e-9
 
