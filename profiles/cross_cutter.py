@@ -30,27 +30,11 @@ _LEAST_PART = 1e-6
 # The shorter of circumference and cut length is at least this part of the longer.
 
 
-def critical_length(circumference: float, sync_zone: float) -> float:
-    """Cut length above which the quintic would reverse: ``L_crit = (L_k - L_s) / K_0 + L_s`` (S2, m).
-
-    Examples
-    --------
-    >>> round(critical_length(0.4, 0.2), 12)
-    0.628571428571
-    """
-    return (circumference - sync_zone) * 15 / 7 + sync_zone
-
-
 def standstill(length: float, height: float) -> float:
     """Master travel (m) during which the slave stands still in `quintic_return`; the arguments are the same."""
     if not 0.0 < height < length * STAND_RATIO * (1 - _ROUNDING):
         return 0.0
     return length - 2.5 * height
-
-
-def completed(length: float, height: float) -> bool:
-    """Whether `quintic_return` is a completion because S2 defines no curve: ``2/5 < K < 7/15``."""
-    return STAND_RATIO * (1 + _ROUNDING) < height / length < QUINTIC_RATIO * (1 - _ROUNDING)
 
 
 def quintic_return(length: float, height: float) -> CamProfile:
@@ -212,8 +196,8 @@ class CrossCut:
 
     @property
     def critical_length(self) -> float:
-        """Cut length above which the quintic would reverse (m)."""
-        return critical_length(self.circumference, self.sync_zone)
+        """Cut length above which the quintic would reverse: ``L_crit = (L_k - L_s) / K_0 + L_s`` (S2, m)."""
+        return self.return_height * 15 / 7 + self.sync_zone
 
     @property
     def least_ratio(self) -> float:
@@ -228,8 +212,9 @@ class CrossCut:
 
     @property
     def completed(self) -> bool:
-        """Whether S2 defines no curve for this cut, so that the cycle holds its completion."""
-        return completed(self.return_zone, self.return_height)
+        """Whether the cycle holds a completion because S2 defines no curve for this cut: ``2/5 < K < 7/15``."""
+        mean = self.return_height / self.return_zone
+        return STAND_RATIO * (1 + _ROUNDING) < mean < QUINTIC_RATIO * (1 - _ROUNDING)
 
     def cycle(self) -> CamProfile:
         """Make the cycle over the master period ``[0, L_c]``; the slave travels from 0 to ``L_k``."""

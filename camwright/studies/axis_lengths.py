@@ -95,13 +95,13 @@ def axis_lengths(job: Job, lengths: CutLengths | None = None) -> AxisLengths | N
         return least_length(missed, near, ends, _LENGTH_RESOLUTION, AWARE_STEEP) if ends[0] < ends[1] else None
 
     task = job.task.with_cut(cut)
-    linear = (lengths.linear_return if lengths else least.linear_return_to_tolerance(task, job.servo)).length
+    linear = (lengths.linear_return if lengths else least.to_tolerance(task, job.servo, "linear_return")).length
     in_sync = shortest("in_sync", _SOONER * linear)
     shaped = shortest("shaped", _SHAPED * (in_sync or pitch))
     strictly = _STRICTER * (in_sync or pitch), _STRICTER * (shaped or pitch)
     return AxisLengths(
         linear_return=linear,
-        poly_3_4_5=least.quintic_to_tolerance(task, job.servo).length,
+        poly_3_4_5=least.to_tolerance(task, job.servo, "poly_3_4_5").length,
         in_sync=in_sync,
         shaped=shaped,
         in_sync_axis_limits=shortest("in_sync", strictly[0], in_sync, axis_limits=True) if in_sync else None,

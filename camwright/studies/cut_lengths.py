@@ -81,6 +81,6 @@ def cut_lengths(job: Job) -> CutLengths | None:
         eq10=eq10(response.crossing, cut.shear_zone),
         eq10_settling=eq10(response.settling, cut.shear_zone),
         physical=least.physical(task),
-        linear_return=least.linear_return_to_tolerance(task, servo),
-        optimised=least.optimised_to_tolerance(task, servo),
+        linear_return=least.to_tolerance(task, servo, "linear_return"),
+        optimised=least.to_tolerance(task, servo, "least_acceleration"),
     )

@@ -13,8 +13,6 @@ from hypothesis import strategies as st
 from camwright.profiles.cross_cutter import (
     QUINTIC_RATIO,
     CrossCut,
-    completed,
-    critical_length,
     quintic_return,
     standstill,
 )
@@ -30,7 +28,8 @@ FREE = Limits(math.inf, math.inf, math.inf)
 """Nothing here asks for limits."""
 
 L_K, L_S = 0.4, 0.2
-HOLE = st.floats(critical_length(L_K, L_S), 0.7)
+CRITICAL = CrossCut(L_K, L_S, 1.0).critical_length
+HOLE = st.floats(CRITICAL, 0.7)
 EXACT = 1e-12
 
 
@@ -71,8 +70,8 @@ def seam_free(cycle: CamProfile) -> None:
 
 
 def test_critical_length_of_the_patent() -> None:
-    assert critical_length(L_K, L_S) == pytest.approx(float(Fraction(2, 10) / Fraction(7, 15) + Fraction(2, 10)), 1e-15)
-    assert critical_length(L_K, L_S) * 1e3 == pytest.approx(628.5714285714286, abs=1e-9)
+    assert pytest.approx(float(Fraction(2, 10) / Fraction(7, 15) + Fraction(2, 10)), 1e-15) == CRITICAL
+    assert pytest.approx(628.5714285714286, abs=1e-9) == CRITICAL * 1e3
 
 
 @pytest.mark.parametrize(
@@ -97,7 +96,7 @@ def test_cases_of_the_patent(length: float, case: int, least: float, stand: floa
 
 
 def test_at_the_critical_length_the_quintic_touches_zero_and_is_not_marked() -> None:
-    cut = CrossCut(L_K, L_S, critical_length(L_K, L_S))
+    cut = CrossCut(L_K, L_S, CRITICAL)
     assert not cut.completed
     least = cut.cycle().extrema(order=1)[0]
     assert least.value == pytest.approx(0.0, abs=EXACT)
@@ -136,7 +135,7 @@ def test_between_the_patents_curves_the_cycle_is_smooth_and_never_reverses(lengt
 
 
 def test_between_the_patents_curves_at_many_lengths() -> None:
-    for length in np.linspace(critical_length(L_K, L_S), 0.7, 401):
+    for length in np.linspace(CRITICAL, 0.7, 401):
         seam_free(CrossCut(L_K, L_S, float(length)).cycle())
 
 
@@ -312,5 +311,4 @@ def test_a_return_that_hardly_moves_is_refused_and_the_least_travel_works() -> N
 
 def test_a_slave_that_comes_back_neither_stands_nor_is_marked() -> None:
     assert standstill(0.5, -0.2) == 0.0
-    assert not completed(0.5, -0.2)
     assert quintic_return(0.5, -0.2).extrema(order=1)[0].value < 0.0

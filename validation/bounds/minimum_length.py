@@ -118,12 +118,14 @@ def physical(task: Task) -> MinimumCutLength:
     return MinimumCutLength(length, cut.shear_zone, 0.0, _greatest(gain))
 
 
-def linear_return_to_tolerance(task: Task, servo: Servo) -> MinimumCutLength:
-    """Shortest cut length with the axis within tolerance in the whole shear zone: linear return.
+def to_tolerance(task: Task, servo: Servo, law: Law) -> MinimumCutLength:
+    """Shortest cut length with the axis within tolerance in the whole shear zone, by a return.
 
-    The shortest cycle of the linear return that some sync zone has and in which the axis, at every sampling phase,
-    stays within the sync tolerance over the last ``l_j`` of the sync zone. The knife runs no faster than the speed
-    limit (eq. 8), but slower where that settles sooner; the linear return knows no limits of acceleration and jerk.
+    The shortest cycle of that return that some sync zone has and in which the axis, at every sampling phase, stays
+    within the sync tolerance over the last ``l_j`` of the sync zone. The knife runs no faster than the speed limit
+    (eq. 8), but slower where that settles sooner. The linear return knows no limits of acceleration and jerk; that of
+    the least peak acceleration (`camwright.profiles.closed_forms.reach.least_acceleration`) is tried from the shortest
+    that the limits allow at all (`camwright.profiles.closed_forms.reach.shortest_return_length`) to ever gentler ones.
 
     Sync zones in steps of a 64th of the room between shear zone and pitch are tried; about the best, the step is
     halved down to 1e-5 of the pitch. For each, the cut length is bisected to 3e-6 of the pitch between the shortest
@@ -134,6 +136,8 @@ def linear_return_to_tolerance(task: Task, servo: Servo) -> MinimumCutLength:
     ----------
     task, servo
         Pitch; line speed, shear zone and sync tolerance; speed limit; servo. The cut's own lengths are not used.
+    law
+        The return.
 
     Raises
     ------
@@ -141,25 +145,28 @@ def linear_return_to_tolerance(task: Task, servo: Servo) -> MinimumCutLength:
         The shear zone is not shorter than the pitch, or the servo cannot be simulated
         (`camwright.validation.servo.simulation.simulate`).
     """
-    return _minimum(_Laws(task, servo, "linear_return"))
-
-
-def optimised_to_tolerance(task: Task, servo: Servo) -> MinimumCutLength:
-    """Shortest cut length with the axis within tolerance in the whole shear zone: return of least acceleration.
-
-    As `linear_return_to_tolerance`, with the return of the least peak acceleration within the limits of speed and
-    jerk (`camwright.profiles.closed_forms.reach.least_acceleration`), from the shortest that the limits allow at all
-    (`camwright.profiles.closed_forms.reach.shortest_return_length`) to ever gentler ones.
-    """
-    return _minimum(_Laws(task, servo, "least_acceleration"))
-
-
-def quintic_to_tolerance(task: Task, servo: Servo) -> MinimumCutLength:
-    """Shortest cut length with the axis within tolerance in the whole shear zone: polynomial 3-4-5 within the limits.
-
-    As `linear_return_to_tolerance`.
-    """
-    return _minimum(_Laws(task, servo, "poly_3_4_5"))
+    laws = _Laws(task, servo, law)
+    cut, pitch = task.cut, task.machine.pitch
+    _require_room(task)
+    if task.limits.speed <= cut.line_speed:  # the knife cannot run ahead of the material
+        return MinimumCutLength(pitch, pitch, 0.0, "speed")
+    search = laws.search(_ZONE_RESOLUTION)
+    best, zone = search.find()
+    if zone == pitch:
+        return MinimumCutLength(best, zone, 0.0, "settling")
+    shape = search.shape(best, zone)
+    shaped = task.with_cut(shape)
+    settling = servo_response(laws.cycle(shaped), shaped, servo).settling
+    # once more about the answer with each quantity eased, to see what binds
+    eased = {name: replace(laws, task=task.with_limits(limits)) for name, limits in _eased(task.limits).items()}
+    eased["settling"] = replace(laws, relief=_RELAXATION)
+    gain: dict[Binding, float] = {}
+    for name, other in eased.items():
+        again = other.search(_GAIN_RESOLUTION)
+        gain[name] = best - again.refine(again.shorter(zone, best) or best, zone)[0]
+    # settled it has, in tolerance as it is; to rounding, before the shear zone begins
+    transition = zone - cut.shear_zone if settling is None else settling
+    return MinimumCutLength(best, zone, transition, _greatest(gain))
 
 
 def over_line_speeds(
@@ -167,13 +174,13 @@ def over_line_speeds(
 ) -> float | None:
     """Shortest cut length with the axis within tolerance in the whole shear zone at several line speeds, by a law, in its best sync zone.
 
-    As `linear_return_to_tolerance`, on a coarser grid of sync zones. A cam is fixed over the master, so a slower line is a quicker servo
+    As `to_tolerance`, on a coarser grid of sync zones. A cam is fixed over the master, so a slower line is a quicker servo
     (`camwright.profiles.servo.Servo.at_speed`); the limits bind at the full line speed.
 
     Parameters
     ----------
     task, servo
-        As in `linear_return_to_tolerance`.
+        As in `to_tolerance`.
     shares
         Line speeds as shares of the cut's.
 
@@ -246,30 +253,6 @@ class _Laws:
             if greatest > shape.sync_tolerance:
                 break
         return math.log(greatest / shape.sync_tolerance) if greatest > 0.0 else -math.inf
-
-
-def _minimum(laws: _Laws) -> MinimumCutLength:
-    """Search the whole room, then once more about the answer with each quantity eased, to see what binds."""
-    task, cut, pitch = laws.task, laws.task.cut, laws.task.machine.pitch
-    _require_room(task)
-    if task.limits.speed <= cut.line_speed:  # the knife cannot run ahead of the material
-        return MinimumCutLength(pitch, pitch, 0.0, "speed")
-    search = laws.search(_ZONE_RESOLUTION)
-    best, zone = search.find()
-    if zone == pitch:
-        return MinimumCutLength(best, zone, 0.0, "settling")
-    shape = search.shape(best, zone)
-    shaped = task.with_cut(shape)
-    settling = servo_response(laws.cycle(shaped), shaped, laws.servo).settling
-    eased = {name: replace(laws, task=task.with_limits(limits)) for name, limits in _eased(task.limits).items()}
-    eased["settling"] = replace(laws, relief=_RELAXATION)
-    gain: dict[Binding, float] = {}
-    for name, other in eased.items():
-        again = other.search(_GAIN_RESOLUTION)
-        gain[name] = best - again.refine(again.shorter(zone, best) or best, zone)[0]
-    # settled it has, in tolerance as it is; to rounding, before the shear zone begins
-    transition = zone - cut.shear_zone if settling is None else settling
-    return MinimumCutLength(best, zone, transition, _greatest(gain))
 
 
 def _fastest_quintic_cut(pitch: float, line_speed: float, limits: Limits, sync_zone: float) -> float:

@@ -23,11 +23,11 @@ from camwright.profiles.returns import assemble, baseline
 from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
 from camwright.validation.bounds.minimum_length import (
+    Law,
     cut_length_eq10,
-    linear_return_to_tolerance,
-    optimised_to_tolerance,
     physical,
     required_sync_zone,
+    to_tolerance,
 )
 from camwright.validation.servo.response import servo_response
 
@@ -111,7 +111,7 @@ def test_bang_bang_bound_in_closed_form() -> None:
 
 
 def test_linear_return_of_the_reference_case() -> None:
-    found = linear_return_to_tolerance(Task(KNIFE, CUT, QUICK), PAPER)
+    found = to_tolerance(Task(KNIFE, CUT, QUICK), PAPER, "linear_return")
     assert found.length == pytest.approx(0.2995, abs=2e-4)
     assert found.length == pytest.approx(cut_length_eq10(found.transition, 0.04, 0.4, 80 / 60, 200 / 60), abs=5e-6)
     assert found.binding == "settling"
@@ -120,7 +120,7 @@ def test_linear_return_of_the_reference_case() -> None:
 @pytest.mark.parametrize(("tolerance", "length"), [(0.25e-3, 0.2745), (0.5e-3, 0.2632)])
 def test_linear_return_at_other_tolerances(tolerance: float, length: float) -> None:
     cut = replace(CUT, sync_tolerance=tolerance)
-    found = linear_return_to_tolerance(Task(KNIFE, cut, QUICK), PAPER)
+    found = to_tolerance(Task(KNIFE, cut, QUICK), PAPER, "linear_return")
     assert found.length == pytest.approx(length, abs=2e-4)
     assert works("linear", found.length, found.sync_zone, cut, QUICK)
 
@@ -160,8 +160,8 @@ def works(name: str, length: float, sync_zone: float, cut: Cut, limits: Limits) 
 @pytest.mark.parametrize("limits", [QUICK, GENTLE])
 def test_the_minimum_works_and_nothing_near_it_is_shorter(name: str, tolerance: float, limits: Limits) -> None:
     cut = replace(CUT, sync_tolerance=tolerance)
-    search = linear_return_to_tolerance if name == "linear" else optimised_to_tolerance
-    found = search(Task(KNIFE, cut, limits), PAPER)
+    law: Law = "linear_return" if name == "linear" else "least_acceleration"
+    found = to_tolerance(Task(KNIFE, cut, limits), PAPER, law)
     assert found.length >= lower(name, found.sync_zone, limits) * (1 - 1e-12)
     # a nanometre longer: at the shortest return the limits leave the closed form no room for rounding
     assert works(name, found.length + 1e-9, found.sync_zone, cut, limits)
@@ -174,8 +174,8 @@ def test_the_minimum_works_and_nothing_near_it_is_shorter(name: str, tolerance: 
 
 @pytest.mark.parametrize(("name", "limits"), [("linear", QUICK), ("optimised", QUICK), ("optimised", GENTLE)])
 def test_no_cut_length_on_a_coarse_grid_is_shorter(name: str, limits: Limits) -> None:
-    search = linear_return_to_tolerance if name == "linear" else optimised_to_tolerance
-    least = search(Task(KNIFE, CUT, limits), PAPER).length
+    law: Law = "linear_return" if name == "linear" else "least_acceleration"
+    least = to_tolerance(Task(KNIFE, CUT, limits), PAPER, law).length
     tried = 0
     for i in range(1, 48):
         sync_zone = 0.04 + 0.36 * i / 48
@@ -189,7 +189,7 @@ def test_no_cut_length_on_a_coarse_grid_is_shorter(name: str, limits: Limits) ->
 
 def test_least_acceleration_beats_the_shortest_return() -> None:
     # 331.9 mm is the least that the shortest return within these limits reaches, whatever its sync zone
-    found = optimised_to_tolerance(Task(KNIFE, CUT, GENTLE), PAPER)
+    found = to_tolerance(Task(KNIFE, CUT, GENTLE), PAPER, "least_acceleration")
     assert found.length == pytest.approx(0.3169, abs=2e-4)
     assert found.length > lower("optimised", found.sync_zone, GENTLE) + 5e-3
 
@@ -197,7 +197,7 @@ def test_least_acceleration_beats_the_shortest_return() -> None:
 def test_a_servo_that_needs_no_time_to_settle_cuts_at_the_physical_bound() -> None:
     # within a tolerance beyond every error, the smallest sync zone tried is the best
     cut = replace(CUT, sync_tolerance=1.0)
-    found = optimised_to_tolerance(Task(KNIFE, cut, QUICK), PAPER)
+    found = to_tolerance(Task(KNIFE, cut, QUICK), PAPER, "least_acceleration")
     assert found.transition == 0.0
     assert found.length == pytest.approx(physical(Task(KNIFE, cut, QUICK)).length, abs=2e-5)
     assert found.binding == "speed"
@@ -205,20 +205,23 @@ def test_a_servo_that_needs_no_time_to_settle_cuts_at_the_physical_bound() -> No
 
 def test_a_servo_that_never_settles_cuts_the_pitch() -> None:
     lagging = replace(PAPER, velocity_feedforward=0.0)
-    found = optimised_to_tolerance(Task(KNIFE, CUT, QUICK), lagging)
+    found = to_tolerance(Task(KNIFE, CUT, QUICK), lagging, "least_acceleration")
     assert (found.length, found.sync_zone, found.transition, found.binding) == (0.4, 0.4, 0.0, "settling")
 
 
 def test_the_better_servo_cuts_shorter() -> None:
     stiff = Servo(1500.0, 0.8, 400.0, 0.0002, 1.0)
-    found = optimised_to_tolerance(Task(KNIFE, CUT, QUICK), stiff)
-    assert found.length < optimised_to_tolerance(Task(KNIFE, CUT, QUICK), PAPER).length
+    found = to_tolerance(Task(KNIFE, CUT, QUICK), stiff, "least_acceleration")
+    assert found.length < to_tolerance(Task(KNIFE, CUT, QUICK), PAPER, "least_acceleration").length
     assert found.length == pytest.approx(physical(Task(KNIFE, CUT, QUICK)).length, rel=0.1)
 
 
 def test_a_knife_that_cannot_run_ahead_cuts_its_own_pitch() -> None:
     tight = replace(QUICK, speed=CUT.line_speed)
-    for found in (physical(Task(KNIFE, CUT, tight)), optimised_to_tolerance(Task(KNIFE, CUT, tight), PAPER)):
+    for found in (
+        physical(Task(KNIFE, CUT, tight)),
+        to_tolerance(Task(KNIFE, CUT, tight), PAPER, "least_acceleration"),
+    ):
         assert (found.length, found.binding) == (0.4, "speed")
 
 
@@ -228,4 +231,4 @@ def test_a_shear_zone_as_long_as_the_pitch_is_refused() -> None:
     ):
         physical(Task(KNIFE, replace(CUT, shear_zone=0.4), QUICK))
     with pytest.raises(InputError, match="no room for a return"):
-        linear_return_to_tolerance(Task(KNIFE, replace(CUT, shear_zone=0.5), QUICK), PAPER)
+        to_tolerance(Task(KNIFE, replace(CUT, shear_zone=0.5), QUICK), PAPER, "linear_return")
