@@ -30,8 +30,6 @@ from camwright.validation.bounds.return_dual import DualTask, least_square_jerk
 
 INTERVALS = 140
 """Intervals of half a motion."""
-GREATEST = 1e3
-"""Largest limit that the quadratic programme is told; none that matters is that large."""
 TURNS, EARLIEST = 40_000, 1e-6
 """Times of the first standstill of a carriage that are looked at, from this share of the latest on; each is later by a 3000th."""
 SAME = 1e-6
