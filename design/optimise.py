@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -305,27 +306,33 @@ def _solve_for_motor(task: Task, objective: CommandObjective, suggest: bool, tho
         return free
     found: list[Solution] = []
     decisive = motion_objective(machine, objective)
-    rectangles = [each for each in motor_limits(machine, limits) if is_feasible(task.with_limits(each))]
+    rectangles = [task.with_limits(each) for each in motor_limits(machine, limits)]
+    rectangles = [each for each in rectangles if is_feasible(each)]
     if rectangles:
-        rough = [
-            grid_objective(return_problem(task.with_limits(each), decisive or "rms_acceleration"))
-            for each in rectangles
-        ]
-        found += _within_rectangle(task.with_limits(rectangles[int(np.argmin(rough))]), objective, thorough)
+        rough = [grid_objective(return_problem(each, decisive or "rms_acceleration")) for each in rectangles]
+        found += _within_rectangle(rectangles[int(np.argmin(rough))], objective, thorough)
     easiest = None
     # a rectangle says little where the torque depends on the place, and of energy, or where friction helps to brake, not all
     if not found or decisive is None or not machine.constant_inertia:
         easiest = None if found and machine.constant_inertia else least_load(task)
-        starts = [solution.back for solution in found] + ([] if easiest is None else [easiest.back])
-        within = solve_within_curve(task, decisive or objective, starts)
-        if within is not None:
-            value = within.value if decisive is None else _over_time(within.back, decisive, task.cut)
-            found.append(_searched(within, task, objective, value))
+        starts = [each.back for each in (*found, easiest) if each is not None]
+        found += _within_curve(task, objective, decisive, starts)
     if not found and task.line.ramps and is_feasible(task):
         raise ramp_infeasible(task, suggest=suggest)
     if not found:
         raise infeasible(task, suggest=suggest, load=None if easiest is None else easiest.value)
     return min(found, key=lambda solution: solution.minimised)
+
+
+def _within_curve(
+    task: Task, objective: CommandObjective, decisive: MotionObjective | None, starts: Sequence[CamProfile]
+) -> list[Solution]:
+    """Solve within the whole curve from starts of other kinds and these; nothing where none converges."""
+    within = solve_within_curve(task, decisive or objective, starts)
+    if within is None:
+        return []
+    value = within.value if decisive is None else _over_time(within.back, decisive, task.cut)
+    return [_searched(within, task, objective, value)]
 
 
 def _within_rectangle(task: Task, objective: CommandObjective, thorough: bool) -> list[Solution]:

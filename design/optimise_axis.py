@@ -117,19 +117,7 @@ def solve_axis(
         ).machine
     structure = None if blind is None or command == "shaped" else blind.back
     problem = AxisProblem(task.with_machine(placed), command, servos, True, structure, between, shares=shares)
-    order = OBJECTIVES[cost].order
-    # the servo-blind optimum keeps the motor's curve, though it may lie in none of the rectangles that stand for it
-    by_motor = _within(problem, motor_speed_limits(placed, limits))
-    motions = _kept(by_motor, cost) if limits.motor is not None else []
-    if not motions:
-        found = [_either(_within(problem, each), cost) for each in widest(motor_limits(placed, limits))]
-        motions = [motion for motion in found if motion is not None]
-    if not motions and limits.motor is not None:
-        motions = _kept(replace(by_motor, axis_limits=False), cost)
-    if not motions and blind is not None and command == "in_sync":
-        motions = _without_choice(
-            problem, blind, None if cost == "sync_error" else blind.minimised / task.cut.line_speed**order
-        )
+    motions = _motions(problem, cost, blind)
     if not motions:
         loosest = _within(replace(problem, axis_limits=False), motor_speed_limits(placed, limits))
 
@@ -141,7 +129,24 @@ def solve_axis(
         raise axis_infeasible(loosest, (lambda cut: designs(task.with_cut(cut)), narrower) if suggest else None)
     motion = min(motions, key=lambda each: each.value)
     status = blind.status if blind is not None and not motion.programmes else SolveStatus.BEST_FOUND
-    return _solution(motion, status, task.with_machine(placed), objective, order)
+    return _solution(motion, status, task.with_machine(placed), objective, OBJECTIVES[cost].order)
+
+
+def _motions(problem: AxisProblem, cost: ObjectiveName, blind: Solution | None) -> list[AxisMotion]:
+    """Find motions within the motor's curve, else its widest rectangles, else such as only the command keeps to it, else the one left."""
+    limits, cut = problem.task.limits, problem.task.cut
+    # the servo-blind optimum keeps the motor's curve, though it may lie in none of the rectangles that stand for it
+    by_motor = _within(problem, motor_speed_limits(problem.task.machine, limits))
+    motions = _kept(by_motor, cost) if limits.motor is not None else []
+    if not motions:
+        found = [_either(_within(problem, each), cost) for each in widest(motor_limits(problem.task.machine, limits))]
+        motions = [motion for motion in found if motion is not None]
+    if not motions and limits.motor is not None:
+        motions = _kept(replace(by_motor, axis_limits=False), cost)
+    if not motions and blind is not None and problem.command == "in_sync":
+        least = None if cost == "sync_error" else blind.minimised / cut.line_speed ** OBJECTIVES[cost].order
+        motions = _without_choice(problem, blind, least)
+    return motions
 
 
 def may_keep(task: Task, servos: tuple[Servo, ...], shares: tuple[float, ...]) -> bool:

@@ -82,25 +82,28 @@ def narrowed(
     slow, spare, ending = 0, _SPARE * resolution * holds[0], _ENDING * resolution * holds[0]
     while (width := holds[0] - fails[0]) > resolution * holds[0] and holds[1] < -resolution:
         length = 0.5 * (fails[0] + holds[0])
-        if slow < _SLOWEST and width > 2.0 * spare:
-            end, other = (fails, holds) if moved else (holds, fails)
-            zero = zero_between(end, before) or zero_between(end, other)
-            if zero is not None:
-                start, way = (holds[0], -1.0) if moved is False else (fails[0], 1.0)
-                step = max(way * (zero - start), 0.0) + spare
-                ends = step <= ending
-                if ends or slow < _SLOW:
-                    length = start + way * (ending if ends else min(step, width - spare))
+        end, other = (fails, holds) if moved else (holds, fails)
+        zero = zero_between(end, before) or zero_between(end, other)
+        if zero is not None:
+            start, way = (holds[0], -1.0) if moved is False else (fails[0], 1.0)
+            step = _step(max(way * (zero - start), 0.0) + spare, width - spare, spare, ending, slow)
+            length = length if step is None else start + way * step
         found = missed(length)
-        last, opposite = (fails, holds) if found > 0.0 else (holds, fails)
-        before = last if moved == (found > 0.0) or math.isinf(opposite[1]) else None
-        moved = found > 0.0
-        if moved:
-            fails = length, found
-        else:
-            holds = length, found
+        again, moved = moved == (found > 0.0), found > 0.0
+        last, opposite = (fails, holds) if moved else (holds, fails)
+        before = last if again or math.isinf(opposite[1]) else None
+        fails, holds = ((length, found), holds) if moved else (fails, (length, found))
         slow = slow + 1 if holds[0] - fails[0] > 0.5 * width else 0
     return holds
+
+
+def _step(guessed: float, most: float, spare: float, ending: float, slow: int) -> float | None:
+    """Give the step from an end: the one that ends the search, or the guessed one; None for the middle, after too many slow ones."""
+    if slow >= _SLOWEST or most <= spare:
+        return None
+    if guessed <= ending:
+        return ending
+    return min(guessed, most) if slow < _SLOW else None
 
 
 def zero_between(one: tuple[float, float], other: tuple[float, float] | None) -> float | None:

@@ -199,20 +199,7 @@ def _sync(run: CamProfile, task: Task, wraps: int, count: float, sample_time: fl
     sync = task.sync
     began = task.slave_at_sync_start - task.slave_at_start  # of the zone, from the start of the cycle
     margins = _margins(run, task)
-    zone = cut.return_start + cut.return_zone
-    edge = _EDGE * cut.length
-    points, middles, homes = [], [], []
-    for wrap in range(wraps):
-        for start, end in cut.sync_parts:
-            later = end == cut.length  # the zone that begins in this cycle
-            x = _places(run, wrap * cut.length + start, min(wrap * cut.length + end, run.end))
-            middle = 0.5 * (x[1:] + x[:-1])
-            points.append(x)
-            low = x[0] + (edge if start == 0.0 and len(cut.sync_parts) > 1 else max(edge, margins[0]))
-            high = x[-1] - (edge if later and len(cut.sync_parts) > 1 else max(edge, margins[1]))
-            middles.append(middle[(middle > low) & (middle < high)])
-            origin = wrap * cut.length + zone - (0.0 if later else cut.length)
-            homes.append((wrap * cut.length, origin, (wrap + (1 if later else 0)) * machine.pitch))
+    points, middles, homes = _zone_places(run, task, wraps, margins)
 
     def off(parts: list[FloatArray]) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Places of all parts, the starts of their cycles, and the slave there: as it should be, and as it is."""
@@ -259,6 +246,28 @@ def _sync(run: CamProfile, task: Task, wraps: int, count: float, sample_time: fl
             ratio_at,
         ),
     ]
+
+
+def _zone_places(
+    run: CamProfile, task: Task, wraps: int, margins: tuple[float, float]
+) -> tuple[list[FloatArray], list[FloatArray], list[tuple[float, float, float]]]:
+    """Places in each part of the sync zones, places between these, and where its cycle and its zone begin, and the travel there."""
+    cut, machine = task.cut, task.machine
+    zone = cut.return_start + cut.return_zone
+    edge = _EDGE * cut.length
+    points, middles, homes = [], [], []
+    for wrap in range(wraps):
+        for start, end in cut.sync_parts:
+            later = end == cut.length  # the zone that begins in this cycle
+            x = _places(run, wrap * cut.length + start, min(wrap * cut.length + end, run.end))
+            middle = 0.5 * (x[1:] + x[:-1])
+            points.append(x)
+            low = x[0] + (edge if start == 0.0 and len(cut.sync_parts) > 1 else max(edge, margins[0]))
+            high = x[-1] - (edge if later and len(cut.sync_parts) > 1 else max(edge, margins[1]))
+            middles.append(middle[(middle > low) & (middle < high)])
+            origin = wrap * cut.length + zone - (0.0 if later else cut.length)
+            homes.append((wrap * cut.length, origin, (wrap + (1 if later else 0)) * machine.pitch))
+    return points, middles, homes
 
 
 def _margins(run: CamProfile, task: Task) -> tuple[float, float]:

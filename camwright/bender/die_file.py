@@ -111,25 +111,13 @@ def read_cf2(path: Path) -> Die:
 
 def _blocks(path: Path) -> tuple[dict[str, list[_Row]], str]:
     """Cut the file into its blocks: ``MAIN`` and each ``SUB`` by its name."""
-    try:
-        if path.stat().st_size > MOST_BYTES:
-            raise InputError(f"{path}: more than the {MOST_BYTES} bytes of the largest drawing that is read")
-        text = path.read_bytes().decode("utf-8", "replace")
-    except OSError as error:
-        raise InputError(f"{path}: the drawing cannot be read: {error}") from error
     blocks: dict[str, list[_Row]] = {}
     unit, name, ended = "", "", False
-    for number, line in enumerate(text.splitlines(), start=1):
+    for number, line in enumerate(_text(path).splitlines(), start=1):
         cells = tuple(cell.strip() for cell in line.split(","))
         word = cells[0].upper()
         if word in ("MAIN", "SUB", "ORDER"):
-            name = (
-                "MAIN"
-                if word == "MAIN"
-                else ""
-                if word == "ORDER"
-                else f"SUB {cells[1] if len(cells) > 1 else ''}".upper()
-            )
+            name = {"MAIN": "MAIN", "ORDER": ""}.get(word, f"SUB {''.join(cells[1:2])}".upper())
             if name:
                 blocks[name] = []
         elif word == "END":
@@ -145,6 +133,16 @@ def _blocks(path: Path) -> tuple[dict[str, list[_Row]], str]:
             f"{path}: not a CFF2 file to its end: it breaks off without $EOF; export or copy the drawing again"
         )
     return blocks, unit
+
+
+def _text(path: Path) -> str:
+    """Read the file."""
+    try:
+        if path.stat().st_size > MOST_BYTES:
+            raise InputError(f"{path}: more than the {MOST_BYTES} bytes of the largest drawing that is read")
+        return path.read_bytes().decode("utf-8", "replace")
+    except OSError as error:
+        raise InputError(f"{path}: the drawing cannot be read: {error}") from error
 
 
 def _draw(

@@ -209,7 +209,7 @@ def _gathered(
             if reading.bridge_layer is not None and seen.style.layer.casefold() == reading.bridge_layer.casefold():
                 _mark(seen, unit, marks, left_out)
                 continue
-            if wanted is not None and seen.style.layer.casefold() != wanted:
+            if wanted not in (None, seen.style.layer.casefold()):
                 if aside < MOST_SEGMENTS:
                     aside += _aside(seen, others, resolution, unit)
                 continue

@@ -134,25 +134,30 @@ def limit_rows(book: Book, entries: Iterable[Entry]) -> Iterator[list[Cell]]:
 def _limit_row(book: Book, entries: list[Entry], objective: str, limit: Limit | None) -> list[Cell]:
     """Give the row of one cut length and one objective; the entries ascend by line speed."""
     works = [index for index, entry in enumerate(entries) if entry.status == "passed"]
-    highest = works[-1] if works else None
-    beyond = 0 if highest is None else highest + 1
-    next_one = entries[beyond] if beyond < len(entries) else None
+    beyond = works[-1] + 1 if works else 0
     of, units = book.combination(entries[0].number), book.units
     speed = units.per_metre_per_second
+    highest, next_one = (
+        float(book.combination(entry.number).line_speed * speed)
+        for entry in (entries[beyond - 1], entries[min(beyond, len(entries) - 1)])
+    )
+    bound = limit or Limit(None, "", None, "")
+    may, holds = (
+        None if value is None else _rounded_down(value * float(speed))
+        for value in (bound.line_speed, bound.in_tolerance)
+    )
     return [
         float(of.length * units.per_metre),
         objective,
-        None if highest is None else float(book.combination(entries[highest].number).line_speed * speed),
-        None if highest is None else _released(entries[highest].speed_band, units),
-        0 if highest is None else highest + 1 - len(works),
-        None if next_one is None else float(book.combination(next_one.number).line_speed * speed),
-        None if next_one is None else _binding(next_one),
-        None if limit is None or limit.line_speed is None else _rounded_down(limit.line_speed * float(speed)),
+        highest if works else None,
+        _released(entries[beyond - 1].speed_band, units) if works else None,
+        beyond - len(works),
+        *((next_one, _binding(entries[beyond])) if beyond < len(entries) else (None, None)),
+        may,
         None if limit is None else limit.binding,
-        None if limit is None or limit.in_tolerance is None else _rounded_down(limit.in_tolerance * float(speed)),
+        holds,
         None if limit is None else limit.failing,
-        *((None, None) if highest is None else _mark_ends(entries[highest])),
-        *((None, None) if highest is None else _ramps(entries[highest], units)),
+        *((*_mark_ends(entries[beyond - 1]), *_ramps(entries[beyond - 1], units)) if works else (None,) * 4),
     ]
 
 

@@ -14,7 +14,7 @@ from camwright.house.language import Language
 from camwright.house.numbers import Units, number, with_unit
 from camwright.house.output import Voice, complain
 from camwright.house.owned import Work
-from camwright.jobs.job import parse_job
+from camwright.jobs.job import Job, parse_job
 from camwright.profiles.errors import InputError
 from camwright.profiles.tables.targets import TARGETS, target_of
 from camwright.recipes.build import STEPS, designed, make_recipe
@@ -24,7 +24,7 @@ from camwright.recipes.manifest import MANIFEST_FILE, sha256
 from camwright.recipes.model import Particulars, Recipe, RecipeCheck
 from camwright.recipes.signature import SIGNATURE_FILE, require_private_key, signed
 from camwright.recipes.write import WRITE_STEPS, is_recipe, recipe_files, write_folder
-from camwright.stored.design_file import MOST_BYTES, parse_design
+from camwright.stored.design_file import MOST_BYTES, StoredDesign, parse_design
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -108,9 +108,7 @@ def _make(
     wanted = None if targets is None else _targets(targets)
     if out is not None:
         require_replaceable(out, is_recipe)
-    text = read_text(file, "job or design file", MOST_BYTES)
-    stored = parse_design(text, str(file)) if text.removeprefix("\ufeff").lstrip().startswith("{") else None
-    job = parse_job(text, str(file)) if stored is None else stored.job
+    job, stored = _read(file)
     names = wanted or list(job.output.targets) or ["csv"]
     folder = Path("out") / f"{job.name}-recipe" if out is None else out
     require_replaceable(folder, is_recipe)
@@ -135,6 +133,15 @@ def _make(
     further = "" if made.recipe.released else _way_out(made.recipe, file, stored is not None)
     voice.answer(lambda: answer, lambda: _recipe_view(made.recipe, answer, folder, job.units, further))
     return 0 if made.recipe.released else 1
+
+
+def _read(file: Path) -> tuple[Job, StoredDesign | None]:
+    """Read a job file, or a design with its job."""
+    text = read_text(file, "job or design file", MOST_BYTES)
+    if text.removeprefix("\ufeff").lstrip().startswith("{"):
+        stored = parse_design(text, str(file))
+        return stored.job, stored
+    return parse_job(text, str(file)), None
 
 
 def _failed(recipe: Recipe) -> list[str]:

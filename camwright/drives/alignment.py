@@ -82,11 +82,11 @@ def aligned(
     sync = task.sync
     cuts = cuts_in(rebuilt, cut)
     stretch = rebuilt.length / (cuts * cut.length)
-    paths, zone, end = _seen(rebuilt if seen is None else seen, job, cuts, stretch)
+    paths, zone, end = _seen(seen or rebuilt, job, cuts, stretch)
     width = end - zone
     in_zone = np.linspace(0.0, width, _IN_ZONE)
     inside = np.clip(in_zone, _EDGE * cut.length, width - _EDGE * cut.length)
-    before = cut.shear_zone_at if cut.shaped else 0.0
+    before = cut.shear_zone_at * cut.shaped
     meant, slope = (sync(np.minimum(before + x, sync.end), order) for x, order in ((in_zone, 0), (inside, 1)))
     chord, piece = width / (_IN_ZONE - 1), 0.5 * cuts * cut.length / rebuilt.pieces
     count = count or (
@@ -113,29 +113,33 @@ def aligned(
     # a position, or a ratio, off by its rounding
     slack = (count or grain * (1.0 if by_position else cut.sync_zone / piece)) * lever / cut.sync_tolerance
     begins = _beginnings(rebuilt, stretch, zone, width, cut.length)
-    if cut.shaped:  # points say nothing of where the axis is in sync
-        anchored = np.zeros(len(begins), dtype=bool)
-    else:
-        anchored = _anchored(begins, rebuilt.breaks / stretch, (zone, end), cut.length, tick)
+    # points say nothing of where the axis of a shaped command is in sync
+    ends = () if cut.shaped else (zone, end)
+    anchored = _anchored(begins, rebuilt.breaks / stretch, ends, cut.length, tick)
     if count > 0.0:
         begin = _between_sides(begins, misfit(begins), cut.length, slack, anchored)
     else:
         begin = _best(begins, misfit, cut.length, max(_EXACT, slack), anchored)
-    notes: tuple[str, ...] = ()
     here, there = misfit(np.array([0.0, begin])).tolist()
     met = 0.0
     if begin:  # even where the file's own zero is as good: figures must not depend on where a file begins
         rebuilt, met = rebuilt.roll(begin * stretch), float(rebuilt(begin * stretch))
-    if there + slack < here and here > (1.0 if cut.shaped else _TOLD):
-        fits = "axis fits the shear" if cut.shaped else "cam fits the sync"
-        note = (
-            f"the file's master zero is not the job's: the job's cycle begins {begin * 1e3:.6g} mm into the file's, "
-            f"where the {fits} zone best ([output] origin says which zero is meant)"
-        )
-        notes = (note,)
+    notes = _told(begin, here, there + slack, cut.shaped)
     off = np.concatenate([path((begin + zone + in_zone) * stretch) - met - meant for path in paths])
     wanted = task.height if cut.origin == "return" else machine.pitch - float(sync(0.5 * cut.sync_zone))
     return rebuilt.shift(0.0, wanted - 0.5 * float(off.max() + off.min())), notes
+
+
+def _told(begin: float, here: float, there: float, shaped: bool) -> tuple[str, ...]:
+    """Say that the file's own zero is not the job's, where the cycle fits worse than at another, and ill."""
+    if not here > max(there, 1.0 if shaped else _TOLD):
+        return ()
+    fits = "axis fits the shear" if shaped else "cam fits the sync"
+    note = (
+        f"the file's master zero is not the job's: the job's cycle begins {begin * 1e3:.6g} mm into the file's, "
+        f"where the {fits} zone best ([output] origin says which zero is meant)"
+    )
+    return (note,)
 
 
 def _seen(rebuilt: CamProfile, job: Job, cuts: int, stretch: float) -> tuple[list[Path], float, float]:
@@ -165,12 +169,12 @@ def _beginnings(rebuilt: CamProfile, stretch: float, zone: float, width: float, 
 
 
 def _anchored(
-    begins: FloatArray, points: FloatArray, ends: tuple[float, float], length: float, tick: float
+    begins: FloatArray, points: FloatArray, ends: tuple[float, ...], length: float, tick: float
 ) -> NDArray[np.bool_]:
-    """Whether both ends of the zone fall on points of the cam, as well as the rounding of these lets tell."""
+    """Whether both ends of the zone, if there are any, fall on points of the cam, as well as the rounding of these lets tell."""
     ring = np.sort(np.mod(points, length))
     ring = np.concatenate([ring - length, ring, ring + length])
-    both = np.ones(len(begins), dtype=bool)
+    both = np.full(len(begins), bool(ends))
     for end in ends:
         at = np.mod(begins + end, length)
         after = np.searchsorted(ring, at)

@@ -259,7 +259,7 @@ def _export(
     if stored and not name:
         facts += (("cuts in this table", str(cuts)), ("drift of the slave in a cut", _drift_words(choice.rebuilt, job)))
     link = f"{profile.length / wanted.units.master.size:.12g}" if wanted.asked else ""
-    head = Header(f"{name}-{job.name}" if name else job.name, camwright_version(), job.sha256, facts, link=link)
+    head = Header("-".join(filter(None, (name, job.name))), camwright_version(), job.sha256, facts, link=link)
     result = _written(judge, choice, target, head, accuracy, stored)
     if target.number_format == "float32" and target.spacing == "free":
         dense = choose(profile, target, units, accuracy, DENSE, zones)

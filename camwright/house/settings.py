@@ -47,22 +47,14 @@ def _fault(error: ErrorDetails, model: type[Table], settings: Settings) -> str:
     several = bool(inner) and isinstance(path[-1], str) and get_origin(table.model_fields[path[-1]].annotation) is list
     where = f"[[{path[-1]}]]" if several else _where(path, is_table=bool(inner))
     if kind in ("union_tag_not_found", "union_tag_invalid"):
-        tag, words = _plain(error["ctx"]["discriminator"]), _plain(error["ctx"].get("expected_tags", ""))
-        if kind == "union_tag_not_found":
-            first = _tags(inner[0], tag)[0]
-            return f'{where} {tag}: missing; add e.g. {tag} = "{first}"'
-        return f"{where} {tag} = {shown(value[tag])}: not known; write {_choice(words.split(', '))}"
+        return _tag_fault(error, where, inner)
     if several:
         more = f"add one table [[{path[-1]}]] or more"
         return f"{where}: missing; {more}" if kind == "missing" else f"{where} = {shown(value)}: not tables; {more}"
     if kind == "missing":
         return f"{where}: missing; {_advice(path, table, inner, settings)}"
     if kind == "extra_forbidden":
-        key, known = str(path[-1]), list(table.model_fields)
-        before = f"{_place(path[:-1])} " if path[:-1] else ""
-        near = difflib.get_close_matches(key[:100], known, n=1, cutoff=0.5)
-        advice = f"did you mean {near[0]}?" if near else f"the keys here are {', '.join(known)}"
-        return f"{before}{shown(key)[1:-1]}: there is no such key; {advice}"
+        return _key_fault(path, list(table.model_fields))
     if kind == "value":
         return f"{where}{': ' if isinstance(path[-1], int) else ' = '}{error['msg']}"
     if kind == "literal_error":
@@ -74,6 +66,22 @@ def _fault(error: ErrorDetails, model: type[Table], settings: Settings) -> str:
         return f"{where} = {shown(value)}: not a list of rows"
     names = ".".join(str(part) for part in path)
     return f"{where} = {shown(value)}: not a table; write [{names}] on a line of its own and its keys below"
+
+
+def _tag_fault(error: ErrorDetails, where: str, inner: list[type[Table]]) -> str:
+    """Say that the key which tells what a table is, as a machine's kind, is missing or not known."""
+    tag, words = _plain(error["ctx"]["discriminator"]), _plain(error["ctx"].get("expected_tags", ""))
+    if error["type"] == "union_tag_not_found":
+        return f'{where} {tag}: missing; add e.g. {tag} = "{_tags(inner[0], tag)[0]}"'
+    return f"{where} {tag} = {shown(error['input'][tag])}: not known; write {_choice(words.split(', '))}"
+
+
+def _key_fault(path: _Path, known: list[str]) -> str:
+    """Say that there is no such key, and which are known."""
+    key, before = str(path[-1]), f"{_place(path[:-1])} " if path[:-1] else ""
+    near = difflib.get_close_matches(key[:100], known, n=1, cutoff=0.5)
+    advice = f"did you mean {near[0]}?" if near else f"the keys here are {', '.join(known)}"
+    return f"{before}{shown(key)[1:-1]}: there is no such key; {advice}"
 
 
 def _resolved(model: type[Table], location: Sequence[str | int]) -> tuple[_Path, type[Table], list[type[Table]]]:

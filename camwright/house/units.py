@@ -165,17 +165,7 @@ def _exact(text: str, kind: str, zero: bool, signed: bool, example: str) -> Frac
     """Read the text of a quantity; kept, because job files of one machine differ in few of them."""
     wanted = replace(KINDS[kind], example=example)
     hint = f'write e.g. "{example}"'
-    if len(text) > _LONGEST:
-        raise InputError(f"{shown(text)}: longer than {_LONGEST} characters; {hint}")
-    comma = _COMMA.fullmatch(text.strip())
-    if comma is not None:
-        raise InputError(f"{shown(text)}: a comma in the number; {_without_comma(*comma.groups())}")
-    found = _TEXT.fullmatch(text.strip())
-    if found is None:
-        raise InputError(f"{shown(text)}: not {wanted.name}, a finite number and a unit; {hint}")
-    number, unit = found.group(1), found.group(2)
-    if not unit:
-        raise InputError(f'{shown(text)}: a number without a unit; write e.g. "{_repeated(number, wanted)}"')
+    number, unit = _number_and_unit(text, wanted, hint)
     factor, dimension = _unit(unit, shown(text), wanted)
     if kind == "gain" and unit in _HERTZ:
         turns = f"{float(Fraction(number) * factor):.4g} 1/s"
@@ -199,6 +189,22 @@ def _exact(text: str, kind: str, zero: bool, signed: bool, example: str) -> Frac
             f"{wanted.least:g} to {wanted.greatest:g} {wanted.unit}; {hint}"
         )
     return exact
+
+
+def _number_and_unit(text: str, wanted: Kind, hint: str) -> tuple[str, str]:
+    """Cut the text of a quantity into a finite number and a unit."""
+    if len(text) > _LONGEST:
+        raise InputError(f"{shown(text)}: longer than {_LONGEST} characters; {hint}")
+    comma = _COMMA.fullmatch(text.strip())
+    if comma is not None:
+        raise InputError(f"{shown(text)}: a comma in the number; {_without_comma(*comma.groups())}")
+    found = _TEXT.fullmatch(text.strip())
+    if found is None:
+        raise InputError(f"{shown(text)}: not {wanted.name}, a finite number and a unit; {hint}")
+    number, unit = found.group(1), found.group(2)
+    if not unit:
+        raise InputError(f'{shown(text)}: a number without a unit; write e.g. "{_repeated(number, wanted)}"')
+    return number, unit
 
 
 def shown(value: object) -> str:

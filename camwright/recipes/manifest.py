@@ -63,15 +63,13 @@ def read_manifest(data: bytes) -> tuple[dict[str, tuple[str, int]], list[str]]:
     found = own_sum(content) if _writable(content) else "unknown"
     if content.get("sha256") != found:
         faults.append(f"sha256 is {content.get('sha256')!r:.80}, but that of its content is {found}")
-    files = {}
+    files: dict[str, tuple[str, int]] = {}
     for entry in content["files"] if isinstance(content.get("files"), list) else []:
-        path, stored, size = (
-            entry.get(key) if isinstance(entry, dict) else None for key in ("path", "sha256", "bytes")
-        )
-        if isinstance(path, str) and isinstance(stored, str) and isinstance(size, int):
-            files[path] = (stored, size)
-        else:
-            faults.append(f"entry {entry!r:.80} has no path, sha256 and bytes")
+        match entry:
+            case {"path": str(path), "sha256": str(stored), "bytes": int(size)}:
+                files[path] = (stored, size)
+            case _:
+                faults.append(f"entry {entry!r:.80} has no path, sha256 and bytes")
     if not files:
         faults.append("lists no files")
     return files, faults

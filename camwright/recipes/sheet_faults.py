@@ -43,9 +43,9 @@ def sheet_faults(recipe: Recipe, again: Expected) -> Iterator[str]:
 def _compared(place: str, found: Any, recorded: Any, share: float) -> Iterator[str]:
     """Compare values of any depth; checks by their names."""
     if isinstance(found, dict):
-        scale = abs(found.get("limit") or 1.0) if "passed" in found else 1.0
+        left_out, scale = (_LEFT_OUT, abs(found.get("limit") or 1.0)) if "passed" in found else ((), 1.0)
         for key in found:
-            if "passed" not in found or key not in _LEFT_OUT:
+            if key not in left_out:
                 yield from _leaf(f"{place}.{key}", found[key], recorded[key], share, scale)
     elif isinstance(found, tuple) and found and isinstance(found[0], dict) and "passed" in found[0]:
         new, old = ({check["name"]: check for check in checks} for checks in (found, recorded))

@@ -150,10 +150,10 @@ def _theirs(old: Path, taken: set[str], work: Work | None, notes: list[str]) -> 
     kept = {}
     for file in sorted(old.rglob("*")):
         path = file.relative_to(old).as_posix()
-        if path in (MANIFEST_FILE, SIGNATURE_FILE) or (file.is_dir() and not file.is_symlink()):
+        linked = file.is_symlink()
+        if path in (MANIFEST_FILE, SIGNATURE_FILE) or (file.is_dir() and not linked):
             continue
-        plain = file.is_file() and not file.is_symlink()
-        if plain and path in listed:
+        if path in listed and file.is_file() and not linked:
             if sha256(file.read_bytes()) == listed[path][0]:
                 continue
             kept[path] = free_name(path, lambda other: other in taken or os.path.lexists(old / other))

@@ -259,10 +259,14 @@ class _Lengths:
         elif at_top or math.isnan(expected) or top is None or expected >= (1.0 - STRAIGHT) * top:
             near = None
         elif there.line.ramps:  # where the edge is not followed well that of a line which keeps its speed is nearer
-            share = (self._found.get(shorter) or 0.0) / (self.fastest(shorter) or top) if shorter is not None else 0.0
+            share = self._share(shorter, top)
             follows = length not in self._lengths or abs(expected / top - share) <= FOLLOWED * share
             near = expected if follows else None
         return highest_speed(there, top, near, accuracy)[0]
+
+    def _share(self, length: float | None, top: float) -> float:
+        """Share of the perfect axis' edge at which the edge of a length was found; 0 where none was."""
+        return 0.0 if length is None else (self._found[length] or 0.0) / (self.fastest(length) or top)
 
 
 def true_edge(fastest: Callable[[float, float], float | None], lengths: list[float], finest: float) -> Edge:

@@ -178,7 +178,7 @@ def _check(cuts: tuple[CutError, ...], job: Job) -> Check:
 
 def _causes(found: RecordedRun) -> Iterator[str]:
     """Say what each kind of error that is worth a word points to, the greatest first."""
-    small, units = _SMALL * found.job.cut.sync_tolerance, found.job.units
+    small = _SMALL * found.job.cut.sync_tolerance
     shares = found.total.shares(len(found.cuts))
     for kind in sorted(shares, key=lambda each: -shares[each]):
         if shares[kind] <= small:
@@ -186,18 +186,7 @@ def _causes(found: RecordedRun) -> Iterator[str]:
         if kind == "offset":
             yield _offset_cause(found)
         elif kind == "drift":
-            drift = found.total.drift or 0.0
-            more = abs(found.command.drift or 0.0) > abs(found.axis.drift or 0.0)
-            yield (
-                f"drift: the tool {'gains' if drift > 0 else 'loses'} {with_unit(abs(drift), 'm', 4, units)} each cut, so every piece is "
-                f"{'short' if drift > 0 else 'long'} by that; "
-                + (
-                    "the command has it already: the cycle of the table is not the pitch (circumference, gear ratio, rounded counts), or "
-                    "the master is scaled wrongly"
-                    if more
-                    else "the axis drifts off its command: its encoder and its command are scaled apart, or the recorded encoder slips"
-                )
-            )
+            yield _drift_cause(found)
         else:
             yield _scatter_cause(found)
     lag = found.total.lag
@@ -231,6 +220,22 @@ def _offset_cause(found: RecordedRun) -> str:
         )
     return words + (
         f"the zero of the axis is off its command by {with_unit(by_zero, 'm', 4, units)} at any speed: reference, offset of the encoder"
+    )
+
+
+def _drift_cause(found: RecordedRun) -> str:
+    """Say what an error that grows from cut to cut points to."""
+    drift = found.total.drift or 0.0
+    more = abs(found.command.drift or 0.0) > abs(found.axis.drift or 0.0)
+    return (
+        f"drift: the tool {'gains' if drift > 0 else 'loses'} {with_unit(abs(drift), 'm', 4, found.job.units)} each cut, so every piece is "
+        f"{'short' if drift > 0 else 'long'} by that; "
+        + (
+            "the command has it already: the cycle of the table is not the pitch (circumference, gear ratio, rounded counts), or "
+            "the master is scaled wrongly"
+            if more
+            else "the axis drifts off its command: its encoder and its command are scaled apart, or the recorded encoder slips"
+        )
     )
 
 

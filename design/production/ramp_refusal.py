@@ -14,6 +14,7 @@ from camwright.design.production.ramps import (
     zone_kept,
 )
 from camwright.profiles.errors import InfeasibleError, Suggestion
+from camwright.profiles.machines import Machine
 from camwright.profiles.message import Message, Value, rounded_to
 from camwright.profiles.ramp import Stand
 
@@ -54,7 +55,6 @@ def refused(at: Stand, *, free: bool) -> InfeasibleError:
 
 def _reason(at: Stand, *, free: bool) -> tuple[str, dict[str, Value], float | None]:
     """Say what is missing, with its values and by how much the way is too short (mm or deg)."""
-    unit, noun = at.task.machine.slave_unit, at.task.machine.noun
     values = {"speed": Value(at.task.cut.line_speed, "m/s", 6)}
     if not zone_kept(at):
         return "{@line_speed} = {speed}: the sync zone itself breaks a limit", values, None
@@ -62,36 +62,39 @@ def _reason(at: Stand, *, free: bool) -> tuple[str, dict[str, Value], float | No
         return *_within_zone(at, free=free), None
     if at.task.machine.guide is not None and not at.parked_within:
         return *_off_the_guide(at, at.task.machine.guide), None
-    arcs = least_arcs(at)
+    arcs, guided = least_arcs(at), at.task.machine.guide is not None
     up, out = (None if each is None else each.arc for each in (arcs.run_up, arcs.run_out))
-    size = 1e3 if unit == "m" else math.degrees(1.0)
-    for way, least, names in (
-        (at.run_up, up, ("starts", "before the sync zone", "the way into it")),
-        (
-            at.run_out if at.task.machine.guide is None else at.room,
-            out,
-            ("stops", "beyond the sync zone", "the way out of it"),
-        ),
-    ):
-        verb, where, what = names
-        if least is None:
-            return f"{{@line_speed}} = {{speed}}: {what} breaks the limits, however long it is", values, None
-        if at.task.machine.guide is not None and verb == "stops":
-            if least <= way:
-                continue
-            values |= {"way": Value(way, unit, 6)}
-            return (
-                f"{{@line_speed}} = {{speed}}: the {noun} has {{way}} beyond the sync zone and cannot turn within it",
-                values,
-                None,
-            )
-        if way < least:
-            values |= {"way": Value(max(way, 0.0), unit, 6), "least": Value(least, unit, 6)}
-            text = f"the {noun} {verb} {{way}} {where} and needs {{least}} at {{speed}} within the limits" + (
-                "; backing up first would do, but a ramp never runs backwards" if verb == "starts" and way > 0 else ""
-            )
-            return text, values, (least - way) * size
-    return f"the {noun} cannot start and stop at {{speed}} from this park", values, None
+    return (
+        _short(at, values, at.run_up, up, ("starts", "before the sync zone", "the way into it"))
+        or _short(
+            at, values, at.room if guided else at.run_out, out, ("stops", "beyond the sync zone", "the way out of it")
+        )
+        or (f"the {at.task.machine.noun} cannot start and stop at {{speed}} from this park", values, None)
+    )
+
+
+def _short(
+    at: Stand, values: dict[str, Value], way: float, least: float | None, words: tuple[str, str, str]
+) -> tuple[str, dict[str, Value], float | None] | None:
+    """Say that a way is too short, of what the slave does on it, where it is and what it is called; None if it is long enough."""
+    machine, (verb, where, what) = at.task.machine, words
+    if least is None:
+        return f"{{@line_speed}} = {{speed}}: {what} breaks the limits, however long it is", values, None
+    if way >= least:
+        return None
+    if machine.guide is not None and verb == "stops":
+        text = f"{{@line_speed}} = {{speed}}: the {machine.noun} has {{way}} beyond the sync zone and cannot turn within it"
+        return text, values | {"way": Value(way, machine.slave_unit, 6)}, None
+    text = f"the {machine.noun} {verb} {{way}} {where} and needs {{least}} at {{speed}} within the limits"
+    if verb == "starts" and way > 0:
+        text += "; backing up first would do, but a ramp never runs backwards"
+    values = values | {"way": Value(max(way, 0.0), machine.slave_unit, 6), "least": Value(least, machine.slave_unit, 6)}
+    return text, values, (least - way) * _size(machine)
+
+
+def _size(machine: Machine) -> float:
+    """Size of the unit in which a place of the slave is told: mm or deg in its own unit."""
+    return 1e3 if machine.slave_unit == "m" else math.degrees(1.0)
 
 
 def _within_zone(at: Stand, *, free: bool) -> tuple[str, dict[str, Value]]:
@@ -151,7 +154,7 @@ def _nearest_park(at: Stand) -> tuple[float, bool] | None:
         given += machine.pitch  # the same place, nearer to the latest park
     inside = at.parked_at(min(max(given, earliest + _MARGIN * span), latest - _MARGIN * span))
     for digits in (6, 9):
-        size = 1e3 if machine.slave_unit == "m" else math.degrees(1.0)
+        size = _size(machine)
         told = rounded_to(inside.park * size, digits, up=inside.park > given) / size if inside.park else 0.0
         if can_start_and_stop(at.parked_at(told)):
             return told, told < given

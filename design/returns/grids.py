@@ -49,18 +49,11 @@ def room(problem: ScaledProblem) -> float:
 def grids(problem: ScaledProblem, witness: ScaledMotion | None) -> Iterator[tuple[FloatArray, float, bool]]:
     """Grids to try in turn, each with the share by which the limits are widened on it and with how thoroughly to polish."""
     degree = degree_of(problem)
-    arcs = None if witness is None else witness.lengths[witness.lengths > VANISHED]
-    arcs = None if arcs is None else arcs / arcs.sum()
+    arcs = None if witness is None else (lasting := witness.lengths[witness.lengths > VANISHED]) / lasting.sum()
     little = not problem.confined and room(problem) <= LITTLE_ROOM
     coarse, fine = (np.full(count, 1.0 / count) for count in (COARSE[degree], FINE[degree]))
     if problem.confined and arcs is not None:
-        if degree == 1:
-            yield subdivide(arcs, FINE[degree]), 0.0, False
-            yield subdivide(arcs, FINER), 0.0, False
-        else:
-            yield subdivide(arcs, MEDIUM), 0.0, False
-            yield fine, 0.0, False
-            yield subdivide(arcs, FINE[degree]), 0.0, False
+        yield from _confined(arcs, degree)
         return
     if degree == 1:
         if arcs is None or not little:
@@ -80,6 +73,12 @@ def grids(problem: ScaledProblem, witness: ScaledMotion | None) -> Iterator[tupl
     if arcs is not None:
         yield subdivide(arcs, FINE[degree]), 0.0, True
     yield medium, WIDER, True
+
+
+def _confined(arcs: FloatArray, degree: int) -> Iterator[tuple[FloatArray, float, bool]]:
+    """Grids of a slave that must keep to its stroke: on the arcs of a motion that does, finer and finer."""
+    for count in (FINE[degree], FINER) if degree == 1 else (MEDIUM, None, FINE[degree]):
+        yield np.full(FINE[degree], 1.0 / FINE[degree]) if count is None else subdivide(arcs, count), 0.0, False
 
 
 def on_grid(problem: ScaledProblem, lengths: FloatArray, relax: float) -> tuple[ScaledMotion, bool, int]:

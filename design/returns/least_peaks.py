@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -62,20 +63,27 @@ def least_peak_motion(problem: ScaledProblem, narrow: float = NARROW) -> ScaledM
     ends = problem.start_slope, problem.end_slope
     floor = max(map(abs, ends)) if slope else abs(ends[1] - ends[0])
     limit = problem.greatest_slope if slope else problem.greatest_jerk
-    holds, fails = (limit, missed(limit)), (0.0, math.inf)
-    for _ in range(MOST_STRIDES):
-        if holds[1] > 0.0 or limit == floor:
-            break
-        limit = max(STRIDE * limit, floor)
-        found = limit, missed(limit)
-        if found[1] > 0.0:
-            fails = found
-            break
-        holds = found
+    holds, fails = _strode(missed, limit, floor)
     if holds[0] > floor:
         holds = narrowed(missed, fails, holds, narrow)
     motion = within(holds[0])
     return None if motion is None else ScaledMotion(np.diff(motion[0]), motion[1], math.nan)
+
+
+def _strode(
+    missed: Callable[[float], float], limit: float, floor: float
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Go down from a limit in strides, as far as a floor: the last that holds and the first that fails, each with what it misses."""
+    holds = limit, missed(limit)
+    for _ in range(MOST_STRIDES):
+        if holds[1] > 0.0 or holds[0] == floor:
+            break
+        lower = max(STRIDE * holds[0], floor)
+        found = lower, missed(lower)
+        if found[1] > 0.0:
+            return holds, found
+        holds = found
+    return holds, (0.0, math.inf)
 
 
 def _peak(nodes: FloatArray, accelerations: FloatArray, *, slope: bool) -> float:

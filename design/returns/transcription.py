@@ -149,6 +149,41 @@ def _gram(degree: int) -> FloatArray:
     return np.array(table)
 
 
+def _sizes(shape: Shape) -> dict[str, int]:
+    """Count the unknowns of each kind."""
+    m, p = shape.pieces, shape.degree
+    return {
+        "a": m * p + 1,
+        "v": m + 1,
+        "q": m + 1,
+        "j": m * p if shape.objective == "rms_jerk" else 0,
+        "h": m if shape.free_lengths else 0,
+        "t": 1 if OBJECTIVES[shape.objective].form == "peak" else 0,
+    }
+
+
+def _slope_rows(shape: Shape, unknown: dict[str, Any], lengths: Any, jerk_limit: Any) -> tuple[list[Any], list[Any]]:
+    """Give what must be zero of lengths and jerks, and what must not be negative of jerks and of the least peak."""
+    m, p = shape.pieces, shape.degree
+    equal: list[Any] = [ca.sum1(lengths) - 1] if shape.free_lengths else []
+    equal += _known_arcs(shape, unknown["a"])
+    if shape.free_lengths and shape.objective == "rms_jerk":
+        # The least mean square has no jumps of the jerk. Where arcs meet, moving the node changes it in third order only, so without
+        # these equations nodes would be all but undetermined.
+        equal += [unknown["j"][i * p - 1] - unknown["j"][i * p] for i in range(1, m)]
+    steps, widths = p * (unknown["a"][1:] - unknown["a"][:-1]), _in_turn([lengths] * p)
+    if shape.objective == "rms_jerk":
+        return [*equal, widths * unknown["j"] - steps], []
+    if shape.objective == "peak_jerk":
+        bound = unknown["t"] * widths
+    else:  # divided by the limit: a row of size one, however high the limit
+        bound, steps = widths, steps / jerk_limit
+    positive = [_in_turn([bound - steps, bound + steps])]
+    if shape.objective == "peak_acceleration":
+        positive += [unknown["t"] - unknown["a"], unknown["t"] + unknown["a"]]
+    return equal, positive
+
+
 class Programme:
     """The nonlinear programme of one `Shape`, built once and solved for any numbers.
 
@@ -161,37 +196,13 @@ class Programme:
         m, p = shape.pieces, shape.degree
         split = SPLIT if shape.free_lengths and p > 1 and not shape.at_nodes else 1
         self._hull = split == 1 and not shape.at_nodes  # the coefficients themselves are limited
-        self._sizes = {
-            "a": m * p + 1,
-            "v": m + 1,
-            "q": m + 1,
-            "j": m * p if shape.objective == "rms_jerk" else 0,
-            "h": m if shape.free_lengths else 0,
-            "t": 1 if OBJECTIVES[shape.objective].form == "peak" else 0,
-        }
+        self._sizes = _sizes(shape)
         unknown = {name: ca.SX.sym(name, size) for name, size in self._sizes.items()}
         jerk_limit, drift = (ca.SX.sym(name) for name in "Jd")
         lengths = unknown["h"] if shape.free_lengths else ca.SX.sym("h", m)
         equations, between = dynamics(unknown, lengths, p)
-        equal, positive = [equations], []
-        if shape.free_lengths:
-            equal.append(ca.sum1(lengths) - 1)
-        equal += _known_arcs(shape, unknown["a"])
-        if shape.free_lengths and shape.objective == "rms_jerk":
-            # The least mean square has no jumps of the jerk. Where arcs meet, moving the node changes it in third order only, so without
-            # these equations nodes would be all but undetermined.
-            equal += [unknown["j"][i * p - 1] - unknown["j"][i * p] for i in range(1, m)]
-        steps, widths = p * (unknown["a"][1:] - unknown["a"][:-1]), _in_turn([lengths] * p)
-        if shape.objective == "rms_jerk":
-            equal.append(widths * unknown["j"] - steps)
-        elif shape.objective == "peak_jerk":
-            bound = unknown["t"] * widths
-            positive.append(_in_turn([bound - steps, bound + steps]))
-        else:  # divided by the limit: a row of size one, however high the limit
-            shares = steps / jerk_limit
-            positive.append(_in_turn([widths - shares, widths + shares]))
-        if shape.objective == "peak_acceleration":
-            positive += [unknown["t"] - unknown["a"], unknown["t"] + unknown["a"]]
+        equal, positive = _slope_rows(shape, unknown, lengths, jerk_limit)
+        equal = [equations, *equal]
         # On a long piece the hull of a polynomial of higher degree is far too wide; halved often enough, it fits.
         bent: list[Any] = []
         paces: list[Any] = []

@@ -296,10 +296,9 @@ class AxisProgramme:
             count + peak, self._before.vertices.get(kind), self._before.beside.get(kind), self._own
         )
         bounds = self.problem.limits
-        for order in bounds:
-            if order in self._before.tight or order in caps:
-                matrix, low, high = self._limit_rows(order, caps.get(order, math.inf))
-                programme.add(matrix, low, high, names=_numbered(_LIMIT + order, np.arange(len(matrix))))
+        for order in (each for each in bounds if each in self._before.tight | caps.keys()):
+            matrix, low, high = self._limit_rows(order, caps.get(order, math.inf))
+            programme.add(matrix, low, high, names=_numbered(_LIMIT + order, np.arange(len(matrix))))
         matrix, constant = self.ramps.rows()
         if len(matrix):
             names = _numbered(_RAMP, self.ramps.numbers)

@@ -41,18 +41,7 @@ def axis_infeasible(problem: AxisProblem, settles: Ways | None) -> InfeasibleErr
     """Say by how much the tolerance is missed, and, of a way to tell whether a cut can be designed, what would keep it."""
     cut = problem.task.cut
     tolerance = cut.sync_tolerance
-    share = AxisProgramme(problem).least_share()
-    if share is None:
-        if problem.structure is None:
-            require_feasible(problem.task, suggest=settles is not None)
-            if problem.task.line.ramps:
-                raise ramp_infeasible(problem.task, suggest=settles is not None)
-            raise SolverError(
-                "a servo-aware design found no command that keeps the limits although the job allows one; report this job"
-            )
-        only = assemble(problem.structure, problem.task.from_return())
-        share = motion_of(AxisProgramme(problem), only, axis_limits=False).error / tolerance
-    needed = max(1.0, share) * tolerance
+    needed = max(1.0, _least_share(problem, suggest=settles is not None)) * tolerance
     kept, suggestions = None, tuple[Suggestion, ...]()
     if settles is not None:  # what is offered keeps the limits of the axis too
         strict = replace(problem, axis_limits=True)
@@ -60,7 +49,7 @@ def axis_infeasible(problem: AxisProblem, settles: Ways | None) -> InfeasibleErr
     if kept is not None:
         suggestions = (*suggestions[:1], Suggestion("line_speeds", kept * 60, "m/min"), *suggestions[1:])
     ways = "; ".join(
-        f"{each.change}{' from' if each.change == 'line_speeds' else ''} {{{each.change}}}" for each in suggestions
+        f"{each.change} {{{each.change}}}".replace("line_speeds ", "line_speeds from ") for each in suggestions
     )
     alone = AxisProgramme(problem).solve("sync_error", None)
     by_ratio = alone is not None and alone[1] <= 1.0
@@ -87,6 +76,28 @@ def axis_infeasible(problem: AxisProblem, settles: Ways | None) -> InfeasibleErr
         suggestions,
         Covered(None if kept is None else (kept, cut.line_speed)),
     )
+
+
+def _least_share(problem: AxisProblem, *, suggest: bool) -> float:
+    """Give the least share of the tolerance that a command within the limits is found to hold, or the only such command.
+
+    Raises
+    ------
+    InfeasibleError
+        There is none.
+    """
+    share = AxisProgramme(problem).least_share()
+    if share is not None:
+        return share
+    if problem.structure is None:
+        require_feasible(problem.task, suggest=suggest)
+        if problem.task.line.ramps:
+            raise ramp_infeasible(problem.task, suggest=suggest)
+        raise SolverError(
+            "a servo-aware design found no command that keeps the limits although the job allows one; report this job"
+        )
+    only = assemble(problem.structure, problem.task.from_return())
+    return motion_of(AxisProgramme(problem), only, axis_limits=False).error / problem.task.cut.sync_tolerance
 
 
 def _offered(suggestion: Suggestion, cut: Cut) -> Value:

@@ -126,12 +126,11 @@ def solve_torque(
     """
     profiles = list(starts) or [solve_return(replace(task.problem, objective="rms_acceleration"))[0]]
     first, iterations = _first_look(task, profiles, FIRST, floor)
-    if not first and task.curve is None:  # the limits can be kept, but not so soon, or on so coarse a mesh
-        for count in (FIRST, SECOND):
+    # the limits of a motion can be kept, but maybe not so soon, or on so coarse a mesh
+    for count in (FIRST, SECOND) if task.curve is None else ():
+        if not first:
             first, more = _first_look(task, profiles, count, floor, MOST_ITERATIONS)
             iterations += more
-            if first:
-                break
     accepted = keeps or (lambda _: True)
     found: list[tuple[float, CamProfile, float]] = []
 
@@ -155,12 +154,17 @@ def solve_torque(
             f"IPOPT found no return of least {task.aim} from any start, although the limits can be kept; minimise peak_acceleration or "
             f"rms_acceleration instead"
         )
+    return _agreed(found, [answer.value for answer, _ in first], iterations)
+
+
+def _agreed(found: list[tuple[float, CamProfile, float]], values: list[float], iterations: int) -> TorqueSolution:
+    """Take the last of the best motions found, and say how well the values of the first look, least first, agree."""
     best = min(entry[0] for entry in found)
     value, back, residual = [entry for entry in found if entry[0] <= best * (1 + SAME)][-1]
-    values = [answer.value for answer, _ in first] or [best]
-    agreeing = sum(each <= values[0] * (1 + AGREEMENT) for each in values)
-    spread = values[-1] / values[0] - 1.0 if values[0] > 0 else 0.0
-    return TorqueSolution(back, value, spread, len(first), agreeing, residual, iterations)
+    least, greatest = (values[0], values[-1]) if values else (best, best)
+    agreeing = sum(each <= least * (1 + AGREEMENT) for each in values or [best])
+    spread = greatest / least - 1.0 if least > 0 else 0.0
+    return TorqueSolution(back, value, spread, len(values), agreeing, residual, iterations)
 
 
 def _taken_further(
@@ -323,7 +327,8 @@ def _guesses(task: TorqueTask, given: Sequence[CamProfile], count: int) -> Itera
     # where the slave may not turn, one that would is no start: the solver wanders from it
     profiles = [*([] if _turns(quintic, problem) else [quintic]), *given]
     rubs = task.machine.friction > 0
-    one_way = FORWARDS if rubs and task.may_turn else ANYHOW  # where friction counts its sign must be known
+    turns = rubs and task.may_turn  # where friction counts its sign must be known
+    one_way = FORWARDS if turns else ANYHOW
     for profile in profiles:
         yield one_way, from_profile(profile, task, count)
     family = family_of(task)
@@ -332,9 +337,9 @@ def _guesses(task: TorqueTask, given: Sequence[CamProfile], count: int) -> Itera
             yield one_way, from_path(family, k, task, count)
     if rubs:
         yield from resting(task, count // 2)
-    if task.may_turn and rubs:
+    if turns:
         yield from turning(task, count // 3)
-    if task.problem.height < 0 or (task.may_turn and rubs):
+    if turns or problem.height < 0:
         # where it turns a slave is at rest, so a stroke that it may not leave is kept there exactly
         for profile in profiles:
             turned = turning_from(profile, task, count // 3)

@@ -174,6 +174,13 @@ class CamProfile:
         elif position.size and (position.min() < start or position.max() > end):
             worst = position.min() if position.min() < start else position.max()
             raise InputError(f"master position {worst!r} m lies outside the profile, {start!r} to {end!r} m")
+        value = self._valued(position, order, side)
+        if turns is not None and order == 0:
+            value = value + turns * self.advance
+        return np.asarray(value, dtype=np.float64)
+
+    def _valued(self, position: FloatArray, order: int, side: Side) -> FloatArray:
+        """Evaluate a derivative inside the domain."""
         table = self._derived(order)
         if position.ndim == 0 or len(table) == 1:  # one piece for all positions
             piece = int(self.breaks[1:-1].searchsorted(position, side=side)) if position.ndim == 0 else 0
@@ -190,9 +197,7 @@ class CamProfile:
             for coefficient in table.T[::-1]:  # Horner
                 value *= local
                 value += coefficient.take(index, mode="clip")  # faster than the default; all are in range
-        if turns is not None and order == 0:
-            value = value + turns * self.advance
-        return np.asarray(value, dtype=np.float64)
+        return value
 
     def _derived(self, order: int) -> FloatArray:
         """Coefficients of the derivative of the given order, shape ``(n, max(1, degree + 1 - order))``."""

@@ -210,6 +210,19 @@ def test_no_class_has_more_than_six_attributes_that_change() -> None:
     assert not many
 
 
+def test_no_function_branches_more_than_twelve_times() -> None:
+    """Ruff counts statements; here every condition counts, those of functions inside a function too."""
+    branch = (ast.If, ast.For, ast.While, ast.ExceptHandler, ast.match_case, ast.BoolOp, ast.IfExp)
+    many = {
+        f"{path}: {node.name}": count
+        for path, tree in modules().items()
+        for node in ast.walk(tree)
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
+        if (count := sum(isinstance(inner, branch) for inner in ast.walk(node))) > 12
+    }
+    assert not many
+
+
 @pytest.mark.parametrize(("folder", "most"), [("camwright", 3), ("design", 5), ("validation", 7)])
 def test_few_modules_lie_outside_the_rooms(folder: str, most: int) -> None:
     assert len([file for file in (ROOT / folder).glob("*.py") if file.name != "__init__.py"]) <= most

@@ -238,28 +238,33 @@ def _faults(solution: Minimum, fit: float, lag: float) -> Iterator[str]:
     if lag < -_AHEAD:
         yield _ahead(lag)
         return
-    values = solution.values
     for name in solution.names:
-        factor, unit = _UNITS[name]
-        words, value, (least, most) = name.replace("_", " "), values[name], solution.bounds[name]
-        spread = 0.5 * (most - least)
-        low, high = RANGES[name]
-        about = f"{value * factor:.4g}{unit}, give or take {spread * factor:.2g}{unit} (95 %)"
-        if spread > high - low:
-            about = f"it may be anything from {low * factor:.4g} to {high * factor:.4g}{unit}"
-        known = max(value, values["sample_time"]) if name == "dead_time" else abs(value)
-        if name == "dead_time" and most < -_ROUNDED:
-            yield (
-                f"the actual position runs ahead of the command: {words} {about}; switch the controller's lead off for the recording, and "
-                "give command and actual in their own columns"
-            )
-        elif name == "velocity_feedforward" and least > 1.0:
-            yield f"{words} {about}: above 1, the axis would run ahead; give the share that is set in the drive, --velocity-feedforward"
-        elif not low + 1e-6 * abs(low) < value < high - 1e-6 * abs(high):
-            yield f"{words} {value * factor:.4g}{unit}: the end of the range that is searched; {_LIVELIER}"
-        elif 2 * spread > known and name != "velocity_feedforward" and name not in BEYOND:
-            yield (
-                f"the trace does not tell the {words}: {about}; {_LIVELIER}"
-                + "".join(f", or give --{each.replace('_', '-')}" for each in BEYOND if each in solution.names)
-                + (", or give --velocity-feedforward" if "velocity_feedforward" in solution.names else "")
-            )
+        yield from _untold(solution, name)
+
+
+def _untold(solution: Minimum, name: str) -> Iterator[str]:
+    """Say what the trace does not tell of a parameter."""
+    values = solution.values
+    factor, unit = _UNITS[name]
+    words, value, (least, most) = name.replace("_", " "), values[name], solution.bounds[name]
+    spread = 0.5 * (most - least)
+    low, high = RANGES[name]
+    about = f"{value * factor:.4g}{unit}, give or take {spread * factor:.2g}{unit} (95 %)"
+    if spread > high - low:
+        about = f"it may be anything from {low * factor:.4g} to {high * factor:.4g}{unit}"
+    known = max(value, values["sample_time"]) if name == "dead_time" else abs(value)
+    if name == "dead_time" and most < -_ROUNDED:
+        yield (
+            f"the actual position runs ahead of the command: {words} {about}; switch the controller's lead off for the recording, and "
+            "give command and actual in their own columns"
+        )
+    elif name == "velocity_feedforward" and least > 1.0:
+        yield f"{words} {about}: above 1, the axis would run ahead; give the share that is set in the drive, --velocity-feedforward"
+    elif not low + 1e-6 * abs(low) < value < high - 1e-6 * abs(high):
+        yield f"{words} {value * factor:.4g}{unit}: the end of the range that is searched; {_LIVELIER}"
+    elif 2 * spread > known and name != "velocity_feedforward" and name not in BEYOND:
+        yield (
+            f"the trace does not tell the {words}: {about}; {_LIVELIER}"
+            + "".join(f", or give --{each.replace('_', '-')}" for each in BEYOND if each in solution.names)
+            + (", or give --velocity-feedforward" if "velocity_feedforward" in solution.names else "")
+        )
