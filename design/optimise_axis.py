@@ -95,41 +95,42 @@ def solve_axis(
     _require_samples(task.cut, (*servos, *between), min(shares))
     cost = _cost(machine, objective)
 
-    def designs(other: Task) -> bool:
+    def designs(other: Task, fewer: tuple[float, ...] = shares) -> bool:
         return not proved or _designs(
-            lambda: solve_axis(other, objective, command, servos, between, shares, suggest=False)
+            lambda: solve_axis(other, objective, command, servos, between, fewer, suggest=False)
         )
 
     blind = None
     if command == "in_sync" or not machine.placed:
         blind = _servo_blind(task, cost, designs if suggest else None)
     placed = machine if blind is None else blind.machine
-    if command == "shaped" and not machine.placed and cost != "sync_error":
-
-        def at_full_speed(there: Task) -> float:
-            try:
-                return solve_axis(there, objective, command, servos[:1], suggest=False).minimised
-            except (InfeasibleError, InputError, SolverError):
-                return math.inf
-
-        placed = place_beside(
-            task.with_machine(placed), at_full_speed, 1 if OBJECTIVES[cost].of == "motor" else 3
-        ).machine
+    if command == "shaped":
+        placed = _placed_beside(task, placed, objective, servos[0])
     structure = None if blind is None or command == "shaped" else blind.back
     problem = AxisProblem(task.with_machine(placed), command, servos, True, structure, between, shares=shares)
     motions = _motions(problem, cost, blind)
     if not motions:
         loosest = _within(replace(problem, axis_limits=False), motor_speed_limits(placed, limits))
-
-        def narrower(fewer: tuple[float, ...]) -> bool:
-            return not proved or _designs(
-                lambda: solve_axis(task, objective, command, servos, between, fewer, suggest=False)
-            )
-
-        raise axis_infeasible(loosest, (lambda cut: designs(task.with_cut(cut)), narrower) if suggest else None)
+        ways = (lambda cut: designs(task.with_cut(cut))), (lambda fewer: designs(task, fewer))
+        raise axis_infeasible(loosest, ways if suggest else None)
     motion = min(motions, key=lambda each: each.value)
     status = blind.status if blind is not None and not motion.programmes else SolveStatus.BEST_FOUND
     return _solution(motion, status, task.with_machine(placed), objective, OBJECTIVES[cost].order)
+
+
+def _placed_beside(task: Task, found: Machine, objective: ObjectiveName, servo: Servo) -> Machine:
+    """Place a free sync zone for the axis of a shaped command, at the full line speed, beside the place found without a servo."""
+    cost = _cost(task.machine, objective)
+    if task.machine.placed or cost == "sync_error":
+        return found
+
+    def at_full_speed(there: Task) -> float:
+        try:
+            return solve_axis(there, objective, "shaped", (servo,), suggest=False).minimised
+        except (InfeasibleError, InputError, SolverError):
+            return math.inf
+
+    return place_beside(task.with_machine(found), at_full_speed, 1 if OBJECTIVES[cost].of == "motor" else 3).machine
 
 
 def _motions(problem: AxisProblem, cost: ObjectiveName, blind: Solution | None) -> list[AxisMotion]:
