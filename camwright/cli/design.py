@@ -38,6 +38,7 @@ from camwright.house.output import Voice, complain
 from camwright.house.owned import owned
 from camwright.house.progress import Step
 from camwright.jobs.job import load_job
+from camwright.stored.profile_files import rows_note
 from camwright.stored.save import design_files
 from camwright.studies.axis_study import AxisStudy
 from camwright.studies.design import STEPS, Design, optimise
@@ -76,6 +77,8 @@ def run(
             if not no_figures and not brief:
                 design_figures(result, aside)
             files = final_paths(aside, directory)
+        if note := rows_note(result.profile, result.job):
+            complain(f"camwright: {note}")
         if not brief:
             step("looking for a way out")
             ways = remedies(asked, result.report, result.band)

@@ -32,6 +32,11 @@ DENSE = 1001
 """Points of a table that one might take for finer: in float32 its acceleration is worse."""
 
 _PLACES = 20_001
+_FINER = (1 / 4, 1 / 16, 1 / 64)
+"""Parts of the accuracy asked for that are tried where a table so near to the cam breaks a limit that the cam runs along."""
+_NEARER = {"speed", "acceleration", "jerk", "reversal", "sync_ratio"}
+"""Checks that a table nearer to the cam may pass."""
+
 _NO_DRIFT = 1e-12
 """A drift in a cut (m, or rad) that is rounding."""
 
@@ -250,11 +255,20 @@ def _export(
     if cuts > 1:
         zones = tuple(at + k * job.cut.length for k in range(cuts) for at in zones)
         profile = profile.repeat(cuts)
+    stored = units.slave.size if wanted.asked and target.counts else 0.0
     choice = choose(profile, target, units, accuracy, points, zones)
+    _, error, expected = judge(choice.rebuilt, stored)
+    first = choice, error, expected
+    for part in _FINER if points is None and accuracy.kept_by(choice.deviation) else ():
+        if {check.name for check in expected.checks if not check.passed} - _NEARER or expected.passed:
+            break
+        nearer = Accuracy(part * accuracy.position, part * accuracy.ratio, part * accuracy.acceleration)
+        choice = choose(profile, target, units, nearer, points, zones)
+        _, error, expected = judge(choice.rebuilt, stored)
+    if not expected.passed:
+        choice, error, expected = first
     if name:
         choice = replace(choice, table=replace(choice.table, periodic=False))
-    stored = units.slave.size if wanted.asked and target.counts else 0.0
-    _, error, expected = judge(choice.rebuilt, stored)
     facts = _facts(expected, job, error)
     if stored and not name:
         facts += (("cuts in this table", str(cuts)), ("drift of the slave in a cut", _drift_words(choice.rebuilt, job)))

@@ -17,12 +17,15 @@ from camwright.profiles.machines import Machine
 from camwright.profiles.machines.machine import SlaveUnit
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.tables import csv_target
-from camwright.profiles.tables.cam_csv import write_cam_csv
+from camwright.profiles.tables.cam_csv import rebuild, table_positions, write_cam_csv
 from camwright.profiles.tables.count_grid import without_rounding
 from camwright.profiles.tables.text import decode
 from camwright.stored.design_file import MOST_BYTES, parse_design
 from camwright.studies.design import Design
+from camwright.validation.motion import sync_ratio_error
+from camwright.validation.report import SYNC_RATIO
 
+_MOST_ROWS = 100_000
 _ROUNDING = 1e-6
 """What a table's ends may miss those of the cycle by, as a part of the cut length: tables are rounded."""
 
@@ -43,6 +46,25 @@ def cam_text(design: Design) -> str:
     if machine.place_name:
         comments.append(f"{machine.place_name}: {machine.place!r} {machine.slave_unit}")
     return write_cam_csv(design.profile, design.job.output.points, comments, machine.slave_unit)
+
+
+def rows_note(cycle: CamProfile, job: Job) -> str:
+    """Say that the cam.csv of a cycle has too few rows for `camwright.validate`, and how many would do; nothing where it has enough.
+
+    Between rows it is quintics, which a crank or a blade in horizontal sync does not follow over wide steps.
+    """
+    asked, task = job.output.points, job.task
+
+    def error(rows: int) -> float:
+        x = table_positions(cycle, rows)
+        return sync_ratio_error(rebuild(x, cycle(x), cycle(x, 1), cycle(x, 2)), task).value
+
+    found = 0.0 if task.cut.shaped else error(asked)
+    if found <= SYNC_RATIO:
+        return ""
+    rows = next((n for k in range(1, 8) if error(n := min(2**k * (asked - 1) + 1, _MOST_ROWS)) <= SYNC_RATIO), None)
+    way = f"write [output] points = {rows}" if rows else "validate design.json"
+    return f"cam.csv: {asked} rows hold the ratio in the sync zone to {found:.2g}, of which validate allows {SYNC_RATIO:g}; {way}"
 
 
 def read_cycle(

@@ -14,6 +14,7 @@ from camwright.design.feasible.envelope import Envelope, envelope, quintic_speed
 from camwright.design.feasible.extremes import max_line_speed, placed_fastest
 from camwright.house.progress import Step, ignore
 from camwright.house.provenance import provenance
+from camwright.house.threads import one_thread
 from camwright.jobs.job import Job
 from camwright.profiles.machines import Machine
 from camwright.profiles.objective import OBJECTIVES, MotionObjective, of_motion
@@ -156,6 +157,7 @@ class EnvelopeAnswer:
         return {name: "\n".join([*head, *_csv(entries)]) + "\n" for name, entries in rows.items()}
 
 
+@one_thread()
 def envelope_answer(job: Job, points: int, step: Step = ignore) -> EnvelopeAnswer:
     """Compute the map of a job: from half to twice its cut length, up to the line speed at which the sync zone alone is too fast.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import heapq
 from collections.abc import Sequence
 
 import numpy as np
@@ -15,6 +16,8 @@ _HEADERS: dict[SlaveUnit, tuple[str, ...]] = {
     "m": ("x [mm]", "y [mm]", "dy/dx [1]", "d2y/dx2 [1/m]", "d3y/dx3 [1/m^2]"),
     "rad": ("x [mm]", "y [rad]", "dy/dx [rad/m]", "d2y/dx2 [rad/m^2]", "d3y/dx3 [rad/m^3]"),
 }
+_WIDEST = 2.0 + 1e-9
+"""Widest step, in equal ones, where each break moves its own nearest position by half a step at most."""
 _ROUNDING = 8 * np.finfo(np.float64).eps
 """Residuals below this part of the values that they come from are rounding."""
 
@@ -23,7 +26,8 @@ def table_positions(profile: CamProfile, points: int) -> FloatArray:
     """Choose master positions for a table: equidistant, but with the nearest one moved onto each break of the profile.
 
     So pieces begin and end at rows, and the table holds the profile and not only samples of it. Where two breaks have
-    the same nearest position, one of them gets the next free one.
+    the same nearest position, one of them gets the next free one. Where so many lie together that they would take the
+    positions of another stretch, the steps between breaks are divided instead, the widest first.
 
     Parameters
     ----------
@@ -56,7 +60,19 @@ def table_positions(profile: CamProfile, points: int) -> FloatArray:
     down = points - 1 - (len(breaks) - 1 - rank)
     taken = np.minimum(taken, down)
     x[taken.astype(np.int64)] = breaks
-    return x
+    if np.diff(x).max() <= _WIDEST * (profile.length / (points - 1)):
+        return x
+    gaps = np.diff(breaks)
+    widest = [(-gap, number, 1) for number, gap in enumerate(gaps.tolist())]
+    heapq.heapify(widest)
+    for _ in range(points - len(breaks)):
+        _, number, parts = widest[0]
+        heapq.heapreplace(widest, (-float(gaps[number]) / (parts + 1), number, parts + 1))
+    divided = [
+        np.linspace(breaks[number], breaks[number + 1], parts, endpoint=False)
+        for _, number, parts in sorted(widest, key=lambda each: each[1])
+    ]
+    return np.concatenate([*divided, breaks[-1:]])
 
 
 def write_cam_csv(profile: CamProfile, points: int, comments: Sequence[str], slave_unit: SlaveUnit = "m") -> str:

@@ -30,6 +30,7 @@ from camwright.profiles.tables.knots import Accuracy
 from camwright.profiles.tables.targets import TARGETS
 from camwright.stored.design_text import design_text
 from camwright.studies.design import optimise
+from camwright.validation.motion import measure_motion
 
 JOB = load_job()
 PROFILE = baseline("double_s", JOB.task)
@@ -221,3 +222,17 @@ def test_units_of_each_machine() -> None:
     with pytest.raises(InputError, match="there is no unit 'mm' here; the units are rad, deg, rev"):
         parse_units("mm,mm", JOB.task.with_machine(crank))
     assert parse_units("mm,rev", JOB.task.with_machine(LinearCarriage(1.2, travel_per_turn=0.04))).slave.size == 0.04
+
+
+def test_a_cam_that_runs_along_a_limit_has_a_table_near_enough_to_keep_it() -> None:
+    cam = baseline("modified_trapezoid", JOB.task)
+    peak = measure_motion(cam, JOB.task).peak_acceleration
+    assert peak is not None
+    near, coarse = replace(JOB, limits=replace(JOB.limits, acceleration=peak)), Accuracy(1e-3, 0.1, 0.1)
+    names = ("csv", "s7-1500t-points", "logix")
+    free, kept = (export_possible(cam, job, names, accuracy=coarse)[0] for job in (JOB, near))
+    assert [each.passed for each in (*free, *kept)] == 6 * [True]
+    for few, more in zip(free, kept, strict=True):
+        assert few.table.points < more.table.points
+        asked = export_possible(cam, near, [few.target.name], accuracy=coarse, points=few.table.points)[0][0]
+        assert [check.name for check in asked.judgement.checks if not check.passed] == ["acceleration"]

@@ -6,6 +6,7 @@ import errno
 import hashlib
 import json
 import os
+from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 
@@ -13,12 +14,13 @@ import jsonschema
 import numpy as np
 import pytest
 
-from camwright import load_job
+from camwright import load_job, validate
 from camwright.house.files import staged, write_files
 from camwright.house.provenance import provenance
-from camwright.jobs.job import BUNDLED_JOB
+from camwright.jobs.job import BUNDLED_JOB, Job
 from camwright.profiles.errors import InputError
 from camwright.profiles.returns import baseline
+from camwright.profiles.tables.cam_csv import write_cam_csv
 from camwright.profiles.tables.cam_rows import read_cam_csv
 from camwright.stored.design_file import (
     design_schema,
@@ -26,9 +28,10 @@ from camwright.stored.design_file import (
     read_design,
 )
 from camwright.stored.design_text import design_text
-from camwright.stored.profile_files import cam_text, read_cycle
+from camwright.stored.profile_files import cam_text, read_cycle, rows_note
 from camwright.studies.design import Design, optimise
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
 FULL = OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
 
@@ -236,3 +239,23 @@ def test_a_damaged_design_is_refused(paper: Design) -> None:
         with pytest.raises(InputError) as caught:
             parse_design(text, "d.json")
         assert message in str(caught.value)
+
+
+def test_rows_too_few_for_the_sync_zone_are_told_with_how_many_would_do(tmp_path: Path) -> None:
+    """A blade in horizontal sync is no quintic over wide steps; what is told passes, and one step less does not."""
+    job = load_job(EXAMPLES / "thick-product.toml")
+    cam = baseline("poly_3_4_5", job.task)
+    assert rows_note(cam, job) == ""
+
+    def with_rows(rows: int) -> Job:
+        return replace(job, output=replace(job.output, points=rows))
+
+    note = rows_note(cam, with_rows(40))
+    assert note == (
+        "cam.csv: 40 rows hold the ratio in the sync zone to 9.9e-08, of which validate allows 1e-09; write [output] points = 157"
+    )
+    assert rows_note(cam, with_rows(157)) == ""
+    for rows, passes in ((40, False), (157, True)):
+        (tmp_path / "cam.csv").write_text(write_cam_csv(cam, rows, []))
+        checks = {check.name: check.passed for check in validate(tmp_path / "cam.csv", job).checks}
+        assert checks["sync_ratio"] == passes

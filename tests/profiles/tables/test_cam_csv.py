@@ -43,6 +43,13 @@ def test_positions_are_equidistant_but_for_the_breaks() -> None:
     np.testing.assert_array_equal(x, expected)
 
 
+def test_breaks_that_lie_together_take_no_positions_from_elsewhere() -> None:
+    breaks = np.concatenate([[0.0], np.linspace(0.5, 0.5001, 50), [1.0]])
+    x = table_positions(CamProfile.from_arrays(breaks, [[0.0, 1.0]] * (len(breaks) - 1)), 92)
+    assert np.isin(breaks, x).all()
+    np.testing.assert_allclose(np.diff(x)[[*range(21), *range(70, 91)]], 0.5 / 21, rtol=3e-4)
+
+
 @given(st.lists(st.floats(0.0, 1.0), min_size=2, max_size=30, unique=True), st.integers(0, 40))
 def test_every_break_has_a_position_and_positions_increase(places: list[float], more: int) -> None:
     breaks = np.unique(np.round([0.0, 1.0, *places], 9))
