@@ -25,6 +25,7 @@ from camwright.design.servo_aware.axis_motion import AxisMotion
 from camwright.design.torque.least_speed import drawn_power, least_speed
 from camwright.design.torque.placing import place_by_objective
 from camwright.design.torque.search import TorqueSolution, solve_torque, zone_peak
+from camwright.design.torque.standing import standing
 from camwright.design.torque.task import TorqueTask
 from camwright.design.torque.within_curve import keeps_curve, least_load, solve_within_curve
 from camwright.profiles.cut import Cut
@@ -407,7 +408,9 @@ def _solve_torque(task: Task, objective: CommandObjective) -> Solution:
     elif machine.constant_inertia and objective == "rms_torque":  # the optimum of a slave that never stands
         given.append(solve_return(replace(problem, objective="rms_acceleration"))[0])
     floor = zone_peak(task) if objective == "peak_torque" else 0.0
-    found = solve_torque(TorqueTask(task, problem, objective), starts=given, floor=floor)
+    asked = TorqueTask(task, problem, objective)
+    rested = standing(asked) if machine.constant_inertia and objective == "rms_torque" else None
+    found = rested or solve_torque(asked, starts=given, floor=floor)
     return _searched(found, task, objective, found.value)
 
 

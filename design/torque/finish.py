@@ -39,14 +39,40 @@ def finish(guess: Guess, pattern: Pattern, task: TorqueTask) -> CamProfile:
         h, a = without_false_corners(mesh / mesh.sum() * share * length, a)
         target = problem.end_ratio if last else 0.0
         goal = problem.height if last else float(guess.position[node]) * scale
-        a = _corrected(h, a, velocity, target - velocity, goal - position)
-        for width, first, second in zip(h, a[:-1], a[1:], strict=True):
-            rows.append([position, velocity, first / 2, (second - first) / (6 * width)])
-            position += width * (velocity + width * (first / 3 + second / 6))
-            velocity += width * (first + second) / 2
-            breaks.append(breaks[-1] + width)
+        rows += _cubics(h, a, (position, velocity), (goal, target))
+        breaks += (breaks[-1] + np.cumsum(h)).tolist()
         velocity, position = target, goal
     return CamProfile.from_arrays(np.append(breaks[:-1], length), rows)
+
+
+def with_longer_rest(back: CamProfile, length: float) -> CamProfile | None:
+    """Let a return stand so much longer that it has a length (m), its moves the same but for rounding; None if it does not stand."""
+    rests = np.where(back.coefficients[:, 1:].any(axis=1), 0.0, np.diff(back.breaks))
+    if not rests.any():
+        return None
+    at = int(rests.argmax())
+    breaks = np.append(back.breaks[: at + 1], back.breaks[at + 1 :] + (length - back.length))
+    breaks[-1] = length
+    rest = float(back.coefficients[at, 0])
+    rows = []
+    for pieces, goal in ((slice(at), (rest, 0.0)), (slice(at + 1, None), (back.advance, float(back(back.end, 1))))):
+        moves, width = back.coefficients[pieces], np.diff(back.breaks)[pieces]
+        a = np.append(2 * moves[:, 2], 2 * moves[-1, 2] + 6 * moves[-1, 3] * width[-1])
+        rows += _cubics(np.diff(breaks)[pieces], a, (float(moves[0, 0]), float(moves[0, 1])), goal)
+        rows += [[rest, 0.0, 0.0, 0.0]] if len(rows) == at else []
+    return CamProfile.from_arrays(breaks, rows)
+
+
+def _cubics(h: FloatArray, a: FloatArray, start: tuple[float, float], end: tuple[float, float]) -> list[list[float]]:
+    """Pieces of widths and accelerations at nodes, these corrected, from position and velocity at one end to those at the other."""
+    position, velocity = start
+    a = _corrected(h, a, velocity, end[1] - velocity, end[0] - position)
+    rows = []
+    for width, first, second in zip(h, a[:-1], a[1:], strict=True):
+        rows.append([position, velocity, first / 2, (second - first) / (6 * width)])
+        position += width * (velocity + width * (first / 3 + second / 6))
+        velocity += width * (first + second) / 2
+    return rows
 
 
 def _corrected(h: FloatArray, a: FloatArray, velocity: float, gain: float, way: float) -> FloatArray:

@@ -18,6 +18,10 @@ ROUNDING = 1e-9
 """Share by which a bound that a design may reach is lowered."""
 STOPS = 400
 """Times and ways of a stop that are looked at."""
+ENDS = 120
+"""Ways of a stop that are looked at beside these, closer and closer to either end: on a slow line one of them is next to nothing."""
+COAST = 0.1
+"""Least time of a stop that is looked at, in that of coasting to rest, which costs least of all."""
 SPLITS = 200
 """Moments of a standstill that are looked at."""
 BETWEEN = 2e-3
@@ -82,8 +86,11 @@ def square_with_friction(task: Task, softest_square: float) -> float:
     out, into = (float(task.sync(at, 1)) * task.cut.line_speed for at in (task.sync.end, task.sync.start))
     time = task.cut.return_zone / task.cut.line_speed
     moving = inertia**2 * softest_square + friction**2 * time
-    way = task.height * np.linspace(1e-4, 1.0 - 1e-4, STOPS)
-    times = time * np.geomspace(1e-4, 1.0, 4 * STOPS)
+    coast = COAST * inertia * min(out, into) / friction
+    least = min(1e-4, coast / time, 0.5 * coast * min(out, into) / abs(task.height))
+    half = np.union1d(np.linspace(1e-4, 0.5, STOPS // 2), np.geomspace(least, 1e-2, ENDS))
+    way = task.height * np.append(half, 1.0 - half[::-1])
+    times = time * np.geomspace(min(1e-4, coast / time), 1.0, 4 * STOPS * max(1, math.ceil(-0.25 * math.log10(least))))
     stop, start = (_stop(way, pace, times, inertia, friction) for pace in (out, into))
     # between two moments of the standstill the later one leaves the stop most time, the earlier one the start
     split = np.linspace(0.0, time, SPLITS + 1)

@@ -344,3 +344,23 @@ def test_a_crank_on_a_slow_line_is_searched_as_one_on_a_quicker_line() -> None:
     quick, slow = (solve(task.at_speed(speed / 60.0), "rms_torque") for speed in (1.0, 0.01))
     assert slow.minimised == pytest.approx(quick.minimised * 1e-4, rel=1e-6)
     assert slow.iterations < 200
+
+
+@pytest.mark.parametrize("line_speed", [1e-3, 0.02])
+def test_a_slave_that_rubs_stands_for_most_of_a_slow_lines_return(line_speed: float) -> None:
+    """No mesh over all of the return finds moves of a second or two in an hour; coasting to rest and a cubic are next to the best."""
+    knife = replace(KNIFE, drum_friction=2.0)
+    cut = Cut(0.75, line_speed, 0.12, 0.01, 0.11, 1e-4)
+    task = Task(knife, cut, LIMITS)
+    inertia, friction = float(knife.inertia(0.0)), knife.friction
+    move = math.sqrt(6 * inertia * task.height / friction)
+    square = friction**2 * (cut.sync_zone / line_speed + 4 / 3 * move) / knife.motor_ratio**2
+    solution = solve(task, "rms_torque")
+    found = measure_motor(solution.profile, task).rms_torque
+    assert found == pytest.approx(math.sqrt(square / cut.period), rel=2e-3)
+    assert lower_bound(solution.profile, task, "rms_torque").value <= found
+    assert [
+        check.name
+        for check in judge(solution.profile, task, Servo(150.0, 0.7, 45.0, 0.001, 1.0)).checks[:9]
+        if not check.passed
+    ] == []

@@ -391,3 +391,18 @@ def test_the_reach_and_the_rests_of_an_acceleration() -> None:
     assert (low[0], low[-1]) == (pytest.approx(v**2), pytest.approx(w**2))
     assert low.min() == pytest.approx(0.0, abs=0.05)
     assert (low <= high * (1 + 1e-12)).all()
+
+
+@pytest.mark.parametrize("line_speed", [3e-4, 1e-3, 0.02, 0.06])
+def test_a_slave_that_coasts_to_rest_and_stands_on_a_slow_line_is_not_below_its_bound(line_speed: float) -> None:
+    """Coasting takes no torque; the way that is left is a cubic from rest, its time the best by a search of its own."""
+    knife = replace(KNIFE, drum_friction=2.0)
+    task = Task(knife, Cut(0.75, line_speed, 0.12, 0.01, 0.11, 1e-4), Limits(4.4, 1e9, 1e15))
+    inertia, friction = float(knife.inertia(0.0)), knife.friction
+    coast = inertia * line_speed / friction
+    way = task.height - 0.5 * line_speed * coast
+    times = np.linspace(0.02, 1.0, 20_001)
+    square = 4 * line_speed**2 / times - 12 * line_speed * way / times**2 + 12 * way**2 / times**3
+    cost = 2 * friction * inertia * line_speed + (inertia**2 * square + friction**2 * times).min()
+    found = constant_inertia.square_with_friction(task, 1e9)
+    assert cost * (1 - 4e-3) <= found <= cost * (1 + 1e-9)
