@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from camwright.design.servo_aware.servo_weights import (
     greatest_gains,
@@ -26,6 +27,8 @@ _STRIDE = PHASES // SUBSTEPS
 _NEWTON, _NEWTON_ENDS = 12, 1e-11
 # Most samples of the past that are gathered at a time, and what a number of samples is rounded up to.
 _MOST_VALUES, _SHARED = 2**18, 32
+# Least steps of the grid that are looked at, or passed over, together.
+_STRETCH = 2**13
 
 
 Sums = Callable[[FloatArray, FloatArray], tuple[FloatArray, FloatArray]]
@@ -146,9 +149,41 @@ class Axis:
 
     def keeps_within(self, profile: CamProfile, order: int, low: float, high: float) -> bool:
         """Whether the command's own range already tells that the axis' ratio (1) or ratio slope (2) stays between two limits."""
-        up, down = greatest_gains(self.servo.loop, order, SUBSTEPS)
         least, greatest = (extremum.value for extremum in profile.extrema(order))
-        return up * greatest - down * least <= high and up * least - down * greatest >= low
+        return bool(self._within(order, np.array([least]), np.array([greatest]), low, high)[0])
+
+    def loud(self, profile: CamProfile, order: int, low: float, high: float) -> list[tuple[int, int]]:
+        """Stretches of the common grid where the command's range, as far back as the servo remembers, does not tell so.
+
+        Returns
+        -------
+        list of (first, count)
+            First step of each stretch and its steps; a line that creeps is quiet but for next to nothing of its cycle.
+        """
+        length, step = profile.length, self.sample / PHASES
+        # a difference of the order, and the part of a sample since the last one
+        reach = (memory(self.servo.loop) + order + 1) * self.sample
+        firsts = np.arange(0, math.ceil(length / step), max(_STRETCH, 4 * math.ceil(reach / step)))
+        ends = np.append(firsts[1:], math.ceil(length / step))
+        newest = self.task.cut.line_speed * self.servo.delay
+        oldest, latest = firsts * step - newest - reach, ends * step - newest
+        before, behind = math.floor(float(oldest[0]) / length), math.ceil(float(latest[-1]) / length)
+        breaks = np.append((np.arange(before, behind)[:, None] * length + profile.breaks[:-1]).ravel(), behind * length)
+        pieces = np.column_stack([breaks.searchsorted(oldest, "right") - 1, breaks.searchsorted(latest)])
+        least, greatest = (np.append(np.tile(each, behind - before), each[0]) for each in profile.ranges(order))
+        lows, highs = (
+            np.minimum.reduceat(least, pieces.ravel())[::2],
+            np.maximum.reduceat(greatest, pieces.ravel())[::2],
+        )
+        turns = np.flatnonzero(np.diff(~self._within(order, lows, highs, low, high), prepend=False, append=False))
+        return [(int(firsts[k]), int(ends[n - 1] - firsts[k])) for k, n in turns.reshape(-1, 2).tolist()]
+
+    def _within(
+        self, order: int, least: FloatArray, greatest: FloatArray, low: float, high: float
+    ) -> NDArray[np.bool_]:
+        """Tell of ranges of the command whether the axis stays between two limits."""
+        up, down = greatest_gains(self.servo.loop, order, SUBSTEPS)
+        return np.asarray((up * greatest - down * least <= high) & (up * least - down * greatest >= low))
 
     def zone_errors(self, profile: CamProfile) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Sync error of the tool in the shear zone at every phase, the ends of the zone included.

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from camwright.design.servo_aware.axis_problem import AxisProblem, thinned
 from camwright.design.servo_aware.axis_response import PHASES, SUBSTEPS, Axis
@@ -226,14 +227,14 @@ class OwnRows:
         self.rows: list[AxisRows] = []
         self.due = True  # whether the last look added some, or there was none yet
         self._judged: CamProfile | None = None
-        self._excess: dict[tuple[float, int], FloatArray] = {}
+        self._excess: dict[tuple[float, int], tuple[NDArray[np.intp], FloatArray]] = {}
         self._last: dict[tuple[float, int], float] = {}
 
     def keeps(self, profile: CamProfile) -> bool:
         """Whether the nominal axis keeps its limits at its line speeds, to the share that rows of it are drawn in by."""
         return all(
             axis.keeps_within(profile, order, low, high)
-            or float(self._over(axis, profile, order).max()) <= AXIS_MARGIN * high
+            or float(self._over(axis, profile, order)[1].max(initial=0.0)) <= AXIS_MARGIN * high
             for axis in thinned(self.problem.axes[0], OWN)
             for order, (low, high) in self.problem.own_limits(axis).items()
         )
@@ -259,14 +260,15 @@ class OwnRows:
         low, high = self.problem.own_limits(axis)[order]
         if axis.keeps_within(profile, order, low, high):
             return False
-        excess = self._over(axis, profile, order)
+        steps, excess = self._over(axis, profile, order)
         worst = worst_places(excess.max(axis=0) - 0.5 * AXIS_MARGIN * high, MOST_OWN)
         if not len(worst):
             return False
-        # what is pressed down there rises a sample aside, so that gets rows too
-        worst = np.unique((worst[:, None] + PHASES * np.arange(-1, 2)) % excess.shape[1])
-        times = np.asarray(excess[:, worst].argmax(axis=0) * (axis.servo.sample_time / SUBSTEPS), dtype=np.float64)
-        self._make(axis, order, np.asarray(worst * (axis.sample / PHASES), dtype=np.float64), times)
+        # what is pressed down there rises a sample aside, so that gets rows too, where the command does not tell that it cannot
+        beside = steps[worst, None] + PHASES * np.arange(-1, 2)
+        found = np.flatnonzero(np.isin(steps, beside % self._steps(axis)))
+        times = np.asarray(excess[:, found].argmax(axis=0) * (axis.servo.sample_time / SUBSTEPS), dtype=np.float64)
+        self._make(axis, order, np.asarray(steps[found] * (axis.sample / PHASES), dtype=np.float64), times)
         return True
 
     def _make(self, axis: Axis, order: int, places: FloatArray, times: FloatArray) -> None:
@@ -288,18 +290,28 @@ class OwnRows:
                 if share in axes:
                     self._make(axes[share], order, places * longer, times)
 
-    def _over(self, axis: Axis, profile: CamProfile, order: int) -> FloatArray:
-        """By how much the nominal axis breaks a limit over the cycle, by time after a sample and place; negative within it."""
+    def _over(self, axis: Axis, profile: CamProfile, order: int) -> tuple[NDArray[np.intp], FloatArray]:
+        """By how much the nominal axis breaks a limit, by time after a sample and place; negative within it.
+
+        At the steps of the common grid that are given: those where the command's range does not tell that it keeps the limit.
+        """
         if self._judged is not profile:
             self._judged, self._excess = profile, {}
         key = axis.share, order
         if key not in self._excess:
             low, high = self.problem.own_limits(axis)[order]
-            count = math.ceil(self.problem.task.cut.length / (axis.sample / PHASES))
-            values = axis.on_grid(profile, 0, count, order)
-            self._excess[key] = np.maximum(values - high, low - values)
-            self._last[key] = float(self._excess[key].max()) / high
+            steps, excess = [np.zeros(0, np.intp)], [np.zeros((SUBSTEPS, 0))]
+            for first, count in axis.loud(profile, order, low, high):
+                values = axis.on_grid(profile, first, count, order)
+                steps.append(np.arange(first, first + count))
+                excess.append(np.maximum(values - high, low - values))
+            self._excess[key] = np.concatenate(steps), np.concatenate(excess, axis=1)
+            self._last[key] = float(self._excess[key][1].max(initial=-math.inf)) / high
         return self._excess[key]
+
+    def _steps(self, axis: Axis) -> int:
+        """Count the steps of the common grid over the cycle."""
+        return math.ceil(self.problem.task.cut.length / (axis.sample / PHASES))
 
 
 class BetweenServos:

@@ -255,10 +255,7 @@ class CamProfile:
         """
         if order in self._peaks:
             return self._peaks[order]
-        a, b = np.zeros(self.pieces), np.diff(self.breaks)
-        where = np.column_stack([a, roots_between(self._derived(order + 1), a, b), b])
-        where = np.where(np.isnan(where), a[:, None], where)
-        values = self.on_pieces(np.arange(self.pieces)[:, None], where, order)
+        where, values = self._extreme(order)
 
         def extremum(index: int) -> Extremum:
             return Extremum(float(values.flat[index]), float(self.breaks[index // where.shape[1]] + where.flat[index]))
@@ -269,6 +266,18 @@ class CamProfile:
     def peak(self, order: int = 0) -> float:
         """Greatest magnitude of a derivative, as `extrema` has it."""
         return max(abs(extremum.value) for extremum in self.extrema(order))
+
+    def ranges(self, order: int = 0) -> tuple[FloatArray, FloatArray]:
+        """Least and greatest value of a derivative on each piece, as exact as `extrema`; two arrays of shape ``(pieces,)``."""
+        _, values = self._extreme(order)
+        return np.asarray(values.min(axis=1)), np.asarray(values.max(axis=1))
+
+    def _extreme(self, order: int) -> tuple[FloatArray, FloatArray]:
+        """Give where a derivative may be extreme on each piece, from the piece's start, and its values there."""
+        a, b = np.zeros(self.pieces), np.diff(self.breaks)
+        where = np.column_stack([a, roots_between(self._derived(order + 1), a, b), b])
+        where = np.where(np.isnan(where), a[:, None], where)
+        return where, self.on_pieces(np.arange(self.pieces)[:, None], where, order)
 
     def roots(self, order: int = 0) -> FloatArray:
         """Master positions inside the pieces where a derivative is zero, ascending.

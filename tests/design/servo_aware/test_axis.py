@@ -18,6 +18,7 @@ from camwright.profiles.machines import (
     RotaryKnife,
 )
 from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.returns import baseline
 from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
 from camwright.validation.servo.response import shear_zone_error
@@ -96,6 +97,24 @@ def test_the_grid_is_the_simulation_point_by_point(name: str, command: Command) 
                 assert slopes[point % 8, place] == pytest.approx(run.axis_ratio[phase, point], abs=1e-8)
                 compared += 1
     assert compared > 150
+
+
+@pytest.mark.parametrize("servo", [PAPER, LATE, replace(PAPER, dead_time=11.0)], ids=["paper", "late", "later"])
+@pytest.mark.parametrize("order", [1, 2])
+def test_what_is_not_loud_keeps_its_limits_at_every_step(servo: Servo, order: int) -> None:
+    """Of a cycle of 2 500 samples, as the grid over all of it says; a command in sync is quiet in its sync zone."""
+    cut = replace(CUT, line_speed=0.06)
+    task = Task(RotaryKnife(0.4), cut, FREE)
+    axis, cam = Axis(task, servo), baseline("double_s", task)
+    every = axis.on_grid(cam, 0, 40_000, order)
+    low = 0.5 * float(every.min()) + 0.25 * (2 - order)
+    stretches = axis.loud(cam, order, low, 1e3)
+    quiet = np.ones(40_000, dtype=bool)
+    for first, count in stretches:
+        quiet[first : first + count] = False
+    assert 0.1 < quiet.mean() < 0.9
+    assert (every[:, quiet] >= low - 1e-8).all()
+    assert axis.loud(cam, order, -1e6, 1e6) == []
 
 
 @EVERY
