@@ -118,9 +118,10 @@ def _columns(comparison: Comparison) -> list[_Column]:
         columns.append(
             _Column(f"{worst} ({millimetres})".replace("\n ", "\n"), errors, job.cut.sync_tolerance * length)
         )
-    torques = [row.motor.rms_torque for row in rows]
-    if any(torque is not None for torque in torques):
-        columns.insert(2, _Column("RMS torque\n(N·m)", torques, None))
+    asked = OBJECTIVES[job.objective if OBJECTIVES[job.objective].of == "motor" else "rms_torque"]
+    loads = [row.value(asked.name) for row in rows]
+    if any(load is not None for load in loads):
+        columns.insert(2, _Column(f"{asked.words}\n({'J' if asked.form == 'drawn' else 'N·m'})", loads, None))
     return columns
 
 

@@ -15,9 +15,11 @@ from camwright.figures.crank import STYLES, crank_figure
 from camwright.figures.profile import profile_figure
 from camwright.figures.servo import AXES, servo_figure
 from camwright.figures.strokes import BLACK
-from camwright.house.pictures import Frame, Line
+from camwright.house.numbers import number
+from camwright.house.pictures import Frame, Line, Note
 from camwright.jobs.job import load_job
 from camwright.profiles.machines import CrankSlider, LinearCarriage
+from camwright.profiles.objective import ObjectiveName
 from camwright.studies.comparison import Comparison, compare
 from camwright.validation.servo.simulation import simulate
 
@@ -72,6 +74,21 @@ def test_units_of_a_crank_are_angles(crank: Comparison) -> None:
         "(rad/s³)",
         "(rad/s³)",
         "(mm)",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("objective", "heading"),
+    [("energy", "energy\n(J)"), ("peak_torque", "peak torque\n(N·m)"), ("peak_jerk", "RMS torque\n(N·m)")],
+)
+def test_what_a_job_of_the_motor_makes_least_is_among_the_bars(
+    crank: Comparison, objective: ObjectiveName, heading: str
+) -> None:
+    frame = bars_figure(replace(crank, job=replace(crank.job, objective=objective))).frames[2]
+    assert frame.title == heading
+    shown = [row.value("rms_torque" if objective == "peak_jerk" else objective) for row in crank.rows]
+    assert [item.text for item in frame.items if isinstance(item, Note)] == [
+        "unbounded" if value is None else number(value, 4) for value in shown
     ]
 
 
