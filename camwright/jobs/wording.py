@@ -13,7 +13,7 @@ TABLES: dict[str, tuple[str, ...]] = {
     "cut": ("length", "line_speed", "sync_zone", "shear_zone", "shear_zone_at", "sync_tolerance", "sync_ratio"),
     "limits": ("speed", "acceleration", "jerk", "reversal", "motor"),
     "line": ("stop",),
-    "servo": ("position_gain", "sample_time", "bandwidth", "damping"),
+    "servo": ("position_gain", "sample_time", "bandwidth", "damping", "lead_time"),
     "objective": ("minimise", "line_speeds"),
     "output": ("points",),
 }

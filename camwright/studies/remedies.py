@@ -14,6 +14,7 @@ from camwright.jobs.job import Job, read_job
 from camwright.jobs.wording import place_of
 from camwright.profiles.errors import CamwrightError, Covered, InfeasibleError, SolverError, Suggestion
 from camwright.profiles.objective import OBJECTIVES
+from camwright.profiles.servo import mean_lag
 from camwright.studies.axis_study import beyond_reach, solve_job, sync_error
 from camwright.studies.covering import Uncovered
 from camwright.studies.family_bands import family_bands, placed_for_all
@@ -150,8 +151,9 @@ def _passes(job: Job) -> bool:
 def remedies(job: Job, report: ValidationReport, band: SpeedBand) -> tuple[Remedy, ...]:
     """Try what may make a job pass of whose cam a check failed.
 
-    A lower line speed, a wider tolerance, a command for the servo, in sync or shaped, least RMS jerk and another sync zone, each alone and
-    in this order; of a number the nearest of some values. What was not tried in `MOST` designs is not told.
+    A lower line speed, a wider tolerance, the lead time that makes up for the mean lag, a command for the servo, in sync or shaped, least
+    RMS jerk and another sync zone, each alone and in this order; of a number the nearest of some values. What was not tried in `MOST`
+    designs is not told.
 
     Parameters
     ----------
@@ -172,6 +174,9 @@ def remedies(job: Job, report: ValidationReport, band: SpeedBand) -> tuple[Remed
     ways = [_values("line_speed", start, "m/s", _SLOWER if lower else _SLOWER[1:], job.units, up=False)]
     if error is not None:
         ways.append(_values("sync_tolerance", max(error, cut.sync_tolerance), "m", _WIDER, job.units, up=True))
+    lag = float(f"{mean_lag(job.servo) * 1e3:.{_DIGITS}g}")
+    if abs(lag - job.servo.lead_time * 1e3) > 0.01 * lag:
+        ways.append(iter([Remedy("lead_time", lag, "ms")]))
     if not job.servo_aware:
         ways.append(iter([Remedy("servo_aware", True, "")]))
     if job.command != "shaped":

@@ -59,7 +59,13 @@ origin = "cut"
 def changed(text: str, change: str, value: object, unit: str) -> str:
     """Write a change into a job as a user would."""
     data: dict[str, Any] = tomllib.loads(text)
-    homes = {"minimise": "objective", "servo_aware": "objective", "command": "objective", "acceleration": "limits"}
+    homes = {
+        "minimise": "objective",
+        "servo_aware": "objective",
+        "command": "objective",
+        "acceleration": "limits",
+        "lead_time": "servo",
+    }
     table = data.setdefault(homes.get(change, "cut"), {})
     table[change] = f"{value} {unit}" if unit else value
     if change == "command":
@@ -88,6 +94,14 @@ def test_each_way_out_of_a_failed_check_passes(text: str) -> None:
     assert {"line_speed", "sync_tolerance"} <= {way.change for way in ways}
     for way in ways:
         assert passes(changed(text, way.change, way.value, way.unit)), way
+
+
+def test_a_servo_that_lags_is_told_the_lead_time_that_makes_up_for_it() -> None:
+    """A delay that is led by as much is none."""
+    late = PAPER.replace("velocity_feedforward = 1.0", 'velocity_feedforward = 1.0\ndead_time = "4 ms"')
+    way = next(way for way in found(late) if way.change == "lead_time")
+    assert way.words == '[servo] lead_time = "4 ms"'
+    assert passes(late.replace('dead_time = "4 ms"', 'dead_time = "4 ms"\nlead_time = "4 ms"'))
 
 
 def test_a_job_that_passes_needs_no_way_out() -> None:
