@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 
 from camwright.design.line.forms import Form
+from camwright.design.returns.bernstein import ScaledMotion
 from camwright.design.returns.scaling import ScaledProblem
-from camwright.design.returns.transcription import ScaledMotion
 from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.polynomial.profile import FloatArray
 

@@ -6,11 +6,11 @@ import numpy as np
 
 from camwright.design.line.forms import Form, greatest_form, ramp_forms
 from camwright.design.line.programme import MeshAnswer, least_ramp_share, solve_on_mesh
+from camwright.design.returns.bernstein import ScaledMotion
 from camwright.design.returns.measures import ALLOWED_EXCESS, excess
 from camwright.design.returns.problem import ReturnProblem
 from camwright.design.returns.scaling import ScaledProblem, motion_scale, scale_problem, unscale_profile
 from camwright.design.returns.structure import subdivide, tidy
-from camwright.design.returns.transcription import ScaledMotion
 from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.task import Task

@@ -6,9 +6,10 @@ import math
 
 import numpy as np
 
+from camwright.design.returns.bernstein import ScaledMotion
 from camwright.design.returns.scaling import ScaledProblem
 from camwright.design.returns.structure import VANISHED, extreme_motion
-from camwright.design.returns.transcription import Arc, ScaledMotion
+from camwright.design.returns.transcription import Arc
 from camwright.profiles.closed_forms.smoothest import smoothest
 from camwright.profiles.closed_forms.softest import softest
 from camwright.profiles.objective import OBJECTIVES

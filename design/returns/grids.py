@@ -7,12 +7,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from camwright.design.returns.bernstein import ScaledMotion
 from camwright.design.returns.ipopt import programme
 from camwright.design.returns.possible import spare
 from camwright.design.returns.problem import ReturnProblem
 from camwright.design.returns.scaling import ScaledProblem, motion_scale, scale_problem
 from camwright.design.returns.structure import VANISHED, subdivide
-from camwright.design.returns.transcription import Arc, ScaledMotion, Shape
+from camwright.design.returns.transcription import Arc, Shape
 from camwright.profiles.closed_forms.reach import greatest_reach
 from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.polynomial.profile import FloatArray

@@ -8,10 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from camwright.design.returns.bernstein import ScaledMotion
 from camwright.design.returns.possible import possible_motion, spare
 from camwright.design.returns.scaling import ScaledProblem
 from camwright.design.returns.structure import VANISHED
-from camwright.design.returns.transcription import ScaledMotion
 from camwright.profiles.halving import narrowed
 from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.polynomial.profile import FloatArray

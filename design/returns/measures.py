@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
+from camwright.design.returns.bernstein import ScaledMotion
 from camwright.design.returns.scaling import ScaledProblem
 from camwright.design.returns.structure import tidy
-from camwright.design.returns.transcription import ScaledMotion
 from camwright.profiles.objective import OBJECTIVES, MotionObjective
 from camwright.profiles.polynomial.profile import CamProfile
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 
+from camwright.design.returns.bernstein import ScaledMotion
 from camwright.design.returns.grids import on_grid
 from camwright.design.returns.ipopt import programme
 from camwright.design.returns.measures import ALLOWED_EXCESS, SAME, excess
 from camwright.design.returns.scaling import ScaledProblem
 from camwright.design.returns.structure import read_cubic, readings_of, subdivide, tidy
-from camwright.design.returns.transcription import Arc, ScaledMotion, Shape
+from camwright.design.returns.transcription import Arc, Shape
 
 # Intervals for each arc where a polished motion is looked at again.
 EACH_ARC = 6

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from camwright.design.returns.bernstein import ScaledMotion
 from camwright.design.returns.closed_starts import known_start
 from camwright.design.returns.grids import NO_MOTION, degree_of, grids, on_grid, room
 from camwright.design.returns.ipopt import SolveStatus, programme
@@ -18,7 +19,7 @@ from camwright.design.returns.problem import ReturnProblem
 from camwright.design.returns.scaling import ScaledProblem, motion_scale, scale_problem, unscale_profile
 from camwright.design.returns.structure import extreme_motion, from_extreme, tidy
 from camwright.design.returns.touching import touching_motions
-from camwright.design.returns.transcription import LIMIT_MARGIN, ScaledMotion, Shape
+from camwright.design.returns.transcription import LIMIT_MARGIN, Shape
 from camwright.profiles.closed_forms.reach import greatest_reach
 from camwright.profiles.errors import SolverError
 from camwright.profiles.objective import OBJECTIVES

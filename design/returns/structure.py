@@ -11,14 +11,9 @@ import math
 
 import numpy as np
 
+from camwright.design.returns.bernstein import ScaledMotion, piece_coefficients, subdivision
 from camwright.design.returns.scaling import ScaledProblem
-from camwright.design.returns.transcription import (
-    SPLIT,
-    Arc,
-    ScaledMotion,
-    piece_coefficients,
-    subdivision,
-)
+from camwright.design.returns.transcription import SPLIT, Arc
 from camwright.profiles.closed_forms.reach import (
     DoubleS,
     in_time,

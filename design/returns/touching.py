@@ -11,8 +11,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from camwright.design.returns.bernstein import ScaledMotion
 from camwright.design.returns.scaling import ScaledProblem
-from camwright.design.returns.transcription import ScaledMotion
 from camwright.profiles.polynomial.profile import FloatArray
 
 # The first guess of a way to a touch is this share of the longest that does not run beyond it.

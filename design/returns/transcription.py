@@ -15,17 +15,16 @@ The lengths ``h`` of the pieces are parameters (the problem is then convex: a li
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any, Literal
 
 import casadi as ca
 import numpy as np
 
+from camwright.design.returns.bernstein import ScaledMotion, gram, inner
 from camwright.design.returns.scaling import ScaledProblem
 from camwright.profiles.objective import OBJECTIVES, MotionObjective
-from camwright.profiles.polynomial.profile import CamProfile, FloatArray
+from camwright.profiles.polynomial.profile import FloatArray
 
 Arc = Literal["free", "ramp", "hold", "fall", "cruise"]
 """What a piece is known to be: nothing, linear in the acceleration, of constant acceleration, without acceleration at its end, of constant
@@ -35,8 +34,6 @@ speed."""
 LIMIT_MARGIN = 2e-10
 # The least ratio is small beside the greatest, to which the solver's answers are as good as that.
 REVERSAL_MARGIN = 5e-9
-
-
 # Parts into which a piece of unknown length and higher degree is cut for its limits.
 SPLIT = 16
 
@@ -79,74 +76,6 @@ class Shape:
         p = self.degree
         known = {"free": 0, "ramp": p - 1, "hold": p, "fall": 1, "cruise": p + 1}
         return self.free_lengths and p > 1 and p * (self.pieces - 1) < sum(known[arc] for arc in self.arcs)
-
-
-@dataclass(frozen=True, eq=False)
-class ScaledMotion:
-    """A motion of the scaled problem in the programme's own coordinates.
-
-    Parameters
-    ----------
-    lengths
-        Lengths of the pieces, shape ``(M,)``.
-    accelerations
-        Bernstein coefficients of ``q''``, neighbours sharing one: shape ``(M p + 1,)``.
-    objective
-        Value of the objective; for root-mean-square objectives the mean square.
-    """
-
-    lengths: FloatArray
-    accelerations: FloatArray
-    objective: float
-
-    @property
-    def degree(self) -> int:
-        """Degree of the acceleration on a piece."""
-        return (len(self.accelerations) - 1) // len(self.lengths)
-
-    def nodes(self) -> tuple[FloatArray, FloatArray]:
-        """Position and ratio at the ``M + 1`` nodes, integrated from rest at zero."""
-        p, h = self.degree, self.lengths
-        rows = piece_coefficients(self.accelerations, p)
-        v = np.concatenate([[0.0], np.cumsum(h * rows.sum(axis=1) / (p + 1))])
-        bent = h * h * (rows @ np.arange(p + 1, 0, -1)) / ((p + 1) * (p + 2))
-        return np.concatenate([[0.0], np.cumsum(h * v[:-1] + bent)]), v
-
-    def profile(self) -> CamProfile:
-        """Return the motion as a profile over ``[0, 1]``; pieces of no length are left out."""
-        p = self.degree
-        q, v = self.nodes()
-        x = np.concatenate([[0.0], np.cumsum(self.lengths)])
-        there = np.diff(x) > 0
-        h = self.lengths[there]
-        k = np.arange(p + 1)
-        power = piece_coefficients(self.accelerations, p)[there] @ _power_basis(p).T
-        rows = np.column_stack([q[:-1][there], v[:-1][there], power / h[:, None] ** k / ((k + 1) * (k + 2))])
-        breaks = np.append(x[:-1][there], 1.0)
-        return CamProfile(breaks, rows)
-
-
-def piece_coefficients(accelerations: FloatArray, degree: int) -> FloatArray:
-    """Rows of Bernstein coefficients of the single pieces, shape ``(M, p + 1)``."""
-    count = (len(accelerations) - 1) // degree
-    return np.asarray(accelerations[np.arange(count)[:, None] * degree + np.arange(degree + 1)])
-
-
-@lru_cache
-def _power_basis(degree: int) -> FloatArray:
-    """Matrix from Bernstein coefficients on the unit interval to ascending powers."""
-    matrix = np.zeros((degree + 1, degree + 1))
-    for k in range(degree + 1):
-        for i in range(k, degree + 1):
-            matrix[i, k] = (-1) ** (i - k) * math.comb(degree, i) * math.comb(i, k)
-    return matrix
-
-
-def _gram(degree: int) -> FloatArray:
-    """Integrals of products of Bernstein polynomials over the unit interval."""
-    c, n = math.comb, degree
-    table = [[c(n, k) * c(n, m) / (c(2 * n, k + m) * (2 * n + 1)) for m in range(n + 1)] for k in range(n + 1)]
-    return np.array(table)
 
 
 def _sizes(shape: Shape) -> dict[str, int]:
@@ -363,7 +292,7 @@ def _places(unknown: dict[str, Any], lengths: Any, p: int, drift: Any, split: in
         position = position + lengths * ratio / (p + 2)
         if k <= p:
             ratio = ratio + lengths * bends[k] / (p + 1)
-    return [ca.vec(ca.DM(_inner(p + 2, split)[1:]) @ ca.horzcat(*rows).T)]
+    return [ca.vec(ca.DM(inner(p + 2, split)[1:]) @ ca.horzcat(*rows).T)]
 
 
 def _finer(shape: Shape, unknown: dict[str, Any], lengths: Any, split: int) -> tuple[list[Any], list[Any]]:
@@ -379,9 +308,9 @@ def _finer(shape: Shape, unknown: dict[str, Any], lengths: Any, split: int) -> t
         ratio = [unknown["v"][i]]
         for k in range(p + 1):
             ratio.append(ratio[-1] + lengths[i] * row[k] / (p + 1))
-        between += ca.vertsplit(ca.DM(_inner(p + 1, split)[1:-1]) @ ca.vertcat(*ratio))
+        between += ca.vertsplit(ca.DM(inner(p + 1, split)[1:-1]) @ ca.vertcat(*ratio))
         if arc != "ramp":
-            bent += ca.vertsplit(ca.DM(_inner(p, split)[1:-1]) @ row)
+            bent += ca.vertsplit(ca.DM(inner(p, split)[1:-1]) @ row)
     return bent, between
 
 
@@ -393,33 +322,8 @@ def _finer_jerk(shape: Shape, jerk: Any, limit: Any, split: int) -> list[Any]:
         if arc == "ramp":
             paces.append(row[0])
         elif arc not in ("hold", "cruise"):
-            paces += ca.vertsplit(ca.DM(_inner(p - 1, split)) @ row)
+            paces += ca.vertsplit(ca.DM(inner(p - 1, split)) @ row)
     return paces
-
-
-@lru_cache
-def subdivision(degree: int, parts: int) -> FloatArray:
-    """Matrix from Bernstein coefficients on the unit interval to those on equal parts of it, shape ``(parts (d + 1), d + 1)``.
-
-    The coefficient ``k`` on ``[s, t]`` is the polar form at ``d - k`` times ``s`` and ``k`` times ``t`` (de Casteljau).
-    """
-    rows = []
-    for part in range(parts):
-        s, t = part / parts, (part + 1) / parts
-        for k in range(degree + 1):
-            table = np.eye(degree + 1)
-            for u in [s] * (degree - k) + [t] * k:
-                table = (1 - u) * table[:-1] + u * table[1:]
-            rows.append(table[0])
-    return np.array(rows)
-
-
-@lru_cache
-def _inner(degree: int, parts: int) -> FloatArray:
-    """`subdivision` with each coefficient once: where two parts meet they share one."""
-    keep = np.arange(parts * (degree + 1)) % (degree + 1) > 0
-    keep[0] = True
-    return subdivision(degree, parts)[keep]
 
 
 def _known_arcs(shape: Shape, a: Any) -> list[Any]:
@@ -443,12 +347,9 @@ def _cost(shape: Shape, unknown: dict[str, Any], lengths: Any) -> Any:
     """Objective: the bound of a peak, or the mean square by the Gram matrix of the Bernstein polynomials."""
     if OBJECTIVES[shape.objective].form == "peak":
         return unknown["t"]
-    p = shape.degree
-    cost = ca.SX(0)
+    p, cost = shape.degree, ca.SX(0)
+    kind, degree = ("a", p) if shape.objective == "rms_acceleration" else ("j", p - 1)
     for i in range(shape.pieces):
-        if shape.objective == "rms_acceleration":
-            part, gram = unknown["a"][i * p : (i + 1) * p + 1], _gram(p)
-        else:
-            part, gram = unknown["j"][i * p : (i + 1) * p], _gram(p - 1)
-        cost += lengths[i] * ca.bilin(ca.DM(gram), part, part)
+        part = unknown[kind][i * p : i * p + degree + 1]
+        cost += lengths[i] * ca.bilin(ca.DM(gram(degree)), part, part)
     return cost

@@ -11,6 +11,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from camwright.design.returns import solver
+from camwright.design.returns.bernstein import ScaledMotion, piece_coefficients
 from camwright.design.returns.closed_starts import known_start
 from camwright.design.returns.grids import on_grid
 from camwright.design.returns.measures import excess, objective_value
@@ -25,7 +26,6 @@ from camwright.design.returns.structure import (
     subdivide,
     tidy,
 )
-from camwright.design.returns.transcription import ScaledMotion, piece_coefficients
 from camwright.profiles.closed_forms.reach import greatest_reach, least_acceleration, least_jerk
 
 PEAK = ScaledProblem(1.0, 0.0, 0.0, 0.0, -10.0, 10.0, 100.0, 100.0, "peak_acceleration")

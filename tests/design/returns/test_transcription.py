@@ -11,19 +11,10 @@ from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
+from camwright.design.returns.bernstein import ScaledMotion, gram, inner, piece_coefficients, power_basis, subdivision
 from camwright.design.returns.ipopt import programme
 from camwright.design.returns.scaling import ScaledProblem
-from camwright.design.returns.transcription import (
-    Arc,
-    Programme,
-    ScaledMotion,
-    Shape,
-    _gram,
-    _inner,
-    _power_basis,
-    piece_coefficients,
-    subdivision,
-)
+from camwright.design.returns.transcription import Arc, Programme, Shape
 
 FloatArray = NDArray[np.float64]
 QUIET = {"print_time": False, "ipopt.print_level": 0, "ipopt.sb": "yes"}
@@ -54,7 +45,7 @@ def test_power_basis_is_the_definition(degree: int) -> None:
         expected = np.zeros(degree + 1)
         found = bernstein(unit).coef
         expected[: len(found)] = found
-        assert np.abs(_power_basis(degree) @ unit - expected).max() <= 1e-12
+        assert np.abs(power_basis(degree) @ unit - expected).max() <= 1e-12
 
 
 @pytest.mark.parametrize("degree", range(5))
@@ -62,7 +53,7 @@ def test_gram_matrix_is_the_integrals(degree: int) -> None:
     for k in range(degree + 1):
         for m in range(degree + 1):
             product = (bernstein(np.eye(degree + 1)[k]) * bernstein(np.eye(degree + 1)[m])).integ()
-            assert _gram(degree)[k, m] == pytest.approx(product(1.0) - product(0.0), rel=1e-12)
+            assert gram(degree)[k, m] == pytest.approx(product(1.0) - product(0.0), rel=1e-12)
 
 
 @pytest.mark.parametrize("degree", range(5))
@@ -83,7 +74,7 @@ def test_subdivision_gives_the_same_polynomial_on_each_part(degree: int, parts: 
 @pytest.mark.parametrize("degree", range(1, 5))
 @pytest.mark.parametrize("parts", [1, 2, 8])
 def test_parts_that_meet_share_a_coefficient(degree: int, parts: int) -> None:
-    rows = _inner(degree, parts)
+    rows = inner(degree, parts)
     assert rows.shape == (parts * degree + 1, degree + 1)
     assert {tuple(row) for row in subdivision(degree, parts).round(12)} == {tuple(row) for row in rows.round(12)}
 
