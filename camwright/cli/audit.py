@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -11,7 +11,7 @@ from camwright.cli.options import Json, NoFigures, Out, Quiet, StoredTravel, Sto
 from camwright.cli.views.checks import checks_view
 from camwright.cli.views.files import files_view
 from camwright.cli.views.line_ramps import plc_words
-from camwright.cli.views.parts import new_table, new_text, stacked
+from camwright.cli.views.parts import View, new_table, new_text, stacked
 from camwright.drives.audit import MEASURES, Audit, audit, audit_answer
 from camwright.figures.audit import audit_figures
 from camwright.house.numbers import number
@@ -19,9 +19,6 @@ from camwright.house.output import Voice, complain
 from camwright.house.owned import owned
 from camwright.jobs.job import load_job
 from camwright.studies.line_ramps import line_ramps
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
 
 
 def run(
@@ -58,7 +55,7 @@ def run(
     return 0 if result.judgement.passed else 1
 
 
-def _view(result: Audit, file: Path, files: list[Path]) -> RenderableType:
+def _view(result: Audit, file: Path, files: list[Path]) -> View:
     """Show the cam beside the optimum of the same job, and its checks."""
     what = f"{file}: {result.target.title}, {result.table.points} points"
     table = new_table(what, ("", "this cam", "optimum", "saving"), left=("",))

@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import Annotated, Literal
 
 import typer
 
@@ -25,7 +25,7 @@ from camwright.bender.program_file import bend_outlines
 from camwright.bender.sending import End, Parity, SerialLine, send, transfer
 from camwright.bender.sheet import write_sheet
 from camwright.cli.options import Json, Quiet
-from camwright.cli.views.parts import new_table, new_text, stacked
+from camwright.cli.views.parts import View, new_table, new_text, stacked
 from camwright.house.files import is_device_name
 from camwright.house.language import Language
 from camwright.house.output import Voice, complain
@@ -34,10 +34,6 @@ from camwright.house.progress import Step
 from camwright.profiles.bender.bridges import BridgeRule
 from camwright.profiles.errors import InputError
 from camwright.profiles.notice import Notice
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
-
 
 _MOST_FIGURES = 20
 _MOST_ROWS = 40
@@ -267,7 +263,7 @@ def _calibrate(measurements: Path, bender: BenderJob, out: Path | None, voice: V
     return 0
 
 
-def _drawing_view(result: BentDrawing, files: Sequence[Path]) -> RenderableType:
+def _drawing_view(result: BentDrawing, files: Sequence[Path]) -> View:
     """Show the programs of a drawing, their checks, warnings and files."""
     heads = (
         "program",
@@ -316,7 +312,7 @@ def _drawing_view(result: BentDrawing, files: Sequence[Path]) -> RenderableType:
     return stacked(table, *notes)
 
 
-def _calibration_view(result: Calibration, files: Sequence[Path]) -> RenderableType:
+def _calibration_view(result: Calibration, files: Sequence[Path]) -> View:
     """Show the test bends with their residuals, and the files."""
     heads = ("row", "radius\nmm", "mould angle\n°", "measured\n°", "by the table\n°", "residual\n°")
     table = new_table(f"Test bends of {result.springback.name}", heads)

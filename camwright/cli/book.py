@@ -6,7 +6,7 @@ import contextlib
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -16,13 +16,10 @@ from camwright.book.run import BookAnswer, Told, make_book, nothing
 from camwright.book.workers import default_jobs, local_crew
 from camwright.cli.options import CommonPlace, GivenJob, Json, Quiet, TableTargets
 from camwright.cli.views.files import files_view
-from camwright.cli.views.parts import new_table, new_text, stacked
+from camwright.cli.views.parts import View, new_table, new_text, stacked
 from camwright.house.output import Voice, complain
 from camwright.jobs.job import load_job
 from camwright.production.common_place import placed_for
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
 
 
 def run(
@@ -82,7 +79,7 @@ def run(
     return answer.exit_code
 
 
-def _view(answer: BookAnswer) -> RenderableType:
+def _view(answer: BookAnswer) -> View:
     """Show how many combinations ended how, and where the book is."""
     counts, ends = answer.counts, ("passed", "a check failed", "infeasible", "solver failed")
     table = new_table(f"{answer.book.name}: a book of {counts.designs} designs", ends)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from camwright.cli.options import Json, Quiet
-from camwright.cli.views.parts import new_text, stacked
+from camwright.cli.views.parts import View, new_text, stacked
 from camwright.house.numbers import typed, with_unit
 from camwright.house.output import Voice
 from camwright.house.toml_file import MOST_BYTES
@@ -18,10 +18,6 @@ from camwright.jobs.job import Job, load_job, parse_job
 from camwright.jobs.machine_words import machine_words
 from camwright.jobs.numbers import job_numbers
 from camwright.profiles.errors import InputError
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
-
 
 _Checked = Annotated[Path, typer.Argument(metavar="JOB", help="Job file (TOML); - reads standard input.")]
 
@@ -45,7 +41,7 @@ def _typed() -> str:
         raise InputError(f"standard input: not UTF-8 text (byte {error.start})") from error
 
 
-def _view(job: Job) -> RenderableType:
+def _view(job: Job) -> View:
     """Show what a job file says."""
     cut, limits, unit, units = job.cut, job.limits, job.machine.slave_unit, job.units
     speed = with_unit(limits.speed, "m/s", units=units) if unit == "m" else typed(limits.speed, "rad/s", 5)

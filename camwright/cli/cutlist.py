@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -20,7 +20,7 @@ from camwright.cli.options import (
     option_quantity,
 )
 from camwright.cli.views.files import files_view
-from camwright.cli.views.parts import new_table, new_text, stacked
+from camwright.cli.views.parts import View, new_table, new_text, stacked
 from camwright.cli.views.seams import seams_view
 from camwright.drives.options import chosen_targets
 from camwright.figures.line_plan import line_plan_figure
@@ -33,9 +33,6 @@ from camwright.production.common_place import placed_alike
 from camwright.production.cut_list import ListStudy, line_of, study_list
 from camwright.production.list_answer import list_answer, list_files
 from camwright.production.list_file import read_cut_list
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
 
 _STEPS = 6
 _MOST_SHOWN = 12
@@ -104,7 +101,7 @@ def _written(study: ListStudy, directory: Path, work: Work, *, figures: bool) ->
     return files + [file for table in study.tables for file in table.write(directory, work, complain)]
 
 
-def _views(study: ListStudy) -> list[RenderableType]:
+def _views(study: ListStudy) -> list[View]:
     """Show cams, changes, time and seams."""
     planned = study.planned
     units = planned.job.units

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
@@ -28,7 +28,7 @@ from camwright.cli.views.checks import checks_view
 from camwright.cli.views.files import files_view
 from camwright.cli.views.lead import lead_view
 from camwright.cli.views.lengths import lengths_view
-from camwright.cli.views.parts import new_text, stacked
+from camwright.cli.views.parts import View, new_text, stacked
 from camwright.cli.views.profiles import profiles_view
 from camwright.cli.views.speed_band import band_view
 from camwright.figures.design import design_figures
@@ -43,10 +43,6 @@ from camwright.stored.save import design_files
 from camwright.studies.axis_study import AxisStudy
 from camwright.studies.design import STEPS, Design, optimise
 from camwright.studies.remedies import Bands, Remedy, family_of, family_words, remedies
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
-
 
 _BESIDE = 4
 """Steps of a design that is not brief: what it is compared with, files, ways out."""
@@ -99,7 +95,7 @@ def _compare(design: Design, step: Step) -> None:
     _ = design.lengths
 
 
-def _view(design: Design, ways: Sequence[Remedy], bands: Bands | None, files: Sequence[Path]) -> RenderableType:
+def _view(design: Design, ways: Sequence[Remedy], bands: Bands | None, files: Sequence[Path]) -> View:
     """Show a design: objective, comparison, checks, minimum cut lengths, files."""
     lengths = [] if design.lengths is None else [lengths_view(design.lengths, design.job.units)]
     return stacked(
@@ -116,7 +112,7 @@ def _view(design: Design, ways: Sequence[Remedy], bands: Bands | None, files: Se
     )
 
 
-def _brief_view(design: Design, files: Sequence[Path]) -> RenderableType:
+def _brief_view(design: Design, files: Sequence[Path]) -> View:
     """Show the cam and its proof: objective, checks, files, line speeds."""
     return stacked(
         new_text("\n".join(_head(design))),
@@ -128,7 +124,7 @@ def _brief_view(design: Design, files: Sequence[Path]) -> RenderableType:
     )
 
 
-def _ways(design: Design, ways: Sequence[Remedy], bands: Bands | None) -> list[RenderableType]:
+def _ways(design: Design, ways: Sequence[Remedy], bands: Bands | None) -> list[View]:
     """Show the changes with which the job passed, where it did not as it is, and the family that covers its line speeds."""
     if design.passed:
         return []
@@ -174,7 +170,7 @@ def _head(design: Design) -> list[str]:
     return [*lines, *machine.remarks(design.job.cut)]
 
 
-def _axis(design: Design) -> list[RenderableType]:
+def _axis(design: Design) -> list[View]:
     """Show what a servo-aware design promises of the axis, and the sync error over the servo's ranges."""
     lines = []
     axis, robust = design.axis, design.robust

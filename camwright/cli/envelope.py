@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from camwright.answers.measures import with_files
 from camwright.cli.options import GivenJob, Json, NoFigures, Out, Quiet, final_paths, job_work, output_directory
 from camwright.cli.views.files import files_view
-from camwright.cli.views.parts import new_table, stacked
+from camwright.cli.views.parts import View, new_table, stacked
 from camwright.figures.envelope import envelope_figure
 from camwright.house.files import fill
 from camwright.house.numbers import shown, unit_shown
@@ -17,9 +17,6 @@ from camwright.house.output import Voice, complain
 from camwright.house.owned import owned
 from camwright.jobs.job import load_job
 from camwright.studies.envelope import EnvelopeAnswer, envelope_answer
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
 
 
 def run(
@@ -49,7 +46,7 @@ def run(
     return 0
 
 
-def _view(answer: EnvelopeAnswer) -> RenderableType:
+def _view(answer: EnvelopeAnswer) -> View:
     """Show the highest line speed at each cut length."""
     units = answer.job.units
     heads = (f"cut length\n{unit_shown('m', units)}", "optimised", "in tolerance", "quintic", "linear", "binds")

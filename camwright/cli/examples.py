@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from camwright.cli.options import Json, Quiet
 from camwright.cli.views.files import files_view
-from camwright.cli.views.parts import new_table
+from camwright.cli.views.parts import View, new_table
 from camwright.house.files import write_files
 from camwright.house.output import Voice
 from camwright.jobs.examples import Example, example, examples
 from camwright.profiles.errors import InputError
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
 
 
 def run(
@@ -43,7 +40,7 @@ def run(
     return 0
 
 
-def _view(found: list[Example]) -> RenderableType:
+def _view(found: list[Example]) -> View:
     """Show the examples."""
     heads = ("name", "machine", "about")
     table = new_table("Example jobs: camwright examples NAME writes one here", heads, heads, show_lines=True)

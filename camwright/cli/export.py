@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from camwright.cli.options import Json, Quiet, option_quantity
-from camwright.cli.views.parts import new_table, new_text, stacked
+from camwright.cli.views.parts import View, new_table, new_text, stacked
 from camwright.cli.views.speed_tables import speed_tables_view
 from camwright.drives.export import export_answer
 from camwright.drives.options import chosen_targets, parse_targets
@@ -24,9 +24,6 @@ from camwright.jobs.table_units import parse_units
 from camwright.profiles.errors import InputError
 from camwright.profiles.tables.knots import Accuracy
 from camwright.stored.design_file import MOST_BYTES, StoredDesign, parse_design
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
 
 
 def run(
@@ -120,7 +117,7 @@ def _design(path: Path) -> StoredDesign:
     return parse_design(text, str(path))
 
 
-def _view(written: TableFiles, directory: Path) -> RenderableType:
+def _view(written: TableFiles, directory: Path) -> View:
     """Show each table as its drive runs it, what was refused, and what was set aside."""
     heads = ("target", "points", "position\num", "ratio\n1e-6", "acceleration\n%", "judgement", "files")
     table = new_table("Tables as the drives run them", heads, left=("target", "judgement", "files"))

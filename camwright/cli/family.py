@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from camwright.answers.measures import with_files
 from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, TableTargets, final_paths, job_work
 from camwright.cli.views.files import files_view
-from camwright.cli.views.parts import new_table, new_text, stacked
+from camwright.cli.views.parts import View, new_table, new_text, stacked
 from camwright.cli.views.seams import seams_view
 from camwright.drives.options import chosen_targets
 from camwright.figures.family import family_figure
@@ -30,9 +30,6 @@ from camwright.recipes.manifest import MANIFEST_FILE, manifest_text
 from camwright.recipes.model import Origin
 from camwright.studies.covering import FOUND_TO
 from camwright.studies.family_bands import OVERLAP
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
 
 _STEPS = 8
 _LEAST, _MOST = 0.01, 0.5
@@ -105,7 +102,7 @@ def write_family(found: Family, directory: Path, work: Work, language: Language,
     return files + [file for table in found.tables for file in table.write(directory, work, complain)]
 
 
-def _views(found: Family) -> list[RenderableType]:
+def _views(found: Family) -> list[View]:
     """Show cams, changes, seams, and what was proved of their number."""
     units = found.found.job.units
     speed, error = unit_shown("m/s", units), unit_shown("m", units)
@@ -140,7 +137,7 @@ def _count(found: Family) -> str:
     return f"{cams}{proved}, from {low} to {high}"
 
 
-def _switching_view(found: Family) -> RenderableType:
+def _switching_view(found: Family) -> View:
     """Show where the controller switches, and how."""
     units = found.found.job.units
     speed = unit_shown("m/s", units)

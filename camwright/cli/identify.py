@@ -5,13 +5,13 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from camwright.cli.options import Json, Quiet, TraceColumns, option_quantity
 from camwright.cli.views.files import files_view
-from camwright.cli.views.parts import new_table, new_text, stacked
+from camwright.cli.views.parts import View, new_table, new_text, stacked
 from camwright.house.files import read_bytes, require_plain, write_files
 from camwright.house.numbers import number
 from camwright.house.output import Voice
@@ -31,10 +31,6 @@ from camwright.studies.identification import (
     servo_text,
 )
 from camwright.validation.identify.identification import Identified
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
-
 
 _MOST_BYTES = 2**20
 
@@ -123,7 +119,7 @@ def _require_ours(out: Path) -> None:
         )
 
 
-def _view(path: Path, trace: Trace, found: Identified, files: Sequence[Path]) -> RenderableType:
+def _view(path: Path, trace: Trace, found: Identified, files: Sequence[Path]) -> View:
     """Show the servo, how well it is known, and how well it fits."""
     scale, unit = residual_unit(trace)
     heads = ("parameter", "value", "unit", "95 % confidence")

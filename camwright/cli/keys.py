@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from camwright.cli.options import Json, Quiet
-from camwright.cli.views.parts import new_table, new_text
+from camwright.cli.views.parts import View, new_table, new_text
 from camwright.house.output import Voice
 from camwright.jobs.keys import JobKey, find_keys, job_keys
 from camwright.profiles.errors import InputError
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
 
 
 def run(
@@ -34,7 +31,7 @@ def run(
     return 0
 
 
-def _view(keys: tuple[JobKey, ...]) -> RenderableType:
+def _view(keys: tuple[JobKey, ...]) -> View:
     """Show keys as a table."""
     heads = ("key", "takes", "default", "meaning", "used in")
     table = new_table(headings=heads, left=heads, show_lines=True)

@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from camwright.answers.limits import limits_answer
 from camwright.cli.options import GivenJob, Json, Quiet
 from camwright.cli.views.lengths import lengths_view
 from camwright.cli.views.line_ramps import line_ramps_view
-from camwright.cli.views.parts import new_table, stacked
+from camwright.cli.views.parts import View, new_table, stacked
 from camwright.house.numbers import Units, converted, unit_shown, with_unit
 from camwright.house.output import Voice
 from camwright.jobs.job import load_job
 from camwright.studies.axis_lengths import AxisLengths
 from camwright.studies.band_lengths import BandLengths
 from camwright.studies.limits import LIMITS_STEPS, MachineLimits, limits
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
 
 
 def run(job: GivenJob, as_json: Json = False, quiet: Quiet = False) -> int:
@@ -31,7 +26,7 @@ def run(job: GivenJob, as_json: Json = False, quiet: Quiet = False) -> int:
     return 0
 
 
-def _view(found: MachineLimits) -> RenderableType:
+def _view(found: MachineLimits) -> View:
     """Show how fast and how short a job can be done, and what binds."""
     job, far, lengths, axis = found.job, found.far, found.lengths, found.axis
     units = job.units
@@ -46,7 +41,7 @@ def _view(found: MachineLimits) -> RenderableType:
     for axis_name, reached in (("perfect", far), ("in tolerance", found.within)):
         length = with_unit(reached.min_cut_length, "m", 4, units) if reached.min_cut_length else "none works"
         table.add_row(short, axis_name, length, reached.cut_length_binding)
-    views: list[RenderableType] = [table]
+    views: list[View] = [table]
     if lengths is not None:
         views.append(lengths_view(lengths, units))
     if axis is not None:
@@ -56,7 +51,7 @@ def _view(found: MachineLimits) -> RenderableType:
     return stacked(*views)
 
 
-def _axis_view(lengths: AxisLengths, band: BandLengths | None, units: Units) -> RenderableType:
+def _axis_view(lengths: AxisLengths, band: BandLengths | None, units: Units) -> View:
     """Show how short a piece can be cut with the axis within the tolerance, the sync zone chosen best each time."""
     unit = unit_shown("m", units)
     heads = ["by", f"limits of the command\n{unit}", f"of the axis too\n{unit}"]

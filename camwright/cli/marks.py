@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import csv
 import io
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from camwright.answers.measures import millimetres
 from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, final_paths, job_work, option_quantity
 from camwright.cli.views.files import files_view
-from camwright.cli.views.parts import new_table, new_text, stacked
+from camwright.cli.views.parts import View, new_table, new_text, stacked
 from camwright.figures.print_marks import print_marks_figure
 from camwright.house.json_text import to_json
 from camwright.house.numbers import Units, number, unit_shown, with_unit
@@ -26,12 +27,6 @@ from camwright.production.marks import STEPS, ByMethod, Marks, marks
 from camwright.profiles.closed_forms.mark_loop import best_gain
 from camwright.profiles.errors import InputError
 from camwright.profiles.mark_range import MarkRange
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from rich.console import RenderableType
-
 
 MOST_DELAY = 1000
 """Most cuts by which an error may be known late."""
@@ -102,9 +97,7 @@ def _wander(noise: str | None, stretch: str | None) -> tuple[float, float] | Non
     return found
 
 
-def _view(
-    found: Marks, dead: DeadTime | None, wander: tuple[float, float] | None, files: Sequence[Path]
-) -> RenderableType:
+def _view(found: Marks, dead: DeadTime | None, wander: tuple[float, float] | None, files: Sequence[Path]) -> View:
     """Show the ranges at the job's line speed and below, the loop, and the dead time."""
     units = found.job.units
     here = new_table(

@@ -5,12 +5,12 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from camwright.cli.options import Json, Quiet
-from camwright.cli.views.parts import new_text
+from camwright.cli.views.parts import View, new_text
 from camwright.house.files import write_files
 from camwright.house.output import Voice
 from camwright.jobs.examples import Example, example, examples
@@ -20,10 +20,6 @@ from camwright.jobs.machine_tables import either_of
 from camwright.jobs.template import job_template, values_of
 from camwright.profiles.errors import InputError
 from camwright.profiles.machines import MACHINES
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
-
 
 _OPTIONS = {
     "name": "name",
@@ -206,7 +202,7 @@ def _answer(file: Path, base: Example, values: dict[str, Any], lent: dict[str, A
     return {"file": str(file), "name": values["name"], "machine": base.machine, "like": base.name, "lent": lent}
 
 
-def _view(file: Path, base: Example, lent: dict[str, Any]) -> RenderableType:
+def _view(file: Path, base: Example, lent: dict[str, Any]) -> View:
     """Say what was written, what the example lent, and what comes next."""
     taken = ", ".join(f"{place} = {written(value)}" for place, value in lent.items())
     return new_text(

@@ -4,19 +4,16 @@ from __future__ import annotations
 
 import hashlib
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from camwright.cli.options import Json, Quiet
 from camwright.cli.views.files import files_view
-from camwright.cli.views.parts import new_table, stacked
+from camwright.cli.views.parts import View, new_table, stacked
 from camwright.house.output import Voice, complain
 from camwright.house.owned import Work, write_owned
 from camwright.studies.quick import QuickAnswer, quick_answer, quick_cam_text, read_cross_cut
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
 
 
 def run(
@@ -53,7 +50,7 @@ def run(
     return 0
 
 
-def _view(answer: QuickAnswer) -> RenderableType:
+def _view(answer: QuickAnswer) -> View:
     """Show what the cam is like."""
     table = new_table("Cross-cutter, quintic cam", show_header=False)
     for row in answer.rows():

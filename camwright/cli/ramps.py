@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, cast, get_args
+from typing import Annotated, Any, cast, get_args
 
 import typer
 
@@ -12,7 +13,7 @@ from camwright.answers.measures import checks_answer, millimetres
 from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, final_paths, job_work, option_quantity
 from camwright.cli.views.checks import checks_view
 from camwright.cli.views.files import files_view
-from camwright.cli.views.parts import new_table, new_text, stacked
+from camwright.cli.views.parts import View, new_table, new_text, stacked
 from camwright.drives.export import export_answer
 from camwright.drives.options import chosen_targets, parse_targets
 from camwright.drives.withheld import copy_aside, remove
@@ -30,11 +31,6 @@ from camwright.production.ramp_tables import KINDS, RampTables, tables_answer, w
 from camwright.production.ramps import LATENCY, STEPS, Ramps, ramps
 from camwright.profiles.errors import InputError
 from camwright.profiles.ramp import Aim, Ramp
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from rich.console import RenderableType
 
 
 def run(
@@ -131,7 +127,7 @@ def _profiles(found: Ramps) -> dict[str, object]:
     }
 
 
-def _view(found: Ramps, tables: RampTables, files: Sequence[Path]) -> RenderableType:
+def _view(found: Ramps, tables: RampTables, files: Sequence[Path]) -> View:
     """Show start and stop, what they ask of the line, checks and tables."""
     job, units = found.job, found.job.units
     slave = job.machine.slave_unit
@@ -202,7 +198,7 @@ def _facts(found: Ramps) -> list[str]:
     return lines
 
 
-def _tables_view(tables: RampTables) -> RenderableType:
+def _tables_view(tables: RampTables) -> View:
     """Show each table as its drive runs it."""
     heads = ("motion", "target", "points", "position\num", "judgement", "files")
     table = new_table("Tables as the drives run them", heads, left=("motion", "target", "judgement", "files"))

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from camwright.cli.options import Json, Quiet
-from camwright.cli.views.parts import new_table, new_text, stacked
+from camwright.cli.views.parts import View, new_table, new_text, stacked
 from camwright.house.files import read_text, require_replaceable
 from camwright.house.language import Language
 from camwright.house.numbers import Units, number, with_unit
@@ -25,10 +25,6 @@ from camwright.recipes.model import Particulars, Recipe, RecipeCheck
 from camwright.recipes.signature import SIGNATURE_FILE, require_private_key, signed
 from camwright.recipes.write import WRITE_STEPS, is_recipe, recipe_files, write_folder
 from camwright.stored.design_file import MOST_BYTES, StoredDesign, parse_design
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
-
 
 _LONGEST_NOTE = 2000
 _LONGEST_PARTICULAR = 100
@@ -185,7 +181,7 @@ def _compare(before: Path, after: Path, voice: Voice) -> int:
     return 0
 
 
-def _recipe_view(recipe: Recipe, answer: dict[str, Any], out: Path, units: Units, further: str) -> RenderableType:
+def _recipe_view(recipe: Recipe, answer: dict[str, Any], out: Path, units: Units, further: str) -> View:
     """Show whether the cam is released and what failed, then the files."""
     heads = ("file", f"SHA-256, first {SHORT} digits")
     table = new_table(str(out), heads, heads)
@@ -212,7 +208,7 @@ def _told(check: RecipeCheck, units: Units) -> str:
     return f"{check.name} {value} (limit {limit})"
 
 
-def _compare_view(before: Path, after: Path, changes: list[Change]) -> RenderableType:
+def _compare_view(before: Path, after: Path, changes: list[Change]) -> View:
     if not changes:
         return new_text(f"nothing changes from {before} to {after}")
     heads = ("", "what", "unit")

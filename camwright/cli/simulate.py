@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import numpy as np
 import typer
@@ -11,7 +11,7 @@ import typer
 from camwright.answers.measures import with_files
 from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, final_paths, job_work, option_quantity
 from camwright.cli.views.files import files_view
-from camwright.cli.views.parts import new_table, new_text, stacked
+from camwright.cli.views.parts import View, new_table, new_text, stacked
 from camwright.figures.shift import shift_figure
 from camwright.figures.style import title
 from camwright.house.numbers import number, unit_shown
@@ -24,10 +24,6 @@ from camwright.production.list_file import read_cut_list, read_line_run
 from camwright.production.simulation import MOTIONS, Disturbances, MotionRuns, ShiftStudy, simulate_shift
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import FloatArray
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
-
 
 _STEPS = 6
 _MOST_SLIP = 0.1
@@ -127,7 +123,7 @@ def _length(option: str, text: str | None) -> float:
     return 0.0 if text is None else option_quantity(option, text, "length", zero=True, example="0.5 mm")
 
 
-def _views(study: ShiftStudy) -> list[RenderableType]:
+def _views(study: ShiftStudy) -> list[View]:
     """Show lengths and sync errors of both motions."""
     job = study.planned.job
     factor, unit = job.units.shown["m"].factor, unit_shown("m", job.units)

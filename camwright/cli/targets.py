@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import typer
 
 from camwright.cli.options import Json, Quiet
-from camwright.cli.views.parts import new_table
+from camwright.cli.views.parts import View, new_table
 from camwright.drives.export import targets_answer
 from camwright.house.output import Voice
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
 
 
 def run(as_json: Json = False, quiet: Quiet = False) -> int:
@@ -26,7 +23,7 @@ def run(as_json: Json = False, quiet: Quiet = False) -> int:
     return 0
 
 
-def _view(answer: list[dict[str, Any]]) -> RenderableType:
+def _view(answer: list[dict[str, Any]]) -> View:
     """Show the targets."""
     heads = ("name", "what", "interpolation", "points", "numbers", "evidence")
     left = [head for head in heads if head != "points"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -22,7 +22,7 @@ from camwright.cli.options import (
 )
 from camwright.cli.views.checks import checks_view
 from camwright.cli.views.files import files_view
-from camwright.cli.views.parts import new_table, new_text, stacked
+from camwright.cli.views.parts import View, new_table, new_text, stacked
 from camwright.figures.trace import trace_figure
 from camwright.house.numbers import Units, number, shown, unit_shown
 from camwright.house.output import Voice, complain
@@ -35,9 +35,6 @@ from camwright.profiles.polynomial.profile import CamProfile
 from camwright.stored.profile_files import read_cycle
 from camwright.studies.design import optimise
 from camwright.studies.recording import RecordedRun, recorded_run
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
 
 _MOST_SHOWN = 12
 """Cuts that are listed; of more, the first and the last."""
@@ -110,7 +107,7 @@ def _cam(job: Job, design: Path | None) -> tuple[Job, CamProfile]:
     return replace(job, machine=machine), profile
 
 
-def _view(found: RecordedRun, path: Path, files: list[Path]) -> RenderableType:
+def _view(found: RecordedRun, path: Path, files: list[Path]) -> View:
     """Show the cuts, the kinds of error, what they point to, and the verdict."""
     units = found.job.units
     causes = [new_text(f"- {cause}") for cause in found.causes] or [new_text("- no error worth a word")]
@@ -130,7 +127,7 @@ def _view(found: RecordedRun, path: Path, files: list[Path]) -> RenderableType:
     )
 
 
-def _cuts(found: RecordedRun, units: Units) -> RenderableType:
+def _cuts(found: RecordedRun, units: Units) -> View:
     """List the cuts."""
     length, factor = unit_shown("m", units), units.shown["m"].factor
     heads = (
@@ -158,7 +155,7 @@ def _cuts(found: RecordedRun, units: Units) -> RenderableType:
     return table
 
 
-def _kinds(found: RecordedRun, units: Units) -> RenderableType:
+def _kinds(found: RecordedRun, units: Units) -> View:
     """Show offset, drift and scatter of all, of the command and of the axis, beside what the job's servo would do."""
     length, factor = unit_shown("m", units), units.shown["m"].factor
     heads = ("", "offset", "drift a cut", "95 %", "scatter (σ)", "range")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
@@ -17,7 +17,7 @@ from camwright.cli.options import Json, JudgedBy, Quiet, StoredTravel, StoredUni
 from camwright.cli.views.checks import checks_view
 from camwright.cli.views.lead import lead_view
 from camwright.cli.views.line_ramps import plc_words
-from camwright.cli.views.parts import new_text, stacked
+from camwright.cli.views.parts import View, new_text, stacked
 from camwright.cli.views.speed_band import band_view
 from camwright.house.output import Voice
 from camwright.jobs.job import Job, load_job
@@ -25,9 +25,6 @@ from camwright.stored.judge import Judged, validate_file
 from camwright.studies.line_ramps import LineRamps, line_ramps
 from camwright.studies.speed_band import SpeedBand, failed_checks, failed_words, job_band
 from camwright.validation.report import ValidationReport
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
 
 
 def run(
@@ -56,7 +53,7 @@ def run(
     return 1 if failed_checks(found.report, band, found.job.cut.line_speed) else 0
 
 
-def _view(found: Judged, band: SpeedBand, ramps: LineRamps, file: Path) -> RenderableType:
+def _view(found: Judged, band: SpeedBand, ramps: LineRamps, file: Path) -> View:
     """Show the checks on a file, its line speeds and the verdict."""
     job, report = found.job, found.report
     verdict = failed_words(failed_checks(report, band, job.cut.line_speed))

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from camwright.cli.options import Json, Quiet
-from camwright.cli.views.parts import new_table, new_text, stacked
+from camwright.cli.views.parts import View, new_table, new_text, stacked
 from camwright.house.output import Voice
 from camwright.recipes.family_verify import is_family
 from camwright.recipes.verify import Verified, examine, verify_answer
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
 
 
 def run(
@@ -35,7 +32,7 @@ def run(
     return 1 if found.faults else 0
 
 
-def _view(directory: Path, found: Verified) -> RenderableType:
+def _view(directory: Path, found: Verified) -> View:
     notes = [new_text(f"Note: {note.file}: {note.what}") for note in found.notes]
     if not found.faults:
         promised = "sheet says what its cams do" if is_family(directory) else "tables are the motion that it promises"

@@ -3,16 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
-from camwright.cli.views.parts import fitting, new_table, new_text, stacked
+from camwright.cli.views.parts import View, fitting, new_table, new_text, stacked
 from camwright.cli.views.whole_table import WholeTable
 from camwright.house.numbers import Units, number, with_unit
 from camwright.validation.check import Check
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
-
 
 _ALLOWED, _SLIGHT = "*", 2e-3
 """Mark of a value beyond its limit that passed, and the share of the limit that is so marked."""
@@ -21,7 +16,7 @@ _WIDE = 110
 """Columns of a terminal from which the source of each check has room beside it."""
 
 
-def checks_view(checks: Sequence[Check], units: Units) -> RenderableType:
+def checks_view(checks: Sequence[Check], units: Units) -> View:
     """Show checks with values, limits and the master position of the worst value; the sources only where there is room."""
     table = fitting(_table(checks, units, sources=True), _table(checks, units, sources=False), _WIDE)
     if not any(_allowed(check) for check in checks):

@@ -4,14 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from camwright.cli.views.parts import new_text
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
+from camwright.cli.views.parts import View, new_text
 
 
-def files_view(files: Sequence[Path]) -> RenderableType:
+def files_view(files: Sequence[Path]) -> View:
     """Show the files that were written, one a line."""
     return new_text("\n".join(f"wrote {file}" for file in files))

@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
-from camwright.cli.views.parts import new_table
+from camwright.cli.views.parts import View, new_table
 from camwright.house.numbers import number, with_unit
 from camwright.jobs.job import Job
 from camwright.profiles.servo import mean_lag
 from camwright.validation.servo.lead import LengthError
 
-if TYPE_CHECKING:
-    from rich.console import RenderableType
 
-
-def lead_view(job: Job, errors: Sequence[LengthError]) -> RenderableType:
+def lead_view(job: Job, errors: Sequence[LengthError]) -> View:
     """Show the lead time that makes up for the mean lag, and where the cut falls at shares of the line speed."""
     servo = job.servo
     speed, length = job.units.shown["m/s"], job.units.shown["m"]

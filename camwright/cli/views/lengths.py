@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from camwright.cli.views.parts import new_table
+from camwright.cli.views.parts import View, new_table
 from camwright.house.numbers import Units, shown, unit_shown
 from camwright.studies.cut_lengths import CutLengths
 
-if TYPE_CHECKING:
-    from rich.console import RenderableType
 
-
-def lengths_view(lengths: CutLengths, units: Units) -> RenderableType:
+def lengths_view(lengths: CutLengths, units: Units) -> View:
     """Show minimum cut lengths and what binds them."""
     unit = unit_shown("m", units)
     table = new_table("Minimum cut length", ("by", unit, f"transition\n{unit}", "binds"), left=("by", "binds"))

@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
-from camwright.cli.views.parts import new_table, new_text, stacked
+from camwright.cli.views.parts import View, new_table, new_text, stacked
 from camwright.house.numbers import Units, converted, inside, number, unit_shown, with_unit
 from camwright.studies.line_ramps import LEAST_RAMP, LineRamps
 from camwright.validation.production.line_ramp import Allowed
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
 
 _EVERY = 5
 """Of the curve's line speeds each of this number is shown."""
 
 
-def line_ramps_view(found: LineRamps) -> RenderableType:
+def line_ramps_view(found: LineRamps) -> View:
     """Show what the line may do at some speeds, and the two numbers for the PLC."""
     units = found.job.units
     speed, ramp = unit_shown("m/s", units), unit_shown("m/s^2", units)

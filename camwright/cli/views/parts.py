@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from camwright.cli.views.whole_table import WholeTable
 
 if TYPE_CHECKING:
     from rich.console import Console, ConsoleOptions, Group, RenderableType
     from rich.text import Text
+
+View: TypeAlias = "RenderableType"
+"""What a command shows."""
 
 
 def new_table(
@@ -40,7 +43,7 @@ def new_text(text: str = "", style: str = "") -> Text:
     return Text(text, style)
 
 
-def stacked(*views: RenderableType) -> Group:
+def stacked(*views: View) -> Group:
     """Put views one below the other."""
     from rich.console import Group
 
@@ -52,13 +55,13 @@ class _Fitting:
     """A view that is chosen when it is known how wide the terminal is."""
 
     wide: WholeTable
-    narrow: RenderableType
+    narrow: View
     least: int
 
-    def __rich_console__(self, console: Console, options: ConsoleOptions) -> Iterator[RenderableType]:
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> Iterator[View]:
         yield self.wide if options.max_width >= max(self.least, self.wide.least) else self.narrow
 
 
-def fitting(wide: WholeTable, narrow: RenderableType, least: int) -> RenderableType:
+def fitting(wide: WholeTable, narrow: View, least: int) -> View:
     """Take the wide table on a terminal of so many columns at least, if it stands there undivided; else the narrow view."""
     return _Fitting(wide, narrow, least)

@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
-from camwright.cli.views.parts import fitting, new_table, new_text, stacked
+from camwright.cli.views.parts import View, fitting, new_table, new_text, stacked
 from camwright.cli.views.whole_table import WholeTable
 from camwright.house.numbers import Shown, number, shown, unit_shown, with_unit
 from camwright.jobs.job import Job
 from camwright.profiles.objective import OBJECTIVES
 from camwright.studies.comparison import Comparison
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
-
 
 _WIDE = 130
 """Columns of a terminal from which all measures stand in one table."""
@@ -25,7 +20,7 @@ _MOST = 4
 _BROKEN, _BEYOND = "†", "‡"
 
 
-def profiles_view(comparison: Comparison) -> RenderableType:
+def profiles_view(comparison: Comparison) -> View:
     """Show profiles side by side by the job's objective, what breaks a limit marked and last; on a narrow terminal in several tables."""
     groups = [_motion(comparison), _motor(comparison), _servo(comparison)]
     wide = _table(comparison, [column for group in groups for column in group])

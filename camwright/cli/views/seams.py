@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
-from camwright.cli.views.parts import new_table, new_text
+from camwright.cli.views.parts import View, new_table, new_text
 from camwright.house.numbers import Units, converted, number, unit_shown
 from camwright.production.tables import TargetSeams
 
-if TYPE_CHECKING:
-    from rich.console import RenderableType
 
-
-def seams_view(tables: Sequence[TargetSeams], units: Units) -> RenderableType:
+def seams_view(tables: Sequence[TargetSeams], units: Units) -> View:
     """Show what was found at the seams of each target's tables."""
     speed, acceleration = (unit_shown(unit, units) for unit in ("m/s", "m/s^2"))
     seams = new_table(

@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from camwright.cli.views.parts import new_text
+from camwright.cli.views.parts import View, new_text
 from camwright.house.numbers import Units, converted, inside, number, unit_shown, with_unit
 from camwright.studies.speed_band import NO_END, SpeedBand
 
-if TYPE_CHECKING:
-    from rich.console import RenderableType
 
-
-def band_view(band: SpeedBand, units: Units) -> RenderableType:
+def band_view(band: SpeedBand, units: Units) -> View:
     """Say at which line speeds a cam passes every check, and what ends them."""
     return new_text(band_words(band, units))
 

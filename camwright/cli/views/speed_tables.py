@@ -4,20 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from camwright.cli.views.files import files_view
-from camwright.cli.views.parts import new_table, new_text, stacked
+from camwright.cli.views.parts import View, new_table, new_text, stacked
 from camwright.drives.speed_tables import SpeedTables
 from camwright.house.numbers import Units, shown, with_unit
 
-if TYPE_CHECKING:
-    from rich.console import RenderableType
 
-
-def speed_tables_view(found: Sequence[SpeedTables], files: Sequence[Path], units: Units) -> RenderableType:
+def speed_tables_view(found: Sequence[SpeedTables], files: Sequence[Path], units: Units) -> View:
     """Show the sync error by line speed, of the sum and of the position table alone."""
-    parts: list[RenderableType] = []
+    parts: list[View] = []
     speed, length = units.shown["m/s"], units.shown["m"]
     for each in found:
         errors = (f"{what}\n{length.printed}" for what in ("sync error", "position table alone"))

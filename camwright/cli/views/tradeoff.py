@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from camwright.cli.views.parts import new_table, new_text, stacked
+from camwright.cli.views.parts import View, new_table, new_text, stacked
 from camwright.house.numbers import number
 from camwright.studies.tradeoff import TradeOff, words
 
-if TYPE_CHECKING:
-    from rich.console import RenderableType
 
-
-def tradeoff_view(result: TradeOff) -> RenderableType:
+def tradeoff_view(result: TradeOff) -> View:
     """Show all profiles, each measure with its multiple of the best."""
     heads = ["minimised, or law"]
     for name in result.measures:
