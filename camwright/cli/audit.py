@@ -7,16 +7,15 @@ from typing import Annotated
 
 import typer
 
-from camwright.cli.options import Json, NoFigures, Out, Quiet, StoredTravel, StoredUnits, job_work, output_directory
+from camwright.cli.options import Json, NoFigures, Out, Quiet, StoredTravel, StoredUnits, destination
 from camwright.cli.views.checks import checks_view
 from camwright.cli.views.files import files_view
 from camwright.cli.views.line_ramps import plc_words
 from camwright.cli.views.parts import View, new_table, new_text, stacked
 from camwright.drives.audit import MEASURES, Audit, audit, audit_answer
-from camwright.figures.audit import audit_figures
+from camwright.figures.audit import audit_figure
 from camwright.house.numbers import number
-from camwright.house.output import Voice, complain
-from camwright.house.owned import owned
+from camwright.house.output import Voice
 from camwright.jobs.job import load_job
 from camwright.studies.line_ramps import line_ramps
 
@@ -48,9 +47,7 @@ def run(
         result = audit(file, asked, target, units, travel, slopes, step)
         if not no_figures:
             step("writing files")
-            directory = output_directory(out, asked)
-            with owned(directory, job_work("audit", asked, job, out), complain) as aside:
-                files = [directory / figure.name for figure in audit_figures(result, aside)]
+            files = destination("audit", asked, job, out).draw({"audit": audit_figure(result)})
     voice.answer(lambda: audit_answer(result, file, files), lambda: _view(result, file, files))
     return 0 if result.judgement.passed else 1
 

@@ -14,7 +14,7 @@ from camwright.book.cluster import cluster_crew
 from camwright.book.plan import plan_book
 from camwright.book.run import BookAnswer, Told, make_book, nothing
 from camwright.book.workers import default_jobs, local_crew
-from camwright.cli.options import CommonPlace, GivenJob, Json, Quiet, TableTargets
+from camwright.cli.options import CommonPlace, GivenJob, Json, Quiet, TableTargets, out_folder
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import View, new_table, new_text, stacked
 from camwright.house.output import Voice, complain
@@ -51,9 +51,7 @@ def run(
     cluster: Annotated[
         str | None, typer.Option("--cluster", metavar="ADDRESS", help="Scheduler of a Dask cluster, tcp://host:8786.")
     ] = None,
-    out: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="Output directory; out/<name>-book if left out.")
-    ] = None,
+    out: Annotated[Path | None, out_folder("-book")] = None,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> int:

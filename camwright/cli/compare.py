@@ -9,15 +9,14 @@ from typing import Annotated, Any
 import typer
 
 from camwright.answers.measures import profiles_answer
-from camwright.cli.options import GivenJob, Json, NoFigures, Out, Quiet, final_paths, job_work, output_directory
+from camwright.cli.options import Destination, GivenJob, Json, NoFigures, Out, Quiet, destination
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import stacked
 from camwright.cli.views.profiles import profiles_view
 from camwright.cli.views.tradeoff import tradeoff_view
-from camwright.figures.comparison import comparison_figure
-from camwright.figures.tradeoff import tradeoff_figures
-from camwright.house.output import Voice, complain
-from camwright.house.owned import Work, owned
+from camwright.figures.comparison import bars_figure
+from camwright.figures.tradeoff import tradeoff_figure
+from camwright.house.output import Voice
 from camwright.jobs.job import Job, load_job
 from camwright.profiles.errors import InputError
 from camwright.studies.comparison import Comparison, compare, law_names, require_laws, with_screw
@@ -49,13 +48,8 @@ def run(
             raise InputError(
                 f"--objectives compares all laws of one machine; leave out {'--with' if laws else '--screw'}"
             )
-        return compare_objectives(
-            asked,
-            output_directory(out, asked),
-            job_work("compare --objectives", asked, job, out),
-            figures=not no_figures,
-            voice=Voice(as_json, quiet),
-        )
+        place = None if no_figures else destination("compare --objectives", asked, job, out)
+        return compare_objectives(asked, place, Voice(as_json, quiet))
     names = tuple(dict.fromkeys(laws)) if laws else law_names(asked.task)
     require_laws(names, asked.task)
     if screw:
@@ -70,26 +64,19 @@ def run(
             result = with_screw(result)
         if not no_figures:
             step("writing files")
-            directory = output_directory(out, asked)
-            with owned(directory, job_work("compare", asked, job, out), complain) as aside:
-                comparison_figure(result, aside)
-                files = final_paths(aside, directory)
+            files = destination("compare", asked, job, out).write({}, {"comparison": bars_figure(result)})
 
     voice.answer(lambda: compare_answer(result, files), lambda: stacked(profiles_view(result), files_view(files)))
     return 0
 
 
-def compare_objectives(asked: Job, directory: Path, work: Work, *, figures: bool, voice: Voice) -> int:
+def compare_objectives(asked: Job, place: Destination | None, voice: Voice) -> int:
     """Solve a job for every objective, print the trade-off, and draw it.
 
     Parameters
     ----------
-    directory
-        Where the figure goes: ``tradeoff.svg`` and ``tradeoff.png``.
-    work
-        What these are made of.
-    figures
-        Whether to draw it.
+    place
+        Where the figure goes, ``tradeoff.svg`` and ``tradeoff.png``; ``None`` for none.
     voice
         How to answer.
 
@@ -101,10 +88,9 @@ def compare_objectives(asked: Job, directory: Path, work: Work, *, figures: bool
     files: list[Path] = []
     with voice.progress(step_count(asked) + 1) as step:
         result = trade_off(asked, step)
-        if figures:
+        if place is not None:
             step("writing files")
-            with owned(directory, work, complain) as aside:
-                files = [directory / file.name for file in sorted(tradeoff_figures(result, aside))]
+            files = place.write({}, {"tradeoff": tradeoff_figure(result)})
 
     voice.answer(lambda: tradeoff_answer(result, files), lambda: stacked(tradeoff_view(result), files_view(files)))
     return 0

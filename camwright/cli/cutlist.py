@@ -15,19 +15,17 @@ from camwright.cli.options import (
     NoFigures,
     Quiet,
     TableTargets,
-    final_paths,
-    job_work,
+    destination,
     option_quantity,
+    out_folder,
 )
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import View, new_table, new_text, stacked
 from camwright.cli.views.seams import seams_view
 from camwright.drives.options import chosen_targets
 from camwright.figures.line_plan import line_plan_figure
-from camwright.house.files import fill
 from camwright.house.numbers import number, shown, unit_shown, with_unit
 from camwright.house.output import Voice, complain
-from camwright.house.owned import Work, owned
 from camwright.jobs.job import load_job
 from camwright.production.common_place import placed_alike
 from camwright.production.cut_list import ListStudy, line_of, study_list
@@ -60,9 +58,7 @@ def run(
         ),
     ] = None,
     common_place: CommonPlace = False,
-    out: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="Output directory; out/<name>-cutlist if left out.")
-    ] = None,
+    out: Annotated[Path | None, out_folder("-cutlist")] = None,
     no_figures: NoFigures = False,
     as_json: Json = False,
     quiet: Quiet = False,
@@ -79,8 +75,9 @@ def run(
     voice = Voice(as_json, quiet)
     with voice.progress(_STEPS) as step:
         study = study_list(asked if place is None else place.job, rows, chosen_targets(targets, given), step)
-    directory = Path("out") / f"{given.name}-cutlist" if out is None else out
-    files = _written(study, directory, job_work("cutlist", given, job, out), figures=not no_figures)
+    place_out = destination("cutlist", given, job, out, "-cutlist")
+    files = place_out.write(list_files(study), {} if no_figures else {"line-plan": line_plan_figure(study)})
+    files += [file for table in study.tables for file in table.write(place_out.directory, place_out.work, complain)]
 
     common = {} if place is None else {"common_place": place.answer()}
     said = [] if place is None else [new_text(place.words())]
@@ -89,16 +86,6 @@ def run(
         lambda: stacked(*_views(study), *said, files_view(files)),
     )
     return 0 if study.passed else 1
-
-
-def _written(study: ListStudy, directory: Path, work: Work, *, figures: bool) -> list[Path]:
-    """Write the tables of each target into a folder of its own, and beside them what the controller needs to run the list."""
-    with owned(directory, work, complain) as aside:
-        fill(aside, list_files(study))
-        if figures:
-            line_plan_figure(study, aside)
-        files = final_paths(aside, directory)
-    return files + [file for table in study.tables for file in table.write(directory, work, complain)]
 
 
 def _views(study: ListStudy) -> list[View]:

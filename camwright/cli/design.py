@@ -23,7 +23,7 @@ from camwright.answers.measures import (
     objective_unit,
     profiles_answer,
 )
-from camwright.cli.options import JobOrPaper, Json, NoFigures, Out, Quiet, final_paths, job_work, output_directory
+from camwright.cli.options import JobOrPaper, Json, NoFigures, Out, Quiet, destination
 from camwright.cli.views.checks import checks_view
 from camwright.cli.views.files import files_view
 from camwright.cli.views.lead import lead_view
@@ -32,10 +32,8 @@ from camwright.cli.views.parts import View, new_text, stacked
 from camwright.cli.views.profiles import profiles_view
 from camwright.cli.views.speed_band import band_view
 from camwright.figures.design import design_figures
-from camwright.house.files import fill
 from camwright.house.numbers import number, with_unit
 from camwright.house.output import Voice, complain
-from camwright.house.owned import owned
 from camwright.house.progress import Step
 from camwright.jobs.job import load_job
 from camwright.stored.profile_files import rows_note
@@ -60,7 +58,6 @@ def run(
 ) -> int:
     """Design the optimal cam of a job; write the design, the cam table and the figures."""
     asked = load_job(job)
-    directory = output_directory(out, asked)
     voice = Voice(as_json, quiet)
     with voice.progress(STEPS + (1 if brief else _BESIDE)) as step:
         result = optimise(asked, step)
@@ -68,11 +65,8 @@ def run(
             _compare(result, step)
         texts = design_files(result)
         step("writing files")
-        with owned(directory, job_work("design", asked, job, out), complain) as aside:
-            fill(aside, texts)
-            if not no_figures and not brief:
-                design_figures(result, aside)
-            files = final_paths(aside, directory)
+        pictures = {} if no_figures or brief else design_figures(result)
+        files = destination("design", asked, job, out).write(texts, pictures)
         if note := rows_note(result.profile, result.job):
             complain(f"camwright: {note}")
         if not brief:

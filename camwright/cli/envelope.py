@@ -7,14 +7,12 @@ from typing import Annotated
 import typer
 
 from camwright.answers.measures import with_files
-from camwright.cli.options import GivenJob, Json, NoFigures, Out, Quiet, final_paths, job_work, output_directory
+from camwright.cli.options import GivenJob, Json, NoFigures, Out, Quiet, destination
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import View, new_table, stacked
 from camwright.figures.envelope import envelope_figure
-from camwright.house.files import fill
 from camwright.house.numbers import shown, unit_shown
-from camwright.house.output import Voice, complain
-from camwright.house.owned import owned
+from camwright.house.output import Voice
 from camwright.jobs.job import load_job
 from camwright.studies.envelope import EnvelopeAnswer, envelope_answer
 
@@ -31,17 +29,11 @@ def run(
 ) -> int:
     """Map which cut lengths and line speeds are possible, with which return, and what binds."""
     asked = load_job(job)
-    directory = output_directory(out, asked)
     voice = Voice(as_json, quiet)
     with voice.progress((points + 2) * (points + 1) + 1) as step:
         answer = envelope_answer(asked, points, step)
-    texts = answer.files()
-    with owned(directory, job_work("envelope", asked, job, out), complain) as aside:
-        fill(aside, texts)
-        if not no_figures:
-            envelope_figure(answer, aside)
-        files = final_paths(aside, directory)
-
+    pictures = {} if no_figures else {"envelope": envelope_figure(answer)}
+    files = destination("envelope", asked, job, out).write(answer.files(), pictures)
     voice.answer(lambda: with_files(answer.to_dict(), files), lambda: stacked(_view(answer), files_view(files)))
     return 0
 

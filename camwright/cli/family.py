@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from camwright.answers.measures import with_files
-from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, TableTargets, final_paths, job_work
+from camwright.cli.options import Destination, GivenJob, Json, NoFigures, Quiet, TableTargets, destination, out_folder
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import View, new_table, new_text, stacked
 from camwright.cli.views.seams import seams_view
@@ -19,7 +19,7 @@ from camwright.house.json_text import to_json
 from camwright.house.language import Language
 from camwright.house.numbers import shown, unit_shown, with_unit
 from camwright.house.output import Voice, complain
-from camwright.house.owned import Work, owned
+from camwright.house.owned import owned
 from camwright.house.picture_files import write_pictures
 from camwright.jobs.job import load_job
 from camwright.production.family import Family, family
@@ -51,9 +51,7 @@ def run(
         ),
     ] = f"{100 * OVERLAP:g} %",
     targets: TableTargets = None,
-    out: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="Output directory; out/<name>-family if left out.")
-    ] = None,
+    out: Annotated[Path | None, out_folder("-family")] = None,
     language: Annotated[Language, typer.Option("--language", help="Language of the sheet.")] = "en",
     no_figures: NoFigures = False,
     as_json: Json = False,
@@ -66,8 +64,7 @@ def run(
     voice = Voice(as_json, quiet)
     with voice.progress(_STEPS) as step:
         found = family(asked, names, share, step)
-    directory = Path("out") / f"{asked.name}-family" if out is None else out
-    files = write_family(found, directory, job_work("family", asked, job, out), language, figures=not no_figures)
+    files = write_family(found, destination("family", asked, job, out, "-family"), language, figures=not no_figures)
 
     voice.answer(lambda: with_files(family_answer(found), files), lambda: stacked(*_views(found), files_view(files)))
     return 0 if found.passed else 1
@@ -85,7 +82,7 @@ def _share(text: str) -> float:
     return share
 
 
-def write_family(found: Family, directory: Path, work: Work, language: Language, *, figures: bool) -> list[Path]:
+def write_family(found: Family, place: Destination, language: Language, *, figures: bool) -> list[Path]:
     """Write the sheet and the controller's files, and the tables of each target into a folder of its own."""
     record = family_record(found, language)
     data = {name: text.encode() for name, text in {**family_files(found), FAMILY_FILE: to_json(record)}.items()}
@@ -93,13 +90,13 @@ def write_family(found: Family, directory: Path, work: Work, language: Language,
     tables = {f"{table.name}/{name}": text.encode() for table in found.tables for name, text in table.files.items()}
     libraries = record["provenance"]["libraries"]
     origin = Origin(record["provenance"]["camwright"], record["provenance"]["job_sha256"], libraries)
-    with owned(directory, work, complain) as aside:
+    with owned(place.directory, place.work, complain) as aside:
         fill(aside, data)
         drawn = write_pictures({"family": family_figure(found)}, aside) if figures else []
         listed = {**data, **tables, **{file.name: file.read_bytes() for file in drawn}}
         (aside / MANIFEST_FILE).write_text(manifest_text(listed, origin), encoding="utf-8")
-        files = final_paths(aside, directory)
-    return files + [file for table in found.tables for file in table.write(directory, work, complain)]
+        files = [place.directory / name for name in sorted(file.name for file in aside.iterdir())]
+    return files + [file for table in found.tables for file in table.write(place.directory, place.work, complain)]
 
 
 def _views(found: Family) -> list[View]:

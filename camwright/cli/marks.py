@@ -11,15 +11,13 @@ from typing import Annotated, Any
 import typer
 
 from camwright.answers.measures import millimetres
-from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, final_paths, job_work, option_quantity
+from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, destination, option_quantity, out_folder
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import View, new_table, new_text, stacked
 from camwright.figures.print_marks import print_marks_figure
 from camwright.house.json_text import to_json
 from camwright.house.numbers import Units, number, unit_shown, with_unit
-from camwright.house.output import Voice, complain
-from camwright.house.owned import owned
-from camwright.house.picture_files import write_pictures
+from camwright.house.output import Voice
 from camwright.jobs.job import load_job
 from camwright.jobs.wording import in_job_words
 from camwright.production.mark_offsets import DeadTime, dead_time
@@ -53,9 +51,7 @@ def run(
             "--stretch", metavar="LENGTH", help="Standard deviation of the material's stretch in one cut; with --noise."
         ),
     ] = None,
-    out: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="Output directory; out/<name>-marks if left out.")
-    ] = None,
+    out: Annotated[Path | None, out_folder("-marks")] = None,
     as_json: Json = False,
     no_figures: NoFigures = False,
     quiet: Quiet = False,
@@ -66,18 +62,14 @@ def run(
     wander = _wander(noise, stretch)
     dead = None if offsets is None else dead_time(offsets)
     asked = load_job(job)
-    directory = Path("out") / f"{asked.name}-marks" if out is None else out
     voice = Voice(as_json, quiet)
     with voice.progress(STEPS) as step:
         with in_job_words(asked.units):
             found = marks(asked, delay, step)
         step("writing files")
-        with owned(directory, job_work("marks", asked, job, out), complain) as aside:
-            (aside / "marks.csv").write_bytes(clamp_table(found).encode())
-            (aside / "marks.json").write_bytes(to_json(marks_answer(found, dead, wander)).encode())
-            if not no_figures:
-                write_pictures({"marks": print_marks_figure(found)}, aside)
-            files = final_paths(aside, directory)
+        texts = {"marks.csv": clamp_table(found), "marks.json": to_json(marks_answer(found, dead, wander))}
+        pictures = {} if no_figures else {"marks": print_marks_figure(found)}
+        files = destination("marks", asked, job, out, "-marks").write(texts, pictures)
     voice.answer(lambda: marks_answer(found, dead, wander), lambda: _view(found, dead, wander, files))
     return 0 if found.proved else 1
 

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
-from camwright.house.owned import Work
+from camwright.house.files import fill
+from camwright.house.output import complain
+from camwright.house.owned import Work, owned
+from camwright.house.picture_files import write_pictures
+from camwright.house.pictures import Picture
 from camwright.house.units import quantity
 from camwright.jobs.job import Job
 from camwright.profiles.errors import InputError
@@ -36,7 +42,14 @@ TableTargets = Annotated[
 CommonPlace = Annotated[
     bool, typer.Option("--common-place", help="Place the sync zone of a crank at one place for all designs.")
 ]
-Out = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Output directory; out/<name> if left out.")]
+
+
+def out_folder(kind: str = "") -> Any:
+    """Make the option of the output directory, which names the folder of this kind that is taken if it is left out."""
+    return typer.Option("--out", metavar="DIR", help=f"Output directory; out/<name>{kind} if left out.")
+
+
+Out = Annotated[Path | None, out_folder()]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of tables.")]
 NoFigures = Annotated[bool, typer.Option("--no-figures", help="Write no figures.")]
 TraceColumns = Annotated[
@@ -58,16 +71,32 @@ def option_quantity(option: str, text: str, kind: str, *, zero: bool = False, ex
         raise InputError(*(f"{option}: {fault}" for fault in error.faults)) from error
 
 
-def output_directory(out: Path | None, job: Job) -> Path:
-    """Where the files of a job go."""
-    return Path("out") / job.name if out is None else out
+@dataclass(frozen=True)
+class Destination:
+    """Where the files of a command go, and what they are made of."""
+
+    directory: Path
+    work: Work
+
+    def write(self, texts: Mapping[str, str | bytes], pictures: Mapping[str, Picture]) -> list[Path]:
+        """Write texts and pictures by their names, all or none; gives the paths of the files, sorted."""
+        with owned(self.directory, self.work, complain) as aside:
+            return self.fill(aside, texts, pictures)
+
+    def fill(self, aside: Path, texts: Mapping[str, str | bytes], pictures: Mapping[str, Picture]) -> list[Path]:
+        """Write texts and pictures into a folder aside; gives the paths that all its files will have, sorted."""
+        fill(aside, texts)
+        if pictures:
+            write_pictures(pictures, aside)
+        return [self.directory / name for name in sorted(file.name for file in aside.iterdir())]
+
+    def draw(self, pictures: Mapping[str, Picture]) -> list[Path]:
+        """Write pictures alone; gives the paths of the files, of each picture its SVG first."""
+        with owned(self.directory, self.work, complain) as aside:
+            return [self.directory / file.name for file in write_pictures(pictures, aside)]
 
 
-def job_work(command: str, job: Job, file: Path | None, out: Path | None) -> Work:
-    """Say what a command makes of a job; where the user names no folder, another job of this name is told by its file."""
-    return Work(command, job.name, job.sha256, file if out is None else None)
-
-
-def final_paths(aside: Path, directory: Path) -> list[Path]:
-    """Paths that the files aside will have."""
-    return [directory / name for name in sorted(file.name for file in aside.iterdir())]
+def destination(command: str, job: Job, file: Path | None, out: Path | None, kind: str = "") -> Destination:
+    """Say where a command's files of a job go; where the user names no folder, another job of this name is told by its file."""
+    work = Work(command, job.name, job.sha256, file if out is None else None)
+    return Destination(Path("out") / f"{job.name}{kind}" if out is None else out, work)

@@ -10,20 +10,26 @@ from typing import Annotated, Any, cast, get_args
 import typer
 
 from camwright.answers.measures import checks_answer, millimetres
-from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, final_paths, job_work, option_quantity
+from camwright.cli.options import (
+    Destination,
+    GivenJob,
+    Json,
+    NoFigures,
+    Quiet,
+    destination,
+    option_quantity,
+    out_folder,
+)
 from camwright.cli.views.checks import checks_view
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import View, new_table, new_text, stacked
 from camwright.drives.export import export_answer
 from camwright.drives.options import chosen_targets, parse_targets
-from camwright.drives.withheld import copy_aside, remove
+from camwright.drives.withheld import setting_aside
 from camwright.figures.ramps import AIMS, ramps_figure
-from camwright.house.files import fill
 from camwright.house.json_text import to_json
 from camwright.house.numbers import number, with_unit
 from camwright.house.output import Voice, complain
-from camwright.house.owned import Work, owned
-from camwright.house.picture_files import write_pictures
 from camwright.jobs.job import Job, load_job
 from camwright.jobs.table_units import slave_length
 from camwright.jobs.wording import in_job_words
@@ -55,9 +61,7 @@ def run(
             "--to", metavar="NAMES", help="Targets, separated by commas, or all; the job's, else csv, if left out."
         ),
     ] = None,
-    out: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="Output directory; out/<name>-ramps if left out.")
-    ] = None,
+    out: Annotated[Path | None, out_folder("-ramps")] = None,
     as_json: Json = False,
     no_figures: NoFigures = False,
     quiet: Quiet = False,
@@ -68,7 +72,6 @@ def run(
         parse_targets(to)  # a wrong name is told before anything is designed
     asked = load_job(job)
     place, names = _park(park, asked), chosen_targets(to, asked)
-    directory = Path("out") / f"{asked.name}-ramps" if out is None else out
     voice = Voice(as_json, quiet)
     with voice.progress(STEPS + len(KINDS) + 2) as step:
         with in_job_words(asked.units):
@@ -77,7 +80,7 @@ def run(
         found.report  # noqa: B018 - simulated here, so that the progress says so
         tables = write_ramps(found, names, required=to != "all", step=step)
         step("writing files")
-        files = _write(found, tables, directory, job_work("ramps", asked, job, out), figures=not no_figures)
+        files = _write(found, tables, destination("ramps", asked, job, out, "-ramps"), figures=not no_figures)
     voice.answer(lambda: ramps_answer(found, tables), lambda: _view(found, tables, files))
     return 0 if found.passed and tables.passed else 1
 
@@ -99,23 +102,16 @@ def _park(text: str, job: Job) -> float | None:
         raise InputError(*(f"--park: {fault}; or write auto" for fault in error.faults)) from error
 
 
-def _write(found: Ramps, tables: RampTables, directory: Path, work: Work, *, figures: bool) -> list[Path]:
+def _write(found: Ramps, tables: RampTables, place: Destination, *, figures: bool) -> list[Path]:
     """Write tables, their report, the answer and the figure, all or none; older tables of what is withheld are set aside."""
-    older = tables.older(found, directory)
+    older = tables.older(found, place.directory)
     texts = {
         **tables.files,
         "ramps.json": to_json({**ramps_answer(found, tables), "profiles": _profiles(found)}),
         "report.json": to_json({**tables_answer(tables, found), "set_aside": older}),
     }
-    kept = [new for names in older.values() for new in names.values()]
-    with owned(directory, work, complain, kept) as aside:
-        fill(aside, texts)
-        if figures:
-            write_pictures({"ramps": ramps_figure(found)}, aside)
-        copy_aside(directory, aside, older)
-        files = final_paths(aside, directory)
-    remove(directory, older)
-    return files
+    with setting_aside(place.directory, place.work, older, complain) as aside:
+        return place.fill(aside, texts, {"ramps": ramps_figure(found)} if figures else {})
 
 
 def _profiles(found: Ramps) -> dict[str, object]:

@@ -9,14 +9,13 @@ import numpy as np
 import typer
 
 from camwright.answers.measures import with_files
-from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, final_paths, job_work, option_quantity
+from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, destination, option_quantity, out_folder
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import View, new_table, new_text, stacked
 from camwright.figures.shift import shift_figure
 from camwright.figures.style import title
 from camwright.house.numbers import number, unit_shown
-from camwright.house.output import Voice, complain
-from camwright.house.owned import owned
+from camwright.house.output import Voice
 from camwright.house.provenance import camwright_version
 from camwright.jobs.job import Job, load_job
 from camwright.production.cut_list import line_of
@@ -76,9 +75,7 @@ def run(
     seed: Annotated[
         int, typer.Option("--seed", metavar="N", min=0, max=2**32 - 1, help="Seed of all that is drawn.")
     ] = 1,
-    out: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="Output directory; out/<name>-shift if left out.")
-    ] = None,
+    out: Annotated[Path | None, out_folder("-shift")] = None,
     no_figures: NoFigures = False,
     as_json: Json = False,
     quiet: Quiet = False,
@@ -100,12 +97,8 @@ def run(
             study = simulate_shift(line_of(given, ramp), rows, None, wrong, step)
         else:
             study = simulate_shift(given, rows, read_line_run(line), wrong, step)
-    directory = Path("out") / f"{given.name}-shift" if out is None else out
-    with owned(directory, job_work("simulate", given, job, out), complain) as aside:
-        (aside / "pieces.csv").write_bytes(pieces_text(study).encode())
-        if not no_figures:
-            shift_figure(study, aside)
-        files = final_paths(aside, directory)
+    pictures = {} if no_figures else {"shift": shift_figure(study)}
+    files = destination("simulate", given, job, out, "-shift").write({"pieces.csv": pieces_text(study)}, pictures)
 
     voice.answer(lambda: with_files(shift_answer(study), files), lambda: stacked(*_views(study), files_view(files)))
     return 0

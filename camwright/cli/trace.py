@@ -16,18 +16,15 @@ from camwright.cli.options import (
     Out,
     Quiet,
     TraceColumns,
-    job_work,
+    destination,
     option_quantity,
-    output_directory,
 )
 from camwright.cli.views.checks import checks_view
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import View, new_table, new_text, stacked
 from camwright.figures.trace import trace_figure
 from camwright.house.numbers import Units, number, shown, unit_shown
-from camwright.house.output import Voice, complain
-from camwright.house.owned import owned
-from camwright.house.picture_files import write_pictures
+from camwright.house.output import Voice
 from camwright.jobs.job import Job, load_job
 from camwright.jobs.wording import in_job_words
 from camwright.profiles.errors import InputError
@@ -90,9 +87,7 @@ def run(
             found = recorded_run(file, placed, profile, speed, gear, columns)
         if not no_figures:
             step("drawing")
-            directory = output_directory(out, asked)
-            with owned(directory, job_work("trace", asked, job, out), complain) as aside:
-                files = [directory / figure.name for figure in write_pictures({"trace": trace_figure(found)}, aside)]
+            files = destination("trace", asked, job, out).draw({"trace": trace_figure(found)})
     voice.answer(lambda: trace_answer(found, file, files), lambda: _view(found, file, files))
     return 0 if found.passed else 1
 

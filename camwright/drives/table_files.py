@@ -10,10 +10,10 @@ from typing import Protocol
 
 from camwright.drives.export import Exported, export_possible, export_report
 from camwright.drives.options import parse_targets
-from camwright.drives.withheld import copy_aside, older_tables, remove
+from camwright.drives.withheld import older_tables, setting_aside
 from camwright.house.files import fill
 from camwright.house.json_text import to_json
-from camwright.house.owned import Work, owned
+from camwright.house.owned import Work
 from camwright.house.progress import Step, ignore
 from camwright.house.provenance import camwright_version
 from camwright.jobs.job import Job
@@ -116,14 +116,8 @@ def export(
     older = older_tables(place, withheld, Header(job.name, camwright_version()))
     texts = {name: text for result in results for name, text in result.files.items()}
     texts["report.json"] = to_json({**export_report(results, job, refused), "set_aside": older})
-    work, kept = (
-        Work("export", job.name, _sum(design), adds=True),
-        [new for names in older.values() for new in names.values()],
-    )
-    with owned(place, work, told, kept) as aside:
+    with setting_aside(place, Work("export", job.name, _sum(design), adds=True), older, told) as aside:
         fill(aside, texts)
-        copy_aside(place, aside, older)
-    remove(place, older)
     return TableFiles(tuple(results), refused, older, tuple(place / name for name in texts))
 
 

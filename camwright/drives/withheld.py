@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
+from camwright.house.owned import Work, owned
 from camwright.profiles.errors import InputError
 from camwright.profiles.tables.target import Header, Target
 
@@ -47,27 +49,27 @@ def _free(directory: Path, name: str) -> str:
     return wanted
 
 
-def copy_aside(directory: Path, aside: Path, older: Mapping[str, Mapping[str, str]]) -> None:
-    """Copy older tables under their new names into a folder of `camwright.house.files.staged`."""
-    for names in older.values():
-        for name, new in names.items():
-            shutil.copy2(directory / name, aside / new)
-
-
-def remove(directory: Path, older: Mapping[str, Mapping[str, str]]) -> None:
-    """Remove older tables once their copies stand.
+@contextmanager
+def setting_aside(
+    directory: Path, work: Work, older: Mapping[str, Mapping[str, str]], told: Callable[[str], None]
+) -> Iterator[Path]:
+    """Give a folder to write files into like `owned`, in which older tables stand under their new names; they go from their old ones.
 
     Raises
     ------
     InputError
-        A file cannot be removed.
+        A file cannot be removed; or as of `owned`.
     """
-    for names in older.values():
-        for name, new in names.items():
-            try:
-                (directory / name).unlink(missing_ok=True)  # our own older table goes with the run that made it
-            except OSError as error:
-                raise InputError(
-                    f"{directory / name}: this older table cannot be removed: {error.strerror}; do not load it, its new "
-                    f"version is withheld (a copy is {new})"
-                ) from error
+    renamed = {name: new for names in older.values() for name, new in names.items()}
+    with owned(directory, work, told, renamed.values()) as aside:
+        for name, new in renamed.items():
+            shutil.copy2(directory / name, aside / new)
+        yield aside
+    for name, new in renamed.items():
+        try:
+            (directory / name).unlink(missing_ok=True)  # our own older table goes with the run that made it
+        except OSError as error:
+            raise InputError(
+                f"{directory / name}: this older table cannot be removed: {error.strerror}; do not load it, its new "
+                f"version is withheld (a copy is {new})"
+            ) from error

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
@@ -23,7 +22,6 @@ from camwright.figures.panel import (
 )
 from camwright.figures.strokes import BLACK, LINES, Stroke
 from camwright.house.numbers import converted, number, unit_shown
-from camwright.house.picture_files import write_pictures
 from camwright.house.pictures import Bar, Frame, Item, Line, Note, Picture, Tick, ticks
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.validation.rebuilt import differences
@@ -46,11 +44,6 @@ _RATIO, _ACCELERATION, _ROW, _NAMES = 144.0, 180.0, 22.0, 130.0
 
 _POWERS = ("/s", "/s^2", "/s^2", "/s^3", "/s^3")
 """Powers of time of the measures."""
-
-
-def audit_figures(audit: Audit, directory: Path) -> list[Path]:
-    """Write the figure of an audit: ``audit.svg`` and ``audit.png`` in an existing directory."""
-    return write_pictures({"audit": audit_figure(audit)}, directory)
 
 
 def audit_figure(audit: Audit) -> Picture:

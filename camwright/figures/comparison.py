@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 
@@ -13,7 +12,6 @@ from camwright.figures.panel import RIGHT, WIDTH, first_frame, head, page, strok
 from camwright.figures.strokes import LIMIT, LINES
 from camwright.figures.style import broken_note, title
 from camwright.house.numbers import converted, number, unit_shown
-from camwright.house.picture_files import write_pictures
 from camwright.house.pictures import Bar, Frame, Item, Note, Picture, Tick
 from camwright.house.pictures import ticks as spread_ticks
 from camwright.house.svg import text_width
@@ -50,11 +48,6 @@ class _Column:
     values: Sequence[float | None]
     limit: float | None
     without: str = "unbounded"
-
-
-def comparison_figure(comparison: Comparison, directory: Path) -> list[Path]:
-    """Write the bars of a comparison: ``comparison.svg`` and ``comparison.png`` in an existing directory."""
-    return write_pictures({"comparison": bars_figure(comparison)}, directory)
 
 
 def bars_figure(comparison: Comparison) -> Picture:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from camwright.figures.axis import AXES as SHOWN_AXES
 from camwright.figures.axis import axis_figure
 from camwright.figures.comparison import bars_figure
@@ -12,30 +10,18 @@ from camwright.figures.line_ramp import line_ramp_figure
 from camwright.figures.profile import profile_figure
 from camwright.figures.servo import AXES, servo_figure
 from camwright.figures.speed_band import speed_band_figure
-from camwright.house.picture_files import write_pictures
+from camwright.house.pictures import Picture
 from camwright.studies.axis_study import robust_band
 from camwright.studies.design import Design
 from camwright.studies.line_ramps import line_ramps
 from camwright.validation.servo.simulation import simulate
 
 
-def design_figures(design: Design, directory: Path) -> list[Path]:
-    """Write the figures of a design, each as SVG and PNG.
+def design_figures(design: Design) -> dict[str, Picture]:
+    """Draw the figures of a design, by their names.
 
     They are ``profile``, ``servo``, ``comparison`` and ``speed_band``; for a tool that turns back also ``crank``, for a servo-aware design
     ``axis``, for a line that ramps ``line_ramp``.
-
-    Parameters
-    ----------
-    design
-        What is drawn.
-    directory
-        An existing directory.
-
-    Returns
-    -------
-    list
-        The files.
     """
     job, comparison = design.job, design.comparison
     runs = {name: simulate(comparison[name].profile, job.cut, job.servo) for name in AXES}
@@ -53,4 +39,4 @@ def design_figures(design: Design, directory: Path) -> list[Path]:
         pictures["axis"] = axis_figure(design, axes, robust_band(job, design.profile))
     if job.line.ramps:
         pictures["line_ramp"] = line_ramp_figure(line_ramps(design.profile, job))
-    return write_pictures(pictures, directory)
+    return pictures

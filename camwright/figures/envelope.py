@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 
 from camwright.figures.panel import LEFT, NOTHING, RIGHT, WIDTH, first_frame, head, page, stroked
 from camwright.figures.strokes import BLACK, LINES, Stroke
 from camwright.house.numbers import converted, unit_shown
-from camwright.house.picture_files import write_pictures
 from camwright.house.pictures import Area, Frame, Hatch, Item, Line, Marks, Picture
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.studies.envelope import EnvelopeAnswer
@@ -34,12 +32,7 @@ _PANEL = 348.0
 """Height of the map (pt)."""
 
 
-def envelope_figure(answer: EnvelopeAnswer, directory: Path) -> list[Path]:
-    """Write the map of a job: ``envelope.svg`` and ``envelope.png`` in an existing directory."""
-    return write_pictures({"envelope": draw_envelope(answer)}, directory)
-
-
-def draw_envelope(answer: EnvelopeAnswer) -> Picture:
+def envelope_figure(answer: EnvelopeAnswer) -> Picture:
     """Draw the map: coloured by the limit that binds, strong where a cut is possible; highest line speeds as lines."""
     found, units = answer.envelope, answer.job.units
     shown = np.array([converted(1.0, "m", units), converted(1.0, "m/s", units)])

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 
 from camwright.figures.panel import across, first_frame, head, page, stroked, wide_frame
 from camwright.figures.strokes import LIMIT, LINES
 from camwright.house.numbers import unit_shown
-from camwright.house.picture_files import write_pictures
 from camwright.house.pictures import APART, Marks, Picture
 from camwright.production.cut_list import ListStudy
 
@@ -17,12 +14,7 @@ _ABOVE, _BELOW, _GAP = 180.0, 120.0, 18.0
 """Heights of the panels, and room between them (pt)."""
 
 
-def line_plan_figure(study: ListStudy, directory: Path) -> list[Path]:
-    """Write the figure: ``line-plan.svg`` and ``line-plan.png`` in an existing directory."""
-    return write_pictures({"line-plan": draw_line_plan(study)}, directory)
-
-
-def draw_line_plan(study: ListStudy) -> Picture:
+def line_plan_figure(study: ListStudy) -> Picture:
     """Draw the plan over time with each piece's highest speed, and below the sync error at each cut."""
     planned, run = study.planned, study.run
     job, plan = planned.job, planned.line

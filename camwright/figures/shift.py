@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
@@ -12,7 +11,6 @@ from camwright.figures.panel import across, first_frame, head, page, profile_lin
 from camwright.figures.strokes import BLACK, LINES
 from camwright.figures.style import title
 from camwright.house.numbers import unit_shown
-from camwright.house.picture_files import write_pictures
 from camwright.house.pictures import APART, Frame, Line, Marks, Picture, Shape, Tick
 from camwright.production.simulation import MOTIONS, ShiftStudy
 from camwright.profiles.polynomial.profile import FloatArray
@@ -29,12 +27,7 @@ _FEW = 0.5
 """Number of pieces at which the axis of the histogram begins: below one."""
 
 
-def shift_figure(study: ShiftStudy, directory: Path) -> list[Path]:
-    """Write the figure: ``shift.svg`` and ``shift.png`` in an existing directory."""
-    return write_pictures({"shift": draw_shift(study)}, directory)
-
-
-def draw_shift(study: ShiftStudy) -> Picture:
+def shift_figure(study: ShiftStudy) -> Picture:
     """Draw speed and sync errors over time, and the histogram of the length errors."""
     planned = study.planned
     last = float(study.cut_times[-1])

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
@@ -14,7 +13,6 @@ from camwright.figures.panel import LEFT, NOTHING, RIGHT, WIDTH, first_frame, he
 from camwright.figures.strokes import BLACK, LINES
 from camwright.figures.style import title
 from camwright.house.numbers import Shown
-from camwright.house.picture_files import write_pictures
 from camwright.house.pictures import Band, Frame, Item, Line, Marks, Note, Picture, Shape, Tick, ticks
 from camwright.profiles.objective import CommandObjective
 from camwright.profiles.polynomial.profile import FloatArray
@@ -82,11 +80,6 @@ class _Scale:
         steps = (1.0, 2.0, 5.0) if self.edge - self.low < most / 3 else (1.0,)
         values = [step * 10.0**power for power in powers for step in steps]
         return [Tick(math.log10(v), f"{v:g}") for v in values if self.low <= math.log10(v) <= self.edge]
-
-
-def tradeoff_figures(result: TradeOff, directory: Path) -> list[Path]:
-    """Write the figure of a trade-off: ``tradeoff.svg`` and ``tradeoff.png`` in an existing directory."""
-    return write_pictures({"tradeoff": tradeoff_figure(result)}, directory)
 
 
 def tradeoff_figure(result: TradeOff) -> Picture:

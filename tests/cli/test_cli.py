@@ -174,8 +174,8 @@ def figures(monkeypatch: pytest.MonkeyPatch) -> None:
         (directory / "figure.svg").write_text("<svg/>")
         return [directory / "figure.svg"]
 
-    monkeypatch.setattr("camwright.cli.design.design_figures", draw)
-    monkeypatch.setattr("camwright.cli.compare.comparison_figure", draw)
+    monkeypatch.setattr("camwright.cli.design.design_figures", lambda _: {"figure": None})
+    monkeypatch.setattr("camwright.cli.options.write_pictures", draw)
 
 
 def test_figures_are_written_with_the_other_files(
@@ -193,7 +193,7 @@ def test_a_figure_that_fails_leaves_nothing(
     def fail(_what: object, _directory: Path) -> list[Path]:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("camwright.cli.design.design_figures", fail)
+    monkeypatch.setattr("camwright.cli.options.write_pictures", fail)
     assert main(["design", "--out", str(tmp_path / "new" / "cam")]) == 2
     assert "No space left on device" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []

@@ -18,8 +18,9 @@ from camwright.drives.audit import Audit, audit, audit_answer
 from camwright.drives.export import export_possible
 from camwright.drives.options import with_slopes
 from camwright.drives.running_cam import running_cam
-from camwright.figures.audit import audit_figures
+from camwright.figures.audit import audit_figure
 from camwright.house.owned import LIST
+from camwright.house.picture_files import write_pictures
 from camwright.jobs.job import Job
 from camwright.jobs.table_cycle import whole_cycle
 from camwright.profiles.cut import Origin
@@ -200,7 +201,8 @@ def test_the_figure_is_the_same_each_time(tmp_path: Path) -> None:
     pictures = []
     for name in ("a", "b"):
         (tmp_path / name).mkdir()
-        pictures.append([path.read_bytes() for path in audit_figures(result, tmp_path / name)])
+        files = write_pictures({"audit": audit_figure(result)}, tmp_path / name)
+        pictures.append([path.read_bytes() for path in files])
     assert pictures[0] == pictures[1]
     for words in (b"running cam", b"peak jerk"):
         assert len(pictures[0][0]) > 10_000

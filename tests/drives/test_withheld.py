@@ -15,11 +15,11 @@ from camwright import load_job
 from camwright.cli.main import main
 from camwright.drives.withheld import (
     ENDING,
-    copy_aside,
     older_tables,
-    remove,
+    setting_aside,
 )
-from camwright.house.owned import LIST
+from camwright.house.owned import LIST, Work
+from camwright.house.progress import ignore
 from camwright.profiles.errors import InputError
 from camwright.profiles.tables.target import Header
 from camwright.profiles.tables.targets import TARGETS
@@ -152,21 +152,23 @@ def test_tables_of_another_product_stay(
 
 def test_an_older_table_that_cannot_be_removed_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "p_cam.csv").write_text("old")
-    (tmp_path / "aside").mkdir()
     older = older_tables(tmp_path, [TARGETS["csv"], TARGETS["logix"]], Header("p", "0"))
     assert older == {"csv": {"p_cam.csv": f"p_cam.csv{ENDING}"}}
-    copy_aside(tmp_path, tmp_path / "aside", older)
-    assert (tmp_path / "aside" / f"p_cam.csv{ENDING}").read_text() == "old"
+    work = Work("export", "p", "0" * 64)
 
     def fail(_: Path, *, missing_ok: bool = False) -> None:
         raise PermissionError(13, "Permission denied")
 
     with monkeypatch.context() as patch:
         patch.setattr(Path, "unlink", fail)
-        with pytest.raises(
-            InputError, match=r"p_cam.csv: this older table cannot be removed: Permission denied; do not"
+        with (
+            pytest.raises(
+                InputError, match=r"p_cam.csv: this older table cannot be removed: Permission denied; do not"
+            ),
+            setting_aside(tmp_path, work, older, ignore) as aside,
         ):
-            remove(tmp_path, older)
-    remove(tmp_path, older)
+            assert (aside / f"p_cam.csv{ENDING}").read_text() == "old"
+    with setting_aside(tmp_path, work, older, ignore):
+        pass
     assert not (tmp_path / "p_cam.csv").exists()
     assert older_tables(tmp_path / "none", [TARGETS["csv"]], Header("p", "0")) == {}

@@ -15,6 +15,7 @@ from record_kinds import kinds
 
 from camwright.cli.family import write_family
 from camwright.cli.main import main
+from camwright.cli.options import Destination
 from camwright.house.json_text import to_json
 from camwright.house.language import LANGUAGES, Language
 from camwright.house.owned import LIST, Work
@@ -260,7 +261,7 @@ def written(in_sync: Family, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Write that family, its sheet in German."""
     out = tmp_path_factory.mktemp("family") / "out"
     work = Work("family", in_sync.found.job.name, in_sync.found.job.sha256)
-    write_family(in_sync, out, work, "de", figures=False)
+    write_family(in_sync, Destination(out, work), "de", figures=False)
     return out
 
 

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from camwright.cli.compare import compare_objectives
+from camwright.cli.options import Destination
 from camwright.cli.views.tradeoff import tradeoff_view
 from camwright.design.optimise import (
     Solution,
@@ -184,13 +185,13 @@ def test_the_command_prints_and_draws(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, paper: TradeOff
 ) -> None:
     monkeypatch.setattr("camwright.cli.compare.trade_off", lambda _job, _step: paper)
-    assert compare_objectives(paper.job, tmp_path, WORK, figures=True, voice=Voice(as_json=False, quiet=False)) == 0
+    assert compare_objectives(paper.job, Destination(tmp_path, WORK), Voice(as_json=False, quiet=False)) == 0
     said = capsys.readouterr().out
     assert any(line.split()[1:7] == ["peak", "acceleration", "│", "9.072", "×1.00", "│"] for line in said.splitlines())
     assert "parabolic †" in said
     assert sorted(file.name for file in tmp_path.iterdir()) == [LIST, "tradeoff.png", "tradeoff.svg"]
     first = {file.name: file.read_bytes() for file in tmp_path.iterdir()}
-    assert compare_objectives(paper.job, tmp_path, WORK, figures=True, voice=Voice(as_json=True, quiet=False)) == 0
+    assert compare_objectives(paper.job, Destination(tmp_path, WORK), Voice(as_json=True, quiet=False)) == 0
     assert json.loads(capsys.readouterr().out)["files"] == [
         str(tmp_path / name) for name in sorted(first) if name != LIST
     ]
