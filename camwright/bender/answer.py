@@ -71,7 +71,7 @@ class BentDrawing:
         found = [*self.job.warnings, *self.found.warnings, *size_warnings(self.found, self.job), *self.notes]
         for outline in self.outlines:
             found += [*_bridge_lines(outline), *collision_lines(outline, self.job)]
-        count = sum(bool(outline.collisions) for outline in self.outlines)
+        count = sum(bool(outline.run.collisions) for outline in self.outlines)
         if count and not self.collisions_accepted:
             found.append(_failed_collisions(count))
         return tuple(found)
@@ -124,7 +124,7 @@ def collision_lines(outline: BentOutline, job: BenderJob) -> list[str]:
     numbers = job.numbering.numbers(outline.program.blocks)
     name = outline.program.name
     texts: list[str] = []
-    groups = [list(hits) for _, hits in groupby(outline.collisions, key=lambda hit: (hit.side, hit.what))]
+    groups = [list(hits) for _, hits in groupby(outline.run.collisions, key=lambda hit: (hit.side, hit.what))]
     for hits in groups[:_SHOWN]:
         side = hits[0].side
         x, y = 1e3 * outline.proof.points[side]
@@ -149,7 +149,7 @@ def collision_lines(outline: BentOutline, job: BenderJob) -> list[str]:
         texts.append(
             Notice(
                 "{program}: at least {count} more bends at which the part meets the mould or the rule"
-                if len(outline.collisions) >= MOST_REPORTED
+                if len(outline.run.collisions) >= MOST_REPORTED
                 else "{program}: {count} more bends at which the part meets the mould or the rule",
                 program=name,
                 count=str(more),
@@ -223,11 +223,11 @@ def answer(result: BentDrawing, programs: Sequence[Path], files: Sequence[Path])
             for row in bridge_rows(outline, result.job)
         ],
         "bridge_command": result.job.bridges.command,
-        "cycle_time_s": sum(outline.times.total for outline in result.outlines),
-        "baseline_cycle_time_s": sum(outline.paper_times.total for outline in result.outlines),
-        "feed_overshoot_mm": max(1e3 * outline.feed_overshoot[0] for outline in result.outlines),
-        "mould_overshoot_deg": max(math.degrees(outline.mould_overshoot[0]) for outline in result.outlines),
-        "collisions": sum(len(outline.collisions) for outline in result.outlines),
+        "cycle_time_s": sum(outline.run.times.total for outline in result.outlines),
+        "baseline_cycle_time_s": sum(outline.run.paper_times.total for outline in result.outlines),
+        "feed_overshoot_mm": max(1e3 * outline.run.feed_overshoot[0] for outline in result.outlines),
+        "mould_overshoot_deg": max(math.degrees(outline.run.mould_overshoot[0]) for outline in result.outlines),
+        "collisions": sum(len(outline.run.collisions) for outline in result.outlines),
         "checks": [
             {
                 "program": outline.program.name,

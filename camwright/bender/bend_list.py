@@ -77,9 +77,9 @@ def _columns(outline: BentOutline, job: BenderJob, count: int) -> Iterator[tuple
         np.degrees(outline.plan.turns[:count]).tolist(),
         (1e3 * outline.plan.radii[:count]).tolist(),
         (outline.program.bends[:count] / 1e3).tolist(),
-        outline.times.feed_start[:count].tolist(),
-        outline.times.bend_start[:count].tolist(),
-        outline.times.return_start[:count].tolist(),
+        outline.run.times.feed_start[:count].tolist(),
+        outline.run.times.bend_start[:count].tolist(),
+        outline.run.times.return_start[:count].tolist(),
         strict=True,
     )
 
@@ -145,7 +145,7 @@ def csv_text(outline: BentOutline, job: BenderJob) -> str:
         added = abs(mould) - abs(turn)
         lines.append(_ROW % (i, line, feed, turn, size, mould, added, *times, *bridges.get(i - 1, ("", ""))))
     end = ",".join(bridges.get(outline.plan.bends, ("", "")))
-    lines.append(f"end,,{outline.program.feeds[-1] / 1e3:.3f},,,,,{outline.times.feed_start[-1]:.4f},,,{end}")
+    lines.append(f"end,,{outline.program.feeds[-1] / 1e3:.3f},,,,,{outline.run.times.feed_start[-1]:.4f},,,{end}")
     return "\n".join(lines) + "\n"
 
 

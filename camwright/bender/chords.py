@@ -46,9 +46,6 @@ class FoundArc:
     distance: float
     bent: bool
 
-    def __str__(self) -> str:
-        return self.told
-
     @property
     def told(self) -> Notice:
         """What to say of them."""

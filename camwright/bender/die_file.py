@@ -49,6 +49,10 @@ class DieLine:
     bridges: int
     width: float
 
+    def scaled(self, unit: float) -> DieLine:
+        """Give the same in metres, one unit of the file being so long (m)."""
+        return replace(self, piece=self.piece.scaled(unit), width=unit * self.width)
+
 
 @dataclass(frozen=True, eq=False)
 class Die:
@@ -265,8 +269,3 @@ def _along(start: FloatArray, end: FloatArray, bulge: float, part: float) -> tup
             math.cos((part - 1) * half), math.sin((part - 1) * half)
         )
     return place.real, place.imag
-
-
-def in_metres(die: Die, unit: float) -> tuple[DieLine, ...]:
-    """Give the lines in m."""
-    return tuple(replace(line, piece=line.piece.scaled(unit), width=unit * line.width) for line in die.lines)

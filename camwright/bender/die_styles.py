@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from camwright.bender.die_file import bridge_places, in_metres, read_cf2
+from camwright.bender.die_file import bridge_places, read_cf2
 from camwright.bender.dxf_entities import cleaned
 from camwright.bender.dxf_styles import StylePieces
 from camwright.bender.job import UNITS
@@ -54,7 +54,7 @@ def die_styles(
     left_out.update(die.left_out)
     least, greatest = believed
     found: dict[tuple[str, str, str], StylePieces] = {}
-    for line in in_metres(die, UNITS[unit]):
+    for line in (each.scaled(UNITS[unit]) for each in die.lines):
         own = found.setdefault(line.style.key, StylePieces(line.style))
         drawn = cleaned(line.piece, least)
         left_out.update(drawn.notes)

@@ -337,7 +337,7 @@ def _lines(path: Path, found: StylePieces, reading: Reading, left_out: Counter[s
         pieces, doubled = without_overlaps(found.pieces, reading.gap)
         if doubled and reading.overlaps == "refuse":
             raise InputError(
-                *(f"{overlap}; remove it, or leave --overlaps refuse out" for overlap in doubled[:_MOST_FAULTS])
+                *(f"{overlap.told}; remove it, or leave --overlaps refuse out" for overlap in doubled[:_MOST_FAULTS])
             )
         lasting = [piece for piece in pieces if piece.length > reading.gap]
         if not lasting:

@@ -137,8 +137,8 @@ def _window(outline: BentOutline, worst: FloatArray) -> float:
 def _times(outline: BentOutline, words: SheetWords) -> Picture:
     """Show feed and mould over time for the first bends, beside the paper's moves."""
     tables = (
-        ("figure.paper", outline.paper_times, _PAPER, DASHED),
-        ("figure.optimised", outline.times, _BENT, ()),
+        ("figure.paper", outline.run.paper_times, _PAPER, DASHED),
+        ("figure.optimised", outline.run.times, _BENT, ()),
     )
     signs = np.sign(outline.moulds)
     feeds = [

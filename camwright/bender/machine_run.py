@@ -26,18 +26,23 @@ _SETTLED = 200
 
 @dataclass(frozen=True, eq=False)
 class MachineRun:
-    """What the machine does in a program, wherever its outline lies: collisions, time tables, dwells, and how both axes arrive.
+    """What the machine does in a program, wherever its outline lies.
 
-    ``feed`` and ``mould`` are the greatest overshoots (m, rad).
+    Parameters
+    ----------
+    collisions
+        Where the bent part meets the mould or the rule to come.
+    times, paper_times
+        Optimised moves with overlaps, and sequential trapezoidal moves.
+    feed_overshoot, mould_overshoot
+        Greatest overshoot of either axis in the discrete servo, and what is allowed (m, rad).
     """
 
     collisions: tuple[Collision, ...]
     times: TimeTable
     paper_times: TimeTable
-    dwell: Dwell
-    paper_dwell: Dwell
-    feed: float
-    mould: float
+    feed_overshoot: tuple[float, float]
+    mould_overshoot: tuple[float, float]
 
 
 def machine_run(read: NcProgram, plan: BendPlan, proof: BendingProof, job: BenderJob) -> MachineRun:
@@ -49,15 +54,12 @@ def machine_run(read: NcProgram, plan: BendPlan, proof: BendingProof, job: Bende
     mould = _worst(double_s_moves(_spread(np.abs(moulds)), drive.mould), job, job.mould_window)
     paper_feed = _worst(trapezoid_moves(_spread(feeds), drive.feed), job, job.feed_window)
     paper_mould = _worst(trapezoid_moves(_spread(np.abs(moulds)), drive.mould), job, job.mould_window)
-    dwell, paper_dwell = Dwell(feed[0], mould[0]), Dwell(paper_feed[0], paper_mould[0])
     return MachineRun(
         collisions(proof.points, moulds, job.envelope),
-        overlapped_table(feeds, moulds, plan.turns, drive, dwell),
-        sequential_table(feeds, moulds, drive, paper_dwell),
-        dwell,
-        paper_dwell,
-        feed[1],
-        mould[1],
+        overlapped_table(feeds, moulds, plan.turns, drive, Dwell(feed[0], mould[0])),
+        sequential_table(feeds, moulds, drive, Dwell(paper_feed[0], paper_mould[0])),
+        (feed[1], job.feed_window),
+        (mould[1], job.mould_window),
     )
 
 

@@ -44,9 +44,6 @@ class NearEnds:
     gap: float
     place: tuple[float, float]
 
-    def __str__(self) -> str:
-        return self.told
-
     @property
     def told(self) -> Notice:
         """What to say of them."""

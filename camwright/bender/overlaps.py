@@ -48,9 +48,6 @@ class Overlap:
     start: tuple[float, float]
     end: tuple[float, float]
 
-    def __str__(self) -> str:
-        return self.told
-
     @property
     def told(self) -> Notice:
         """What to say of them."""

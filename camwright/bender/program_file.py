@@ -12,7 +12,6 @@ import numpy as np
 
 from camwright.bender.job import BenderJob
 from camwright.bender.machine_run import MachineRun, machine_run
-from camwright.design.bender.moves import Dwell, TimeTable
 from camwright.profiles.bender.bridges import Bridge, BridgeMark, marked_places, place_bridges, with_cuts
 from camwright.profiles.bender.compensation import compensate
 from camwright.profiles.bender.division import EqualSides
@@ -24,7 +23,6 @@ from camwright.profiles.bender.program import NcProgram
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.validation.bender.bridges import BridgeProof, prove_bridges
-from camwright.validation.bender.collision import Collision
 from camwright.validation.bender.virtual_bender import BendingProof, prove
 from camwright.validation.check import Check
 
@@ -63,38 +61,25 @@ class BentOutline:
         What is written to the file.
     proof
         The virtual bender's result.
-    collisions
-        Where the bent part meets the mould or the rule to come.
-    times, paper_times
-        Optimised moves with overlaps, and sequential trapezoidal moves.
-    dwell, paper_dwell
-        What the axes wait for their servos in these.
-    feed_overshoot, mould_overshoot
-        Greatest overshoot of either axis in the discrete servo, and what is allowed (m, rad).
+    run
+        What the machine does in it.
     bridges, bridge_proof
         Breaks of the rule, and what the program makes of them; ``None`` if there are none.
     bridge_gap
         Least distance of a bridge's edge from bends, ends and other bridges (m).
-    paper_bends, paper_error
-        Number of bends and chord error (m) by the paper's rule, 25 sides to a circle.
+    paper
+        The bends by the paper's rule, 25 sides to a circle.
     """
 
     plan: BendPlan
     program: NcProgram
     text: str
     proof: BendingProof
-    collisions: tuple[Collision, ...]
-    times: TimeTable
-    paper_times: TimeTable
-    dwell: Dwell
-    paper_dwell: Dwell
-    feed_overshoot: tuple[float, float]
-    mould_overshoot: tuple[float, float]
+    run: MachineRun
     bridges: tuple[Bridge, ...]
     bridge_proof: BridgeProof | None
     bridge_gap: float
-    paper_bends: int
-    paper_error: float
+    paper: BendPlan
 
     def moved_to(self, plan: BendPlan, name: str) -> BentOutline:
         """Give the same for an outline of the same shape elsewhere, under a name of its own."""
@@ -122,8 +107,8 @@ class BentOutline:
                   "virtual bending: chord error and rounding"),
         ]  # fmt: skip
         for name, (value, allowed), unit in (
-            ("feed_overshoot", self.feed_overshoot, "m"),
-            ("mould_overshoot", self.mould_overshoot, "rad"),
+            ("feed_overshoot", self.run.feed_overshoot, "m"),
+            ("mould_overshoot", self.run.mould_overshoot, "rad"),
         ):
             found.append(Check(name, value <= allowed, value, allowed, unit, None, "discrete servo (S1): window"))
         closing = self.proof.closing_error
@@ -147,7 +132,7 @@ class BentOutline:
                 Check("bridge_place", self.bridge_proof.shift <= ROUNDING, self.bridge_proof.shift, ROUNDING, "m", None,
                       "program: bridges where they are asked for"),
             ]  # fmt: skip
-        hits = float(len(self.collisions))
+        hits = float(len(self.run.collisions))
         found.append(
             Check(
                 COLLISIONS,
@@ -327,23 +312,15 @@ def _finished(
     key = tuple(part.tobytes() for part in alike)
     if key not in known:
         known[key] = machine_run(read, plan, proof, job)
-    run = known[key]
     paper = plan_bends(plan.outline, EqualSides(), job.least_turn) if plan.outline.arcs.any() else plan
     return BentOutline(
         plan,
         read,
         text,
         proof,
-        run.collisions,
-        run.times,
-        run.paper_times,
-        run.dwell,
-        run.paper_dwell,
-        (run.feed, job.feed_window),
-        (run.mould, job.mould_window),
+        known[key],
         bridges,
         prove_bridges(read, bridges, job.bridges),
         job.bridges.clearance,
-        paper.bends,
-        paper.chord_error,
+        paper,
     )

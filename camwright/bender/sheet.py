@@ -99,7 +99,7 @@ def _bridge_words(count: int, job: BenderJob, words: SheetWords) -> str:
 
 def _collision_words(outline: BentOutline, job: BenderJob, words: SheetWords) -> str:
     """Say how often the part meets something, and in which lines."""
-    hits = outline.collisions
+    hits = outline.run.collisions
     if not hits:
         return words("collisions.none")
     numbers = job.numbering.numbers(outline.program.blocks)[outline.program.bend_blocks()]
@@ -108,21 +108,21 @@ def _collision_words(outline: BentOutline, job: BenderJob, words: SheetWords) ->
 
 
 def _outline_data(outline: BentOutline, style: str, result: BentDrawing, words: SheetWords) -> dict[str, Any]:
-    proof, gain, number = outline.proof, 1 - outline.times.total / outline.paper_times.total, words.number
+    proof, gain, number = outline.proof, 1 - outline.run.times.total / outline.run.paper_times.total, words.number
     closing = proof.closing_error
-    paper = {"paper": str(outline.paper_bends), "error": number(1e3 * outline.paper_error, ".3f")}
+    paper = {"paper": str(outline.paper.bends), "error": number(1e3 * outline.paper.chord_error, ".3f")}
     deviation = {
         "value": number(1e3 * proof.deviation, ".4f"),
         "allowed": number(1e3 * (outline.plan.chord_error + ROUNDING), ".4f"),
     }
     cycle = {
-        "time": number(outline.times.total, ".2f"),
-        "paper": number(outline.paper_times.total, ".2f"),
+        "time": number(outline.run.times.total, ".2f"),
+        "paper": number(outline.run.paper_times.total, ".2f"),
         "change": number(-100 * gain, "+.1f"),
     }
     over = {
-        "feed": number(1e3 * outline.feed_overshoot[0], ".4f"),
-        "mould": number(float(np.degrees(outline.mould_overshoot[0])), ".4f"),
+        "feed": number(1e3 * outline.run.feed_overshoot[0], ".4f"),
+        "mould": number(float(np.degrees(outline.run.mould_overshoot[0])), ".4f"),
     }
     rows, bridges = bend_rows(outline, result.job, _MOST_ROWS), bridge_rows(outline, result.job)
     return {

@@ -279,7 +279,7 @@ def _drawing_view(result: BentDrawing, files: Sequence[Path]) -> View:
     )
     table = new_table(f"Programs of {result.drawing.name}", heads, left=("program", "checks"))
     for outline in result.outlines[:_MOST_ROWS]:
-        proof, cycle, paper = outline.proof, outline.times.total, outline.paper_times.total
+        proof, cycle, paper = outline.proof, outline.run.times.total, outline.run.paper_times.total
         failed = result.failed(outline)
         judged = new_text("FAILED", "bold red") if failed else new_text("passed", "green")
         if not failed and any(result.accepted(check) for check in outline.checks):
@@ -287,7 +287,7 @@ def _drawing_view(result: BentDrawing, files: Sequence[Path]) -> View:
         table.add_row(
             outline.program.name,
             str(outline.plan.bends),
-            str(outline.paper_bends),
+            str(outline.paper.bends),
             f"{1e3 * proof.rule_length:.3f}",
             f"{1e3 * proof.deviation:.4f}",
             "open" if proof.closing_error is None else f"{1e3 * proof.closing_error:.4f}",

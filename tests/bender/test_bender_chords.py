@@ -37,7 +37,7 @@ def test_a_quarter_between_two_lines():
     assert line.bulges == pytest.approx([0, math.tan(math.pi / 8), 0])
     assert (found.chords, found.radius, found.included) == (18, pytest.approx(20e-3), pytest.approx(math.pi / 2))
     assert found.distance == pytest.approx(20e-3 * (1 - math.cos(math.radians(2.5))))
-    assert "18 chords of LWPOLYLINE #1 on layer 0 lie on an arc of radius 20.000 mm and 90.00°" in str(found)
+    assert "18 chords of LWPOLYLINE #1 on layer 0 lie on an arc of radius 20.000 mm and 90.00°" in found.told
 
 
 @given(
@@ -76,8 +76,8 @@ def test_chords_that_are_too_long_are_told_and_left():
     assert len(line.bulges) == 9
     assert not found.bent
     assert found.distance == pytest.approx(20e-3 * (1 - math.cos(math.radians(5))))
-    assert "9 chords of LWPOLYLINE #1 on layer 0 have their ends on an arc of radius 20.000 mm and 90.00°" in str(found)
-    assert "lie up to 0.0761 mm from it" in str(found)
+    assert "9 chords of LWPOLYLINE #1 on layer 0 have their ends on an arc of radius 20.000 mm and 90.00°" in found.told
+    assert "lie up to 0.0761 mm from it" in found.told
 
 
 def test_one_vertex_off_the_arc_parts_it():

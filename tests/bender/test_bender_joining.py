@@ -101,7 +101,7 @@ def test_ends_that_nearly_meet_are_named_and_the_gap_closes_them():
     assert [ends.distance for ends in found] == pytest.approx([0.02e-3, math.hypot(0.02, 0.02) * 1e-3, 0.02e-3])
     assert (
         "LINE ((0.02, 0), (99.98, 0)) and LINE ((100, 0.02), (100, 59.98)) end 0.0283 mm apart at (99.980, 0.000) mm"
-        in str(found[1])
+        in found[1].told
     )
     gap = max(ends.gap for ends in found)
     assert gap == pytest.approx(0.029e-3)
@@ -120,5 +120,5 @@ def test_how_near_is_near():
 
 def test_a_line_that_nearly_closes_and_one_that_is_short():
     (ends,) = near_ends([line((0, 0), (50, 0), (50, 50), (0, 0.5))], GAP)
-    assert str(ends).startswith("the ends of LINE")
+    assert ends.told.startswith("the ends of LINE")
     assert near_ends([line((0, 0), (0.8, 0))], GAP) == ()

@@ -78,7 +78,7 @@ def test_every_stretch_is_bent_once(drawing: Make, name: str):
     for overlap in found.overlaps:
         assert "#" in overlap.first
         assert "#" in overlap.second
-        assert f"{overlap}; it is bent once" in "\n".join(found.warnings)
+        assert f"{overlap.told}; it is bent once" in "\n".join(found.warnings)
     with pytest.raises(InputError, match=r"#[0-9A-F]+ on layer 0 lies on .*#[0-9A-F]+ on layer 0 over .* remove it"):
         read(path, overlaps="refuse")
 
