@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import hashlib
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
+from camwright.answers.measures import with_files
 from camwright.cli.options import Json, Quiet
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import View, new_table, stacked
 from camwright.house.output import Voice, complain
 from camwright.house.owned import Work, write_owned
-from camwright.studies.quick import QuickAnswer, quick_answer, quick_cam_text, read_cross_cut
+from camwright.profiles.cross_cutter import CrossCut
+from camwright.studies.quick import quick_answer, quick_cam_text, quick_rows, read_cross_cut
 
 
 def run(
@@ -33,26 +35,22 @@ def run(
 ) -> int:
     """Make the patent's quintic cam of a rotary cross-cutter from three lengths."""
     cut = read_cross_cut(circumference, sync, length)
-    answer = quick_answer(cut)
-    file: Path | None = None
+    files: list[Path] = []
     if out is not None:
-        file = out / "cam.csv"
         text = quick_cam_text(cut)
         work = Work("quick", "cross-cutter", hashlib.sha256(text.encode()).hexdigest())
-        write_owned(out, work, {file.name: text}, complain)
-
-    def data() -> dict[str, Any]:
-        return answer.to_dict() if file is None else {**answer.to_dict(), "files": [str(file)]}
-
+        files = write_owned(out, work, {"cam.csv": text}, complain)
+    answer = quick_answer(cut)
     Voice(as_json, quiet).answer(
-        data, lambda: _view(answer) if file is None else stacked(_view(answer), files_view([file]))
+        lambda: with_files(answer, files) if files else answer,
+        lambda: stacked(_view(cut), files_view(files)) if files else _view(cut),
     )
     return 0
 
 
-def _view(answer: QuickAnswer) -> View:
+def _view(cut: CrossCut) -> View:
     """Show what the cam is like."""
     table = new_table("Cross-cutter, quintic cam", show_header=False)
-    for row in answer.rows():
+    for row in quick_rows(cut):
         table.add_row(*row)
     return table

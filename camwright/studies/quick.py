@@ -1,9 +1,6 @@
-"""`QuickAnswer`: what the cross-cutter's cam from three lengths is like; its file."""
+"""What the cross-cutter's cam from three lengths is like, and its file."""
 
 from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import Literal
 
 from camwright.house.numbers import with_unit
 from camwright.house.provenance import camwright_version
@@ -22,57 +19,40 @@ _CASES = {
 }
 
 
-@dataclass(frozen=True)
-class QuickAnswer:
-    """What is known of a cross-cutter's cam.
+def quick_answer(cut: CrossCut) -> dict[str, int | float | bool]:
+    """Answer of ``camwright quick``.
 
-    Parameters
-    ----------
-    case
-        Case of S2: 1 the knife runs faster than the line, 2 neither, 3 slower.
-    critical_length
-        Cut length above which the quintic would reverse (m).
-    least_ratio
-        Least ratio of the cycle.
-    standstill
-        Length of material that passes while the knife stands still (m).
-    completed
-        Whether S2 defines no curve for this cut, so that a completion stands in.
+    Examples
+    --------
+    >>> quick_answer(CrossCut(0.4, 0.2, 0.65))["completed"]
+    True
     """
+    return {
+        "case": cut.case,
+        "critical_length_mm": cut.critical_length * 1e3,
+        "min_ratio": cut.least_ratio,
+        "standstill_mm": cut.standstill * 1e3,
+        "completed": cut.completed,
+    }
 
-    case: Literal[1, 2, 3]
-    critical_length: float
-    least_ratio: float
-    standstill: float
-    completed: bool
 
-    def to_dict(self) -> dict[str, int | float | bool]:
-        """Give the object that ``--json`` prints."""
-        return {
-            "case": self.case,
-            "critical_length_mm": self.critical_length * 1e3,
-            "min_ratio": self.least_ratio,
-            "standstill_mm": self.standstill * 1e3,
-            "completed": self.completed,
-        }
-
-    def rows(self) -> list[tuple[str, str]]:
-        """Give the rows that people read: what, and its value with the unit."""
-        if self.completed:
-            curve = "quartic ratio, completed: the patent defines no curve for this cut length"
-        elif self.case == 2:
-            curve = "straight line"
-        elif self.least_ratio > 0.0:
-            curve = "quintic"
-        else:
-            curve = "decelerate, stand, accelerate"
-        return [
-            ("case", _CASES[self.case]),
-            ("return", curve),
-            ("critical length", with_unit(self.critical_length, "m", 6)),
-            ("least ratio", f"{self.least_ratio:.6g}"),
-            ("standstill", f"{with_unit(self.standstill, 'm', 6)} of material"),
-        ]
+def quick_rows(cut: CrossCut) -> list[tuple[str, str]]:
+    """Give the rows that people read: what, and its value with the unit."""
+    if cut.completed:
+        curve = "quartic ratio, completed: the patent defines no curve for this cut length"
+    elif cut.case == 2:
+        curve = "straight line"
+    elif cut.least_ratio > 0.0:
+        curve = "quintic"
+    else:
+        curve = "decelerate, stand, accelerate"
+    return [
+        ("case", _CASES[cut.case]),
+        ("return", curve),
+        ("critical length", with_unit(cut.critical_length, "m", 6)),
+        ("least ratio", f"{cut.least_ratio:.6g}"),
+        ("standstill", f"{with_unit(cut.standstill, 'm', 6)} of material"),
+    ]
 
 
 def read_cross_cut(circumference: str, sync: str, length: str) -> CrossCut:
@@ -98,17 +78,6 @@ def read_cross_cut(circumference: str, sync: str, length: str) -> CrossCut:
     if faults:
         raise InputError(*faults)
     return CrossCut(*values)
-
-
-def quick_answer(cut: CrossCut) -> QuickAnswer:
-    """Say what the cam of a cut is like.
-
-    Examples
-    --------
-    >>> quick_answer(CrossCut(0.4, 0.2, 0.65)).completed
-    True
-    """
-    return QuickAnswer(cut.case, cut.critical_length, cut.least_ratio, cut.standstill, cut.completed)
 
 
 def quick_cam_text(cut: CrossCut) -> str:

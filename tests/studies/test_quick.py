@@ -15,7 +15,7 @@ from camwright.house.owned import LIST
 from camwright.jobs.job import load_job
 from camwright.profiles.cross_cutter import CrossCut
 from camwright.stored.profile_files import read_cycle
-from camwright.studies.quick import quick_answer, quick_cam_text, read_cross_cut
+from camwright.studies.quick import quick_answer, quick_cam_text, quick_rows, read_cross_cut
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "cross-cutter.toml"
 KEYS = ["case", "critical_length_mm", "min_ratio", "standstill_mm", "completed"]
@@ -140,6 +140,6 @@ def test_a_length_that_is_not_given_is_missed(capsys: pytest.CaptureFixture[str]
 
 
 def test_the_answer_takes_the_measures_of_the_cut() -> None:
-    answer = quick_answer(CrossCut(0.4, 0.2, 0.6))
-    assert answer.least_ratio == pytest.approx(0.0625, abs=1e-12)
-    assert dict(answer.rows())["least ratio"] == "0.0625"
+    cut = CrossCut(0.4, 0.2, 0.6)
+    assert quick_answer(cut)["min_ratio"] == pytest.approx(0.0625, abs=1e-12)
+    assert dict(quick_rows(cut))["least ratio"] == "0.0625"
