@@ -21,7 +21,7 @@ from camwright.house.output import Voice
 from camwright.jobs.job import load_job
 from camwright.jobs.wording import in_job_words
 from camwright.production.mark_offsets import DeadTime, dead_time
-from camwright.production.marks import STEPS, ByMethod, Marks, marks
+from camwright.production.marks import STEPS, Marks, marks
 from camwright.profiles.closed_forms.mark_loop import best_gain
 from camwright.profiles.errors import InputError
 from camwright.profiles.mark_range import MarkRange
@@ -111,10 +111,7 @@ def _view(found: Marks, dead: DeadTime | None, wander: tuple[float, float] | Non
     for each in found.by_speed:
         table.add_row(
             with_unit(each.line_speed, "m/s", units=units),
-            *(
-                "–" if part is None else " to ".join(_ends(part, units))
-                for part in (each.redesign, each.master_phase, each.slave_offset)
-            ),
+            *("–" if part is None else " to ".join(_ends(part, units)) for part in each.ranges.values()),
         )
     proved = (
         "cams at both ends were designed, none 1 % beyond"
@@ -168,10 +165,6 @@ def _ends(found: MarkRange, units: Units) -> list[str]:
     ]
 
 
-METHODS = ("redesign", "master_phase", "slave_offset")
-"""What a controller can do about a mark."""
-
-
 def marks_answer(
     found: Marks, dead: DeadTime | None = None, wander: tuple[float, float] | None = None
 ) -> dict[str, Any]:
@@ -192,14 +185,16 @@ def marks_answer(
         "proved": found.proved,
         "by_method": {
             "redesign": range_answer(here.redesign),
-            "master_phase": {
-                **range_answer(here.master_phase),
-                "by_acceleration_alone": range_answer(found.phase_alone),
-            },
-            "slave_offset": _offset(here, found),
+            "master_phase": _beside(here.master_phase, found.phase_alone),
+            "slave_offset": here.slave_offset and _beside(here.slave_offset, found.offset_alone),
         },
         "by_speed": [
-            {"line_speed_m_per_s": each.line_speed, **range_answer(each.redesign), **_methods(each)}
+            {
+                "line_speed_m_per_s": each.line_speed,
+                **range_answer(each.redesign),
+                "master_phase": range_answer(each.master_phase),
+                "slave_offset": each.slave_offset and range_answer(each.slave_offset),
+            }
             for each in found.by_speed
         ],
         "loop": {
@@ -227,33 +222,19 @@ def range_answer(found: MarkRange) -> dict[str, float | None]:
     return {"earliest_mm": millimetres(found.earliest), "latest_mm": millimetres(found.latest)}
 
 
-def _methods(each: ByMethod) -> dict[str, Any]:
-    offset = each.slave_offset
-    return {
-        "master_phase": range_answer(each.master_phase),
-        "slave_offset": None if offset is None else range_answer(offset),
-    }
-
-
-def _offset(here: ByMethod, found: Marks) -> dict[str, Any] | None:
-    if here.slave_offset is None:
-        return None
-    alone = found.offset_alone
-    return {
-        **range_answer(here.slave_offset),
-        "by_acceleration_alone": None if alone is None else range_answer(alone),
-    }
+def _beside(found: MarkRange, alone: MarkRange | None) -> dict[str, Any]:
+    return {**range_answer(found), "by_acceleration_alone": alone and range_answer(alone)}
 
 
 def clamp_table(found: Marks) -> str:
     """Write the ranges over the line speed as CSV, mm: a cell that is empty has no limit, or the method does not hold."""
     text = io.StringIO()
     rows = csv.writer(text, lineterminator="\n")
-    ends = [f"{method}_{end}_mm" for method in METHODS for end in ("earliest", "latest")]
+    ends = [f"{method}_{end}_mm" for method in found.here.ranges for end in ("earliest", "latest")]
     rows.writerow(["line_speed_m_per_min", *ends])
     for each in found.by_speed:
         cells: list[str] = []
-        for part in (each.redesign, each.master_phase, each.slave_offset):
+        for part in each.ranges.values():
             pair = (None, None) if part is None else (part.earliest, part.latest)
             # towards zero: what is written lies inside
             cells += ["" if end is None else f"{int(end * 1e6) / 1e3:.3f}" for end in pair]

@@ -9,8 +9,7 @@ from camwright.figures.strokes import BLACK, LINES, Stroke
 from camwright.house.numbers import unit_shown
 from camwright.house.pictures import APART, Area, Item, Line, Picture
 from camwright.house.pictures import Marks as Dots
-from camwright.production.marks import ByMethod, Marks
-from camwright.profiles.mark_range import MarkRange
+from camwright.production.marks import Marks
 
 _LOOKS: tuple[tuple[str, str, Stroke, str], ...] = (
     ("redesign", "next length designed anew", LINES["optimised"], "#e0eef6"),
@@ -36,7 +35,7 @@ def print_marks_figure(found: Marks) -> Picture:
     lines: list[Line] = []
     dots: list[Item] = []
     for method, words, stroke, colour in _LOOKS:
-        shown = [each for each in (_of(each, method) for each in found.by_speed) if each is not None]
+        shown = [each for each in (each.ranges[method] for each in found.by_speed) if each is not None]
         if len(shown) < len(found.by_speed):
             continue
         low = np.array([max(-edge, -edge if each.earliest is None else each.earliest) for each in shown]) * length
@@ -64,8 +63,3 @@ def print_marks_figure(found: Marks) -> Picture:
         apart=APART,
     )
     return page(heading, [frame], [line for line in lines if line.label])
-
-
-def _of(each: ByMethod, method: str) -> MarkRange | None:
-    found: MarkRange | None = getattr(each, method)
-    return found

@@ -11,7 +11,7 @@ from camwright.jobs.numbers import job_numbers
 from camwright.production.changes import Change
 from camwright.production.family import Family
 from camwright.production.family_cams import FamilyCam
-from camwright.production.list_answer import seams_answer
+from camwright.production.list_answer import jump_answer, seams_answer, speed_text
 from camwright.production.switching import Switching
 from camwright.production.tables import transition_name
 from camwright.stored.design_text import design_text
@@ -22,9 +22,6 @@ from camwright.validation.bounds.bound import Bound
 
 CAMS_HEADER = "cam,name,from line speed [m/min],to line speed [m/min],greatest sync error [mm],checks"
 SWITCHING_HEADER = "runs,line speed,[m/min],change to,through,line meanwhile"
-
-_DECIMALS = 6
-"""Decimals of a line speed in a table for a controller (m/min), rounded to the side where both cams hold."""
 
 
 def family_answer(family: Family) -> dict[str, Any]:
@@ -76,9 +73,7 @@ def _switching(each: Switching, *, holds_line: bool) -> dict[str, Any]:
             name: {
                 "how": change.how,
                 "name": transition_name(change) if change.transitions else None,
-                "velocity_jump_m_per_s": change.jump.velocity,
-                "acceleration_jump_m_per_s2": change.jump.acceleration,
-                "position_jump_m": change.jump.position,
+                **jump_answer(change.jump),
                 "checks": checks_answer(checks),
             }
             for name, change, checks in zip(("up", "down"), (up, down), each.checks, strict=True)
@@ -134,7 +129,7 @@ def _design(cam: FamilyCam) -> Design:
 def _cam_row(cam: FamilyCam) -> str:
     low, top = cam.line_speeds
     verdict = "passed" if cam.passed else "FAILED"
-    return f"{cam.number},{cam.job.name},{_up(low)},{_down(top)},{max(cam.errors) * 1e3:.6f},{verdict}"
+    return f"{cam.number},{cam.job.name},{speed_text(low, up=True)},{speed_text(top)},{max(cam.errors) * 1e3:.6f},{verdict}"
 
 
 def _switching_rows(family: Family) -> list[str]:
@@ -143,20 +138,12 @@ def _switching_rows(family: Family) -> list[str]:
     rows = []
     for each in family.switchings:
         up, down = each.changes
-        rows.append(f"{up.before},rises above,{_down(each.up)},{up.after},{_through(up)},{meanwhile}")
-        rows.append(f"{down.before},falls below,{_up(each.down)},{down.after},{_through(down)},{meanwhile}")
+        rows.append(f"{up.before},rises above,{speed_text(each.up)},{up.after},{_through(up)},{meanwhile}")
+        rows.append(
+            f"{down.before},falls below,{speed_text(each.down, up=True)},{down.after},{_through(down)},{meanwhile}"
+        )
     return rows
 
 
 def _through(change: Change) -> str:
     return transition_name(change) if change.how == "transition" else change.how
-
-
-def _up(value: float) -> str:
-    """Write a line speed in m/min, rounded up."""
-    return f"{math.ceil(value * 60 * 10**_DECIMALS) / 10**_DECIMALS:.{_DECIMALS}f}"
-
-
-def _down(value: float) -> str:
-    """Write a line speed in m/min, rounded down."""
-    return f"{math.floor(value * 60 * 10**_DECIMALS) / 10**_DECIMALS:.{_DECIMALS}f}"

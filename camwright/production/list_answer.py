@@ -12,7 +12,7 @@ from camwright.production.changes import Change
 from camwright.production.cut_list import ListPlan, ListStudy
 from camwright.production.list_file import line_run_text
 from camwright.production.tables import TargetSeams, transition_name
-from camwright.validation.production.seams import NO_JUMP
+from camwright.validation.production.seams import NO_JUMP, SeamJump
 
 PLC_HEADER = "piece,length [mm],kind,cam,run first,highest line speed [m/min]"
 CAMS_HEADER = "cam,length [mm],highest line speed [m/min],perfect axis at most [m/min],bears the line's ramp,checks"
@@ -39,9 +39,7 @@ def list_answer(study: ListStudy) -> dict[str, Any]:
         "scrap_mm": asked.scrap * 1e3,
         "matrix": [_change(change) for change in planned.changes.values()],
         "seams": {
-            "velocity_jump_m_per_s": jump.velocity,
-            "acceleration_jump_m_per_s2": jump.acceleration,
-            "position_jump_m": jump.position,
+            **jump_answer(jump),
             "by_target": seams_answer(study.tables),
         },
         "crops": int(asked.crops.sum()),
@@ -77,9 +75,7 @@ def _change(change: Change) -> dict[str, Any]:
         "how": change.how,
         "line_speed_m_per_s": change.line_speed,
         "times": change.times,
-        "velocity_jump_m_per_s": change.jump.velocity,
-        "acceleration_jump_m_per_s2": change.jump.acceleration,
-        "position_jump_m": change.jump.position,
+        **jump_answer(change.jump),
     }
 
 
@@ -102,9 +98,10 @@ def list_files(study: ListStudy) -> dict[str, str]:
     }
 
 
-def _speed(value: float) -> str:
-    """Write a line speed in m/min, rounded down."""
-    return f"{math.floor(value * 60 * 10**_DECIMALS) / 10**_DECIMALS:.{_DECIMALS}f}"
+def speed_text(value: float, *, up: bool = False) -> str:
+    """Write a line speed in m/min, rounded down or up."""
+    scaled = value * 60 * 10**_DECIMALS
+    return f"{(math.ceil(scaled) if up else math.floor(scaled)) / 10**_DECIMALS:.{_DECIMALS}f}"
 
 
 def _pieces(planned: ListPlan) -> list[str]:
@@ -119,14 +116,14 @@ def _pieces(planned: ListPlan) -> list[str]:
     numbers = zip((planned.of + 1).tolist(), planned.asked.gaps.tolist(), planned.highest.tolist(), strict=True)
     for piece, (cam, length, highest) in enumerate(numbers):
         kind = "crop" if crops[piece] else "cut"
-        rows.append(f"{piece + 1},{length * 1e3:.10g},{kind},{cam},{first.get(piece, '')},{_speed(highest)}")
+        rows.append(f"{piece + 1},{length * 1e3:.10g},{kind},{cam},{first.get(piece, '')},{speed_text(highest)}")
     return rows
 
 
 def _cams(planned: ListPlan) -> list[str]:
     """Rows of the table of cams."""
     return [
-        f"{cam.number},{cam.length * 1e3:.10g},{_speed(cam.line_speed)},{_speed(cam.perfect)},"
+        f"{cam.number},{cam.length * 1e3:.10g},{speed_text(cam.line_speed)},{speed_text(cam.perfect)},"
         f"{'yes' if cam.bears_ramps else 'no'},{'passed' if cam.report.passed else 'FAILED'}"
         for cam in planned.cams
     ]
@@ -135,9 +132,18 @@ def _cams(planned: ListPlan) -> list[str]:
 def _changes(planned: ListPlan) -> list[str]:
     """Rows of the table of changes."""
     return [
-        f"{change.before},{change.after},{change.how},{_speed(change.line_speed)},{change.times}"
+        f"{change.before},{change.after},{change.how},{speed_text(change.line_speed)},{change.times}"
         for change in planned.changes.values()
     ]
+
+
+def jump_answer(jump: SeamJump) -> dict[str, float]:
+    """Answer of a jump at a seam."""
+    return {
+        "velocity_jump_m_per_s": jump.velocity,
+        "acceleration_jump_m_per_s2": jump.acceleration,
+        "position_jump_m": jump.position,
+    }
 
 
 def seams_answer(tables: tuple[TargetSeams, ...]) -> dict[str, Any]:
@@ -145,9 +151,7 @@ def seams_answer(tables: tuple[TargetSeams, ...]) -> dict[str, Any]:
     return {
         table.name: {
             "number_format": table.number_format,
-            "velocity_jump_m_per_s": table.jump.velocity,
-            "acceleration_jump_m_per_s2": table.jump.acceleration,
-            "position_jump_m": table.jump.position,
+            **jump_answer(table.jump),
             "passed": table.passed,
             "withheld": {str(number): why for number, why in table.withheld.items()},
             "refused": list(table.refused),

@@ -54,6 +54,11 @@ class ByMethod:
     master_phase: MarkRange
     slave_offset: MarkRange | None
 
+    @property
+    def ranges(self) -> dict[str, MarkRange | None]:
+        """The corrections by the names of what the controller does."""
+        return {"redesign": self.redesign, "master_phase": self.master_phase, "slave_offset": self.slave_offset}
+
 
 @dataclass(frozen=True, eq=False)
 class Marks:

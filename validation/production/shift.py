@@ -104,14 +104,11 @@ class ShiftRun:
     ----------
     lengths
         Length of each piece (m), the first as if the cut before it had been as far off as its own.
-    cut_errors
-        Where the tool is at the cut, mid shear zone, against the material: positive ahead (m).
     sync_errors
         Greatest magnitude of the sync error in the shear zone (m).
     """
 
     lengths: FloatArray
-    cut_errors: FloatArray
     sync_errors: FloatArray
 
 
@@ -150,7 +147,7 @@ def run_shift(shift: Shift, line: LineRun, servo: Servo, disturbance: Disturbanc
             gone = max(0, min(int((moments[done, 0] - begin) / step) - 1, held.shape[1] - 2))
             begin, held = begin + gone * step, held[:, gone:]
     lengths = np.diff(joints) * (1.0 + slip) - np.diff(at_cut, prepend=at_cut[0])
-    return ShiftRun(lengths, at_cut, peaks)
+    return ShiftRun(lengths, peaks)
 
 
 @dataclass(frozen=True, eq=False)
