@@ -16,7 +16,7 @@ from camwright.cli.options import (
     Quiet,
     TableTargets,
     destination,
-    option_quantity,
+    optional_quantity,
     out_folder,
 )
 from camwright.cli.views.files import files_view
@@ -65,11 +65,7 @@ def run(
 ) -> int:
     """Work a cut list out: cams, changes, the fastest line speed, tables whose seams are run, and a table for the PLC."""
     given = load_job(job)
-    ramp = (
-        None
-        if line_acceleration is None
-        else option_quantity("--line-acceleration", line_acceleration, "acceleration", example="0.5 m/s^2")
-    )
+    ramp = optional_quantity("--line-acceleration", line_acceleration, "acceleration", example="0.5 m/s^2")
     asked, rows = line_of(given, ramp), read_cut_list(cut_list)
     place = placed_alike(asked, rows) if common_place else None
     voice = Voice(as_json, quiet)

@@ -63,6 +63,11 @@ TraceColumns = Annotated[
 Quiet = Annotated[bool, typer.Option("--quiet", help="Print neither tables nor progress.")]
 
 
+def optional_quantity(option: str, text: str | None, kind: str, *, example: str) -> float | None:
+    """Read the quantity of an option that may be left out."""
+    return None if text is None else option_quantity(option, text, kind, example=example)
+
+
 def option_quantity(option: str, text: str, kind: str, *, zero: bool = False, example: str | None = None) -> float:
     """Read the quantity of an option as `quantity` does; what is wrong with it is told with the option's name."""
     try:

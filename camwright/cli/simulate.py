@@ -9,7 +9,16 @@ import numpy as np
 import typer
 
 from camwright.answers.measures import with_files
-from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, destination, option_quantity, out_folder
+from camwright.cli.options import (
+    GivenJob,
+    Json,
+    NoFigures,
+    Quiet,
+    destination,
+    option_quantity,
+    optional_quantity,
+    out_folder,
+)
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import View, new_table, new_text, stacked
 from camwright.figures.shift import shift_figure
@@ -83,11 +92,7 @@ def run(
     """Simulate a shift: each piece's length and sync error, with the optimised cams and with linear returns."""
     given = load_job(job)
     rows = read_cut_list(cut_list)
-    ramp = (
-        None
-        if line_acceleration is None
-        else option_quantity("--line-acceleration", line_acceleration, "acceleration", example="0.5 m/s^2")
-    )
+    ramp = optional_quantity("--line-acceleration", line_acceleration, "acceleration", example="0.5 m/s^2")
     if line is not None and ramp is not None:
         raise InputError("--line-acceleration: the line's speed is given by --line; leave one of them out")
     wrong = Disturbances(_length("--noise", noise), slip, _length("--marks", marks), _servos(given, servos), seed)

@@ -17,12 +17,13 @@ from camwright.cli.options import (
     Quiet,
     TraceColumns,
     destination,
-    option_quantity,
+    optional_quantity,
 )
 from camwright.cli.views.checks import checks_view
 from camwright.cli.views.files import files_view
 from camwright.cli.views.parts import View, new_table, new_text, stacked
 from camwright.figures.trace import trace_figure
+from camwright.house.files import read_bytes
 from camwright.house.numbers import Units, number, shown, unit_shown
 from camwright.house.output import Voice
 from camwright.jobs.job import Job, load_job
@@ -31,7 +32,7 @@ from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.stored.profile_files import read_cycle
 from camwright.studies.design import optimise
-from camwright.studies.recording import RecordedRun, recorded_run
+from camwright.studies.recording import MOST_BYTES, RecordedRun, recorded_run
 
 _MOST_SHOWN = 12
 """Cuts that are listed; of more, the first and the last."""
@@ -72,7 +73,7 @@ def run(
 ) -> int:
     """Lay a recorded run over its design: sync error of each cut, lengths, and whether it is offset, drift or scatter."""
     asked = load_job(job)
-    speed = None if line_speed is None else option_quantity("--line-speed", line_speed, "speed", example="40 m/min")
+    speed = optional_quantity("--line-speed", line_speed, "speed", example="40 m/min")
     if gear is not None and not (abs(gear) > 1e-6 and abs(gear) < 1e6):
         raise InputError(
             f"--gear {gear:g}: it is recorded travel over the slave's, from 0.000001 to 1000000; below 0 where it is reversed"
@@ -84,7 +85,9 @@ def run(
         placed, profile = _cam(asked, design)
         step("laying the recording over it")
         with in_job_words(placed.units):
-            found = recorded_run(file, placed, profile, speed, gear, columns)
+            found = recorded_run(
+                read_bytes(file, "recording", MOST_BYTES), str(file), placed, profile, speed, gear, columns
+            )
         if not no_figures:
             step("drawing")
             files = destination("trace", asked, job, out).draw({"trace": trace_figure(found)})

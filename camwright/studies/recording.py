@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from pathlib import Path
 
-from camwright.house.files import read_bytes
 from camwright.house.numbers import with_unit
 from camwright.jobs.job import Job
 from camwright.profiles.machines import Machine
@@ -22,7 +20,7 @@ from camwright.validation.recording.cut_errors import CutError, cut_errors
 from camwright.validation.recording.offset_drift_scatter import Errors, Kind, told_apart
 from camwright.validation.servo.lead import LengthError, length_errors
 
-_MOST_BYTES = 1 << 25
+MOST_BYTES = 1 << 25
 _MOST_ROWS = 200_000
 
 _SMALL = 0.1
@@ -76,7 +74,8 @@ class RecordedRun:
 
 
 def recorded_run(
-    path: Path,
+    data: bytes,
+    place: str,
     job: Job,
     profile: CamProfile,
     line_speed: float | None = None,
@@ -87,8 +86,10 @@ def recorded_run(
 
     Parameters
     ----------
-    path
-        The recording: time, command and actual position, the master's if it was recorded.
+    data
+        The bytes of the recording: time, command and actual position, the master's if it was recorded.
+    place
+        What messages begin with.
     job
         The job, the place of its sync zone chosen.
     profile
@@ -103,23 +104,9 @@ def recorded_run(
     Raises
     ------
     InputError
-        The file cannot be read, or is no run of this cam.
+        It cannot be read, or is no run of this cam.
     """
-    data = read_bytes(path, "recording", _MOST_BYTES)
-    return laid_over(data, str(path), job, profile, line_speed, gear, columns)
-
-
-def laid_over(
-    data: bytes,
-    place: str,
-    job: Job,
-    profile: CamProfile,
-    line_speed: float | None = None,
-    gear: float | None = None,
-    columns: str | None = None,
-) -> RecordedRun:
-    """Lay the bytes of a recording over a cam; as `recorded_run`, messages begin with the place."""
-    text = decode(data, place, _MOST_BYTES)
+    text = decode(data, place, MOST_BYTES)
     trace = read_trace_csv(text, place, most_rows=_MOST_ROWS, master=True, columns=columns)
     trace = _unwrapped(trace, job.machine, job.cut.length, place)
     run = aligned(trace, profile, job.task, place, line_speed, gear)

@@ -14,7 +14,7 @@ from camwright.profiles.polynomial.profile import FloatArray
 from camwright.profiles.tables.text import decode
 from camwright.profiles.tables.trace_csv import read_trace_csv
 from camwright.stored.design_file import StoredDesign, parse_design
-from camwright.studies.recording import RecordedRun, laid_over
+from camwright.studies.recording import RecordedRun, recorded_run
 from camwright.workbench.sampling import POINTS, Samples, rounded, samples
 
 _REACH = 4
@@ -59,7 +59,7 @@ def overlay(text: str, data: bytes, name: str, units: str | None = None, design:
     if design is None:
         raise InputError(f'{name}: a recording is laid over a design; send its design.json as "design"')
     stored = parse_design(design, "design")
-    return {"kind": "trace", **_of_run(laid_over(data, name, stored.job, stored.profile), stored, name)}
+    return {"kind": "trace", **_of_run(recorded_run(data, name, stored.job, stored.profile), stored, name)}
 
 
 def _of_run(found: RecordedRun, stored: StoredDesign, name: str) -> dict[str, Any]:

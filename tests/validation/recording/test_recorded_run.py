@@ -98,7 +98,7 @@ def laid(tmp_path: Path, run: Twin, text: str | None = None, **known: float) -> 
     file = tmp_path / "run.csv"
     unit = "mm" if run.job.machine.slave_unit == "m" else "deg"
     file.write_text(csv_text(run, unit=unit) if text is None else text, encoding="utf-8")
-    return recorded_run(file, run.job, run.profile, **known)
+    return recorded_run(file.read_bytes(), str(file), run.job, run.profile, **known)
 
 
 def tool_error(run: Twin, slave: float) -> float:
