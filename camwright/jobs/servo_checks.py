@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import fields
 
 from camwright.house.numbers import typed
 from camwright.jobs.fields import Known
@@ -11,17 +12,6 @@ from camwright.profiles.servo import Servo, gain_margin, spectral_radius
 from camwright.profiles.servo_tolerance import ServoTolerance
 
 _UNITS = {"bandwidth": "bandwidth", "damping": "1", "position_gain": "1/s"}
-_NEEDED = (
-    "bandwidth",
-    "damping",
-    "position_gain",
-    "sample_time",
-    "velocity_feedforward",
-    "dead_time",
-    "lead_time",
-    "acceleration_feedforward",
-    "jerk_feedforward",
-)
 
 
 def servo_conflicts(known: Known) -> Iterator[str]:
@@ -34,9 +24,10 @@ def servo_conflicts(known: Known) -> Iterator[str]:
     yield from late
     ranges = list(_ranges(known))
     yield from ranges
-    if late or not all(f"servo.{key}" in values for key in _NEEDED):
+    needed = [each.name for each in fields(Servo)]
+    if late or not all(f"servo.{key}" in values for key in needed):
         return  # a servo that samples so late is unstable for this reason alone
-    servo = Servo(**{key: values[f"servo.{key}"] for key in _NEEDED})
+    servo = Servo(**{key: values[f"servo.{key}"] for key in needed})
     radius = spectral_radius(servo)
     if not radius < 1.0:
         yield (
@@ -49,13 +40,8 @@ def servo_conflicts(known: Known) -> Iterator[str]:
 
 def tolerance_of(known: Known, servo: Servo) -> ServoTolerance:
     """Ranges of a servo's parameters; those that the job file does not give have no width."""
-    return ServoTolerance(
-        bandwidth=ends(known.spreads.get("bandwidth"), servo.bandwidth),
-        damping=ends(known.spreads.get("damping"), servo.damping),
-        position_gain=ends(known.spreads.get("position_gain"), servo.position_gain),
-        sample_time=ends(known.spreads.get("sample_time"), servo.sample_time),
-        dead_time=ends(known.spreads.get("dead_time"), servo.dead_time),
-    )
+    names = [each.name for each in fields(ServoTolerance)]
+    return ServoTolerance(**{key: ends(known.spreads.get(key), getattr(servo, key)) for key in names})
 
 
 def _sampling(known: Known) -> Iterator[str]:

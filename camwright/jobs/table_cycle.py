@@ -241,11 +241,8 @@ def _with_end(table: CamTable, job: Job, units: Units, asked: float | None) -> t
     step = float(table.x[-1] - table.x[-2])
     missing = length - table.period
     if abs(missing) > _NEAR * step and abs(missing + step) <= _NEAR * step and table.points > 3:
-        shorter = CamTable(
-            table.x[:-1], table.y[:-1], table.ratio[:-1], table.ratio_slope[:-1], table.laws[:-1], table.units,
-            table.periodic, table.notes, table.words,
-        )  # fmt: skip
-        return shorter, ("the last row is one step beyond the cycle and was left out",)
+        rows = {name: getattr(table, name)[:-1] for name in ("x", "y", "ratio", "ratio_slope", "laws")}
+        return replace(table, **rows), ("the last row is one step beyond the cycle and was left out",)
     if abs(missing - step) > _NEAR * step or step > _WIDEST * length:
         return table, ()
     travel = (job.machine.pitch if asked is None else asked) / units.slave.size
@@ -253,16 +250,13 @@ def _with_end(table: CamTable, job: Job, units: Units, asked: float | None) -> t
     slack = 2.0 * max(abs(float(table.y[-1] - table.y[-2])), abs(float(table.y[1] - table.y[0])), 1e-12)
     if abs(float(table.y[0]) + travel - meant) > slack:
         return table, ()
-    longer = CamTable(
-        np.append(table.x, table.x[0] + length),
-        np.append(table.y, table.y[0] + travel),
-        np.append(table.ratio, table.ratio[0]),
-        np.append(table.ratio_slope, table.ratio_slope[0]),
-        (*table.laws, table.laws[-1]),
-        table.units,
-        table.periodic,
-        table.notes,
-        table.words,
+    longer = replace(
+        table,
+        x=np.append(table.x, table.x[0] + length),
+        y=np.append(table.y, table.y[0] + travel),
+        ratio=np.append(table.ratio, table.ratio[0]),
+        ratio_slope=np.append(table.ratio_slope, table.ratio_slope[0]),
+        laws=(*table.laws, table.laws[-1]),
     )
     note = (
         "the row that ends the cycle is missing: it was added one step behind the last, "

@@ -7,6 +7,7 @@ import re
 
 from camwright.house.units import quantity
 from camwright.jobs.job import Job
+from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
 from camwright.profiles.machines import Machine
 from camwright.profiles.tables.cam_table import CamTable, Unit, Units
@@ -50,7 +51,7 @@ def parse_units(text: str, task: Task, period: float | None = None) -> Units:
     names = [name.strip() for name in text.split(",")]
     if len(names) != 2:
         raise InputError(f"--units takes the master's unit and the slave's, for example mm,deg; got {text[:40]!r}")
-    master = {**_LENGTHS, "deg": cut.length / 360.0, "rad": 0.5 * cut.length / math.pi, "rev": cut.length}
+    master = _master_units(cut)
     if period is not None:
         master["cycle"] = cut.length / period
     return Units(
@@ -117,14 +118,7 @@ def _from_words(table: CamTable, job: Job, place: str) -> tuple[Units, tuple[str
     notes: list[str] = []
     master = Unit("master unit", cut.length / table.period)
     if master_word is not None:
-        master = Unit(
-            *_unit(
-                master_word,
-                {**_LENGTHS, "deg": cut.length / 360.0, "rad": 0.5 * cut.length / math.pi, "rev": cut.length},
-                "length",
-                cut.length,
-            )
-        )
+        master = Unit(*_unit(master_word, _master_units(cut), "length", cut.length))
     else:
         notes.append(
             f"the master's unit is not in the file: its period, {table.period:.6g}, is taken for the cut length "
@@ -156,6 +150,11 @@ def _slave_word(word: str, machine: Machine, place: str) -> tuple[str, float]:
             "job that the file was made for"
         )
     return word, known[word]
+
+
+def _master_units(cut: Cut) -> dict[str, float]:
+    """Units of the master: lengths, and parts of the cycle."""
+    return {**_LENGTHS, "deg": cut.length / 360.0, "rad": 0.5 * cut.length / math.pi, "rev": cut.length}
 
 
 def _slave_units(machine: Machine) -> dict[str, float]:
