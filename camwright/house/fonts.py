@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -9,6 +10,7 @@ _LATIN = Path(__file__).with_name("typefaces") / "DejaVuSans.ttf"
 _HAN = ("pylopdf_fonts_zh_cn", "NotoSansSC-Regular.otf")
 
 
+@cache
 def font_files() -> tuple[Path, Path]:
     """Find DejaVu Sans and Noto Sans SC.
 

@@ -35,6 +35,16 @@ def fixed_text(value: float | None, words: Catalogue) -> str:
     return words("nothing") if value is None else length_text(value, "m", words.units)
 
 
+def record_block(rows: list[list[str]], words: Catalogue) -> Block:
+    """Set the record that is filled in at the machine: what was designed beside what is found and left."""
+    return {
+        "kind": "record",
+        "head": [words(f"column.{key}") for key in ("quantity", "value", "as_found", "as_left")],
+        "rows": rows,
+        "fields": [words(f"record.{key}") for key in ("machine", "name", "date", "signature")],
+    }
+
+
 _SHORT = 60
 
 

@@ -14,7 +14,7 @@ from camwright.house.numbers import SHOWN, Units, converted, unit_shown
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.recipes.catalogue import catalogue_of
-from camwright.recipes.facts import GROUPS
+from camwright.recipes.facts import AT_SPEED, GROUPS
 from camwright.recipes.model import Recipe, RecipeCheck, RecipeTable
 from camwright.recipes.recipe_file import RECIPE_FILE, parse_recipe
 from camwright.stored.design_file import MOST_BYTES
@@ -194,23 +194,9 @@ def _released(recipe: Recipe) -> str:
     )
 
 
-_SPEED_UNITS = {
-    "line_speed": "m/s",
-    "motor_speed": "rad/s",
-    "peak_torque": "N m",
-    "rms_torque": "N m",
-    "following_error": "m",
-    "sync_error": "m",
-    "worst_sync_error": "m",
-    "length_offset": "m",
-    "length_offset_with_lead": "m",
-    "length_variation": "m",
-}
-
-
 def _speeds(before: Recipe, after: Recipe, shown_in: Units) -> Iterator[Change]:
     for rows in zip(before.speeds, after.speeds, strict=False):
-        for name, unit in _SPEED_UNITS.items():
+        for name, unit in AT_SPEED.items():
             yield _change(
                 "speeds", f"{name} at {100 * rows[0].share:g} %", [unit], [getattr(row, name) for row in rows], shown_in
             )

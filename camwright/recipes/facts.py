@@ -60,6 +60,23 @@ PRODUCT = {
 
 LINE = {"acceleration": "m/s^2", "stop": "m/s^2", "jerk": "m/s^3"}
 
+POWERS = {"speed": "/s", "acceleration": "/s^2", "jerk": "/s^3"}
+"""Measures of the slave, by what follows its unit."""
+
+AT_SPEED = {
+    "line_speed": "m/s",
+    "motor_speed": "rad/s",
+    "peak_torque": "N m",
+    "rms_torque": "N m",
+    "following_error": "m",
+    "sync_error": "m",
+    "worst_sync_error": "m",
+    "length_offset": "m",
+    "length_offset_with_lead": "m",
+    "length_variation": "m",
+}
+"""What is expected at a line speed, besides the measures of the slave."""
+
 SERVO = {
     "bandwidth": "bandwidth",
     "damping": "1",
@@ -101,8 +118,7 @@ def product_facts(recipe: Recipe) -> list[Fact]:
 def limit_facts(recipe: Recipe) -> list[Fact]:
     """List the limits of the slave, and the ramps of the line that it keeps them in."""
     limits, unit = recipe.job.si["limits"], recipe.slave_unit
-    powers = {"speed": "/s", "acceleration": "/s^2", "jerk": "/s^3"}
-    facts = [Fact(key, limits[key], unit + power) for key, power in powers.items()]
+    facts = [Fact(key, limits[key], unit + power) for key, power in POWERS.items()]
     turns_back = MACHINES[recipe.job.si["machine"]["kind"]].turns_back  # a carriage cannot help it
     facts.append(Fact("reversal", limits["reversal"] or turns_back, "word"))
     if limits["motor"] is not None:

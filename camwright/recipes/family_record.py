@@ -5,15 +5,14 @@ from __future__ import annotations
 import json
 from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
+from pydantic import ConfigDict, Field
 from pydantic.dataclasses import dataclass
 
-from camwright.profiles.errors import InputError
 from camwright.recipes.family_sheet import FAMILY_FILE
 from camwright.recipes.model import Objective, RecipeCheck
+from camwright.recipes.recipe_file import parse_record
 
 _STRICT = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
-_MOST_FAULTS = 20
 
 
 @dataclass(frozen=True, config=_STRICT)
@@ -147,13 +146,5 @@ def parse_family(content: bytes) -> dict[str, Any]:
     InputError
         It is none of this version: each fault with its place in the file.
     """
-    try:
-        TypeAdapter(FamilyRecord).validate_json(content)
-    except ValidationError as error:
-        raise InputError(
-            *(
-                f"{FAMILY_FILE}: {'.'.join(map(str, entry['loc'])) or 'the file'}: {entry['msg']}"
-                for entry in error.errors(include_url=False)[:_MOST_FAULTS]
-            )
-        ) from error
+    parse_record(FamilyRecord, content, FAMILY_FILE)
     return dict(json.loads(content))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from camwright.house.numbers import converted, inside, number, shown, with_unit
-from camwright.recipes.blocks import Block, shortened, table_block, text_block, visible
+from camwright.recipes.blocks import Block, record_block, shortened, table_block, text_block, visible
 from camwright.recipes.catalogue import Catalogue, catalogue_of
 from camwright.recipes.facts import PRODUCT, fact_text, listed, servo_rows
 from camwright.recipes.html import page
@@ -173,11 +173,4 @@ def _record(record: dict[str, Any], words: Catalogue) -> list[Block]:
         for way, pair, up in (("up", ("slower", "faster"), False), ("down", ("faster", "slower"), True)):
             told = " → ".join(str(each[cam]) for cam in pair)
             rows.append([words(f"record.switching_{way}", change=told), _speed(each[f"{way}_m_per_s"], words, up=up)])
-    return [
-        {
-            "kind": "record",
-            "head": [words(f"column.{key}") for key in ("quantity", "value", "as_found", "as_left")],
-            "rows": rows,
-            "fields": [words(f"record.{key}") for key in ("machine", "name", "date", "signature")],
-        }
-    ]
+    return [record_block(rows, words)]

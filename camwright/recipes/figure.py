@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from camwright.house.numbers import Units, converted, shown, unit_shown
+from camwright.house.numbers import Units, converted, unit_shown
 from camwright.house.pictures import DASHED, Band, Frame, Line, Look, Picture
 from camwright.house.svg import picture_svg
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
@@ -127,8 +127,3 @@ def _frame(
 
 def _limit(value: float, length: float, label: str = "") -> Line:
     return Line(np.array([[0.0, value], [length, value]]), _INK, 1.0, label, DASHED)
-
-
-def figure_caption(recipe: Recipe, words: Catalogue) -> str:
-    """Say what the figure shows."""
-    return words("figure.caption", line_speed=shown(recipe.job.si["cut"]["line_speed"], "m/s", units=words.units))

@@ -8,7 +8,7 @@ from camwright.house.numbers import (
     with_unit,
 )
 from camwright.jobs.numbers import stored_machine
-from camwright.recipes.blocks import Block, fixed_text, text_block
+from camwright.recipes.blocks import Block, fixed_text, record_block, text_block
 from camwright.recipes.catalogue import Catalogue
 from camwright.recipes.model import AtSpeed, Recipe, RecipeTable
 from camwright.recipes.release import marked, outside_note
@@ -135,11 +135,4 @@ def record(recipe: Recipe, words: Catalogue) -> list[Block]:
     }
     length = shown(recipe.job.si["cut"]["length"], "m", units=words.units)
     designed |= {f"length_{share}": length for share in (25, 50, 100)}
-    return [
-        {
-            "kind": "record",
-            "head": [words(f"column.{key}") for key in ("quantity", "value", "as_found", "as_left")],
-            "rows": [[_record_name(key, recipe, words), value] for key, value in designed.items()],
-            "fields": [words(f"record.{key}") for key in ("machine", "name", "date", "signature")],
-        }
-    ]
+    return [record_block([[_record_name(key, recipe, words), value] for key, value in designed.items()], words)]

@@ -79,13 +79,7 @@ def printable(text: str) -> str:
 
 def has_glyph(code: int) -> bool:
     """Whether one of the fonts shows a code point."""
-    return any(code in _covered(file) for file in _fonts())
-
-
-@cache
-def _fonts() -> tuple[Path, Path]:
-    """Keep where the fonts are."""
-    return font_files()
+    return any(code in _covered(file) for file in font_files())
 
 
 @cache

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import astuple
+
 from camwright.house.numbers import in_print, shown, unit_shown, with_unit
 from camwright.production.marks import at_speeds
 from camwright.production.ramps import Ramps, fastest_standing, ramps
@@ -77,7 +79,7 @@ def start_blocks(recipe: Recipe, words: Catalogue) -> list[Block]:
     units_of = (slave, "m", "s", f"{slave}/s^2")
     names = ("start.arc", "start.master", "start.time", "start.peak")
     rows = [
-        [words(key), *(shown(value, unit, 5, units) for value, unit in zip(_values(ramp), units_of, strict=True))]
+        [words(key), *(shown(value, unit, 5, units) for value, unit in zip(astuple(ramp), units_of, strict=True))]
         for key, ramp in (("start.in", found.ramp_in), ("start.out", found.ramp_out))
     ]
     head = ["", *(words(name, unit=unit_shown(unit, units)) for name, unit in zip(names, units_of, strict=True))]
@@ -118,10 +120,6 @@ def _table_blocks(recipe: Recipe, words: Catalogue) -> list[Block]:
         *([text_block(words("start.files"))] if written else []),
         *why,
     ]
-
-
-def _values(ramp: RampRecord) -> tuple[float, float, float, float]:
-    return ramp.arc, ramp.master, ramp.time, ramp.peak_acceleration
 
 
 def _told(value: float | None, unit: str, words: Catalogue) -> str:

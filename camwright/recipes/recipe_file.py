@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict
-from typing import Any
+from typing import Any, TypeVar
 
 from pydantic import TypeAdapter, ValidationError
 
@@ -12,6 +12,8 @@ from camwright.house.provenance import SCHEMA_VERSION
 from camwright.profiles.errors import InputError
 from camwright.recipes.model import Particulars, Recipe
 from camwright.stored.design_file import StoredDesign, design_schema, parse_design
+
+Record = TypeVar("Record")
 
 RECIPE_FILE = "recipe.json"
 
@@ -51,16 +53,21 @@ def parse_recipe(text: str, place: str) -> Recipe:
         It is not a recipe.json of this version: each fault with its place in the file.
     """
     try:
-        return TypeAdapter(Recipe).validate_json(text, strict=True)
-    except ValidationError as error:
-        faults = [_fault(entry["loc"], entry["msg"]) for entry in error.errors(include_url=False)[:_MOST_FAULTS]]
-        raise InputError(*(f"{place}: {fault}" for fault in faults)) from error
+        return parse_record(Recipe, text, place)
     except RecursionError as error:
         raise InputError(f"{place}: not a recipe.json: nested too deeply") from error
 
 
-def _fault(where: tuple[int | str, ...], message: str) -> str:
-    return f"{'.'.join(str(part) for part in where) or 'the file'}: {message}"
+def parse_record(model: type[Record], text: str | bytes, place: str) -> Record:
+    """Read JSON by a model; `InputError` names each fault with its place in the file."""
+    try:
+        return TypeAdapter(model).validate_json(text, strict=True)
+    except ValidationError as error:
+        faults = [
+            f"{place}: {'.'.join(map(str, entry['loc'])) or 'the file'}: {entry['msg']}"
+            for entry in error.errors(include_url=False)[:_MOST_FAULTS]
+        ]
+        raise InputError(*faults) from error
 
 
 def stored_design(recipe: Recipe) -> StoredDesign:

@@ -20,8 +20,7 @@ from camwright.recipes.blocks import (
     visible,
 )
 from camwright.recipes.catalogue import Catalogue
-from camwright.recipes.facts import GROUPS, fact_text
-from camwright.recipes.figure import figure_caption
+from camwright.recipes.facts import AT_SPEED, GROUPS, POWERS, fact_text
 from camwright.recipes.instructions import before, imports, record
 from camwright.recipes.judgements import (
     checks,
@@ -126,30 +125,17 @@ def _group(recipe: Recipe, heading: str, words: Catalogue) -> Block:
 
 
 def _cam(recipe: Recipe, words: Catalogue) -> list[Block]:
-    return [{"kind": "figure", "caption": figure_caption(recipe, words)}]
+    speed = shown(recipe.job.si["cut"]["line_speed"], "m/s", units=words.units)
+    return [{"kind": "figure", "caption": words("figure.caption", line_speed=speed)}]
 
 
-def speed_columns(recipe: Recipe) -> list[tuple[str, str, str]]:
-    """List the columns of what to expect at lower line speeds: key of the heading, field of `AtSpeed`, SI unit."""
-    unit = recipe.slave_unit
-    columns = [
-        ("column.line_speed", "line_speed", "m/s"),
-        ("column.speed", "speed", f"{unit}/s"),
-        ("column.acceleration", "acceleration", f"{unit}/s^2"),
-        ("column.jerk", "jerk", f"{unit}/s^3"),
-        ("column.motor_speed", "motor_speed", "rad/s"),
-        ("column.peak_torque", "peak_torque", "N m"),
-        ("column.rms_torque", "rms_torque", "N m"),
-        ("column.following_error", "following_error", "m"),
-        ("column.sync_error", "sync_error", "m"),
-        ("column.worst_sync_error", "worst_sync_error", "m"),
-        ("column.length_offset", "length_offset", "m"),
-        ("column.length_offset_with_lead", "length_offset_with_lead", "m"),
-        ("column.length_variation", "length_variation", "m"),
-    ]
+def speed_columns(recipe: Recipe) -> dict[str, str]:
+    """List the columns of what to expect at lower line speeds: field of `AtSpeed`, after which the heading is called, and SI unit."""
+    slave = {name: recipe.slave_unit + power for name, power in POWERS.items()}
     lacking = ["peak_torque", "rms_torque"] if all(row.peak_torque is None for row in recipe.speeds) else []
     lacking += ["worst_sync_error"] if all(row.worst_sync_error is None for row in recipe.speeds) else []
-    return [column for column in columns if column[1] not in lacking]
+    columns = {"line_speed": AT_SPEED["line_speed"], **slave, **AT_SPEED}
+    return {name: unit for name, unit in columns.items() if name not in lacking}
 
 
 def _speeds(recipe: Recipe, words: Catalogue) -> list[Block]:
@@ -159,11 +145,11 @@ def _speeds(recipe: Recipe, words: Catalogue) -> list[Block]:
         *(marked(words.number(100.0 * row.share), recipe, row.line_speed) for row in recipe.speeds),
     ]
     rows = []
-    for key, field, unit in speed_columns(recipe):
+    for field, unit in speed_columns(recipe).items():
         values = [getattr(row, field) for row in recipe.speeds]
         rows.append(
             [
-                words(key, unit=unit_shown(unit, words.units)),
+                words(f"column.{field}", unit=unit_shown(unit, words.units)),
                 *(words("nothing") if value is None else length_text(value, unit, words.units) for value in values),
             ]
         )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
 from functools import partial
@@ -200,7 +201,7 @@ def _own_faults(recipe: Recipe, design: StoredDesign, content: bytes) -> Iterato
     if recipe_text(recipe).encode() != content:
         yield "its bytes are not those that were written"
     numbers = job_numbers(design.job)
-    for path, stored, again in _differences(recipe.job.si, _lists(numbers)):
+    for path, stored, again in _differences(recipe.job.si, json.loads(json.dumps(numbers))):
         yield f"job.si{path} is {stored!r}, the job's text says {again!r}"
     if recipe.provenance.camwright == camwright_version():
         for path in _missing(recipe.job.si, numbers):
@@ -213,13 +214,6 @@ def _own_faults(recipe: Recipe, design: StoredDesign, content: bytes) -> Iterato
     released = sound and bool(recipe.speed_band)
     if recipe.released is not released:
         yield f"released is {recipe.released}, its checks say {released}"
-
-
-def _lists(value: Any) -> Any:
-    """Turn tuples into lists, as JSON gives them back."""
-    if isinstance(value, dict):
-        return {key: _lists(each) for key, each in value.items()}
-    return [_lists(each) for each in value] if isinstance(value, list | tuple) else value
 
 
 def _differences(stored: Any, again: Any, path: str = "") -> Iterator[tuple[str, Any, Any]]:

@@ -163,11 +163,11 @@ def _speeds(page: _Page, recipe: Recipe, words: Catalogue) -> None:
     page.head(
         words("column.share_of_speed"),
         words("column.released"),
-        *(words(key, unit=unit_shown(unit, words.units)) for key, _, unit in columns),
+        *(words(f"column.{name}", unit=unit_shown(unit, words.units)) for name, unit in columns.items()),
         fixed=True,
     )
     for row in recipe.speeds:
-        values = [(getattr(row, field), unit) for _, field, unit in columns]
+        values = [(getattr(row, name), unit) for name, unit in columns.items()]
         page.row(
             100.0 * row.share,
             words("yes" if released_at(recipe, row.line_speed) else "no"),
