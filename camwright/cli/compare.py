@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -19,8 +20,8 @@ from camwright.figures.tradeoff import tradeoff_figure
 from camwright.house.output import Voice
 from camwright.jobs.job import Job, load_job
 from camwright.profiles.errors import InputError
-from camwright.studies.comparison import Comparison, compare, law_names, require_laws, with_screw
-from camwright.studies.screw import require_screw
+from camwright.studies.comparison import Comparison, compare, law_names, require_laws
+from camwright.studies.screw import require_screw, screw_carriage
 from camwright.studies.tradeoff import step_count, trade_off, tradeoff_answer
 
 
@@ -61,7 +62,7 @@ def run(
         result = compare(asked, names=names, step=step)
         if screw:
             step("designing the carriage on a screw")
-            result = with_screw(result)
+            result = replace(result, screw=screw_carriage(result.job, result["optimised"]))
         if not no_figures:
             step("writing files")
             files = destination("compare", asked, job, out).write({}, {"comparison": bars_figure(result)})

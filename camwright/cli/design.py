@@ -73,11 +73,13 @@ def run(
             step("looking for a way out")
             ways = remedies(asked, result.report, result.band)
             bands = None if result.passed else family_of(asked)
-
     if brief:
-        voice.answer(lambda: brief_answer(result, files), lambda: _brief_view(result, files))
+        voice.answer(lambda: brief_answer(result, files), lambda: _view(result, files))
     else:
-        voice.answer(lambda: design_answer(result, ways, bands, files), lambda: _view(result, ways, bands, files))
+        voice.answer(
+            lambda: design_answer(result, ways, bands, files),
+            lambda: _view(result, files, _ways(result, ways, bands)),
+        )
     return 0 if result.passed else 1
 
 
@@ -89,31 +91,23 @@ def _compare(design: Design, step: Step) -> None:
     _ = design.lengths
 
 
-def _view(design: Design, ways: Sequence[Remedy], bands: Bands | None, files: Sequence[Path]) -> View:
-    """Show a design: objective, comparison, checks, minimum cut lengths, files."""
-    lengths = [] if design.lengths is None else [lengths_view(design.lengths, design.job.units)]
+def _view(design: Design, files: Sequence[Path], ways: Sequence[View] | None = None) -> View:
+    """Show a design: objective, checks, files, line speeds; if it is not brief also comparison, minimum cut lengths and ways out."""
+    compared: list[View] = []
+    lengths: list[View] = []
+    if ways is not None:
+        compared.append(profiles_view(design.comparison))
+        lengths.append(lead_view(design.job, design.report.length_errors))
+        lengths += [] if design.lengths is None else [lengths_view(design.lengths, design.job.units)]
     return stacked(
         new_text("\n".join(_head(design))),
-        profiles_view(design.comparison),
+        *compared,
         checks_view(design.report.checks, design.job.units),
         *_axis(design),
-        lead_view(design.job, design.report.length_errors),
         *lengths,
         files_view(files),
         band_view(design.band, design.job.units),
-        *_ways(design, ways, bands),
-        new_text(_verdict(design), "bold" if design.passed else "bold red"),
-    )
-
-
-def _brief_view(design: Design, files: Sequence[Path]) -> View:
-    """Show the cam and its proof: objective, checks, files, line speeds."""
-    return stacked(
-        new_text("\n".join(_head(design))),
-        checks_view(design.report.checks, design.job.units),
-        *_axis(design),
-        files_view(files),
-        band_view(design.band, design.job.units),
+        *(ways or []),
         new_text(_verdict(design), "bold" if design.passed else "bold red"),
     )
 

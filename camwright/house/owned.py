@@ -159,7 +159,11 @@ def _settled(new: Path, directory: Path, work: Work, unlisted: frozenset[str], n
 
 def _listed(entries: list[Entry], work: Work, fresh: Mapping[str, str], unlisted: frozenset[str]) -> list[Entry]:
     """Enter what was written; of the entries before, those of other works, and where a work adds to itself its own."""
-    kept = [_without(entry, fresh) for entry in entries if work.adds or not entry.of(work)]
+    kept = [
+        replace(entry, files={name: digest for name, digest in entry.files.items() if name not in fresh})
+        for entry in entries
+        if work.adds or not entry.of(work)
+    ]
     same = [entry for entry in kept if entry.of(work) and entry.sha256 == work.sha256]
     own = {name: digest for entry in same for name, digest in entry.files.items()}
     own |= {name: digest for name, digest in fresh.items() if name not in unlisted}
@@ -239,10 +243,6 @@ def _text(entries: list[Entry]) -> str:
     ordered = sorted(entries, key=lambda entry: (entry.command, entry.name))
     written = [{**vars(entry), "files": dict(sorted(entry.files.items()))} for entry in ordered]
     return json.dumps({"kind": _KIND, "schema_version": 1, "written": written}, indent=1) + "\n"
-
-
-def _without(entry: Entry, fresh: Mapping[str, str]) -> Entry:
-    return replace(entry, files={name: digest for name, digest in entry.files.items() if name not in fresh})
 
 
 def _require_ours(directory: Path, files: Mapping[str, str]) -> None:

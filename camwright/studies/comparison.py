@@ -20,7 +20,7 @@ from camwright.profiles.returns import (
 from camwright.profiles.task import Task
 from camwright.studies.measured import Measured, measured
 from camwright.studies.remedies import solve_or_advise
-from camwright.studies.screw import ScrewCarriage, screw_carriage
+from camwright.studies.screw import ScrewCarriage
 
 QUINTIC = "quintic"
 """The return of S2; where the polynomial 3-4-5 would run backwards it decelerates, perhaps stands, and accelerates."""
@@ -150,14 +150,3 @@ def law_profile(name: str, task: Task) -> CamProfile:
         return baseline(name, task)
     height = task.machine.pitch / cut.sync_ratio - cut.sync_zone  # S2 has ratio 1 in sync
     return assemble(quintic_return(cut.return_zone, height).scale(slave=cut.sync_ratio), task)
-
-
-def with_screw(comparison: Comparison) -> Comparison:
-    """Add the carriage on a screw to the comparison of a crank.
-
-    Raises
-    ------
-    InputError
-        There is none: `camwright.studies.screw.screw_carriage`.
-    """
-    return replace(comparison, screw=screw_carriage(comparison.job, comparison["optimised"]))
