@@ -6,16 +6,18 @@ import hashlib
 import json
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args, get_type_hints
 
 from camwright.house.files import read_text
 from camwright.house.provenance import SCHEMA_VERSION
 from camwright.jobs.job import Job, parse_job
+from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
 from camwright.profiles.machines import MACHINES, Machine
 from camwright.profiles.machines.fields import Choice, MachineField, Whole, fields_of
 from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.polynomial.profile import CamProfile
+from camwright.profiles.servo import Servo
 from camwright.profiles.servo_tolerance import ServoTolerance
 
 MOST_BYTES = 1 << 26
@@ -125,6 +127,15 @@ def _field_schema(each: MachineField, machine: type[Machine]) -> dict[str, Any]:
     return {"type": "number"}
 
 
+def _numbers_schema(kind: type) -> dict[str, Any]:
+    """Describe the numbers, words and switches of a dataclass by its types; what may be left out is a number where it is there."""
+    known = {float: "number", float | None: "number", bool: "boolean"}
+    return {
+        name: {"type": known[of]} if of in known else {"enum": list(get_args(of))}
+        for name, of in get_type_hints(kind).items()
+    }
+
+
 def design_schema() -> dict[str, Any]:
     """Make the JSON Schema of a design.json."""
     number, whole, text = {"type": "number"}, {"type": "integer"}, {"type": "string"}
@@ -139,9 +150,11 @@ def design_schema() -> dict[str, Any]:
     def lax(left_out: tuple[str, ...], **entries: Any) -> dict[str, Any]:
         return table(**entries) | {"required": [key for key in entries if key not in left_out]}
 
+    def nullable(description: str, **entries: Any) -> dict[str, Any]:
+        return {"oneOf": [{"type": "null"}, table(**entries)], "description": description}
+
     ends = {"type": "array", "items": number, "minItems": 2, "maxItems": 2}
-    pairs = {"type": "array", "items": {"type": "array", "items": number, "minItems": 2, "maxItems": 2}}
-    curve = {"oneOf": [{"type": "null"}, table(points=pairs)], "description": "motor speed (rad/s) and torque (N m)"}
+    curve = nullable("motor speed (rad/s) and torque (N m)", points={"type": "array", "items": ends})
     machines = [
         table(kind={"const": kind}, **{each.key: _field_schema(each, machine) for each in fields_of(machine)})
         for kind, machine in MACHINES.items()
@@ -160,35 +173,31 @@ def design_schema() -> dict[str, Any]:
             "type": "string",
             "description": "how the lower bound was found; none where there is none, not computed in a book",
         },
-        starts={
-            "oneOf": [
-                {"type": "null"},
-                table(converged=whole, agreeing=whole, spread=number, residual=number, valleys=whole),
-            ],
-            "description": "agreement of several starts; null where the problem is convex",
-        },
-        servo_aware={
-            "oneOf": [
-                {"type": "null"},
-                table(
-                    mode={"enum": ["in_sync", "shaped"]},
-                    designed_error_mm=number,
-                    simulated_error_mm=number,
-                    phases=whole,
-                    axis_limits={"type": "boolean"},
-                    line_speeds_m_per_s=ends,
-                    line_speeds_used_m_per_s=numbers,
-                ),
-            ],
-            "description": "sync error of the axis in the shear zone; null for a servo-blind design",
-        },
-        robust={
-            "oneOf": [
-                {"type": "null"},
-                table(worst_error_mm=number, draws=whole, designed_worst_error_mm=maybe, vertices=whole),
-            ],
-            "description": "sync error over the ranges of the servo; null where the job gives none",
-        },
+        starts=nullable(
+            "agreement of several starts; null where the problem is convex",
+            converged=whole,
+            agreeing=whole,
+            spread=number,
+            residual=number,
+            valleys=whole,
+        ),
+        servo_aware=nullable(
+            "sync error of the axis in the shear zone; null for a servo-blind design",
+            mode={"enum": ["in_sync", "shaped"]},
+            designed_error_mm=number,
+            simulated_error_mm=number,
+            phases=whole,
+            axis_limits={"type": "boolean"},
+            line_speeds_m_per_s=ends,
+            line_speeds_used_m_per_s=numbers,
+        ),
+        robust=nullable(
+            "sync error over the ranges of the servo; null where the job gives none",
+            worst_error_mm=number,
+            draws=whole,
+            designed_worst_error_mm=maybe,
+            vertices=whole,
+        ),
         profile=table(
             breaks={**numbers, "minItems": 2, "description": "ends of the pieces on the master (m)"},
             coefficients={
@@ -203,44 +212,17 @@ def design_schema() -> dict[str, Any]:
             si=table(
                 name=text,
                 machine={"oneOf": machines},
-                cut=lax(
-                    ("sync_time", "shear_time"),
-                    length=number,
-                    line_speed=number,
-                    sync_zone=number,
-                    shear_zone=number,
-                    shear_zone_at=number,
-                    sync_tolerance=number,
-                    origin={"enum": ["return", "cut"]},
-                    sync_ratio=number,
-                    shaped={"type": "boolean"},
-                    sync_time=number,
-                    shear_time=number,
-                ),
+                cut=lax(("sync_time", "shear_time"), **_numbers_schema(Cut)),
                 limits=table(speed=number, acceleration=number, jerk=number, reversal={"type": "boolean"}, motor=curve),
-                servo=lax(
-                    ("acceleration_feedforward", "jerk_feedforward"),
-                    bandwidth=number,
-                    damping=number,
-                    position_gain=number,
-                    sample_time=number,
-                    velocity_feedforward=number,
-                    dead_time=number,
-                    lead_time=number,
-                    acceleration_feedforward=number,
-                    jerk_feedforward=number,
-                ),
+                servo=lax(("acceleration_feedforward", "jerk_feedforward"), **_numbers_schema(Servo)),
                 objective={"enum": objectives},
                 servo_aware={"type": "boolean"},
                 command={"enum": ["in_sync", "shaped"]},
                 slowest={**number, "description": "least line speed to be in sync at over that of the cut"},
-                servo_tolerance={
-                    "oneOf": [
-                        {"type": "null"},
-                        table(**dict.fromkeys(ServoTolerance.__dataclass_fields__, ends)),
-                    ],
-                    "description": "least and greatest value of each parameter of the servo",
-                },
+                servo_tolerance=nullable(
+                    "least and greatest value of each parameter of the servo",
+                    **dict.fromkeys(ServoTolerance.__dataclass_fields__, ends),
+                ),
                 points={"type": "integer", "minimum": 2},
             ),
         ),
