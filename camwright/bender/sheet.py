@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import shutil
 import tempfile
 from pathlib import Path
@@ -11,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from camwright.bender.answer import BentDrawing
-from camwright.bender.bend_list import BendRow, BridgeRow, bend_rows, bridge_rows
+from camwright.bender.bend_list import BridgeRow, bend_rows, bridge_rows
 from camwright.bender.catalogue import SheetWords, sheet_words
 from camwright.bender.job import BenderJob
 from camwright.bender.program_file import ROUNDING, BentOutline
@@ -124,7 +125,7 @@ def _outline_data(outline: BentOutline, style: str, result: BentDrawing, words: 
         "feed": number(1e3 * outline.run.feed_overshoot[0], ".4f"),
         "mould": number(float(np.degrees(outline.run.mould_overshoot[0])), ".4f"),
     }
-    rows, bridges = bend_rows(outline, result.job, _MOST_ROWS), bridge_rows(outline, result.job)
+    bridges = bridge_rows(outline, result.job)
     return {
         "name": outline.program.name,
         "source": words.said(outline.plan.outline.name),
@@ -140,24 +141,25 @@ def _outline_data(outline: BentOutline, style: str, result: BentDrawing, words: 
             [words("collisions"), _collision_words(outline, result.job, words)],
             [words("bridges"), _bridge_words(len(outline.bridges), result.job, words)],
         ],
-        "bends": [_row(row, words) for row in rows],
-        "left_out": outline.plan.bends - len(rows),
+        "bends": [_row(row, words) for row in bend_rows(outline, result.job, _MOST_ROWS)],
+        "left_out": max(0, outline.plan.bends - _MOST_ROWS),
         "last_feed": number(outline.program.feeds[-1] / 1e3, ".3f"),
         "bridges": [_bridge_row(row, words) for row in bridges[:_MOST_ROWS]],
         "bridges_left_out": max(0, len(bridges) - _MOST_ROWS),
     }
 
 
-def _row(row: BendRow, words: SheetWords) -> list[str]:
+def _row(row: tuple[Any, ...], words: SheetWords) -> list[str]:
     number = words.number
+    bend, line, feed, turn, radius, mould, springback, *_ = row
     return [
-        str(row.bend),
-        f"N{row.line:03d}",
-        number(row.feed, ".3f"),
-        f"{number(abs(row.turn), '.3f')} {words('left' if row.turn > 0 else 'right')}",
-        words("corner") if row.radius is None else number(row.radius, ".3f"),
-        number(abs(row.mould), ".3f"),
-        number(row.compensation, "+.3f"),
+        str(bend),
+        f"N{line:03d}",
+        number(feed, ".3f"),
+        f"{number(abs(turn), '.3f')} {words('left' if turn > 0 else 'right')}",
+        words("corner") if math.isinf(radius) else number(radius, ".3f"),
+        number(abs(mould), ".3f"),
+        number(springback, "+.3f"),
     ]
 
 
