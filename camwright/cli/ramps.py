@@ -134,14 +134,7 @@ def _view(found: Ramps, tables: RampTables, files: Sequence[Path]) -> View:
     )
     for name, ramp, bound in zip(("start", "stop"), (found.ramp_in, found.ramp_out), found.bounds, strict=True):
         unit = objective_of(found, ramp)[1]
-        measure = units.measure(unit) if unit in units.shown else None
-        told = (
-            "none is known"
-            if bound is None
-            else f"{number(bound)} {unit}"
-            if measure is None
-            else with_unit(bound, unit, units=units)
-        )
+        told = "none is known" if bound is None else with_unit(bound, unit, units=units)
         rows.add_row(
             name,
             with_unit(ramp.arc, slave, units=units),

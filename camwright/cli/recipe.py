@@ -200,10 +200,8 @@ def _recipe_view(recipe: Recipe, answer: dict[str, Any], out: Path, units: Units
 
 def _told(check: RecipeCheck, units: Units) -> str:
     """Say what a check that failed found, and its limit."""
-    known = check.unit in units.shown
     value, limit = (
-        "–" if each is None else with_unit(each, check.unit, units=units) if known else f"{number(each)} {check.unit}"
-        for each in (check.value, check.limit)
+        "–" if each is None else with_unit(each, check.unit, units=units) for each in (check.value, check.limit)
     )
     return f"{check.name} {value} (limit {limit})"
 

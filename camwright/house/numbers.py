@@ -184,7 +184,9 @@ def fine_length(value: float, units: Units = METRIC) -> float:
 
 
 def with_unit(value: float, unit: str, digits: int = 5, units: Units = METRIC) -> str:
-    """Write an SI value with its unit as it is printed."""
+    """Write an SI value with its unit as it is printed; with the SI unit itself where no other is shown."""
+    if unit not in units.shown:
+        return f"{number(value, digits)} {unit}"
     symbol = unit_shown(unit, units)
     gap = "" if symbol == "°" else " "
     return shown(value, unit, digits, units) + ("" if symbol == "1" else gap + symbol)

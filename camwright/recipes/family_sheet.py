@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from camwright.house.numbers import converted, inside, number, shown, with_unit
+from camwright.house.numbers import converted, inside, shown, with_unit
 from camwright.recipes.blocks import Block, record_block, shortened, table_block, text_block, visible
 from camwright.recipes.catalogue import Catalogue, catalogue_of
 from camwright.recipes.facts import PRODUCT, fact_text, listed, servo_rows
@@ -150,9 +150,7 @@ def _check(name: str, words: Catalogue) -> str:
 
 def _value(value: float | None, unit: str, words: Catalogue) -> str:
     """Write a value of a check with its unit, in that of the reader where it has one."""
-    if value is None:
-        return words("nothing")
-    return with_unit(value, unit, 4, words.units) if unit in words.units.shown else f"{number(value, 4)} {unit}"
+    return words("nothing") if value is None else with_unit(value, unit, 4, words.units)
 
 
 def _steps(record: dict[str, Any], words: Catalogue) -> list[Block]:

@@ -11,13 +11,12 @@ def lengths_view(lengths: CutLengths, units: Units) -> View:
     """Show minimum cut lengths and what binds them."""
     unit = unit_shown("m", units)
     table = new_table("Minimum cut length", ("by", unit, f"transition\n{unit}", "binds"), left=("by", "binds"))
-    table.add_row(
-        "eq. 9, crossing, no shear zone", shown(lengths.eq9, "m", 4, units), shown(lengths.crossing, "m", 4, units), ""
-    )
-    table.add_row("eq. 10, crossing", shown(lengths.eq10, "m", 4, units), shown(lengths.crossing, "m", 4, units), "")
-    table.add_row(
-        "eq. 10, settling", shown(lengths.eq10_settling, "m", 4, units), shown(lengths.settling, "m", 4, units), ""
-    )
+    for name, length, transition in (
+        ("eq. 9, crossing, no shear zone", lengths.eq9, lengths.crossing),
+        ("eq. 10, crossing", lengths.eq10, lengths.crossing),
+        ("eq. 10, settling", lengths.eq10_settling, lengths.settling),
+    ):
+        table.add_row(name, shown(length, "m", 4, units), shown(transition, "m", 4, units), "")
     for name, least in (
         ("linear return, axis within the tolerance", lengths.linear_return),
         ("softest return, axis within the tolerance", lengths.optimised),
