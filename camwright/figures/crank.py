@@ -6,7 +6,18 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from camwright.figures.panel import LEFT, NOTHING, RIGHT, WIDTH, first_frame, head, page, stroked, zone_bands
+from camwright.figures.panel import (
+    LEFT,
+    NOTHING,
+    RIGHT,
+    WIDTH,
+    first_frame,
+    head,
+    page,
+    stroked,
+    wide_frame,
+    zone_bands,
+)
 from camwright.figures.profile import curve
 from camwright.figures.strokes import BLACK, LINES, Stroke
 from camwright.figures.style import title
@@ -125,14 +136,12 @@ def _motor(job: Job, shown: Mapping[str, CamProfile], top: float) -> list[Frame]
             for name, profile in shown.items()
         ]
         low, high = _span(np.concatenate([*(line.points[:, 1] for line in lines), [0.0]]))
-        frames.append(
-            Frame(
-                LEFT, top + (order - 1) * (_LOWER + 18.0), WIDTH - LEFT - RIGHT, _LOWER, np.array([0.0, low]),
-                np.array([job.cut.length * factor, high]), [*zone_bands(job.cut, job.units), *reversed(lines)],
-                f"master position x ({unit_shown('m', job.units)})" if order == 2 else "", label,
-                "servo curve" if order == 1 else "", grid=True, apart=24.0,
-            )
-        )  # fmt: skip
+        ends = np.array([0.0, low]), np.array([job.cut.length * factor, high])
+        words = (
+            ("", label, "servo curve") if order == 1 else (f"master position x ({unit_shown('m', job.units)})", label)
+        )
+        items: list[Item] = [*zone_bands(job.cut, job.units), *reversed(lines)]
+        frames.append(wide_frame(top + (order - 1) * (_LOWER + 18.0), _LOWER, *ends, items, *words))
     return frames
 
 

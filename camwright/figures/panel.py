@@ -104,27 +104,11 @@ def wide_frame(
     title: str = "",
     *,
     apart: float = 24.0,
-    xticks: Sequence[Tick] | None = None,
     yticks: Sequence[Tick] | None = None,
 ) -> Frame:
     """Make a panel over the whole width of the page, with lines at its ticks; arguments as of a `Frame`."""
-    width = WIDTH - LEFT - RIGHT
-    return Frame(
-        LEFT,
-        top,
-        width,
-        height,
-        low,
-        high,
-        items,
-        xlabel,
-        ylabel,
-        title,
-        grid=True,
-        apart=apart,
-        xticks=xticks,
-        yticks=yticks,
-    )
+    words = (xlabel, ylabel, title)
+    return Frame(LEFT, top, WIDTH - LEFT - RIGHT, height, low, high, items, *words, True, apart, yticks=yticks)
 
 
 def first_frame(title: str) -> float:
