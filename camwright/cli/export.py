@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from camwright.cli.options import Json, Quiet, option_quantity
+from camwright.cli.options import Json, Quiet, To, option_quantity
 from camwright.cli.views.parts import View, new_table, new_text, stacked
 from camwright.cli.views.speed_tables import speed_tables_view
 from camwright.drives.export import export_answer
@@ -28,12 +28,7 @@ from camwright.stored.design_file import MOST_BYTES, StoredDesign, parse_design
 
 def run(
     design: Annotated[Path, typer.Argument(metavar="DESIGN", help="A design.json that camwright design wrote.")],
-    to: Annotated[
-        str | None,
-        typer.Option(
-            "--to", metavar="NAMES", help="Targets, separated by commas, or all; the job's, else csv, if left out."
-        ),
-    ] = None,
+    to: To = None,
     points: Annotated[
         int | None, typer.Option("--points", metavar="N", help="Number of points; chosen if left out.")
     ] = None,

@@ -39,6 +39,12 @@ TableTargets = Annotated[
         help="Targets of the tables, separated by commas, or all; else the job's, else csv.",
     ),
 ]
+To = Annotated[
+    str | None,
+    typer.Option(
+        "--to", metavar="NAMES", help="Targets, separated by commas, or all; the job's, else csv, if left out."
+    ),
+]
 CommonPlace = Annotated[
     bool, typer.Option("--common-place", help="Place the sync zone of a crank at one place for all designs.")
 ]

@@ -16,6 +16,7 @@ from camwright.cli.options import (
     Json,
     NoFigures,
     Quiet,
+    To,
     destination,
     option_quantity,
     out_folder,
@@ -55,12 +56,7 @@ def run(
     latency: Annotated[
         str, typer.Option("--latency", metavar="TIME", help="Time from the sensor to the start.")
     ] = f"{LATENCY * 1e3:g} ms",
-    to: Annotated[
-        str | None,
-        typer.Option(
-            "--to", metavar="NAMES", help="Targets, separated by commas, or all; the job's, else csv, if left out."
-        ),
-    ] = None,
+    to: To = None,
     out: Annotated[Path | None, out_folder("-ramps")] = None,
     as_json: Json = False,
     no_figures: NoFigures = False,

@@ -30,6 +30,10 @@ _LONGEST_NOTE = 2000
 _LONGEST_PARTICULAR = 100
 
 
+def _text(option: str, words: str) -> Any:
+    return typer.Option(option, metavar="TEXT", help=words)
+
+
 def run(
     file: Annotated[
         Path | None, typer.Argument(metavar="[JOB|DESIGN]", help="A job file (TOML) or a design.json.")
@@ -49,19 +53,11 @@ def run(
         ),
     ] = None,
     language: Annotated[Language, typer.Option("--language", help="Language of what people read.")] = "en",
-    note: Annotated[str, typer.Option("--note", metavar="TEXT", help="Text that stands on the recipe.")] = "",
-    revision: Annotated[
-        str, typer.Option("--revision", metavar="TEXT", help="Revision that stands on the sheet.")
-    ] = "",
-    customer: Annotated[
-        str, typer.Option("--customer", metavar="TEXT", help="Customer that stands on the sheet.")
-    ] = "",
-    author: Annotated[
-        str, typer.Option("--author", metavar="TEXT", help="Who made it, as it stands on the sheet.")
-    ] = "",
-    date: Annotated[
-        str, typer.Option("--date", metavar="TEXT", help="Date that stands on the sheet, in any form.")
-    ] = "",
+    note: Annotated[str, _text("--note", "Text that stands on the recipe.")] = "",
+    revision: Annotated[str, _text("--revision", "Revision that stands on the sheet.")] = "",
+    customer: Annotated[str, _text("--customer", "Customer that stands on the sheet.")] = "",
+    author: Annotated[str, _text("--author", "Who made it, as it stands on the sheet.")] = "",
+    date: Annotated[str, _text("--date", "Date that stands on the sheet, in any form.")] = "",
     sign: Annotated[
         Path | None,
         typer.Option("--sign", metavar="KEY", help="Sign it with this private Ed25519 key (PEM): manifest.json.sig."),
@@ -87,20 +83,7 @@ def run(
     )
     if sign is not None:
         require_private_key(sign)
-    return _make(file, targets, out, language, _given("--note", note, _LONGEST_NOTE), particulars, sign, voice)
-
-
-def _make(
-    file: Path,
-    targets: str | None,
-    out: Path | None,
-    language: Language,
-    note: str,
-    particulars: Particulars,
-    sign: Path | None,
-    voice: Voice,
-) -> int:
-    """Make and write the recipe of a file."""
+    note = _given("--note", note, _LONGEST_NOTE)
     wanted = None if targets is None else _targets(targets)
     if out is not None:
         require_replaceable(out, is_recipe)
