@@ -58,9 +58,10 @@ def read_manifest(data: bytes) -> tuple[dict[str, tuple[str, int]], list[str]]:
     faults = []
     if content.get("kind") != _KIND or content.get("schema_version") != 1:
         faults.append(f"kind {content.get('kind')!r:.60} of version {content.get('schema_version')!r:.20} is not read")
-    if canonical_bytes(content) != data:
+    written = canonical_bytes(content)
+    if written != data:
         faults.append("its bytes are not those that were written")
-    found = own_sum(content) if _writable(content) else "unknown"
+    found = own_sum(content) if written else "unknown"
     if content.get("sha256") != found:
         faults.append(f"sha256 is {content.get('sha256')!r:.80}, but that of its content is {found}")
     files: dict[str, tuple[str, int]] = {}
@@ -83,12 +84,7 @@ def job_of_manifest(data: bytes) -> str:
 
 def canonical_bytes(content: dict[str, Any]) -> bytes:
     """Bytes of a manifest as this program writes it; none if it holds what it never writes."""
-    return canonical(content).encode() if _writable(content) else b""
-
-
-def _writable(content: dict[str, Any]) -> bool:
     try:
-        canonical(content).encode()
+        return canonical(content).encode()
     except ValueError:  # NaN, infinity, half a surrogate pair
-        return False
-    return True
+        return b""
