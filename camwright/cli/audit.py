@@ -9,9 +9,8 @@ import typer
 
 from camwright.cli.options import Json, NoFigures, Out, Quiet, StoredTravel, StoredUnits, destination
 from camwright.cli.views.checks import checks_view
-from camwright.cli.views.files import files_view
 from camwright.cli.views.line_ramps import plc_words
-from camwright.cli.views.parts import View, new_table, new_text, stacked
+from camwright.cli.views.parts import View, files_view, new_table, new_text, stacked
 from camwright.drives.audit import MEASURES, Audit, audit, audit_answer
 from camwright.figures.audit import audit_figure
 from camwright.house.numbers import number

@@ -15,8 +15,7 @@ from camwright.book.plan import plan_book
 from camwright.book.run import BookAnswer, Told, make_book, nothing
 from camwright.book.workers import default_jobs, local_crew
 from camwright.cli.options import CommonPlace, GivenJob, Json, Quiet, TableTargets, out_folder
-from camwright.cli.views.files import files_view
-from camwright.cli.views.parts import View, new_table, new_text, stacked
+from camwright.cli.views.parts import View, files_view, new_table, new_text, stacked
 from camwright.house.output import Voice, complain
 from camwright.jobs.job import load_job
 from camwright.production.common_place import placed_for

@@ -11,8 +11,7 @@ import typer
 
 from camwright.answers.measures import profiles_answer
 from camwright.cli.options import Destination, GivenJob, Json, NoFigures, Out, Quiet, destination
-from camwright.cli.views.files import files_view
-from camwright.cli.views.parts import stacked
+from camwright.cli.views.parts import files_view, stacked
 from camwright.cli.views.profiles import profiles_view
 from camwright.cli.views.tradeoff import tradeoff_view
 from camwright.figures.comparison import bars_figure

@@ -19,8 +19,7 @@ from camwright.cli.options import (
     optional_quantity,
     out_folder,
 )
-from camwright.cli.views.files import files_view
-from camwright.cli.views.parts import View, new_table, new_text, stacked
+from camwright.cli.views.parts import View, files_view, new_table, new_text, stacked
 from camwright.cli.views.seams import seams_view
 from camwright.drives.options import chosen_targets
 from camwright.figures.line_plan import line_plan_figure

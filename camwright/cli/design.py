@@ -25,10 +25,9 @@ from camwright.answers.measures import (
 )
 from camwright.cli.options import JobOrPaper, Json, NoFigures, Out, Quiet, destination
 from camwright.cli.views.checks import checks_view
-from camwright.cli.views.files import files_view
 from camwright.cli.views.lead import lead_view
 from camwright.cli.views.lengths import lengths_view
-from camwright.cli.views.parts import View, new_text, stacked
+from camwright.cli.views.parts import View, files_view, new_text, stacked
 from camwright.cli.views.profiles import profiles_view
 from camwright.cli.views.speed_band import band_view
 from camwright.figures.design import design_figures

@@ -8,8 +8,7 @@ import typer
 
 from camwright.answers.measures import with_files
 from camwright.cli.options import GivenJob, Json, NoFigures, Out, Quiet, destination
-from camwright.cli.views.files import files_view
-from camwright.cli.views.parts import View, new_table, stacked
+from camwright.cli.views.parts import View, files_view, new_table, stacked
 from camwright.figures.envelope import envelope_figure
 from camwright.house.numbers import shown, unit_shown
 from camwright.house.output import Voice

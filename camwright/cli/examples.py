@@ -8,8 +8,7 @@ from typing import Annotated
 import typer
 
 from camwright.cli.options import Json, Quiet
-from camwright.cli.views.files import files_view
-from camwright.cli.views.parts import View, new_table
+from camwright.cli.views.parts import View, files_view, new_table
 from camwright.house.files import write_files
 from camwright.house.output import Voice
 from camwright.jobs.examples import Example, example, examples

@@ -9,8 +9,7 @@ import typer
 
 from camwright.answers.measures import with_files
 from camwright.cli.options import Destination, GivenJob, Json, NoFigures, Quiet, TableTargets, destination, out_folder
-from camwright.cli.views.files import files_view
-from camwright.cli.views.parts import View, new_table, new_text, stacked
+from camwright.cli.views.parts import View, files_view, new_table, new_text, stacked
 from camwright.cli.views.seams import seams_view
 from camwright.drives.options import chosen_targets
 from camwright.figures.family import family_figure

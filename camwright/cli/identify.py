@@ -10,8 +10,7 @@ from typing import Annotated
 import typer
 
 from camwright.cli.options import Json, Quiet, TraceColumns, option_quantity
-from camwright.cli.views.files import files_view
-from camwright.cli.views.parts import View, new_table, new_text, stacked
+from camwright.cli.views.parts import View, files_view, new_table, new_text, stacked
 from camwright.house.files import read_bytes, require_plain, write_files
 from camwright.house.numbers import number
 from camwright.house.output import Voice

@@ -12,8 +12,7 @@ import typer
 
 from camwright.answers.measures import millimetres
 from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, destination, option_quantity, out_folder
-from camwright.cli.views.files import files_view
-from camwright.cli.views.parts import View, new_table, new_text, stacked
+from camwright.cli.views.parts import View, files_view, new_table, new_text, stacked
 from camwright.figures.print_marks import print_marks_figure
 from camwright.house.json_text import to_json
 from camwright.house.numbers import Units, number, unit_shown, with_unit

@@ -10,8 +10,7 @@ import typer
 
 from camwright.answers.measures import with_files
 from camwright.cli.options import Json, Quiet
-from camwright.cli.views.files import files_view
-from camwright.cli.views.parts import View, new_table, stacked
+from camwright.cli.views.parts import View, files_view, new_table, stacked
 from camwright.house.output import Voice, complain
 from camwright.house.owned import Work, write_owned
 from camwright.profiles.cross_cutter import CrossCut

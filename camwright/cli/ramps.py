@@ -22,8 +22,7 @@ from camwright.cli.options import (
     out_folder,
 )
 from camwright.cli.views.checks import checks_view
-from camwright.cli.views.files import files_view
-from camwright.cli.views.parts import View, new_table, new_text, stacked
+from camwright.cli.views.parts import View, files_view, new_table, new_text, stacked
 from camwright.drives.export import export_answer
 from camwright.drives.options import chosen_targets, parse_targets
 from camwright.drives.withheld import setting_aside

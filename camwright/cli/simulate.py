@@ -19,8 +19,7 @@ from camwright.cli.options import (
     optional_quantity,
     out_folder,
 )
-from camwright.cli.views.files import files_view
-from camwright.cli.views.parts import View, new_table, new_text, stacked
+from camwright.cli.views.parts import View, files_view, new_table, new_text, stacked
 from camwright.figures.shift import shift_figure
 from camwright.figures.style import title
 from camwright.house.numbers import number, unit_shown

@@ -20,8 +20,7 @@ from camwright.cli.options import (
     optional_quantity,
 )
 from camwright.cli.views.checks import checks_view
-from camwright.cli.views.files import files_view
-from camwright.cli.views.parts import View, new_table, new_text, stacked
+from camwright.cli.views.parts import View, files_view, new_table, new_text, stacked
 from camwright.figures.trace import trace_figure
 from camwright.house.files import read_bytes
 from camwright.house.numbers import Units, number, shown, unit_shown

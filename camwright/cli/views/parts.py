@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from camwright.cli.views.whole_table import WholeTable
@@ -41,6 +42,11 @@ def new_text(text: str = "", style: str = "") -> Text:
     from rich.text import Text
 
     return Text(text, style)
+
+
+def files_view(files: Sequence[Path]) -> Text:
+    """Show the files that were written, one a line."""
+    return new_text("\n".join(f"wrote {file}" for file in files))
 
 
 def stacked(*views: View) -> Group:

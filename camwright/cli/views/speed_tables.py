@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from camwright.cli.views.files import files_view
-from camwright.cli.views.parts import View, new_table, new_text, stacked
+from camwright.cli.views.parts import View, files_view, new_table, new_text, stacked
 from camwright.drives.speed_tables import SpeedTables
 from camwright.house.numbers import Units, shown, with_unit
 
