@@ -393,8 +393,6 @@ class Recipe:
 
     Parameters
     ----------
-    schema_version
-        `RECIPE_VERSION`.
     kind
         Tells the file apart from others.
     note
@@ -403,18 +401,10 @@ class Recipe:
         Language of PDF, HTML and XLSX.
     released
         Whether every check of the design and of every table passed.
-    slave_unit
-        ``"m"`` or ``"rad"``.
     slave_start
         Slave coordinate of the machine where the master is zero (slave unit).
     pitch
         Slave travel per cycle (slave unit).
-    objective
-        What was minimised.
-    profile
-        The cam.
-    zones
-        Where the zones lie.
     checks
         The checks on the cam.
     speeds
@@ -423,14 +413,6 @@ class Recipe:
         Lead time of the master that makes up for the servo's mean lag (s).
     speed_band
         Line speeds at which this cam is released: parts with gaps between them, none for one that passes nowhere.
-    working_range
-        How far the machine can go.
-    refused
-        Targets that cannot take the cam.
-    provenance
-        Where it comes from.
-    particulars
-        Revision, customer, author and date.
     start_stop
         How the machine starts and stops; ``None`` in a recipe of an earlier version.
     marks
