@@ -97,18 +97,8 @@ class Changes:
     renamed: Mapping[str, str] = field(default_factory=dict)
 
 
-def nothing_else(_old: Path) -> Mapping[str, str]:
-    """Keep no file of a folder that is replaced."""
-    return {}
-
-
-def no_changes(_new: Path) -> Changes:
-    """Leave all else in a directory as it is."""
-    return Changes()
-
-
 @contextlib.contextmanager
-def staged(directory: Path, settle: Callable[[Path], Changes] = no_changes) -> Iterator[Path]:
+def staged(directory: Path, settle: Callable[[Path], Changes] = lambda _: Changes()) -> Iterator[Path]:
     """Give a folder to write files into; at the end they are all moved into the directory, or none of them.
 
     The folder lies inside the directory, which is made when it is missing. When anything fails, the folder, what was
@@ -195,7 +185,7 @@ def put(new: Path, target: Path) -> None:
 
 @contextlib.contextmanager
 def replaced(
-    directory: Path, ours: Callable[[Path], bool], theirs: Callable[[Path], Mapping[str, str]] = nothing_else
+    directory: Path, ours: Callable[[Path], bool], theirs: Callable[[Path], Mapping[str, str]] = lambda _: {}
 ) -> Iterator[Path]:
     """Give a folder to write into; at the end it takes the place of the directory, or nothing has changed.
 

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from camwright.house.files import Changes, fill, require_plain, staged
+from camwright.house.progress import ignore
 from camwright.profiles.errors import InputError
 
 LIST = ".camwright.json"
@@ -65,13 +66,9 @@ class Entry:
         return (self.command, self.name) == (work.command, work.name)
 
 
-def _silent(_note: str) -> None:
-    """Tell nobody."""
-
-
 @contextlib.contextmanager
 def owned(
-    directory: Path, work: Work, told: Callable[[str], None] = _silent, unlisted: Collection[str] = ()
+    directory: Path, work: Work, told: Callable[[str], None] = ignore, unlisted: Collection[str] = ()
 ) -> Iterator[Path]:
     """Give a folder to write files into like `staged`; files of an older run go, and all that is not ours stays.
 
@@ -123,7 +120,7 @@ def owned(
 
 
 def write_owned(
-    directory: Path, work: Work, files: Mapping[str, str | bytes], told: Callable[[str], None] = _silent
+    directory: Path, work: Work, files: Mapping[str, str | bytes], told: Callable[[str], None] = ignore
 ) -> list[Path]:
     """Write files by name into a directory as `owned` has it; texts in UTF-8. Gives their paths."""
     with owned(directory, work, told) as aside:

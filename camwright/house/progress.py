@@ -9,4 +9,4 @@ Step = Callable[[str], None]
 
 
 def ignore(_what: str) -> None:
-    """Show no progress."""
+    """Tell nobody."""
