@@ -109,7 +109,9 @@ def main() -> int:
     first = int(sys.argv[2]) if len(sys.argv) > 2 else 1
     sources = [drawing(version) for version in ("R12", "R2000", "R2010")]
     job = load_bender()
-    reading = Reading(job.gap, job.flattening, "mm", style=StyleChoice(each=True), arc_error=job.divide.allowed)
+    reading = Reading(
+        job.drawing.gap, job.drawing.flattening, "mm", style=StyleChoice(each=True), arc_error=job.divide.allowed
+    )
     counts: collections.Counter[str] = collections.Counter()
     slowest = 0.0
     warnings.simplefilter("error")

@@ -144,8 +144,8 @@ def _read(path: Path) -> tuple[MeasuredBend, ...]:
 
 
 def _toml(path: Path, rows: list[tuple[float, float]], radii: list[tuple[float, float]], job: BenderJob) -> str:
-    lines = [f'name = "{_plain(path.stem)}"', "", "[[rule]]", f'thickness = "{1e3 * job.thickness:g} mm"']
-    lines += [f'hardness = "{_plain(job.hardness)}"', "angles = [   # workpiece angle, mould angle"]
+    lines = [f'name = "{_plain(path.stem)}"', "", "[[rule]]", f'thickness = "{1e3 * job.rule.thickness:g} mm"']
+    lines += [f'hardness = "{_plain(job.rule.hardness)}"', "angles = [   # workpiece angle, mould angle"]
     lines += [f'  ["{workpiece:.4f} deg", "{mould:.4f} deg"],' for workpiece, mould in rows]
     lines.append("]")
     if radii:

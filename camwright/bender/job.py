@@ -11,7 +11,7 @@ from typing import TypeVar
 import numpy as np
 
 from camwright.bender.springback_file import EXAMPLE, find_table, load_springback
-from camwright.bender.structure import BenderFile, limits_of
+from camwright.bender.structure import BenderFile, DrawingTable, FeedTable, MouldTable, RuleTable, limits_of
 from camwright.design.bender.moves import BenderDrive
 from camwright.house.files import read_text
 from camwright.house.setting_fields import Settings
@@ -41,34 +41,18 @@ class BenderJob:
 
     Parameters
     ----------
-    name
-        What the bender is called.
-    thickness, height, least_radius
-        The rule (m).
-    hardness
-        The rule's hardness, in the words of the springback table.
+    rule, mould, feed, drawing
+        What its file says of them.
     divide
         How arcs become bends.
     springback
         The table of the rule.
-    greatest_angle
-        Greatest mould angle to either side (rad).
-    least_turn
-        Workpiece angle below which a joint is smooth (rad).
-    least_step
-        Least feed (m).
     drive
         Feed and mould axis.
     envelope
         The mould seen from above.
     servo
         The servo of either axis.
-    feed_window, mould_window
-        How near an axis is when it has arrived (m, rad).
-    gap
-        Distance within which ends of entities are joined (m).
-    flattening
-        Largest distance of a curve from its polyline (m).
     units
         Unit of drawings, whatever their headers say; ``None`` for the headers'.
     greatest_size
@@ -84,22 +68,15 @@ class BenderJob:
     """
 
     name: str
-    thickness: float
-    height: float
-    least_radius: float
-    hardness: str
+    rule: RuleTable
+    mould: MouldTable
+    feed: FeedTable
+    drawing: DrawingTable
     divide: DivisionRule
     springback: Springback
-    greatest_angle: float
-    least_turn: float
-    least_step: float
     drive: BenderDrive
     envelope: MouldEnvelope
     servo: Servo
-    feed_window: float
-    mould_window: float
-    gap: float
-    flattening: float
     units: str | None
     greatest_size: float
     flavour: Flavour
@@ -151,22 +128,15 @@ def load_bender(path: Path | None = None) -> BenderJob:
         )
     return BenderJob(
         name=file.name,
-        thickness=rule.thickness,
-        height=rule.height,
-        least_radius=rule.least_radius,
-        hardness=rule.hardness,
+        rule=rule,
+        mould=mould,
+        feed=feed,
+        drawing=drawing,
         divide=file.arcs.division,
         springback=springback,
-        greatest_angle=mould.greatest_angle,
-        least_turn=mould.least_turn,
-        least_step=feed.least_step,
         drive=BenderDrive(limits_of(feed), limits_of(mould), mould.finger_radius, mould.play),
         envelope=envelope,
         servo=Servo(**file.servo.model_dump()),
-        feed_window=feed.window,
-        mould_window=mould.window,
-        gap=drawing.gap,
-        flattening=drawing.flattening,
         units=None if drawing.units == "none" else drawing.units,
         greatest_size=np.inf if drawing.greatest_size is None else drawing.greatest_size,
         flavour=program.flavour,

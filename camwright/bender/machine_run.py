@@ -50,16 +50,16 @@ def machine_run(read: NcProgram, plan: BendPlan, proof: BendingProof, job: Bende
     drive = job.drive
     feeds = np.asarray(read.feeds * 1e-6, dtype=np.float64)
     moulds = np.asarray(np.radians(read.bends / 1e3), dtype=np.float64)
-    feed = _worst(double_s_moves(_spread(feeds), drive.feed), job, job.feed_window)
-    mould = _worst(double_s_moves(_spread(np.abs(moulds)), drive.mould), job, job.mould_window)
-    paper_feed = _worst(trapezoid_moves(_spread(feeds), drive.feed), job, job.feed_window)
-    paper_mould = _worst(trapezoid_moves(_spread(np.abs(moulds)), drive.mould), job, job.mould_window)
+    feed = _worst(double_s_moves(_spread(feeds), drive.feed), job, job.feed.window)
+    mould = _worst(double_s_moves(_spread(np.abs(moulds)), drive.mould), job, job.mould.window)
+    paper_feed = _worst(trapezoid_moves(_spread(feeds), drive.feed), job, job.feed.window)
+    paper_mould = _worst(trapezoid_moves(_spread(np.abs(moulds)), drive.mould), job, job.mould.window)
     return MachineRun(
         collisions(proof.points, moulds, job.envelope),
         overlapped_table(feeds, moulds, plan.turns, drive, Dwell(feed[0], mould[0])),
         sequential_table(feeds, moulds, drive, Dwell(paper_feed[0], paper_mould[0])),
-        (feed[1], job.feed_window),
-        (mould[1], job.mould_window),
+        (feed[1], job.feed.window),
+        (mould[1], job.mould.window),
     )
 
 

@@ -244,13 +244,13 @@ def _planned(outline: Outline, job: BenderJob) -> tuple[BendPlan, list[str]]:
     """Plan the bends; what the rule and the table do not allow, and where the outline crosses itself."""
     faults = [
         f"{outline.name}: segment {i + 1}: radius {1e3 * outline.radii[i]:.3f} mm is less than the rule's least radius "
-        f"{1e3 * job.least_radius:.3f} mm; draw a larger radius or a corner"
-        for i in np.flatnonzero(outline.radii < job.least_radius * (1 - 1e-9))[:_MOST_FAULTS]
+        f"{1e3 * job.rule.least_radius:.3f} mm; draw a larger radius or a corner"
+        for i in np.flatnonzero(outline.radii < job.rule.least_radius * (1 - 1e-9))[:_MOST_FAULTS]
     ]
-    plan = plan_bends(outline, job.divide, job.least_turn)
+    plan = plan_bends(outline, job.divide, job.mould.least_turn)
     if not faults:
         faults += job.springback.faults(plan)
-    places = crossings(plan.vertices, plan.chord_error + job.gap)[2]
+    places = crossings(plan.vertices, plan.chord_error + job.drawing.gap)[2]
     faults += [
         f"{outline.name}: the outline crosses or touches itself at ({1e3 * x:.3f}, {1e3 * y:.3f}) mm; a rule cannot pass through "
         "itself: split it into several outlines"
@@ -259,18 +259,18 @@ def _planned(outline: Outline, job: BenderJob) -> tuple[BendPlan, list[str]]:
     if not faults:
         factors = job.springback.by_radius(plan.radii)
         # the mould angle rises with the workpiece angle: few bends come near to the greatest
-        greatest = job.springback.workpiece_angle(job.greatest_angle)
-        reach = (1 - _NEAR) * np.where(np.isnan(factors), greatest, job.greatest_angle / factors)
+        greatest = job.springback.workpiece_angle(job.mould.greatest_angle)
+        reach = (1 - _NEAR) * np.where(np.isnan(factors), greatest, job.mould.greatest_angle / factors)
         for i in np.flatnonzero(np.abs(plan.turns) > reach).tolist():
             turn = float(plan.turns[i])
             mould = abs(job.springback.mould_angle(turn, float(factors[i])))
-            if mould > job.greatest_angle:
+            if mould > job.mould.greatest_angle:
                 x, y = 1e3 * plan.vertices[i + 1]
                 faults.append(
                     f"{outline.name}: bend {i + 1} at ({x:.3f}, {y:.3f}) mm: workpiece angle "
                     f"{math.degrees(abs(turn)):.3f}° needs a "
                     f"mould angle of {math.degrees(mould):.3f}°, beyond the mould's range of "
-                    f"{math.degrees(job.greatest_angle):.3f}°; "
+                    f"{math.degrees(job.mould.greatest_angle):.3f}°; "
                     "split the outline there"
                 )
     return plan, faults
@@ -278,7 +278,7 @@ def _planned(outline: Outline, job: BenderJob) -> tuple[BendPlan, list[str]]:
 
 def _range_faults(program: NcProgram, plan: BendPlan, job: BenderJob) -> list[str]:
     """List feeds below the machine's least step."""
-    least = job.least_step * 1e6
+    least = job.feed.least_step * 1e6
     faults = []
     for i in np.flatnonzero(program.feeds < least - 0.5)[:_MOST_FAULTS]:
         x, y = 1e3 * plan.vertices[i]
@@ -289,7 +289,7 @@ def _range_faults(program: NcProgram, plan: BendPlan, job: BenderJob) -> list[st
         faults.append(
             f"{plan.outline.name}: segment {segment + 1} at ({x:.3f}, {y:.3f}) mm: a feed of "
             f"{program.feeds[i] / 1e3:.3f} mm is "
-            f"shorter than the machine's least step of {1e3 * job.least_step:.3f} mm; {advice}"
+            f"shorter than the machine's least step of {1e3 * job.feed.least_step:.3f} mm; {advice}"
         )
     return faults
 
@@ -312,7 +312,7 @@ def _finished(
     key = tuple(part.tobytes() for part in alike)
     if key not in known:
         known[key] = machine_run(read, plan, proof, job)
-    paper = plan_bends(plan.outline, EqualSides(), job.least_turn) if plan.outline.arcs.any() else plan
+    paper = plan_bends(plan.outline, EqualSides(), job.mould.least_turn) if plan.outline.arcs.any() else plan
     return BentOutline(
         plan,
         read,

@@ -34,7 +34,7 @@ def sheet_data(result: BentDrawing, language: Language) -> dict[str, Any]:
     number = words.number
     width, height = result.found.size
     size = {"width": number(1e3 * width, ".3f"), "height": number(1e3 * height, ".3f"), "unit": result.found.unit}
-    rule = {"height": number(1e3 * job.height, "g"), "thickness": number(1e3 * job.thickness, "g")}
+    rule = {"height": number(1e3 * job.rule.height, "g"), "thickness": number(1e3 * job.rule.thickness, "g")}
     return {
         "language": language,
         "words": words.messages,
@@ -47,7 +47,7 @@ def sheet_data(result: BentDrawing, language: Language) -> dict[str, Any]:
             [words("size"), words("size.value", **size)],
             [words("rule"), words("rule.value", **rule)],
             [words("arcs"), _division_words(job, words)],
-            [words("curves"), words("curves.value", value=number(1e3 * job.flattening, "g"))],
+            [words("curves"), words("curves.value", value=number(1e3 * job.drawing.flattening, "g"))],
             [words("table"), f"{table.name}, {words(f'interpolation.{table.interpolation}')}"],
             [words("programs"), words("programs.value", count=str(len(result.outlines)), flavour=job.flavour)],
             [words("bridges"), _bridge_words(sum(len(outline.bridges) for outline in result.outlines), job, words)],

@@ -82,7 +82,7 @@ class SpringbackTable(Table):
 
 
 class MouldTable(Table):
-    """The mould, which turns and bends."""
+    """The mould, which turns and bends: a joint below ``least_turn`` is smooth, an axis within its ``window`` has arrived."""
 
     _place = "mould"
 
@@ -113,7 +113,7 @@ class FeedTable(Table):
 
 
 class DrawingTable(Table):
-    """How drawings are read."""
+    """How drawings are read: ends within ``gap`` are joined, curves become polylines at most ``flattening`` away."""
 
     _place = "drawing"
 

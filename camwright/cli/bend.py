@@ -125,7 +125,9 @@ def run(
     place = None if start is None else _place(start)
     choice = style_choice(style, layer, each=styles == "all")
     arc_error = bender.divide.allowed if arcs == "find" else None
-    reading = Reading(bender.gap, bender.flattening, bender.units, choice, overlaps, arc_error, bender.bridges.layer)
+    reading = Reading(
+        bender.drawing.gap, bender.drawing.flattening, bender.units, choice, overlaps, arc_error, bender.bridges.layer
+    )
     directory = Path("out") / drawing.stem if out is None else out
     with voice.progress(5) as step:
         result = replace(_bent(drawing, bender, reading, place, reverse, step), collisions_accepted=accept_collisions)
