@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from functools import partial
 from itertools import islice
 from multiprocessing.synchronize import Event
+from pathlib import Path
 
 from camwright.book.entry import Entry
 from camwright.book.making import Made, make_chunk
@@ -75,7 +76,7 @@ def local_crew(jobs: int, work: Work = make_chunk) -> Crew:
 
     @contextlib.contextmanager
     def start() -> Iterator[Executor]:
-        context = multiprocessing.get_context("spawn")
+        context = multiprocessing.get_context("fork" if _alone() else "spawn")
         stop = context.Event()
         with _environment(dict.fromkeys(VARIABLES, "1")):
             executor = ProcessPoolExecutor(jobs, context, _settle, (stop,))
@@ -89,6 +90,12 @@ def local_crew(jobs: int, work: Work = make_chunk) -> Crew:
                 executor.shutdown(wait=True, cancel_futures=True)
 
     return Crew(start, lambda: jobs, 1, partial(_unless_stopped, work), (BrokenProcessPool,))
+
+
+def _alone() -> bool:
+    """Whether this process has a single thread, as the system counts: a copy of it is whole, and has imported everything already."""
+    threads = Path("/proc/self/task")
+    return threads.is_dir() and len(list(threads.iterdir())) == 1
 
 
 @contextlib.contextmanager
