@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+import math
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from camwright.profiles.cut import Cut
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
@@ -93,12 +92,15 @@ class SpeedScan:
             if self.task.limits.motor is not None and self.task.machine.moves_something
             else 0.0
         )
-        zones = [(1, cut.shear_zone_at)]
+        zones = {1: cut.shear_zone_at}
         last = cut.sync_zone - cut.shear_zone
         if not self.servo_aware and last - cut.shear_zone_at > 1e-9 * cut.length:
-            zones.append((2, last))  # who is within the tolerance there has settled in time
-        for column, at in zones:
-            found[:, (column, -1)] = np.maximum(found[:, (column, -1)], self._errors(speeds, at, phases))
+            zones[2] = last  # who is within the tolerance there has settled in time
+        asked = np.nonzero(speeds > self.creeping[0])[0]
+        if len(asked):
+            off = self._errors(speeds[asked], list(zones.values()), phases)
+            found[asked[:, None], list(zones)] = off[0].T
+            found[asked, -1] = off[1:].max(axis=(0, 1), initial=0.0) / (1 + _ROUNDING)
         if self.servo_aware:
             self._load_axis(speeds, found)
         return found
@@ -112,41 +114,28 @@ class SpeedScan:
         torque, available = greatest_load(self.profile, task, curve)
         return torque.value / (available + ALLOWANCE * curve.points[0][1])
 
-    def _errors(self, speeds: FloatArray, at: float, phases: int) -> FloatArray:
-        """Sync error over the tolerance of the job's servo and of the worst at the corners, shape ``(speeds, 2)``."""
-        found = np.zeros((len(speeds), 2))
-        asked = speeds > self.creeping[0]
-        for window, rows in self._windows(speeds, at, np.nonzero(asked)[0]):
-            task = self.task.with_cut(window)
-            off = self._off(task, speeds[rows], phases)
-            found[rows, 0] = off[0]
-            found[rows, 1] = off[1:].max(axis=0, initial=0.0) / (1 + _ROUNDING)
-        return found
+    def _errors(self, speeds: FloatArray, places: list[float], phases: int) -> FloatArray:
+        """Sync error over the tolerance in zones as long as the shear zone, shape ``(servos, places, speeds)``.
 
-    def _off(self, task: Task, speeds: FloatArray, phases: int) -> FloatArray:
-        """Sync error over the tolerance, shape ``(servos, speeds)``: by few sampling phases where they tell that it is far from 1."""
-        tolerance = task.cut.sync_tolerance
-        found = line_speed_errors(self.profile, task, self.servos, speeds, FEW_PHASES) / tolerance
+        Of a command in sync only the part is simulated that may still feel the return: beyond that the axis is late by its lag, as it is
+        where that part ends. By few sampling phases where they tell that the error is far from the tolerance.
+        """
+        cut = self.task.cut
+        at = np.repeat(places, len(speeds))
+        every = np.tile(speeds, len(places))
+        felt = math.inf if cut.shaped or not self.task.straight else self._forgotten * every - at
+        length = np.clip(felt, 0.0, np.full(len(at), cut.shear_zone))
+
+        def off(columns: NDArray[np.bool_], phases: int) -> FloatArray:
+            zones = at[columns], length[columns]
+            errors = line_speed_errors(self.profile, self.task, self.servos, every[columns], phases, zones)
+            return errors / cut.sync_tolerance
+
+        found = off(np.full(len(at), True), FEW_PHASES)
         near = ((found > _SURE[0]) & (found < _SURE[1])).any(axis=0)
         if near.any():
-            found[:, near] = line_speed_errors(self.profile, task, self.servos, speeds[near], phases) / tolerance
-        return found
-
-    def _windows(self, speeds: FloatArray, at: float, rows: NDArray[np.intp]) -> Iterator[tuple[Cut, list[int]]]:
-        """Part of the zone that is simulated at line speeds: of a command in sync, only what may still feel the return.
-
-        Beyond that the axis is late by its lag, as it is where that part ends.
-        """
-        cut, task = self.task.cut, self.task
-        whole: list[int] = []
-        for row in rows.tolist():
-            felt = self._forgotten * float(speeds[row]) - at
-            if cut.shaped or not task.straight or not felt < cut.shear_zone:
-                whole.append(row)
-            else:
-                yield replace(cut, shear_zone_at=at, shear_zone=max(felt, 0.0)), [row]
-        if whole:
-            yield replace(cut, shear_zone_at=at), whole
+            found[:, near] = off(near, phases)
+        return found.reshape(len(found), len(places), -1)
 
     @cached_property
     def _forgotten(self) -> float:

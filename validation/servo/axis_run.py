@@ -43,7 +43,9 @@ class AxisRun:
         """Number of sampling phases."""
         return len(self.master)
 
-    def window(self, start: float, end: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def window(
+        self, start: float | FloatArray, end: float | FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Master position, axis and axis ratio between two master positions, the two ends included, for every phase.
 
         Rows are filled up by repeating the ends, so that all phases have the same number of points. The ends are
@@ -53,7 +55,7 @@ class AxisRun:
         Parameters
         ----------
         start, end
-            Part of the cycle (m), counted like `master`, ``start <= end``.
+            Part of the cycle (m), counted like `master`, ``start <= end``; or one of each phase.
 
         Returns
         -------
@@ -61,13 +63,17 @@ class AxisRun:
             Shapes ``(phases, n)``.
         """
         most = self.master.shape[1] - 1
+        start, end = (np.broadcast_to(bound, self.phases) for bound in (start, end))
         first, last = self._around(start, end)
         left, right = max(int(first.min()), 0), min(int(last.max()), most)
         x, y, k = (values[:, left : right + 1].copy() for values in (self.master, self.axis, self.axis_ratio))
         # the phases begin and end within a few columns of each other
         head, tail = slice(int(first.max()) - left + 2), slice(max(int(last.min()) - left - 1, 0), None)
         first, last = np.clip([first, np.maximum(last - 1, first)], 0, most - 1)
-        edges = ((start, first, head, x[:, head] <= start), (end, last, tail, x[:, tail] >= end))
+        edges = (
+            (start, first, head, x[:, head] <= start[:, None]),
+            (end, last, tail, x[:, tail] >= end[:, None]),
+        )
         rows = np.arange(self.phases)
         for bound, point, columns, beyond in edges:
             step = self.master[rows, point + 1] - self.master[rows, point]
@@ -77,19 +83,20 @@ class AxisRun:
                 (self.axis[rows, point], self.axis[rows, point + 1]),
                 (self.axis_ratio[rows, point], self.axis_ratio[rows, point + 1]),
             )
-            np.copyto(x[:, columns], bound, where=beyond)
+            np.copyto(x[:, columns], bound[:, None], where=beyond)
             np.copyto(y[:, columns], value[:, None], where=beyond)
             np.copyto(k[:, columns], ratio[:, None], where=beyond)
         return x, y, k
 
-    def _around(self, start: float, end: float) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    def _around(self, start: FloatArray, end: FloatArray) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
         """Last point that is not after a start, and first that is not before an end, of every row."""
         if self.even:
             step = self.master[:, 1] - self.master[:, 0]
             first, last = np.floor((start - self.master[:, 0]) / step), np.ceil((end - self.master[:, 0]) / step)
             return first.astype(np.intp), last.astype(np.intp)
-        first = np.array([row.searchsorted(start, side="right") for row in self.master]) - 1
-        return first, np.array([row.searchsorted(end) for row in self.master])
+        rows = list(zip(self.master, start, end, strict=True))
+        first = np.array([row.searchsorted(bound, side="right") for row, bound, _ in rows]) - 1
+        return first, np.array([row.searchsorted(bound) for row, _, bound in rows])
 
 
 @dataclass(frozen=True, eq=False)

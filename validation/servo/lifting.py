@@ -100,6 +100,10 @@ class Lifted:
     points: FloatArray
     end: FloatArray
 
+    def take(self, rows: NDArray[np.intp]) -> Lifted:
+        """Pick servos by their number."""
+        return Lifted(self.loops.take(rows), self.orders, self.history[rows], self.points[:, rows], self.end[rows])
+
     @property
     def size(self) -> int:
         """Samples of a block."""
@@ -212,7 +216,9 @@ def _points(rows: FloatArray, powers: FloatArray, response: FloatArray, size: in
     return found
 
 
-def follow(lifted: Lifted, command: FloatArray, line: FloatArray, slope: float, line_speed: float) -> FloatArray:
+def follow(
+    lifted: Lifted, command: FloatArray, line: FloatArray, slope: float, line_speed: float | FloatArray
+) -> FloatArray:
     """Axes after the memory, from rest before it, about a straight line.
 
     Every block and phase is a matrix product of its own; only the first states of the blocks depend on each other.
@@ -220,7 +226,7 @@ def follow(lifted: Lifted, command: FloatArray, line: FloatArray, slope: float, 
     Parameters
     ----------
     lifted
-        The servos.
+        The servos, or one for all of them.
     command
         The command at the samples ``c[k]`` (m), without the line, memory first: shape ``(servos, samples, phases)``, or
         ``(1, samples, phases)`` for all alike.
@@ -229,7 +235,7 @@ def follow(lifted: Lifted, command: FloatArray, line: FloatArray, slope: float, 
     slope
         Ratio at which it moves on from there.
     line_speed
-        Line speed (m/s).
+        Line speed (m/s), or that of each servo.
 
     Returns
     -------
@@ -238,7 +244,8 @@ def follow(lifted: Lifted, command: FloatArray, line: FloatArray, slope: float, 
         ``(orders, servos phases, parts (samples - past))``.
     """
     loops, size, width = lifted.loops, lifted.size, lifted.points.shape[-1]
-    many, past, phases = len(loops.gain), lifted.history.shape[2], command.shape[2]
+    many, past, phases = len(line), lifted.history.shape[2], command.shape[2]
+    speed = np.atleast_1d(line_speed)
     wanted = command.shape[1] - past
     blocks = -(-wanted // size)
     weights = loops.drive[:, :, None, None]
@@ -257,13 +264,13 @@ def follow(lifted: Lifted, command: FloatArray, line: FloatArray, slope: float, 
     states[0] = (lifted.history @ command[:, :past]).transpose(0, 2, 1)
     for block in range(1, blocks):
         np.matmul(inputs[block - 1], lifted.end, out=states[block])
-    rise = (slope * line_speed / lifted.parts * loops.sample_time)[:, None]  # of the line from point to point
+    rise = (slope * speed / lifted.parts * loops.sample_time)[:, None]  # of the line from point to point
     known[..., -2] = line + np.arange(blocks)[:, None, None] * (width * rise)
     known[..., -1] = 1.0
 
-    points = np.empty((len(lifted.orders), many, size + 5, width))
+    points = np.empty((len(lifted.orders), len(rise), size + 5, width))
     for order, matrix, found in zip(lifted.orders, lifted.points, points, strict=True):
-        np.divide(matrix, line_speed**order, out=found[:, :-2])
+        np.divide(matrix, speed[:, None, None] ** order, out=found[:, :-2])
         found[:, -2] = 1.0 if order == 0 else 0.0
         found[:, -1] = np.arange(width) * rise if order == 0 else slope if order == 1 else 0.0
     if size == 1:

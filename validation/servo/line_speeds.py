@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.servo import Servo, spectral_radius
@@ -14,22 +16,31 @@ from camwright.validation.motion import require_period
 from camwright.validation.servo.lifting import BLOCK, lift, lift_side_by_side, loops_of
 from camwright.validation.servo.monte_carlo import FEW_PHASES, shear_zone_errors
 from camwright.validation.servo.response import shear_zone_peaks
-from camwright.validation.servo.simulation import PHASES, WHOLE_PART, memory, shear_zone_run
+from camwright.validation.servo.axis_run import AxisRun
+from camwright.validation.servo.simulation import PHASES, WHOLE_PART, memory, simulate_part
 
-_SIDE_BY_SIDE = 8
-"""Servos that are run side by side; more of them save nothing."""
+_VALUES = 2**16
+"""Command values that are held at a time: what a processor has at hand."""
+
+_ALIKE = 0.8
+"""Line speeds are run side by side whose samples are no fewer than this share of the most."""
 
 _NEAR = 0.75
 """Share of the greatest sync error at few sampling phases from which on all are looked at."""
 
 
 def line_speed_errors(
-    profile: CamProfile, task: Task, servos: Sequence[Servo], line_speeds: FloatArray, phases: int = PHASES
+    profile: CamProfile,
+    task: Task,
+    servos: Sequence[Servo],
+    line_speeds: FloatArray,
+    phases: int = PHASES,
+    zones: tuple[FloatArray, FloatArray] | None = None,
 ) -> FloatArray:
     """Greatest sync error in the shear zone at each line speed, over all sampling phases.
 
     The cam is fixed over the master, the servo in time. Only the shear zone is simulated, and before it what the servo remembers. The
-    matrices of the servos are made once and serve every line speed.
+    matrices of the servos are made once and serve every line speed; all are run side by side.
 
     Parameters
     ----------
@@ -41,6 +52,9 @@ def line_speed_errors(
         The servos as they are, dead time and lead included.
     line_speeds
         Line speeds above 0 (m/s), shape ``(n,)``.
+    zones
+        Beginning, from the start of the sync zone, and length of what is looked at with each line speed (m), shapes ``(n,)``; the shear
+        zone if not given.
 
     Returns
     -------
@@ -52,13 +66,36 @@ def line_speed_errors(
     InputError
         The profile does not run over ``[0, x_c]``.
     """
-    require_period(profile, task.cut)
-    speeds = np.asarray(line_speeds, dtype=np.float64).tolist()
+    cut = task.cut
+    require_period(profile, cut)
+    speeds = np.asarray(line_speeds, dtype=np.float64)
     found = np.full((len(servos), len(speeds)), np.inf)
     stable = [row for row, servo in enumerate(servos) if spectral_radius(servo) < 1.0]
-    for first in range(0, len(stable), _SIDE_BY_SIDE):
-        rows = stable[first : first + _SIDE_BY_SIDE]
-        found[rows] = _side_by_side(profile, task, [servos[row] for row in rows], speeds, phases)
+    if not stable or not len(speeds):
+        return found
+    kept = [servos[row] for row in stable]
+    past = max(memory(servo.loop) for servo in kept)
+    # one servo may be found lifted by another call
+    lifted = lift(kept[0].loop, past, (1, 0)) if len(kept) == 1 else lift_side_by_side(loops_of(kept), past, (1, 0), BLOCK)
+    at, length = zones or (np.full(len(speeds), zone) for zone in (cut.shear_zone_at, cut.shear_zone))
+    samples = past + length / (speeds * min(servo.sample_time for servo in kept))
+    slow = samples > WHOLE_PART
+    for column in np.nonzero(slow)[0].tolist():
+        part = replace(cut, shear_zone_at=float(at[column]), shear_zone=float(length[column]))
+        slower = task.with_cut(part).at_speed(float(speeds[column]))
+        found[stable, column] = [shear_zone_errors(profile, slower, [servo], phases)[0] for servo in kept]
+    start = cut.return_start + cut.return_zone
+    begin, end = start + at, start + np.minimum(at + length, cut.sync_zone)
+    quick = np.nonzero(~slow)[0]
+    for group in _groups(samples[quick], _VALUES / (phases * len(kept))):
+        columns = quick[group]
+        rows, of_each = np.repeat(np.arange(len(kept)), len(columns)), np.tile(columns, len(kept))
+        part = begin[of_each], end[of_each]
+        every = lifted if len(kept) == 1 else lifted.take(rows)
+        many = [kept[row] for row in rows.tolist()]
+        master, (ratio, axis) = simulate_part(profile, cut, many, every, part, phases, speeds[of_each])
+        peaks = shear_zone_peaks(AxisRun(master, axis, ratio), profile, task, len(rows), part)
+        found[np.ix_(stable, columns)] = peaks.reshape(len(kept), -1)
     return found
 
 
@@ -79,20 +116,12 @@ def worst_line_speed_error(profile: CamProfile, task: Task, servos: Sequence[Ser
     )
 
 
-def _side_by_side(
-    profile: CamProfile, task: Task, servos: Sequence[Servo], speeds: Sequence[float], phases: int
-) -> FloatArray:
-    """Run a few stable servos at each line speed; as `line_speed_errors`."""
-    past = max(memory(servo.loop) for servo in servos)
-    alone = len(servos) == 1  # then another call may find it lifted
-    lifted = lift(servos[0].loop, past, (1, 0)) if alone else lift_side_by_side(loops_of(servos), past, (1, 0), BLOCK)
-    shortest = min(servo.sample_time for servo in servos)
-    found = np.empty((len(servos), len(speeds)))
-    for column, speed in enumerate(speeds):
-        if past + task.cut.shear_zone / (speed * shortest) > WHOLE_PART:
-            slower = task.at_speed(speed)
-            found[:, column] = [shear_zone_errors(profile, slower, [servo], phases)[0] for servo in servos]
-        else:
-            run = shear_zone_run(profile, task.at_speed(speed).cut, servos, lifted, phases)
-            found[:, column] = shear_zone_peaks(run, profile, task, len(servos))  # where zones lie knows no speed
-    return found
+def _groups(samples: FloatArray, most: float) -> Iterator[NDArray[np.intp]]:
+    """Divide line speeds into groups that are run side by side, by the samples of each: about as many, and not too many together."""
+    order = np.argsort(-samples, kind="stable")
+    while len(order):
+        longest = float(samples[order[0]])
+        alike = int((samples[order] > _ALIKE * longest).sum())
+        size = max(1, min(alike, int(most / longest)))
+        yield order[:size]
+        order = order[size:]

@@ -209,7 +209,9 @@ class _InSync:
         return np.asarray(moves - self.machine.tool_ratio(self.ideal[at]) * self.sync(self.along[at], 1))
 
 
-def _in_sync(run: AxisRun, profile: CamProfile, task: Task, start: float, end: float) -> _InSync:
+def _in_sync(
+    run: AxisRun, profile: CamProfile, task: Task, start: float | FloatArray, end: float | FloatArray
+) -> _InSync:
     """Put the axis beside the ideal sync line; arguments as in `sync_error`."""
     cut = task.cut
     zone = cut.return_start + cut.return_zone
@@ -245,9 +247,15 @@ def greatest_sync_error(profile: CamProfile, task: Task, servo: Servo, start: fl
     return found
 
 
-def shear_zone_peaks(run: AxisRun, profile: CamProfile, task: Task, servos: int) -> FloatArray:
-    """Greatest magnitude of the sync error in the shear zone over the phases of each of several servos (m), shape ``(servos,)``."""
-    error = np.abs(_in_sync(run, profile, task, *shear_zone_of(task.cut)).error())
+def shear_zone_peaks(
+    run: AxisRun, profile: CamProfile, task: Task, servos: int, part: tuple[FloatArray, FloatArray] | None = None
+) -> FloatArray:
+    """Greatest magnitude of the sync error in the shear zone over the phases of each of several servos (m), shape ``(servos,)``.
+
+    Of each in a part of its own (m), counted like `camwright.validation.servo.axis_run.AxisRun.master`, where such are given.
+    """
+    start, end = shear_zone_of(task.cut) if part is None else np.repeat(part, run.phases // servos, axis=1)
+    error = np.abs(_in_sync(run, profile, task, start, end).error())
     return np.asarray(error.reshape(servos, -1).max(axis=1))
 
 

@@ -35,6 +35,9 @@ PHASES = 16
 """Sampling phases simulated: shifts of the servo's clock by a 16th of the sample time. A multiple of `SUBSTEPS`, so that all
 phases share one command grid."""
 
+Part = tuple[float, float] | tuple[FloatArray, FloatArray]
+"""Two master positions (m), or two of each servo."""
+
 _FORGOTTEN = 1e-12
 """The start-up transient has decayed to this part of itself when the simulated cycle begins."""
 
@@ -114,7 +117,7 @@ def slow_axis(
         servo=servo.loop,
         line_speed=cut.line_speed,
         origin=cut.return_start,
-        shift=_shift(cut, servo),
+        shift=_shift(cut, servo, cut.line_speed),
         behind=steady_following_error(profile.mean_ratio * cut.line_speed, servo),
         first=math.floor(first),
         last=math.ceil(last) + 1,
@@ -186,9 +189,9 @@ class _Clocks:
         return spread
 
 
-def _clocks(cut: Cut, lifted: Lifted, part: tuple[float, float], phases: int) -> _Clocks:
-    """Lay the samples of servos about a part of the cycle."""
-    sample = cut.line_speed * lifted.loops.sample_time
+def _clocks(cut: Cut, speeds: FloatArray, lifted: Lifted, part: Part, phases: int) -> _Clocks:
+    """Lay the samples of servos about a part of the cycle, each at its line speed."""
+    sample = speeds * lifted.loops.sample_time
     first = np.floor((part[0] - cut.return_start) / sample) - 1.0
     samples = int(np.ceil((part[1] - cut.return_start) / sample - first).max()) + 1
     past = lifted.history.shape[2]
@@ -200,7 +203,8 @@ def whole_cycle(cut: Cut, servo: Servo) -> tuple[Lifted, _Clocks, FloatArray]:
     """Lift a servo, and lay its samples over the whole cycle, a sample more at the end; fewer phases where there are too many samples."""
     phases = _phases(cut, servo)
     lifted = lift(servo.loop, memory(servo.loop), (1, 0))
-    clocks = _clocks(cut, lifted, (cut.return_start, cut.return_start + cut.length), phases)
+    speed = np.array([cut.line_speed])
+    clocks = _clocks(cut, speed, lifted, (cut.return_start, cut.return_start + cut.length), phases)
     grid = clocks.grid(more=1)
     grid.setflags(write=False)
     return lifted, clocks, grid
@@ -236,11 +240,11 @@ def simulate(profile: CamProfile, cut: Cut, servo: Servo) -> ServoRun:
         return slow_run(profile, *slow.at(slow.samples()))
     lifted, clocks, grid = whole_cycle(cut, servo)
     periodic = deviation(profile, grid)
-    shift = _shift(cut, servo)
+    shift = _shift(cut, servo, cut.line_speed)
     seen = deviation(profile, grid - shift) if shift else periodic
     after = clocks.past * clocks.phases
     starts = grid[:, after : after + clocks.phases]
-    ratio, axis = _axes(profile, cut, (servo,), lifted, starts, seen[:, : -clocks.phases])
+    ratio, axis = _axes(profile, (servo,), np.array([cut.line_speed]), lifted, starts, seen[:, : -clocks.phases])
     master, periodic = grid[0, after:], periodic[0, after:]
     zero, slope = _mean_line(profile)
     command = slope * master
@@ -270,8 +274,9 @@ def simulate_part(
     cut: Cut,
     servos: Sequence[Servo],
     lifted: Lifted,
-    part: tuple[float, float],
+    part: Part,
     phases: int = PHASES,
+    speeds: FloatArray | None = None,
 ) -> tuple[FloatArray, FloatArray]:
     """Simulate servos side by side about a part of the cycle: nothing else but what they remember.
 
@@ -282,11 +287,13 @@ def simulate_part(
     servos
         Stable servos.
     lifted
-        The same, lifted, with the memory of the one that remembers most.
+        The same, lifted, with the memory of the one that remembers most; or one for all where all are alike.
     part
-        Master positions (m), counted on from the start of the return zone like those of a run.
+        Master positions (m), counted on from the start of the return zone like those of a run; or those of each servo.
     phases
         Sampling phases.
+    speeds
+        The line speed of each servo (m/s); that of the cut if not given.
 
     Returns
     -------
@@ -294,13 +301,14 @@ def simulate_part(
         Master positions, shape ``(servos phases, points)``, and there the derivatives of the axes over the master of the lifted orders,
         shape ``(orders, servos phases, points)``.
     """
-    clocks = _clocks(cut, lifted, part, phases)
+    speeds = np.broadcast_to(cut.line_speed if speeds is None else speeds, len(servos))
+    clocks = _clocks(cut, speeds, lifted, part, phases)
     grid = clocks.grid()
-    shift = np.array([_shift(cut, servo) for servo in servos])
+    shift = np.array([_shift(cut, servo, speed) for servo, speed in zip(servos, speeds.tolist(), strict=True)])
     alike = clocks.step.min() == clocks.step.max() and shift.min() == shift.max()  # one grid for all
     seen = deviation(profile, (grid - shift[:, None])[: 1 if alike else len(servos)])
     starts = grid[:, clocks.past * phases : (clocks.past + 1) * phases]
-    found = _axes(profile, cut, servos, lifted, starts, seen)
+    found = _axes(profile, servos, speeds, lifted, starts, seen)
     spacing = np.repeat(clocks.step * (phases / SUBSTEPS), phases)[:, None]
     return starts.reshape(-1, 1) + spacing * np.arange(clocks.samples * SUBSTEPS), found
 
@@ -333,7 +341,12 @@ def slow_shear_zone_run(profile: CamProfile, cut: Cut, servo: Servo, phases: int
 
 
 def _axes(
-    profile: CamProfile, cut: Cut, servos: Sequence[Servo], lifted: Lifted, starts: FloatArray, seen: FloatArray
+    profile: CamProfile,
+    servos: Sequence[Servo],
+    speeds: FloatArray,
+    lifted: Lifted,
+    starts: FloatArray,
+    seen: FloatArray,
 ) -> FloatArray:
     """Run loops on what they see of the command, about the mean straight line, which they follow late.
 
@@ -347,13 +360,15 @@ def _axes(
         Command less the line, memory first, shape ``(servos or 1, samples phases)``.
     """
     zero, slope = _mean_line(profile)
-    behind = np.array([[zero - steady_following_error(slope * cut.line_speed, servo)] for servo in servos])
-    return follow(lifted, seen.reshape(len(seen), -1, starts.shape[1]), slope * starts + behind, slope, cut.line_speed)
+    slave_speeds = (slope * speeds).tolist()
+    behind = [[zero - steady_following_error(*each)] for each in zip(slave_speeds, servos, strict=True)]
+    line = slope * starts + np.array(behind)
+    return follow(lifted, seen.reshape(len(seen), -1, starts.shape[1]), line, slope, speeds)
 
 
-def _shift(cut: Cut, servo: Servo) -> float:
+def _shift(cut: Cut, servo: Servo, line_speed: float) -> float:
     """How far behind on the master the command lies that the loop sees (m); what is periodic may be taken a cycle on."""
-    return math.fmod(cut.line_speed * servo.delay, cut.length)
+    return math.fmod(line_speed * servo.delay, cut.length)
 
 
 @lru_cache(maxsize=8)
