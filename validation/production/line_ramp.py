@@ -9,13 +9,14 @@ square, is zero.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from camwright.profiles.polynomial.profile import CamProfile, FloatArray, steps
+from camwright.profiles.polynomial import rows
+from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.polynomial.roots import roots_between
 from camwright.profiles.task import Task
 from camwright.validation.motion import is_smooth, is_steady
@@ -49,6 +50,9 @@ class Allowed:
     binds: str
     at: float | None
 
+
+WAYS = 1.0, -1.0
+"""A line that speeds up, and one that brakes."""
 
 FREE = Allowed(math.inf, "none", None)
 
@@ -99,17 +103,15 @@ def line_ramp(profile: CamProfile, task: Task, *, speeds: Literal["at", "up_to"]
     (0.0, 'jerk')
     """
     whole = speeds == "up_to"
-    parts = _parts(profile)
+    parts, v = _parts(profile), task.cut.line_speed
+    # at a standstill only the ratio counts
+    by_acceleration = _by_acceleration(parts, task.limits.acceleration, (v, 0.0) if whole else (v,))
+    by_jerk = _by_jerk(parts, task, whole=whole)
     found = []
-    for way in (1.0, -1.0):
-        bounds = [_by_acceleration(parts, task, way)]
-        if whole:  # at a standstill only the ratio counts
-            bounds.append(_by_acceleration(parts, task.at_speed(0.0), way))
-        bounds.append(_by_jerk(parts, task, way, whole=whole))
+    for number, way in enumerate(WAYS):
+        bounds = [*by_acceleration[number], by_jerk[number]]
         if task.limits.motor is not None and task.machine.moves_something:
-            speeds_at = (
-                tuple(share * task.cut.line_speed for share in (0.0, *SHARES)) if whole else (task.cut.line_speed,)
-            )
+            speeds_at = tuple(share * v for share in (0.0, *SHARES)) if whole else (v,)
             value, at = torque_ramp(parts, task, way, speeds_at)
             bounds.append(FREE if math.isinf(value) else Allowed(value, "torque", at))
         if not is_steady(profile, task.machine):
@@ -118,7 +120,7 @@ def line_ramp(profile: CamProfile, task: Task, *, speeds: Literal["at", "up_to"]
             bounds.append(Allowed(0.0, "jerk", _worst_jump(profile, 2)))
         worst = min(bounds, key=lambda each: each.value)
         found.append(worst if worst.value > NOTHING else replace(worst, value=0.0))
-    return LineRamp(task.cut.line_speed, *found)
+    return LineRamp(v, *found)
 
 
 def by_acceleration_alone(profile: CamProfile, task: Task) -> Allowed:
@@ -133,8 +135,8 @@ def by_acceleration_alone(profile: CamProfile, task: Task) -> Allowed:
     """
     if not is_steady(profile, task.machine):
         return Allowed(0.0, "acceleration", _worst_jump(profile, 1))
-    parts = _parts(profile)
-    return min((_by_acceleration(parts, task, way) for way in (1.0, -1.0)), key=lambda each: each.value)
+    found = _by_acceleration(_parts(profile), task.limits.acceleration, (task.cut.line_speed,))
+    return min((each for (each,) in found), key=lambda each: each.value)
 
 
 def ramp_curve(profile: CamProfile, task: Task) -> tuple[LineRamp, ...]:
@@ -157,88 +159,114 @@ def _signs(parts: CamProfile, order: int) -> FloatArray:
     return np.asarray(np.sign(parts(0.5 * (parts.breaks[:-1] + parts.breaks[1:]), order)))
 
 
-def _times(parts: CamProfile, order: int, levels: FloatArray) -> CamProfile:
-    """Multiply a derivative by a constant on each piece."""
-    return parts.derivative(order).times(steps(parts.breaks, levels))
+def _by_acceleration(parts: CamProfile, limit: float, speeds: Sequence[float]) -> list[list[Allowed]]:
+    """Bound ``(A - σ y'' v²) / |y'|``, with the direction ``σ`` in which the ramp pushes the slave, each way at each line speed."""
+    ratio, bend = (parts.derivative(order).coefficients for order in (1, 2))
+    sign = _signs(parts, 1)[:, None]
+    quotients = []
+    for way in WAYS:
+        for speed in speeds:
+            room = bend * (-way * sign * speed**2)
+            room[:, 0] += limit
+            quotients.append(Quotient(room, ratio * sign, parts.breaks[:-1], np.diff(parts.breaks)))
+    found = [_allowed(value, "acceleration", at) for value, at in least_quotients(quotients)]
+    return [found[: len(speeds)], found[len(speeds) :]]
 
 
-def _by_acceleration(parts: CamProfile, task: Task, way: float) -> Allowed:
-    """Bound ``(A - σ y'' v²) / |y'|``, with the direction ``σ`` in which the ramp pushes the slave."""
-    v, push = task.cut.line_speed, way * _signs(parts, 1)
-    room = _times(parts, 2, -push * v**2).plus(steps(parts.breaks, np.full(parts.pieces, task.limits.acceleration)))
-    value, at = least_quotient(room, _times(parts, 1, way * push))
-    return Allowed(max(0.0, value), "acceleration", at) if math.isfinite(value) else _nothing(value, "acceleration", at)
-
-
-def _nothing(value: float, binds: str, at: float) -> Allowed:
-    """Say that nothing binds, or that nothing is allowed."""
+def _allowed(value: float, binds: str, at: float) -> Allowed:
+    """Say what a bound leaves: all, where nothing binds; or nothing."""
+    if math.isfinite(value):
+        return Allowed(max(0.0, value), binds, at)
     return FREE if value > 0 else Allowed(0.0, binds, at)
 
 
-def _by_jerk(parts: CamProfile, task: Task, way: float, *, whole: bool) -> Allowed:
-    """Bound ``(J - |y'| j - σ y''' v³) / (3 |y''| v)``, with the direction ``σ`` in which the ramp jerks the slave.
+def _by_jerk(parts: CamProfile, task: Task, *, whole: bool) -> list[Allowed]:
+    """Bound ``(J - |y'| j - σ y''' v³) / (3 |y''| v)`` each way, with the direction ``σ`` in which the ramp jerks the slave.
 
     Of the line speeds up to ``v`` the highest is the worst where ``σ y''' >= 0``. Elsewhere it is that with
     ``2 |y'''| v³ = J - |y'| j``, if it is lower: there the bound is the cube root of ``(J - |y'| j)² |y'''| / (4 |y''|³)``.
     """
-    if task.cut.line_speed == 0.0:
-        return FREE
-    left, bend, against, room, eased = _jerk_terms(parts, task, way)
-    value, at = least_quotient(room, bend.scale(slave=3.0 * task.cut.line_speed))
+    v = task.cut.line_speed
+    if v == 0.0:
+        return [FREE] * len(WAYS)
+    highest, lower = [], []
+    for way in WAYS:
+        left, bend, against, eased = _jerk_terms(parts, task, way)
+        room = rows.added(left, against * v**3)
+        highest.append(Quotient(room, bend * (3.0 * v), parts.breaks[:-1], np.diff(parts.breaks)))
+        if whole:
+            split = parts.split(eased.roots())
+            if split is not parts:
+                left, bend, against, eased = _jerk_terms(split, task, way)
+            kept = eased(0.5 * (split.breaks[:-1] + split.breaks[1:])) > 0
+            left, bend, against = left[kept], bend[kept], against[kept]
+            over = rows.multiplied(rows.multiplied(left, left), against)
+            cube = rows.multiplied(rows.multiplied(bend, bend), bend) * 4.0
+            lower.append(Quotient(over, cube, split.breaks[:-1][kept], np.diff(split.breaks)[kept]))
+    found = least_quotients(highest)
     if whole:
-        left, bend, against, room, eased = _jerk_terms(parts.split(eased.roots()), task, way)
-        relevant = eased(0.5 * (eased.breaks[:-1] + eased.breaks[1:])) > 0
-        cube = bend.times(bend).times(bend).scale(slave=4.0)
-        lower, place = least_quotient(left.times(left).times(against), cube, relevant)
-        value, at = min((value, at), (math.copysign(abs(lower) ** (1 / 3), lower), place))
-    return Allowed(max(0.0, value), "jerk", at) if math.isfinite(value) else _nothing(value, "jerk", at)
+        roots = [(math.copysign(abs(value) ** (1 / 3), value), at) for value, at in least_quotients(lower)]
+        found = list(map(min, found, roots))
+    return [_allowed(value, "jerk", at) for value, at in found]
 
 
-def _jerk_terms(
-    parts: CamProfile, task: Task, way: float
-) -> tuple[CamProfile, CamProfile, CamProfile, CamProfile, CamProfile]:
+def _jerk_terms(parts: CamProfile, task: Task, way: float) -> tuple[rows.Rows, rows.Rows, rows.Rows, CamProfile]:
     """Give what the bounds by the jerk are made of.
 
     Returns
     -------
-    (left, bend, against, room, eased)
-        ``J - |y'| j``, ``|y''|``, ``-σ y'''``, ``J - |y'| j - σ y''' v³``, and what is positive where a lower line speed is the worst.
+    (left, bend, against, eased)
+        ``J - |y'| j``, ``|y''|``, ``-σ y'''``, and what is positive where a lower line speed is the worst.
     """
-    v = task.cut.line_speed
-    push = way * _signs(parts, 2)
-    limit = steps(parts.breaks, np.full(parts.pieces, task.limits.jerk))
-    left = _times(parts, 1, -_signs(parts, 1) * task.line.known_jerk).plus(limit)
-    against = _times(parts, 3, -push)
-    room = left.plus(against.scale(slave=v**3))
-    eased = against.scale(slave=2.0 * v**3).plus(left.scale(slave=-1.0))
-    return left, _times(parts, 2, way * push), against, room, eased
+    ratio, bend, jerk = (parts.derivative(order).coefficients for order in (1, 2, 3))
+    of_bend = _signs(parts, 2)[:, None]
+    left = ratio * (-_signs(parts, 1)[:, None] * task.line.known_jerk)
+    left[:, 0] += task.limits.jerk
+    against = jerk * (-way * of_bend)
+    eased = rows.added(against * (2.0 * task.cut.line_speed**3), -left)
+    return left, bend * of_bend, against, CamProfile(parts.breaks, eased)
 
 
-def least_quotient(over: CamProfile, under: CamProfile, wanted: NDArray[np.bool_] | None = None) -> tuple[float, float]:
-    """Least quotient of two polynomials on each of the same pieces, exactly, the lower one positive or zero on each.
+@dataclass(frozen=True, eq=False)
+class Quotient:
+    """A quotient of polynomials on pieces, the lower one positive or zero on each; where it is zero infinite, of the upper one's sign.
 
     Parameters
     ----------
     over, under
-        Numerator and denominator. Where the denominator is zero the quotient is infinite, of the numerator's sign.
-    wanted
-        Pieces to look at; all if not given.
-
-    Returns
-    -------
-    (value, at)
-        The least quotient and its place; infinite where no piece is wanted or the denominator is zero everywhere.
+        Coefficients, a row each piece; as `camwright.profiles.polynomial.rows`.
+    starts, width
+        Where the pieces begin, and how long they are (m).
     """
-    turning = over.derivative().times(under).plus(over.times(under.derivative()).scale(slave=-1.0))
-    width = np.diff(over.breaks)
-    inner = roots_between(turning.coefficients, np.zeros(len(width)), width)
+
+    over: rows.Rows
+    under: rows.Rows
+    starts: FloatArray
+    width: FloatArray
+
+
+def least_quotients(quotients: Sequence[Quotient]) -> list[tuple[float, float]]:
+    """Least value of each of some quotients of like degree, exactly, and its place; infinite where it is nowhere finite."""
+    over, under, width = (
+        np.concatenate([getattr(each, name) for each in quotients]) for name in ("over", "under", "width")
+    )
+    turning = rows.added(
+        rows.multiplied(rows.differentiated(over), under), -rows.multiplied(over, rows.differentiated(under))
+    )
+    inner = roots_between(turning, np.zeros(len(width)), width)
     sampled = width[:, None] * np.linspace(0.0, 1.0, SAMPLES + 1)  # a double root may hide from the roots
     local = np.column_stack([inner, sampled])
     local = np.where(np.isnan(local), 0.0, local)
     piece = np.arange(len(width))[:, None]
-    high, low = over.on_pieces(piece, local), under.on_pieces(piece, local)
+    high, low = rows.values(over, piece, local), rows.values(under, piece, local)
     quotient = np.where(low > 0, high / np.where(low > 0, low, 1.0), np.where(high < 0, -np.inf, np.inf))
-    if wanted is not None:
-        quotient[~wanted] = np.inf
-    worst = int(quotient.argmin())
-    return float(quotient.flat[worst]), float(over.breaks[worst // local.shape[1]] + local.flat[worst])
+    found, first = [], 0
+    for each in quotients:
+        own = slice(first, first + len(each.starts))
+        first = own.stop
+        if not len(each.starts):
+            found.append((math.inf, math.inf))
+            continue
+        row, column = divmod(int(quotient[own].argmin()), local.shape[1])
+        found.append((float(quotient[own][row, column]), float(each.starts[row] + local[own][row, column])))
+    return found
