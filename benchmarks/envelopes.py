@@ -26,7 +26,7 @@ from camwright.profiles.errors import CamwrightError
 from camwright.profiles.line import STEADY
 from camwright.profiles.machines import CrankSlider, RotaryKnife
 from camwright.studies.envelope import Edge, EnvelopeAnswer, envelope_answer
-from camwright.studies.reach import stand_in, verdict
+from camwright.studies.reach import named, stand_in, verdict
 
 RESULTS = Path(__file__).parent / "results" / "envelopes.csv"
 EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -170,10 +170,10 @@ def wrong(job: Job, edge: Edge, random: np.random.Generator, *, checked: bool) -
             task = placed_fastest(judged.task.with_length(length)).designed_at(factor * speed)
             failed, missed = verdict(judged, task, stand_in(judged))
             counts["places"] += 1
-            if (not failed if checked else failed not in LIMITS) != possible:
+            if (not failed if checked else named(failed) not in LIMITS) != possible:
                 counts["wrong"] += 1
                 print(
-                    f"wrong: {length!r} m at {factor!r} of {speed!r} m/s: {failed or 'passes'} {missed}; {job}",
+                    f"wrong: {length!r} m at {factor!r} of {speed!r} m/s: {named(failed) or 'passes'} {missed}; {job}",
                     file=sys.stderr,
                     flush=True,
                 )

@@ -20,12 +20,12 @@ from camwright.profiles.errors import InfeasibleError, InputError, SolverError
 from camwright.profiles.line import STEADY
 from camwright.profiles.objective import MotionObjective, of_command, of_motion
 from camwright.profiles.polynomial.profile import CamProfile
-from camwright.profiles.servo import Servo
+from camwright.profiles.servo import Servo, spectral_radius
 from camwright.profiles.task import Task
 from camwright.studies.axis_study import shares_of
 from camwright.studies.least_length import AWARE_STEEP, STEEP, SketchedFirst, least_length
-from camwright.validation.report import ValidationReport, judge
-from camwright.validation.servo.response import greatest_sync_error
+from camwright.validation.report import judge
+from camwright.validation.servo.response import greatest_sync_error, shear_zone_of
 
 ACCURACY, RAMPED_ACCURACY, SERVO_AWARE_ACCURACY = 1e-4, 1e-3, 5e-3
 """Accuracy of an edge, relative to it; of jobs whose line ramps, and of servo-aware ones: there a step is a design of up to a second."""
@@ -44,6 +44,9 @@ RAMP = "line_ramp"
 
 _UNSEEN = 1e-6
 """Shares of the tolerance below this one are not told apart."""
+
+_OUTSIDE = 1e-6
+"""By how much the tolerance is surely missed, as a logarithm: simulations of the whole cycle and of a part of it round differently."""
 
 _ROOM = 0.1
 """Where so great a share of the tolerance is left the ramps of the line may be what is nearer to its limit."""
@@ -208,9 +211,17 @@ def stand_in(job: Job) -> MotionObjective:
     return motion_objective(job.machine, objective) or of_motion(objective)
 
 
-Verdict = tuple[str, float]
-"""The first check that fails, or what makes a design impossible, empty where it passes; and by how much the sync error misses its
-tolerance, as the logarithm of a share: infinite where that is not what decides."""
+Failure = str | Callable[[], str]
+"""The first check that fails, or what makes a design impossible, empty where it passes; or what tells it, where all checks are yet to be
+made: of the many designs of a search only the last is asked."""
+
+Verdict = tuple[Failure, float]
+"""What fails; and by how much the sync error misses its tolerance, as the logarithm of a share: infinite where that is not what decides."""
+
+
+def named(failure: Failure) -> str:
+    """Tell what fails."""
+    return failure if isinstance(failure, str) else failure()
 
 
 def verdict(job: Job, task: Task, objective: MotionObjective, *, thorough: bool = False) -> Verdict:
@@ -226,9 +237,16 @@ def verdict(job: Job, task: Task, objective: MotionObjective, *, thorough: bool 
         return RAMP, missed if missed > 0.0 else math.inf
     except (InputError, SolverError):
         return "design", math.inf
-    report = judge(solution.profile, task.with_machine(solution.machine), job.servo, servo_aware=job.servo_aware)
-    failed = next((check.name for check in report.checks if not check.passed), "")
-    missed = math.log(max(_off_at_most(report), _UNSEEN * task.cut.sync_tolerance) / task.cut.sync_tolerance)
+    profile, placed = solution.profile, task.with_machine(solution.machine)
+
+    def first_failed() -> str:
+        return next((check.name for check in judge(profile, placed, job.servo).checks if not check.passed), "")
+
+    off = _off_at_most(profile, placed, job.servo) / task.cut.sync_tolerance
+    missed = math.log(max(off, _UNSEEN))
+    if missed > _OUTSIDE:  # that check fails, whatever others do
+        return first_failed, missed
+    failed = first_failed()
     if (missed > 0.0) != bool(failed):
         return failed, math.copysign(math.inf, 1.0 if failed else -1.0)
     return failed, missed if missed > -_ROOM else max(missed, _ramp_missed(task))
@@ -242,16 +260,16 @@ def _ramp_missed(task: Task) -> float:
     return -math.inf if share is None else math.log(max(share, _UNSEEN))
 
 
-def _off_at_most(report: ValidationReport) -> float:
+def _off_at_most(profile: CamProfile, task: Task, servo: Servo) -> float:
     """Greatest sync error that decides (m): in the shear zone, and at the end of the sync zone, where the axis must have settled, too."""
-    if report.servo is None:
+    if not spectral_radius(servo) < 1.0:
         return math.inf
-    cut, greatest = report.task.cut, report.servo.shear_zone_error
+    cut = task.cut
+    end = cut.return_start + cut.length
+    parts = [shear_zone_of(cut)]
     if cut.shear_zone_at + cut.shear_zone < cut.sync_zone:
-        end = cut.return_start + cut.length
-        last = greatest_sync_error(report.profile, report.task, report.loop, end - cut.shear_zone, end)
-        greatest = max(greatest, last)
-    return greatest
+        parts.append((end - cut.shear_zone, end))
+    return max(greatest_sync_error(profile, task, servo, *part) for part in parts)
 
 
 def _kept(
@@ -334,7 +352,7 @@ def _ramped_edge(
         return found, failed
     found *= 1.0 - back
     tries = _TRIES if accuracy <= RAMPED_ACCURACY else 0
-    while tries and found is not None and (fails := verdict(job, at(found), objective, thorough=True)[0]):
+    while tries and found is not None and (fails := named(verdict(job, at(found), objective, thorough=True)[0])):
         tries -= 1
         found, failed = (found * (1.0 - 0.5 * accuracy) if tries and found > least else None), fails
     return found, failed
@@ -429,7 +447,7 @@ def binding_of(job: Job, task: Task, beside: AxisProgramme | None = None) -> str
         return "speed"
     if math.isinf(missed):
         blind = replace(job, servo_aware=False, cut=replace(job.cut, shaped=False))
-        return verdict(blind, task.with_cut(replace(task.cut, shaped=False)), stand_in(job))[0] or TOLERANCE
+        return named(verdict(blind, task.with_cut(replace(task.cut, shaped=False)), stand_in(job))[0]) or TOLERANCE
     error_alone = AxisProgramme(replace(free, shares=(1.0,)))
     return AXIS_RATIO if _asks_ratio(job) and _missed(error_alone, ratio=False) <= 0.0 else TOLERANCE
 
@@ -456,7 +474,7 @@ def _edge(
     (share, failed)
         The share, ``None`` if none passes, and what fails beyond it; nothing where the edge itself passes.
     """
-    failures: dict[float, str] = {}
+    failures: dict[float, Failure] = {}
 
     def missed(longer: float) -> float:
         failed, by = judged(1.0 / longer)
@@ -467,10 +485,10 @@ def _edge(
     first = 1.0 / (1.0 - _INSIDE)
     found = least_length(missed, first if near is None else 1.0 / near, (first, 1.0 / least), accuracy, steep)
     if found is None:
-        return None, failures[max(failures)]
+        return None, named(failures[max(failures)])
     if found <= first:
         return 1.0, ""
-    return 1.0 / found, failures[max(failures)] if failures else TOLERANCE  # unseen, it is near enough to its tolerance
+    return 1.0 / found, named(failures[max(failures)]) if failures else TOLERANCE  # unseen, it is near enough to its tolerance
 
 
 def placed_as(job: Job, task: Task) -> Job:
