@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from camwright.design.feasible.extremes import extremes
-from camwright.design.feasible.feasibility import binding_limit, edge, is_feasible, needed_limits
+from camwright.design.feasible.feasibility import binding_limit, edge, feasible_lengths, needed_limits
 from camwright.design.returns.curve_limits import motor_limits
 from camwright.jobs.job import Job
 from camwright.profiles.limits import Limits
@@ -68,10 +68,7 @@ def longest_cut(task: Task) -> Edge:
     if can_rest(task):
         return Edge(None, NO_END)
 
-    def works(length: float) -> bool:
-        return is_feasible(task.with_length(length))
-
-    far = LONGEST * cut.length
+    works, far = feasible_lengths(task), LONGEST * cut.length
     if works(far) or not works(cut.length):
         return Edge(None, NOT_FOUND)
     found = edge(works, cut.length, far, _ACCURACY)

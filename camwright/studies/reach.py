@@ -488,7 +488,9 @@ def _edge(
         return None, named(failures[max(failures)])
     if found <= first:
         return 1.0, ""
-    return 1.0 / found, named(failures[max(failures)]) if failures else TOLERANCE  # unseen, it is near enough to its tolerance
+    return 1.0 / found, named(
+        failures[max(failures)]
+    ) if failures else TOLERANCE  # unseen, it is near enough to its tolerance
 
 
 def placed_as(job: Job, task: Task) -> Job:

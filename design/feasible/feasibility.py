@@ -49,8 +49,10 @@ class Demand:
     problem: ReturnProblem
     shares: tuple[float, float, float]
 
-    def met(self, speed: float = 1.0, acceleration: float = 1.0, jerk: float = 1.0) -> bool:
-        """Tell whether limits that are these multiples of the given ones are kept by some motion."""
+    def met(
+        self, speed: float = 1.0, acceleration: float = 1.0, jerk: float = 1.0, length: float | None = None
+    ) -> bool:
+        """Tell whether limits that are these multiples of the given ones are kept by some motion, in a return of another length (m)."""
         of_speed, of_acceleration, of_jerk = self.shares
         if (
             of_speed > speed * (1 + ALLOWED)
@@ -61,7 +63,7 @@ class Demand:
         given = self.problem
         # dataclasses.replace takes several times as long, and this is asked thousands of times
         problem = ReturnProblem(
-            given.length,
+            given.length if length is None else length,
             given.height,
             given.start_ratio,
             given.end_ratio,
@@ -100,6 +102,15 @@ def demands(task: Task) -> tuple[Demand, ...]:
 def is_feasible(task: Task) -> bool:
     """Tell whether some motion keeps the limits. A zone that the machine cannot be in sync over counts as infeasible."""
     return any(demand.met() for demand in demands(task))
+
+
+def feasible_lengths(*tasks: Task) -> Callable[[float], bool]:
+    """Give what tells of a cut length (m) whether some motion of one of some tasks keeps the limits, as `is_feasible` of that length.
+
+    A sync zone is the same at every cut length, so the demands are made once.
+    """
+    asked = [(demand, task.cut.sync_zone) for task in tasks for demand in demands(task)]
+    return lambda length: any(length > zone and demand.met(length=length - zone) for demand, zone in asked)
 
 
 def margin(task: Task) -> float:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
-from camwright.design.feasible.feasibility import edge, is_feasible
+from camwright.design.feasible.feasibility import edge, feasible_lengths
 from camwright.design.feasible.refusal import require_feasible
 from camwright.design.line.forms import keeps_ramp
 from camwright.design.optimise import solve
@@ -48,11 +48,10 @@ def redesigned(task: Task) -> MarkRange:
     """
     require_feasible(task)
     if not task.line.ramps:
-        return _ends(task, lambda length: is_feasible(task.with_length(length)))
+        return _ends(task, feasible_lengths(task))
     if not keeps_ramp(task.sync, task):
         return MarkRange(0.0, 0.0)
-    reserved = list(_reserved(task))
-    return _ends(task, lambda length: any(is_feasible(each.with_length(length)) for each in reserved))
+    return _ends(task, feasible_lengths(*_reserved(task)))
 
 
 def designed_ends(task: Task) -> MarkRange:
@@ -91,12 +90,8 @@ def designs(task: Task, shift: float) -> bool:
     return True
 
 
-def _ends(task: Task, possible: Callable[[float], bool]) -> MarkRange:
+def _ends(task: Task, works: Callable[[float], bool]) -> MarkRange:
     length, zone = task.cut.length, task.cut.sync_zone
-
-    def works(each: float) -> bool:
-        return each > zone and possible(each)
-
     if not works(length):
         return MarkRange(0.0, 0.0)
     shortest = edge(works, length, zone) or length

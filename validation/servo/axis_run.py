@@ -43,9 +43,7 @@ class AxisRun:
         """Number of sampling phases."""
         return len(self.master)
 
-    def window(
-        self, start: float | FloatArray, end: float | FloatArray
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def window(self, start: float | FloatArray, end: float | FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Master position, axis and axis ratio between two master positions, the two ends included, for every phase.
 
         Rows are filled up by repeating the ends, so that all phases have the same number of points. The ends are

@@ -13,10 +13,10 @@ from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.servo import Servo, spectral_radius
 from camwright.profiles.task import Task
 from camwright.validation.motion import require_period
+from camwright.validation.servo.axis_run import AxisRun
 from camwright.validation.servo.lifting import BLOCK, lift, lift_side_by_side, loops_of
 from camwright.validation.servo.monte_carlo import FEW_PHASES, shear_zone_errors
 from camwright.validation.servo.response import shear_zone_peaks
-from camwright.validation.servo.axis_run import AxisRun
 from camwright.validation.servo.simulation import PHASES, WHOLE_PART, memory, simulate_part
 
 _VALUES = 2**16
@@ -76,7 +76,9 @@ def line_speed_errors(
     kept = [servos[row] for row in stable]
     past = max(memory(servo.loop) for servo in kept)
     # one servo may be found lifted by another call
-    lifted = lift(kept[0].loop, past, (1, 0)) if len(kept) == 1 else lift_side_by_side(loops_of(kept), past, (1, 0), BLOCK)
+    lifted = (
+        lift(kept[0].loop, past, (1, 0)) if len(kept) == 1 else lift_side_by_side(loops_of(kept), past, (1, 0), BLOCK)
+    )
     at, length = zones or (np.full(len(speeds), zone) for zone in (cut.shear_zone_at, cut.shear_zone))
     samples = past + length / (speeds * min(servo.sample_time for servo in kept))
     slow = samples > WHOLE_PART
