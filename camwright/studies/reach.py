@@ -6,6 +6,8 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from camwright.design.feasible.extremes import Extremes
 from camwright.design.line.ramped import ramp_share
 from camwright.design.optimise import motion_objective, solve
@@ -20,12 +22,12 @@ from camwright.profiles.errors import InfeasibleError, InputError, SolverError
 from camwright.profiles.line import STEADY
 from camwright.profiles.objective import MotionObjective, of_command, of_motion
 from camwright.profiles.polynomial.profile import CamProfile
-from camwright.profiles.servo import Servo, spectral_radius
+from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
 from camwright.studies.axis_study import shares_of
 from camwright.studies.least_length import AWARE_STEEP, STEEP, SketchedFirst, least_length
 from camwright.validation.report import judge
-from camwright.validation.servo.response import greatest_sync_error, shear_zone_of
+from camwright.validation.servo.line_speeds import line_speed_errors
 
 ACCURACY, RAMPED_ACCURACY, SERVO_AWARE_ACCURACY = 1e-4, 1e-3, 5e-3
 """Accuracy of an edge, relative to it; of jobs whose line ramps, and of servo-aware ones: there a step is a design of up to a second."""
@@ -262,14 +264,10 @@ def _ramp_missed(task: Task) -> float:
 
 def _off_at_most(profile: CamProfile, task: Task, servo: Servo) -> float:
     """Greatest sync error that decides (m): in the shear zone, and at the end of the sync zone, where the axis must have settled, too."""
-    if not spectral_radius(servo) < 1.0:
-        return math.inf
     cut = task.cut
-    end = cut.return_start + cut.length
-    parts = [shear_zone_of(cut)]
-    if cut.shear_zone_at + cut.shear_zone < cut.sync_zone:
-        parts.append((end - cut.shear_zone, end))
-    return max(greatest_sync_error(profile, task, servo, *part) for part in parts)
+    places = np.unique([cut.shear_zone_at, max(cut.shear_zone_at, cut.sync_zone - cut.shear_zone)])
+    zones = places, np.full(len(places), cut.shear_zone)
+    return float(line_speed_errors(profile, task, [servo], np.full(len(places), cut.line_speed), zones=zones).max())
 
 
 def _kept(

@@ -305,7 +305,8 @@ def simulate_part(
     clocks = _clocks(cut, speeds, lifted, part, phases)
     grid = clocks.grid()
     shift = np.array([_shift(cut, servo, speed) for servo, speed in zip(servos, speeds.tolist(), strict=True)])
-    alike = clocks.step.min() == clocks.step.max() and shift.min() == shift.max()  # one grid for all
+    # one grid for all, if it is
+    alike = all(each.min() == each.max() for each in (clocks.step, clocks.first, shift))
     seen = deviation(profile, (grid - shift[:, None])[: 1 if alike else len(servos)])
     starts = grid[:, clocks.past * phases : (clocks.past + 1) * phases]
     found = _axes(profile, servos, speeds, lifted, starts, seen)

@@ -16,7 +16,7 @@ from camwright.profiles.returns import baseline
 from camwright.profiles.servo import Servo, spectral_radius
 from camwright.profiles.task import Task
 from camwright.validation.servo.line_speeds import line_speed_errors, worst_line_speed_error
-from camwright.validation.servo.response import servo_response
+from camwright.validation.servo.response import greatest_sync_error, servo_response
 from camwright.validation.servo.simulation import simulate
 
 KNIFE = RotaryKnife(0.4)
@@ -103,3 +103,13 @@ def test_the_worst_line_speed_is_that_of_all_phases(name: str) -> None:
     every = line_speed_errors(profile, TASK, servos, speeds)
     assert worst_line_speed_error(profile, TASK, servos, speeds) == pytest.approx(every.max(), rel=1e-12)
     assert worst_line_speed_error(profile, TASK, [replace(PAPER, position_gain=1e4)], speeds) == np.inf
+
+
+def test_parts_of_the_zone_at_one_line_speed_are_those_of_each_by_itself() -> None:
+    profile, start = baseline("poly_3_4_5", TASK), CUT.return_start + CUT.return_zone
+    at, length, speeds = np.array([0.0, 0.155, 0.16]), np.full(3, 0.04), np.array([80.0, 80.0, 2.0]) / 60
+    for servo in (PAPER, replace(PAPER, bandwidth=90.0, dead_time=0.002)):
+        found = line_speed_errors(profile, TASK, [servo], speeds, zones=(at, length))[0]
+        for value, speed, begin, long in zip(found, speeds.tolist(), at, length, strict=True):
+            part = start + begin, start + begin + long
+            assert value == pytest.approx(greatest_sync_error(profile, TASK.at_speed(speed), servo, *part), abs=1e-12)
