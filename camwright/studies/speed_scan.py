@@ -132,7 +132,7 @@ class SpeedScan:
             return errors / cut.sync_tolerance
 
         found = off(np.full(len(at), True), FEW_PHASES)
-        near = ((found > _SURE[0]) & (found < _SURE[1])).any(axis=0)
+        near = np.asarray(((found > _SURE[0]) & (found < _SURE[1])).any(axis=0))
         if near.any():
             found[:, near] = off(near, phases)
         return found.reshape(len(found), len(places), -1)

@@ -168,7 +168,7 @@ def _by_acceleration(parts: CamProfile, limit: float, speeds: Sequence[float]) -
         for speed in speeds:
             room = bend * (-way * sign * speed**2)
             room[:, 0] += limit
-            quotients.append(Quotient(room, ratio * sign, parts.breaks[:-1], np.diff(parts.breaks)))
+            quotients.append((room, ratio * sign, parts.breaks[:-1], np.diff(parts.breaks)))
     found = [_allowed(value, "acceleration", at) for value, at in least_quotients(quotients)]
     return [found[: len(speeds)], found[len(speeds) :]]
 
@@ -193,7 +193,7 @@ def _by_jerk(parts: CamProfile, task: Task, *, whole: bool) -> list[Allowed]:
     for way in WAYS:
         left, bend, against, eased = _jerk_terms(parts, task, way)
         room = rows.added(left, against * v**3)
-        highest.append(Quotient(room, bend * (3.0 * v), parts.breaks[:-1], np.diff(parts.breaks)))
+        highest.append((room, bend * (3.0 * v), parts.breaks[:-1], np.diff(parts.breaks)))
         if whole:
             split = parts.split(eased.roots())
             if split is not parts:
@@ -202,7 +202,7 @@ def _by_jerk(parts: CamProfile, task: Task, *, whole: bool) -> list[Allowed]:
             left, bend, against = left[kept], bend[kept], against[kept]
             over = rows.multiplied(rows.multiplied(left, left), against)
             cube = rows.multiplied(rows.multiplied(bend, bend), bend) * 4.0
-            lower.append(Quotient(over, cube, split.breaks[:-1][kept], np.diff(split.breaks)[kept]))
+            lower.append((over, cube, split.breaks[:-1][kept], np.diff(split.breaks)[kept]))
     found = least_quotients(highest)
     if whole:
         roots = [(math.copysign(abs(value) ** (1 / 3), value), at) for value, at in least_quotients(lower)]
@@ -227,29 +227,14 @@ def _jerk_terms(parts: CamProfile, task: Task, way: float) -> tuple[rows.Rows, r
     return left, bend * of_bend, against, CamProfile(parts.breaks, eased)
 
 
-@dataclass(frozen=True, eq=False)
-class Quotient:
-    """A quotient of polynomials on pieces, the lower one positive or zero on each; where it is zero infinite, of the upper one's sign.
-
-    Parameters
-    ----------
-    over, under
-        Coefficients, a row each piece; as `camwright.profiles.polynomial.rows`.
-    starts, width
-        Where the pieces begin, and how long they are (m).
-    """
-
-    over: rows.Rows
-    under: rows.Rows
-    starts: FloatArray
-    width: FloatArray
+Quotient = tuple[rows.Rows, rows.Rows, FloatArray, FloatArray]
+"""Coefficients over and under on pieces, as in `camwright.profiles.polynomial.rows`, where the pieces begin and how long they are (m). The
+lower one is positive or zero on each; where it is zero the quotient is infinite, of the upper one's sign."""
 
 
 def least_quotients(quotients: Sequence[Quotient]) -> list[tuple[float, float]]:
     """Least value of each of some quotients of like degree, exactly, and its place; infinite where it is nowhere finite."""
-    over, under, width = (
-        np.concatenate([getattr(each, name) for each in quotients]) for name in ("over", "under", "width")
-    )
+    over, under, start, width = (np.concatenate(each) for each in zip(*quotients, strict=True))
     turning = rows.added(
         rows.multiplied(rows.differentiated(over), under), -rows.multiplied(over, rows.differentiated(under))
     )
@@ -261,12 +246,13 @@ def least_quotients(quotients: Sequence[Quotient]) -> list[tuple[float, float]]:
     high, low = rows.values(over, piece, local), rows.values(under, piece, local)
     quotient = np.where(low > 0, high / np.where(low > 0, low, 1.0), np.where(high < 0, -np.inf, np.inf))
     found, first = [], 0
-    for each in quotients:
-        own = slice(first, first + len(each.starts))
-        first = own.stop
-        if not len(each.starts):
+    for *_, own in quotients:
+        places = range(first, first + len(own))
+        first = places.stop
+        if places:
+            row, column = divmod(int(quotient[places.start : places.stop].argmin()), local.shape[1])
+            row += places.start
+            found.append((float(quotient[row, column]), float(start[row] + local[row, column])))
+        else:
             found.append((math.inf, math.inf))
-            continue
-        row, column = divmod(int(quotient[own].argmin()), local.shape[1])
-        found.append((float(quotient[own][row, column]), float(each.starts[row] + local[own][row, column])))
     return found

@@ -83,8 +83,8 @@ def line_speed_errors(
     samples = past + length / (speeds * min(servo.sample_time for servo in kept))
     slow = samples > WHOLE_PART
     for column in np.nonzero(slow)[0].tolist():
-        part = replace(cut, shear_zone_at=float(at[column]), shear_zone=float(length[column]))
-        slower = task.with_cut(part).at_speed(float(speeds[column]))
+        zone = replace(cut, shear_zone_at=float(at[column]), shear_zone=float(length[column]))
+        slower = task.with_cut(zone).at_speed(float(speeds[column]))
         found[stable, column] = [shear_zone_errors(profile, slower, [servo], phases)[0] for servo in kept]
     start = cut.return_start + cut.return_zone
     begin, end = start + at, start + np.minimum(at + length, cut.sync_zone)
@@ -97,7 +97,7 @@ def line_speed_errors(
         many = [kept[row] for row in rows.tolist()]
         master, (ratio, axis) = simulate_part(profile, cut, many, every, part, phases, speeds[of_each])
         peaks = shear_zone_peaks(AxisRun(master, axis, ratio), profile, task, len(rows), part)
-        found[np.ix_(stable, columns)] = peaks.reshape(len(kept), -1)
+        found[np.array(stable)[:, None], columns] = peaks.reshape(len(kept), -1)
     return found
 
 
