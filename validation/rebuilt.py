@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
@@ -13,13 +12,13 @@ from camwright.profiles.polynomial.profile import CamProfile, Extremum, FloatArr
 from camwright.profiles.servo import Servo, spectral_radius
 from camwright.profiles.task import Task
 from camwright.validation.check import Check
+from camwright.validation.differences import sampled_peaks
 from camwright.validation.motion import (
     RATIO_JUMP,
     greatest_jump,
     position_scale,
     ratio_scale,
 )
-from camwright.validation.servo.periodic import deviation
 from camwright.validation.servo.response import greatest_shear_zone_error
 
 LEAST_WRAPS = 3
@@ -49,7 +48,6 @@ _MOST_MARGIN = 0.05
 """Part of the sync zone that these may take at either end; a table of wider steps is judged all over."""
 
 _NODES = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, 17))
-_PHASES = 4096
 
 
 @dataclass(frozen=True, eq=False)
@@ -374,46 +372,3 @@ def _shear_zone(cycles: list[CamProfile], task: Task, servo: Servo) -> Check:
         None,
         "tool against material in the shear zone, at every sampling phase",
     )
-
-
-def sampled_peaks(run: CamProfile, cut: Cut, servo: Servo) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Greatest second and third difference of the positions at the servo's sample time, over all sampling phases.
-
-    That is what the drive is commanded: it knows the cam at its samples only. Where the cam is smooth over some samples
-    the differences approach the derivatives; where straight lines meet they stay finite.
-
-    Parameters
-    ----------
-    run
-        One or more cycles, SI units.
-    cut, servo
-        Line speed, and sample time.
-
-    Returns
-    -------
-    tuple
-        Acceleration and where its samples begin on the master (m), jerk and where.
-    """
-    step = cut.line_speed * servo.sample_time
-    joins = (run.breaks[:, None] - step * np.arange(4)).ravel()  # differences peak where a sample falls on a join
-    x = np.concatenate([np.linspace(0.0, cut.length, _PHASES, endpoint=False), joins[joins >= 0.0]])
-    x.sort()
-    # the straight line that a deviation leaves out has no second difference
-    y = [deviation(run, x + k * step) for k in range(4)]
-    y = [after - before for before, after in pairwise(y)]
-    found = []
-    for order in (2, 3):
-        y = [after - before for before, after in pairwise(y)]
-        size = np.abs(y[0]) / servo.sample_time**order
-        worst = int(size.argmax())
-        found.append((float(size[worst]), float(x[worst]) % cut.length))
-    return found[0], found[1]
-
-
-def differences(run: CamProfile, x: FloatArray, order: int, cut: Cut, servo: Servo) -> FloatArray:
-    """Second (acceleration) or third difference (jerk) of samples that begin at master positions ``x``, over time."""
-    step = cut.line_speed * servo.sample_time
-    y = [run(x + k * step, outside="repeat") for k in range(order + 1)]
-    for _ in range(order):
-        y = [after - before for before, after in pairwise(y)]
-    return y[0] / servo.sample_time**order

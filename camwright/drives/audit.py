@@ -21,7 +21,8 @@ from camwright.profiles.tables.targets import TARGETS
 from camwright.profiles.tables.text import read_text
 from camwright.studies.line_ramps import line_ramps
 from camwright.studies.remedies import solve_or_advise
-from camwright.validation.rebuilt import TableJudgement, differences, sampled_peaks
+from camwright.validation.differences import differences, sampled_peaks
+from camwright.validation.rebuilt import TableJudgement
 from camwright.validation.report import ValidationReport, judge
 
 MEASURES: dict[str, str] = {

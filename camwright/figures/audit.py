@@ -24,7 +24,7 @@ from camwright.figures.strokes import BLACK, LINES, Stroke
 from camwright.house.numbers import converted, number, unit_shown
 from camwright.house.pictures import Bar, Frame, Item, Line, Note, Picture, Tick, ticks
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
-from camwright.validation.rebuilt import differences
+from camwright.validation.differences import differences
 
 _THIS = replace(LINES["linear_return"], width=1.4, dash=())
 _BEST = LINES["optimised"]
