@@ -44,9 +44,10 @@ def redesigned(task: Task) -> MarkRange:
     Raises
     ------
     InfeasibleError
-        The cut itself cannot be done.
+        The cut itself cannot be done, whatever torque the motor gives.
     """
-    require_feasible(task)
+    # a motion within the motor's curve need not lie in one of its rectangles: then no other length is sure
+    require_feasible(task.with_limits(motor_speed_limits(task.machine, task.limits)))
     if not task.line.ramps:
         return _ends(task, feasible_lengths(task))
     if not keeps_ramp(task.sync, task):
@@ -70,6 +71,8 @@ def designed_ends(task: Task) -> MarkRange:
     free = redesigned(task.with_line(STEADY).with_limits(motor_speed_limits(task.machine, task.limits)))
 
     def between(good: float | None, bad: float | None) -> float | None:
+        if bad is None and good == 0.0 and designs(task, (FARTHEST - 1.0) * task.cut.length):
+            return None  # the slave can wait, though not in a rectangle of the motor's curve
         if good is None or bad is None or good == bad:
             return good
         found = edge(lambda shift: shift == good or designs(task, shift), good, bad, DESIGNED)

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pytest
 
+from camwright.design.feasible.feasibility import is_feasible
 from camwright.design.optimise import solve
 from camwright.design.production.marks import designed_ends, designs, redesigned
 from camwright.jobs.examples import example
@@ -114,3 +115,28 @@ def test_with_a_motors_curve_the_end_is_found_by_designs() -> None:
     assert redesigned(PAPER).earliest <= found <= sure
     assert designs(task, found)
     assert not designs(task, 1.01 * found)
+
+
+BETWEEN = Task(
+    RotaryKnife(0.4, drum_inertia=0.05),
+    PAPER.cut,
+    replace(PAPER.limits, motor=MotorCurve(((0.0, 10.5), (20 * math.pi, 3.5)))),
+)
+"""A motion keeps this motor's curve, though none lies in one of its rectangles."""
+
+
+def test_a_job_that_no_rectangle_of_the_motors_curve_allows_is_not_refused() -> None:
+    assert not is_feasible(BETWEEN)
+    assert designs(BETWEEN, 0.0)
+    assert redesigned(BETWEEN) == MarkRange(0.0, 0.0)
+    with pytest.raises(InfeasibleError, match="jerk"):
+        redesigned(BETWEEN.with_limits(replace(BETWEEN.limits, jerk=1.0)))
+
+
+@pytest.mark.slow
+def test_both_ends_of_such_a_job_are_found_by_designs() -> None:
+    found = designed_ends(BETWEEN)
+    assert found.earliest < 0.0
+    assert found.latest is None
+    assert designs(BETWEEN, found.earliest)
+    assert not designs(BETWEEN, 1.01 * found.earliest)
