@@ -71,11 +71,11 @@ def compare_recipes(before: Recipe, after: Recipe) -> list[Change]:
 
 
 def _same(change: Change) -> bool:
-    """Whether two values are the same, lengths to a nanometre: below that servo errors are rounding."""
+    """Whether two values are the same, lengths and speeds to 1e-6: below that servo errors and a slave that stands are rounding."""
     before, after = change.before, change.after
     if isinstance(before, float) and isinstance(after, float):
         return abs(before - after) <= _ROUNDING * max(abs(before), abs(after)) + (
-            1e-6 if change.unit in ("mm", "in") else 0.0
+            1e-6 if change.unit in ("mm", "in", "m/min", "ft/min", "1/min") else 0.0
         )
     return bool(before == after)
 

@@ -103,3 +103,12 @@ def test_a_change_of_the_ramps_is_a_change_of_the_recipe(made: MadeRecipe) -> No
     other = replace(made.recipe, start_stop=replace(made.recipe.start_stop, park=-0.19))
     found = [change for change in compare_recipes(made.recipe, other) if change.group == "production"]
     assert [change.name for change in found] == ["park"]
+
+
+def test_rounding_of_a_slave_that_stands_is_no_change(made: MadeRecipe) -> None:
+    checks = tuple(
+        replace(check, value=1e-12 + (check.value or 0.0)) if check.name == "reversal" else check
+        for check in made.recipe.checks
+    )
+    assert checks != made.recipe.checks
+    assert compare_recipes(made.recipe, replace(made.recipe, checks=checks)) == []
