@@ -141,7 +141,7 @@ def main() -> int:
                 continue
             judged, wrong = wrong_speeds(rng, cam)
             counts.update(
-                jobs=1, gaps=len(cam.band.parts) > 1, creeps=cam.band.creeps, none=not cam.band.parts, judged=judged
+                jobs=1, gaps=len(cam.band.parts) > 1, creeps=cam.band.holds(0.0), none=not cam.band.parts, judged=judged
             )
             counts["wrong"] += len(wrong)
             seconds.append(cam.seconds)

@@ -92,11 +92,6 @@ class SpeedBand:
         """Whether a line speed (m/s) lies in a part."""
         return any(low <= line_speed <= high for low, high in self.parts)
 
-    @property
-    def creeps(self) -> bool:
-        """Whether the cam may run from standstill on."""
-        return bool(self.parts) and self.parts[0][0] == 0.0
-
 
 def failed_checks(report: ValidationReport, band: SpeedBand, line_speed: float) -> list[str]:
     """Name the checks of a cam that failed at its line speed (m/s); `TOLERANCE` where only a servo at the corners of its ranges fails."""

@@ -31,11 +31,6 @@ class Sweep:
         return tuple(case.response for case in self.cases if case.response is not None)
 
     @property
-    def unstable(self) -> tuple[Servo, ...]:
-        """The servos that are unstable."""
-        return tuple(case.servo for case in self.cases if case.response is None)
-
-    @property
     def settling(self) -> tuple[float | None, float | None]:
         """Best and worst settling length of the stable servos (m), ``None`` for none in the sync zone."""
         found = [response.settling for response in self.responses]
