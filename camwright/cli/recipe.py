@@ -83,7 +83,20 @@ def run(
     )
     if sign is not None:
         require_private_key(sign)
-    note = _given("--note", note, _LONGEST_NOTE)
+    return _make(file, targets, out, language, _given("--note", note, _LONGEST_NOTE), particulars, sign, voice)
+
+
+def _make(
+    file: Path,
+    targets: str | None,
+    out: Path | None,
+    language: Language,
+    note: str,
+    particulars: Particulars,
+    sign: Path | None,
+    voice: Voice,
+) -> int:
+    """Make and write the recipe of a file."""
     wanted = None if targets is None else _targets(targets)
     if out is not None:
         require_replaceable(out, is_recipe)

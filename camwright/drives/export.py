@@ -256,17 +256,15 @@ def _export(
         zones = tuple(at + k * job.cut.length for k in range(cuts) for at in zones)
         profile = profile.repeat(cuts)
     stored = units.slave.size if wanted.asked and target.counts else 0.0
-    choice = choose(profile, target, units, accuracy, points, zones)
-    _, error, expected = judge(choice.rebuilt, stored)
-    first = choice, error, expected
-    for part in _FINER if points is None and accuracy.kept_by(choice.deviation) else ():
-        if {check.name for check in expected.checks if not check.passed} - _NEARER or expected.passed:
-            break
-        nearer = Accuracy(part * accuracy.position, part * accuracy.ratio, part * accuracy.acceleration)
-        choice = choose(profile, target, units, nearer, points, zones)
-        _, error, expected = judge(choice.rebuilt, stored)
-    if not expected.passed:
-        choice, error, expected = first
+    first = choose(profile, target, units, accuracy, points, zones)
+    choice, error, expected = _nearer(
+        judge,
+        first,
+        accuracy,
+        stored,
+        lambda to: choose(profile, target, units, to, points, zones),
+        free=points is None,
+    )
     if name:
         choice = replace(choice, table=replace(choice.table, periodic=False))
     facts = _facts(expected, job, error)
@@ -285,6 +283,26 @@ def _export(
     failed = tuple(f"check {check.name} failed" for check in result.judgement.checks if not check.passed)
     forced = _written(judge, choice, target, replace(head, warnings=failed), accuracy, stored)
     return replace(forced, dense=result.dense)
+
+
+def _nearer(
+    judge: _Judge,
+    first: Choice,
+    accuracy: Accuracy,
+    stored: float,
+    chosen: Callable[[Accuracy], Choice],
+    *,
+    free: bool,
+) -> tuple[Choice, float, TableJudgement]:
+    """Choose points nearer to the cam while a check fails that they may mend, if their number is free; the first where none helps."""
+    choice = first
+    _, error, expected = beginning = judge(first.rebuilt, stored)
+    for part in _FINER if free and accuracy.kept_by(first.deviation) else ():
+        if {check.name for check in expected.checks if not check.passed} - _NEARER or expected.passed:
+            break
+        choice = chosen(Accuracy(part * accuracy.position, part * accuracy.ratio, part * accuracy.acceleration))
+        _, error, expected = judge(choice.rebuilt, stored)
+    return (choice, error, expected) if expected.passed else (first, *beginning[1:])
 
 
 def _written(
