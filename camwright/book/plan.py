@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -21,6 +20,7 @@ from camwright.book.units import BookUnits, book_units
 from camwright.drives.options import chosen_targets
 from camwright.house.numbers import units_of
 from camwright.house.provenance import provenance
+from camwright.house.toml_file import toml_data
 from camwright.house.units import shown
 from camwright.jobs.job import Job, parse_job, read_job
 from camwright.jobs.line_speeds import line_speeds_text
@@ -270,7 +270,7 @@ def _line_speeds(text: str) -> dict[str, list[str] | str]:
 @lru_cache(maxsize=4)
 def _data(toml: str) -> dict[str, Any]:
     """Read the data of a job file; kept, because every combination begins with it."""
-    return tomllib.loads(toml.removeprefix("\ufeff"))
+    return toml_data(toml, "job", "job file")
 
 
 def _written(value: Fraction, scale: Fraction, unit: str, si: str) -> str:

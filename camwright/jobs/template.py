@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterator, Mapping
 
+from camwright.house.toml_file import toml_data
 from camwright.jobs.keys import JobKey, job_keys, written
 
 _COMMENT_AT = 40
@@ -13,7 +13,7 @@ _COMMENT_AT = 40
 
 def values_of(text: str) -> dict[str, object]:
     """Read the values of a job file by their places, as they are written: ``{"cut.length": "600 mm"}``."""
-    return dict(_flat(tomllib.loads(text), ""))
+    return dict(_flat(toml_data(text, "job", "job file"), ""))
 
 
 def job_template(values: Mapping[str, object], about: str) -> str:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-import tomllib
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
 from camwright.house.language import LANGUAGES, Language, filled
 from camwright.house.numbers import METRIC, Units, in_print, number, unit_shown, units_of
+from camwright.house.toml_file import toml_data
 
 DECIMAL: dict[Language, str] = {"en": ".", "de": ",", "zh": "."}
 """What stands before decimals."""
@@ -71,7 +71,7 @@ def _kept(language: Language, units: Units) -> Catalogue:
 
 def catalogue_of(language: Language, job: str) -> Catalogue:
     """Read the messages that a recipe is written with: its language, and the units of its job file's text."""
-    return catalogue(language, units_of(tomllib.loads(job.removeprefix("\ufeff"))))
+    return catalogue(language, units_of(toml_data(job, "job", "job file")))
 
 
 def _in_units(text: str, units: Units) -> str:

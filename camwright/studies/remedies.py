@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterator
 from copy import deepcopy
 from dataclasses import dataclass, replace
@@ -10,6 +9,7 @@ from typing import Any
 
 from camwright.design.optimise import Solution
 from camwright.house.numbers import METRIC, Units, inside, with_unit
+from camwright.house.toml_file import toml_data
 from camwright.jobs.job import Job, read_job
 from camwright.jobs.wording import place_of
 from camwright.profiles.errors import CamwrightError, Covered, InfeasibleError, SolverError, Suggestion
@@ -85,7 +85,7 @@ class _Trial:
     """A job whose changes are tried, up to a number of designs."""
 
     def __init__(self, job: Job) -> None:
-        self._data = tomllib.loads(job.text.removeprefix("\ufeff"))
+        self._data = toml_data(job.text, "job", "job file")
         self._left = MOST
         band = self._data.get("objective", {}).get("line_speeds")
         self._slowest = str(band[0]) if isinstance(band, list) and len(band) == 2 else ""

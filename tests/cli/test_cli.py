@@ -595,3 +595,11 @@ def test_validate_takes_what_a_bare_table_leaves_out(
     capsys.readouterr()
     assert main(["validate", str(designed[0] / "design.json"), "--job", JOB, "--units", "mm,mm"]) == 2
     assert "leave --units and --travel out" in capsys.readouterr().err
+
+
+def test_a_job_that_begins_with_a_byte_order_mark_is_checked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """As Windows' editor saves it, its lines ended in two characters."""
+    file = tmp_path / "job.toml"
+    file.write_bytes(b"\xef\xbb\xbf" + PAPER.replace("\n", "\r\n").encode())
+    assert main(["check", str(file)]) == 0
+    assert "no faults" in capsys.readouterr().out
