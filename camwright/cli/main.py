@@ -9,12 +9,14 @@ import os
 import sys
 from collections.abc import Callable, Sequence
 from importlib import import_module
+from pathlib import Path
 from typing import Annotated, cast
 
 import typer
 
 from camwright.answers.error import error_answer
 from camwright.cli.commands import COMMANDS
+from camwright.house.files import require_no_file
 from camwright.house.json_text import to_json
 from camwright.house.output import BROKEN_PIPE, complain, prepare_streams, silence_stdout
 from camwright.house.provenance import camwright_version
@@ -24,6 +26,9 @@ from camwright.profiles.errors import CamwrightError, InputError, SolverError
 
 INTERRUPTED = 130
 """Exit code when the user stops the command, as a shell reports it."""
+
+_ONE_FILE = {"identify", "new"}
+"""Commands whose ``--out`` names a file."""
 
 # typer's own usage error, which depending on its version is click's or typer's copy of it
 _UsageError = cast("type[Exception]", typer.BadParameter.__base__)
@@ -106,26 +111,30 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 2
 
 
-def _require_named_output(arguments: Sequence[str]) -> None:
-    """Refuse ``--out ""``, which as a path is the working directory: a variable of a script that was never set.
+def _require_output(arguments: Sequence[str]) -> None:
+    """Refuse ``--out ""``, which as a path is the working directory: a variable of a script that was never set; and a file for a folder.
+
+    A folder that cannot be made is refused here because the work that comes first may take minutes.
 
     Raises
     ------
     InputError
-        The name is empty.
+        The name is empty, or a file stands in the folder's place.
     """
     for number, argument in enumerate(arguments):
         name, sign, value = argument.partition("=")
         given = value if sign else next(iter(arguments[number + 1 :]), None)
         if name == "--out" and given is not None and not given.strip():
             raise InputError("--out: the name is empty; name where to write to, or leave --out out")
+        if name == "--out" and given is not None and _ONE_FILE.isdisjoint(arguments[:1]):
+            require_no_file(Path(given))
 
 
 def _run(arguments: list[str]) -> int:
     """Run a command; the exit code, errors told."""
     failure: CamwrightError | None
     try:
-        _require_named_output(arguments)
+        _require_output(arguments)
         return int(_application(_called(arguments))(arguments, prog_name="camwright", standalone_mode=False) or 0)
     except CamwrightError as error:
         exit_code, message, failure = error.exit_code, "\n".join(error_words(error)), error

@@ -333,13 +333,35 @@ def _make(directory: Path) -> list[Path]:
                 place.mkdir()
                 made.append(place)
         if not directory.is_dir():
-            raise NotADirectoryError(20, "a file is in the way")
+            raise NotADirectoryError(20, _IN_THE_WAY)
     except (OSError, ValueError) as error:  # ValueError: a path with a null character
         _take_back(None, made)
-        raise InputError(
-            f"{directory!s}: the output directory cannot be made: {_reason(error)}; choose another --out"
-        ) from error
+        raise _not_made(directory, error) from error
     return made
+
+
+def require_no_file(directory: Path) -> None:
+    """Refuse a directory in whose place, or above it, a file stands: before work that takes long.
+
+    Raises
+    ------
+    InputError
+        It cannot be made.
+    """
+    try:
+        there = next((place for place in (directory, *directory.parents) if place.exists()), None)
+        if there is not None and not there.is_dir():
+            raise NotADirectoryError(20, _IN_THE_WAY)
+    except (OSError, ValueError) as error:
+        raise _not_made(directory, error) from error
+
+
+def _not_made(directory: Path, error: OSError | ValueError) -> InputError:
+    """Say why a directory cannot be made."""
+    return InputError(f"{directory!s}: the output directory cannot be made: {_reason(error)}; choose another --out")
+
+
+_IN_THE_WAY = "a file is in the way"
 
 
 def _move_all(new: Path, directory: Path, old: Path, changes: Changes) -> None:

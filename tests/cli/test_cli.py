@@ -597,9 +597,21 @@ def test_validate_takes_what_a_bare_table_leaves_out(
     assert "leave --units and --travel out" in capsys.readouterr().err
 
 
-def test_a_job_that_begins_with_a_byte_order_mark_is_checked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_job_that_begins_with_a_byte_order_mark_is_checked(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     """As Windows' editor saves it, its lines ended in two characters."""
     file = tmp_path / "job.toml"
     file.write_bytes(b"\xef\xbb\xbf" + PAPER.replace("\n", "\r\n").encode())
     assert main(["check", str(file)]) == 0
     assert "no faults" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("below", ["", "a/b"])
+def test_a_file_in_the_place_of_the_output_is_refused_before_the_work(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, below: str
+) -> None:
+    monkeypatch.setattr("camwright.cli.main._application", lambda _: pytest.fail("the work was begun"))
+    (tmp_path / "file").write_text("mine")
+    assert main(["design", "--out", str(tmp_path / "file" / below)]) == 2
+    assert "a file is in the way; choose another --out" in capsys.readouterr().err

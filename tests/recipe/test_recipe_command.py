@@ -144,14 +144,17 @@ def test_anything_else_is_left_alone(say: Say, paper_job: Path, tmp_path: Path) 
     out.mkdir()
     (out / "letter.txt").write_text("dear")
     (tmp_path / "file").write_text("x")
-    for place in (out, tmp_path / "file"):
+    for place, why in (
+        (out, "something else is there, which is not overwritten"),
+        (tmp_path / "file", "a file is in the way"),
+    ):
         code, _, complaint = say("recipe", paper_job, "--targets", "csv", "--out", place)
         assert code == 2
-        assert "something else is there, which is not overwritten; choose another --out" in complaint
+        assert f"{why}; choose another --out" in complaint
     assert contents(tmp_path) == {"mine/letter.txt": b"dear", "file": b"x"}
     code, _, complaint = say("recipe", paper_job, "--targets", "csv", "--out", tmp_path / "file" / "below")
     assert code == 2
-    assert "the folder cannot be written" in complaint
+    assert "a file is in the way; choose another --out" in complaint
 
 
 def test_a_failure_while_writing_leaves_the_old_recipe(
