@@ -40,9 +40,11 @@ def samples(profile: CamProfile, task: Task) -> Samples:
     dict
         ``x_m``, ``y`` and ``ratio`` over the master, ``speed``, ``acceleration`` and ``jerk`` over time, and ``torque`` at the motor (N m)
         where the machine moves something and the cycle has no jump; beside it ``available_torque``, what the motor gives at its speed
-        there (N m), where the job has its curve. `POINTS` of each, a row of `_DIGITS` digits.
+        there (N m), where the job has its curve. `POINTS` of each, evenly spaced, and where speed, acceleration and jerk are greatest and
+        least: a peak may be narrower than a step. A row of `_DIGITS` digits.
     """
-    x, v = np.linspace(profile.start, profile.end, POINTS), task.cut.line_speed
+    peaks = [extremum.at for order in (1, 2, 3) for extremum in profile.extrema(order)]
+    x, v = np.union1d(np.linspace(profile.start, profile.end, POINTS), peaks), task.cut.line_speed
     y, ratio, slope, third = (profile(x, order) for order in range(4))
     columns = {
         "y": y,

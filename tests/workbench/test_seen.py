@@ -53,6 +53,18 @@ def test_torque_is_that_of_the_judge() -> None:
         np.testing.assert_allclose(np.array(found["torque"])[1:-1][away], expected, atol=1e-6 * np.abs(expected).max())
 
 
+def test_the_plots_hold_peaks_that_are_narrower_than_a_step() -> None:
+    """A corner at the limit of the jerk may be a quarter of a step wide."""
+    cam = CamProfile.from_arrays(
+        [0.0, 1e-4, 2e-4, 0.6], [[0.0, 1.0, 0.0, 5e4], [0.0, 1.0015, 15.0, -5e4], [0.0, 1.003]]
+    )
+    found, v = samples(cam, example("paper-600").task), 80 / 60
+    for order, name in ((1, "speed"), (2, "acceleration")):
+        least, greatest = (extremum.value * v**order for extremum in cam.extrema(order))
+        assert (min(found[name]), max(found[name])) == pytest.approx((least, greatest), rel=1e-6, abs=1e-9)
+    assert len({len(column) for column in found.values()}) == 1
+
+
 def test_a_limit_that_is_touched_is_named() -> None:
     text = (EXAMPLES / "paper-600.toml").read_text(encoding="utf-8")
     assert preview(text)["binding"] == ["reversal", "jerk"]

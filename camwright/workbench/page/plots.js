@@ -65,7 +65,7 @@ export function draw(drawing, shown, onGrip) {
     drawing.append(svg("rect", { class: "frame", x: LEFT, y: top, width: width - LEFT - RIGHT, height: ROW }));
     if (low < 0 && high > 0) drawing.append(svg("line", { class: "zero", x1: LEFT, x2: width - RIGHT, y1: down(0), y2: down(0) }));
     for (const tick of ticks(low, high)) drawing.append(svg("text", { class: "tick", x: LEFT - 5, y: down(tick) + 4, "text-anchor": "end" }, digits(tick)));
-    drawing.append(svg("text", { class: "title", x: LEFT, y: top - 6 }, row.unit === "1" ? word(row.name) : `${word(row.name)} (${row.unit})`));
+    drawing.append(svg("text", { class: "title", x: LEFT, y: top - 6 }, titleOf(row)));
     for (const { kind, samples } of beside) if (row.of(samples)) drawing.append(svg("path", { class: `curve ${kind}`, d: path(along.of(samples), row.of(samples), across, down) }));
     drawing.append(svg("path", { class: "curve", "data-row": row.name, d: path(x, row.of(shown.samples), across, down) }));
     if (shown.samples[row.within]) bounds(drawing, shown, row, { ...place, down, top, low, high });
@@ -82,8 +82,7 @@ export function draw(drawing, shown, onGrip) {
 /** Where a place on the master (m) stands along the plots. */
 function acrossMaster(shown, place, metres) {
   const { x_m: x } = shown.samples;
-  const share = (metres - x[0]) / (x[x.length - 1] - x[0]);
-  return place.across(place.x[Math.min(x.length - 1, Math.max(0, Math.round(share * (x.length - 1))))]);
+  return place.across(place.x[x.reduce((best, value, i) => (Math.abs(value - metres) < Math.abs(x[best] - metres) ? i : best), 0)]);
 }
 
 function zones(drawing, shown, place, top) {
@@ -97,6 +96,11 @@ function zones(drawing, shown, place, top) {
 
 /** What a handle tells who does not see it: its value, in words too, between nothing and as far as a slider goes. */
 const valueOf = (value, told) => ({ "aria-valuemin": 0, "aria-valuenow": value, "aria-valuemax": 4 * value, "aria-valuetext": told });
+
+const titleOf = (row) => (row.unit === "1" ? word(row.name) : `${word(row.name)} (${row.unit})`);
+
+/** Height of a name at a plot's upper right: above it, or within it where the plot's title leaves no room. */
+const heightOf = (name, row, { top, left, right }) => (6.4 * (titleOf(row).length + name.length + 2) < right - left ? top - 6 : top + 12);
 
 /** Limits as lines with a handle; one that is far beyond the curve stands as a handle on the upper edge. */
 function limitLines(drawing, row, shown, { low, high, top, down, left, right, onGrip }) {
@@ -114,19 +118,20 @@ function limitLines(drawing, row, shown, { low, high, top, down, left, right, on
     onGrip(handle, { path: `limits.${row.limit}`, vertical: true, share: beyond ? 1 / ROW : ((high - low) / ROW / limit) * Math.sign(value) });
     drawing.append(handle);
   }
-  const label = svg("text", { class: `limit-name${kind}`, x: right - 4, y: beyond ? top - 6 : down(limit) - 4, "text-anchor": "end" }, beyond ? `▴ ${text}` : text);
+  const name = beyond ? `▴ ${text}` : text;
+  const label = svg("text", { class: `limit-name${kind}`, x: right - 4, y: beyond ? heightOf(name, row, { top, left, right }) : down(limit) - 4, "text-anchor": "end" }, name);
   drawing.append(label);
 }
 
 /** What the motor gives at its speed, either way: a limit that changes along the cycle. */
-function bounds(drawing, shown, row, { x, across, down, right, top, low, high }) {
+function bounds(drawing, shown, row, { x, across, down, left, right, top, low, high }) {
   const most = shown.samples[row.within];
   const binding = shown.binding.includes("motor_torque") ? " binding" : "";
   const within = (value) => (value >= low && value <= high ? value : null);
   for (const sign of [1, -1]) drawing.append(svg("path", { class: `limit${binding}`, fill: "none", d: path(x, most.map((value) => within(sign * value)), across, down) }));
   const least = Math.min(...most);
   const told = least > high ? `▴ ${word("motor curve")} ${withUnit(least, row.unit)}` : binding ? `${word("motor curve")} ${word("binds")}` : word("motor curve");
-  drawing.append(svg("text", { class: `limit-name${binding}`, x: right - 4, y: top - 6, "text-anchor": "end" }, told));
+  drawing.append(svg("text", { class: `limit-name${binding}`, x: right - 4, y: heightOf(told, row, { top, left, right }), "text-anchor": "end" }, told));
 }
 
 function marks(drawing, values, { x, across, down, width }) {
