@@ -26,7 +26,7 @@ from camwright.drives.export import Exported, export_possible
 from camwright.jobs.job import Job
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import baseline
-from camwright.profiles.tables.cam_table import Unit, Units
+from camwright.profiles.tables.cam_table import TableUnits, Unit
 from camwright.profiles.tables.knots import Accuracy, choose
 from camwright.profiles.tables.targets import TARGETS, read_table
 from camwright.stored.design_text import design_text
@@ -102,7 +102,7 @@ def main() -> int:
         times.append(took)
     job = load_job()
     smooth = baseline("poly_3_4_5", job.task)
-    units = Units(Unit("mm", 1e-3), Unit("deg", job.machine.pitch / 360))
+    units = TableUnits(Unit("mm", 1e-3), Unit("deg", job.machine.pitch / 360))
     print("logix_points,position_um,acceleration_rel")
     for points in (20, 35, 60, 100, 180, 360, 1001):
         off = choose(smooth, TARGETS["logix"], units, Accuracy(), points).deviation

@@ -22,7 +22,7 @@ from camwright.bender.dxf_styles import Layers, Style, StyleChoice, StylePieces
 from camwright.bender.job import UNITS
 from camwright.bender.joining import join
 from camwright.bender.near_ends import NearEnds, near_ends
-from camwright.bender.overlaps import Overlap, between_styles, without_overlaps
+from camwright.bender.overlaps import EntityOverlap, between_styles, without_overlaps
 from camwright.bender.piece import Piece
 from camwright.profiles.bender.bridges import BridgeMark
 from camwright.profiles.bender.outline import Outline
@@ -95,7 +95,7 @@ class Drawing:
     styles: tuple[Style, ...]
     unit: str
     size: tuple[float, float]
-    overlaps: tuple[Overlap, ...]
+    overlaps: tuple[EntityOverlap, ...]
     near_ends: tuple[NearEnds, ...]
     warnings: tuple[str, ...]
     marks: tuple[BridgeMark, ...] = ()
@@ -107,7 +107,7 @@ class _Lines:
     """The lines of one style (m): paths, and what was found on the way to them."""
 
     paths: list[Piece]
-    overlaps: tuple[Overlap, ...]
+    overlaps: tuple[EntityOverlap, ...]
     near: tuple[NearEnds, ...]
     arcs: tuple[FoundArc, ...]
 

@@ -12,7 +12,7 @@ from camwright.bender.catalogue import SheetWords
 from camwright.bender.program_file import BentOutline
 from camwright.design.bender.moves import TimeTable
 from camwright.house.picture_files import write_pictures
-from camwright.house.pictures import DASHED, Frame, Line, Marks, Picture
+from camwright.house.pictures import DASHED, DrawnLine, DrawnMarks, Frame, Picture
 from camwright.profiles.bender.outline import Outline
 from camwright.profiles.polynomial.profile import FloatArray
 
@@ -60,14 +60,20 @@ def _proof(outline: BentOutline, words: SheetWords) -> Picture:
     seen = _seen(outline.plan.outline, worst, reach)
     fine = 1e3 * outline_path(outline.plan.outline, 1e-3 * np.where(seen, reach, np.inf) / _FINENESS)
     bends = bent[1:-1][(np.abs(bent[1:-1] - worst) <= reach).all(axis=1)]
-    under, over = Line(drawn, _DRAWN, 3.5, words("figure.drawing")), Line(bent, _BENT, 0.9, words("figure.bent"))
-    marks = Marks(bends, _BENT, 4.0, "disc", words("figure.bends"))
-    place = Marks(worst[None, :], _WORST, 13.0, "ring", words("figure.worst", value=words.number(deviation, ".4f")))
-    start = Marks(bent[:1], _START, 6.0, "square", words("figure.start"))
+    under, over = (
+        DrawnLine(drawn, _DRAWN, 3.5, words("figure.drawing")),
+        DrawnLine(bent, _BENT, 0.9, words("figure.bent")),
+    )
+    marks = DrawnMarks(bends, _BENT, 4.0, "disc", words("figure.bends"))
+    place = DrawnMarks(
+        worst[None, :], _WORST, 13.0, "ring", words("figure.worst", value=words.number(deviation, ".4f"))
+    )
+    start = DrawnMarks(bent[:1], _START, 6.0, "square", words("figure.start"))
     bridges = [
-        Line(path, _BRIDGE, 3.0, "" if i else words("figure.bridge")) for i, path in enumerate(_bridge_paths(outline))
+        DrawnLine(path, _BRIDGE, 3.0, "" if i else words("figure.bridge"))
+        for i, path in enumerate(_bridge_paths(outline))
     ]
-    close = Line(_inside(fine, worst, reach), _DRAWN, 6.0), Line(_inside(bent, worst, reach), _BENT, 0.9)
+    close = DrawnLine(_inside(fine, worst, reach), _DRAWN, 6.0), DrawnLine(_inside(bent, worst, reach), _BENT, 0.9)
 
     size = np.ptp(drawn, axis=0)
     half = 0.56 * np.maximum(size, 0.35 * size.max())  # a straight line gets some room beside it
@@ -142,10 +148,10 @@ def _times(outline: BentOutline, words: SheetWords) -> Picture:
     )
     signs = np.sign(outline.moulds)
     feeds = [
-        Line(_feed_track(table), colour, 1.4, words(label, time=words.number(table.total, ".2f")), dash)
+        DrawnLine(_feed_track(table), colour, 1.4, words(label, time=words.number(table.total, ".2f")), dash)
         for label, table, colour, dash in tables
     ]
-    moulds = [Line(_mould_track(table, signs), colour, 1.4, "", dash) for _, table, colour, dash in tables]
+    moulds = [DrawnLine(_mould_track(table, signs), colour, 1.4, "", dash) for _, table, colour, dash in tables]
     rows = [(feeds, words("figure.fed")), (moulds, words("figure.mould"))][: 2 if outline.plan.bends else 1]
     last = max(float(line.points[:, 0].max()) for line in (*feeds, *moulds)) or 1.0
     top, height, width = 3 * _GRID, 14 * _GRID, _WIDTH - _LEFT - _RIGHT

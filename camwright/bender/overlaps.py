@@ -29,7 +29,7 @@ _BUCKETS = 180
 
 
 @dataclass(frozen=True)
-class Overlap:
+class EntityOverlap:
     """Two entities that lie on each other.
 
     Parameters
@@ -96,7 +96,7 @@ class _Segments:
         return along(self.chord, self.bulge)
 
 
-def without_overlaps(pieces: Sequence[Piece], tolerance: float) -> tuple[list[Piece], tuple[Overlap, ...]]:
+def without_overlaps(pieces: Sequence[Piece], tolerance: float) -> tuple[list[Piece], tuple[EntityOverlap, ...]]:
     """Take away what lies on something that is drawn before it.
 
     Parameters
@@ -157,12 +157,12 @@ def _copies(pieces: Sequence[Piece]) -> tuple[list[int], dict[int, int]]:
     return kept, copies
 
 
-def _copied(first: Piece, second: Piece) -> Overlap:
+def _copied(first: Piece, second: Piece) -> EntityOverlap:
     start, end = second.points[:2].tolist()
-    return Overlap(first.name, second.name, second.length, tuple(start), tuple(end))
+    return EntityOverlap(first.name, second.name, second.length, tuple(start), tuple(end))
 
 
-def between_styles(styles: Sequence[Sequence[Piece]], tolerance: float) -> tuple[Overlap, ...]:
+def between_styles(styles: Sequence[Sequence[Piece]], tolerance: float) -> tuple[EntityOverlap, ...]:
     """Find what lies on something of another style: it is named, and never merged.
 
     Parameters
@@ -326,10 +326,12 @@ def _run(run: list[tuple[FloatArray, FloatArray, float]], piece: Piece) -> Piece
     return replace(piece, points=points, bulges=np.array([bulge for _, _, bulge in run]))
 
 
-def _named(cuts: dict[int, list[_Cut]], segments: _Segments, pieces: Sequence[Piece]) -> list[tuple[int, Overlap]]:
+def _named(
+    cuts: dict[int, list[_Cut]], segments: _Segments, pieces: Sequence[Piece]
+) -> list[tuple[int, EntityOverlap]]:
     """Gather the cuts of each two entities, with the number of the second."""
     lengths = segments.length
-    found: dict[tuple[int, int], Overlap] = {}
+    found: dict[tuple[int, int], EntityOverlap] = {}
     for j in sorted(cuts):
         for cut in sorted(cuts[j], key=lambda cut: (cut.owner, cut.low)):
             pair = int(segments.piece[cut.owner]), int(segments.piece[j])
@@ -338,5 +340,5 @@ def _named(cuts: dict[int, list[_Cut]], segments: _Segments, pieces: Sequence[Pi
                 found[pair] = replace(found[pair], length=found[pair].length + size)
             else:
                 names = pieces[pair[0]].name, pieces[pair[1]].name
-                found[pair] = Overlap(*names, size, cut.start, cut.end)
+                found[pair] = EntityOverlap(*names, size, cut.start, cut.end)
     return [(second, overlap) for (_, second), overlap in found.items()]

@@ -33,7 +33,7 @@ from camwright.house.output import Voice, complain
 from camwright.jobs.job import Job, load_job
 from camwright.jobs.table_units import slave_length
 from camwright.jobs.wording import in_job_words
-from camwright.production.ramp_tables import KINDS, RampTables, tables_answer, write_ramps
+from camwright.production.ramp_tables import KINDS, AllRampTables, tables_answer, write_ramps
 from camwright.production.ramps import LATENCY, STEPS, Ramps, ramps
 from camwright.profiles.errors import InputError
 from camwright.profiles.ramp import Aim, Ramp
@@ -97,7 +97,7 @@ def _park(text: str, job: Job) -> float | None:
         raise InputError(*(f"--park: {fault}; or write auto" for fault in error.faults)) from error
 
 
-def _write(found: Ramps, tables: RampTables, place: Destination, *, figures: bool) -> list[Path]:
+def _write(found: Ramps, tables: AllRampTables, place: Destination, *, figures: bool) -> list[Path]:
     """Write tables, their report, the answer and the figure, all or none; older tables of what is withheld are set aside."""
     older = tables.older(found, place.directory)
     texts = {
@@ -118,7 +118,7 @@ def _profiles(found: Ramps) -> dict[str, object]:
     }
 
 
-def _view(found: Ramps, tables: RampTables, files: Sequence[Path]) -> View:
+def _view(found: Ramps, tables: AllRampTables, files: Sequence[Path]) -> View:
     """Show start and stop, what they ask of the line, checks and tables."""
     job, units = found.job, found.job.units
     slave = job.machine.slave_unit
@@ -182,7 +182,7 @@ def _facts(found: Ramps) -> list[str]:
     return lines
 
 
-def _tables_view(tables: RampTables) -> View:
+def _tables_view(tables: AllRampTables) -> View:
     """Show each table as its drive runs it."""
     heads = ("motion", "target", "points", "position\num", "judgement", "files")
     table = new_table("Tables as the drives run them", heads, left=("motion", "target", "judgement", "files"))
@@ -200,7 +200,7 @@ def _tables_view(tables: RampTables) -> View:
     return table
 
 
-def _verdict(found: Ramps, tables: RampTables) -> tuple[str, str]:
+def _verdict(found: Ramps, tables: AllRampTables) -> tuple[str, str]:
     """Say in the last line whether start and stop passed, or what failed."""
     failed = [check.name for check in found.checks if not check.passed]
     if failed:
@@ -216,7 +216,7 @@ def _verdict(found: Ramps, tables: RampTables) -> tuple[str, str]:
     )
 
 
-def ramps_answer(found: Ramps, tables: RampTables | None = None) -> dict[str, Any]:
+def ramps_answer(found: Ramps, tables: AllRampTables | None = None) -> dict[str, Any]:
     """Answer of ``camwright ramps``: lengths in mm, times in ms; the measures in m are null for a slave that is counted in rad."""
     start, stop = found.bounds
     metres = found.job.machine.slave_unit == "m"

@@ -18,7 +18,7 @@ from camwright.jobs.job import Job, parse_job
 from camwright.profiles.errors import InputError
 from camwright.profiles.tables.targets import TARGETS, target_of
 from camwright.recipes.build import STEPS, designed, make_recipe
-from camwright.recipes.compare import Change, compare_answer, compare_recipes, read_recipe
+from camwright.recipes.compare import RecipeChange, compare_answer, compare_recipes, read_recipe
 from camwright.recipes.judgements import SHORT
 from camwright.recipes.manifest import MANIFEST_FILE, sha256
 from camwright.recipes.model import Particulars, Recipe, RecipeCheck
@@ -202,7 +202,7 @@ def _told(check: RecipeCheck, units: Units) -> str:
     return f"{check.name} {value} (limit {limit})"
 
 
-def _compare_view(before: Path, after: Path, changes: list[Change]) -> View:
+def _compare_view(before: Path, after: Path, changes: list[RecipeChange]) -> View:
     if not changes:
         return new_text(f"nothing changes from {before} to {after}")
     heads = ("", "what", "unit")

@@ -14,11 +14,11 @@ from camwright.jobs.job import Job
 from camwright.jobs.table_units import default_units, parse_units
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import CamProfile
-from camwright.profiles.tables.cam_table import CamTable, Units
+from camwright.profiles.tables.cam_table import CamTable, TableUnits
 from camwright.profiles.tables.deviation import Deviation, deviation
 from camwright.profiles.tables.knots import (
     Accuracy,
-    Choice,
+    ChosenTable,
     choose,
     closing_cuts,
     table_units,
@@ -71,13 +71,13 @@ class Exported:
 
     target: Target
     table: CamTable
-    units: Units
+    units: TableUnits
     deviation: Deviation
     position_error: float
     accurate: bool
     judgement: TableJudgement
     files: dict[str, str]
-    dense: Choice | None = None
+    dense: ChosenTable | None = None
     cuts: int = 1
     drift: float = 0.0
 
@@ -114,7 +114,7 @@ def export_possible(
     job: Job,
     names: Sequence[str],
     *,
-    units: Units | None = None,
+    units: TableUnits | None = None,
     accuracy: Accuracy | None = None,
     points: int | None = None,
     force: bool = False,
@@ -172,7 +172,7 @@ def export_possible(
     return results, refused
 
 
-def _counts_of(job: Job) -> Units:
+def _counts_of(job: Job) -> TableUnits:
     """Read the counts that a job names for its encoders."""
     try:
         return parse_units(job.output.counts, job.task)
@@ -211,7 +211,7 @@ def _in_slave_units(accuracy: Accuracy, judge: _Judge) -> Accuracy:
 class _Wanted:
     """Units of tables, and whether the user named them."""
 
-    units: Units
+    units: TableUnits
     asked: bool
 
 
@@ -287,13 +287,13 @@ def _export(
 
 def _nearer(
     judge: _Judge,
-    first: Choice,
+    first: ChosenTable,
     accuracy: Accuracy,
     stored: float,
-    chosen: Callable[[Accuracy], Choice],
+    chosen: Callable[[Accuracy], ChosenTable],
     *,
     free: bool,
-) -> tuple[Choice, float, TableJudgement]:
+) -> tuple[ChosenTable, float, TableJudgement]:
     """Choose points nearer to the cam while a check fails that they may mend, if their number is free; the first where none helps."""
     choice = first
     _, error, expected = beginning = judge(first.rebuilt, stored)
@@ -306,7 +306,7 @@ def _nearer(
 
 
 def _written(
-    judge: _Judge, choice: Choice, target: Target, head: Header, accuracy: Accuracy, stored: float
+    judge: _Judge, choice: ChosenTable, target: Target, head: Header, accuracy: Accuracy, stored: float
 ) -> Exported:
     """Write the table, read it back, and judge what the drive makes of it."""
     units = choice.table.units
@@ -346,7 +346,7 @@ def position_error(profile: CamProfile, rebuilt: CamProfile, off: Deviation, job
     return float(np.abs(job.machine.tool(begin + rebuilt(x)) - job.machine.tool(begin + profile(x))).max())
 
 
-def read_back(target: Target, files: dict[str, str], units: Units) -> tuple[CamTable, CamProfile]:
+def read_back(target: Target, files: dict[str, str], units: TableUnits) -> tuple[CamTable, CamProfile]:
     """Read the table out of the file as it will lie on the disk; the first file holds it."""
     name, text = next(iter(files.items()))
     table = read_table(target, decode(text.encode(), name), name)

@@ -1,4 +1,4 @@
-"""`RunningCam`: a cam that runs today, as its drive runs it."""
+"""`DriveCam`: a cam that runs today, as its drive runs it."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _BESIDE = "the units are those of the text beside the table (--units says others
 
 
 @dataclass(frozen=True, eq=False)
-class RunningCam:
+class DriveCam:
     """A cam as its drive runs it.
 
     Parameters
@@ -77,7 +77,7 @@ def running_cam(
     slopes: str | None = None,
     *,
     head: str = "",
-) -> RunningCam:
+) -> DriveCam:
     """Rebuild the cam of a file's text as its drive does; arguments as of `camwright.drives.audit.audit`, messages begin with the place.
 
     Where the layout has no room for a head, ``head`` is the text beside the table, if there is one.
@@ -113,7 +113,7 @@ def running_cam(
         rebuilt.shift(-rebuilt.start), placed, seen=_smooth(whole, counted), count=count, grain=grain, tick=tick
     )
     told = (*table.notes, *whole.notes, *((counted.note,) if counted else ()), *notes)
-    return RunningCam(
+    return DriveCam(
         layout, table, told, placed, rebuilt, count, counted is not None, grain if set(table.laws) == {"line"} else 0.0
     )
 

@@ -16,7 +16,7 @@ from camwright.jobs.servos import servos_of
 from camwright.jobs.table_units import default_units
 from camwright.profiles.errors import InputError
 from camwright.profiles.speed_cam import SpeedCam
-from camwright.profiles.tables.cam_table import Units
+from camwright.profiles.tables.cam_table import TableUnits
 from camwright.profiles.tables.knots import Accuracy, choose
 from camwright.profiles.tables.target import Header, Target, companion
 from camwright.profiles.tables.targets import TARGETS, target_of
@@ -37,7 +37,7 @@ _NEAR = 0.25
 
 
 @dataclass(frozen=True)
-class AtSpeed:
+class SummedTables:
     """The sum of the tables at a line speed.
 
     Parameters
@@ -76,8 +76,8 @@ class SpeedTables:
 
     target: Target
     cam: SpeedCam
-    units: Units
-    judged: tuple[AtSpeed, ...]
+    units: TableUnits
+    judged: tuple[SummedTables, ...]
     files: dict[str, str]
 
     @property
@@ -194,7 +194,7 @@ def _steps(count: int) -> tuple[str, ...]:
     )
 
 
-def _judged(job: Job, cam: SpeedCam) -> tuple[AtSpeed, ...]:
+def _judged(job: Job, cam: SpeedCam) -> tuple[SummedTables, ...]:
     """Judge the sum at line speeds up to the job's."""
     slowest = job.slowest if job.servo_aware else _SLOWEST
     shaped = job.task.with_cut(replace(job.cut, shaped=True))
@@ -207,7 +207,7 @@ def _judged(job: Job, cam: SpeedCam) -> tuple[AtSpeed, ...]:
         if errors.max() > job.cut.sync_tolerance and "shear_zone_error" not in failed:
             failed.append("servo_tolerance")
         alone = float(shear_zone_errors(cam.tables[0], task, (job.servo,))[0])
-        found.append(AtSpeed(float(speed), float(errors.max()), alone, tuple(failed)))
+        found.append(SummedTables(float(speed), float(errors.max()), alone, tuple(failed)))
     return tuple(found)
 
 

@@ -19,7 +19,7 @@ from camwright.house.provenance import camwright_version
 from camwright.jobs.job import Job
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import CamProfile
-from camwright.profiles.tables.cam_table import Units
+from camwright.profiles.tables.cam_table import TableUnits
 from camwright.profiles.tables.knots import Accuracy
 from camwright.profiles.tables.target import Header
 from camwright.profiles.tables.targets import target_of
@@ -69,7 +69,7 @@ def export(
     to: str | Sequence[str],
     directory: str | Path,
     *,
-    units: Units | None = None,
+    units: TableUnits | None = None,
     accuracy: Accuracy | None = None,
     points: int | None = None,
     force: bool = False,

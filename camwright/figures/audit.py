@@ -22,7 +22,7 @@ from camwright.figures.panel import (
 )
 from camwright.figures.strokes import BLACK, LINES, Stroke
 from camwright.house.numbers import converted, number, unit_shown
-from camwright.house.pictures import Bar, Frame, Item, Line, Note, Picture, Tick, ticks
+from camwright.house.pictures import Bar, DrawnLine, Frame, Item, Note, Picture, Tick, ticks
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.validation.differences import differences
 
@@ -111,7 +111,7 @@ def _acceleration(audit: Audit, profile: CamProfile, x: FloatArray) -> FloatArra
     return differences(profile, x - cut.line_speed * servo.sample_time, 2, cut, servo)
 
 
-def _frame(audit: Audit, lines: Sequence[Line], limit: float, label: str, top: float, height: float) -> Frame:
+def _frame(audit: Audit, lines: Sequence[DrawnLine], limit: float, label: str, top: float, height: float) -> Frame:
     """Mark limits that lie near the curves, name those that do not, and leave room around what is drawn."""
     end = converted(audit.job.cut.length, "m", audit.job.units)
     values = np.concatenate([line.points[:, 1] for line in lines])
@@ -146,7 +146,7 @@ def _savings(audit: Audit, top: float) -> Frame:
         words += ", by differences" if audit.is_sampled(name) else ""
         items.append(Note((max(saving, 0.0), float(-i)), words, "start", (5.0, 0.0)))
     bottom = 0.4 - len(savings)
-    items.append(Line(np.array([[0.0, bottom], [0.0, 0.6]]), BLACK, 0.8))
+    items.append(DrawnLine(np.array([[0.0, bottom], [0.0, 0.6]]), BLACK, 0.8))
     chosen = [Tick(*each) for each in zip(*ticks(start, end, 10), strict=True)]
     return Frame(
         _NAMES,

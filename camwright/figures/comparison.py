@@ -41,7 +41,7 @@ _BROAD = 1.55
 
 
 @dataclass(frozen=True)
-class _Column:
+class _MeasureColumn:
     """A measure of all profiles, in the units shown; the word for what has none."""
 
     heading: str
@@ -74,7 +74,7 @@ def bars_figure(comparison: Comparison) -> Picture:
     return page(heading, frames, _legend(frames))
 
 
-def _columns(comparison: Comparison) -> list[_Column]:
+def _columns(comparison: Comparison) -> list[_MeasureColumn]:
     """Choose the measures that are drawn."""
     job, rows = comparison.job, comparison.rows
     units, slave = job.units, job.machine.slave_unit
@@ -85,23 +85,23 @@ def _columns(comparison: Comparison) -> list[_Column]:
         return [None if value is None else value * factor for value in values]
 
     columns = [
-        _Column(
+        _MeasureColumn(
             f"peak acc.\n({acceleration.printed})",
             scaled([row.motion.peak_acceleration for row in rows], acceleration.factor),
             job.limits.acceleration * acceleration.factor,
         ),
-        _Column(
+        _MeasureColumn(
             f"RMS acc.\n({acceleration.printed})",
             scaled([row.motion.rms_acceleration for row in rows], acceleration.factor),
             None,
         ),
-        _Column(
+        _MeasureColumn(
             f"peak jerk\n({jerk.printed})",
             scaled([row.motion.peak_jerk for row in rows], jerk.factor),
             job.limits.jerk * jerk.factor,
         ),
-        _Column(f"RMS jerk\n({jerk.printed})", scaled([row.motion.rms_jerk for row in rows], jerk.factor), None),
-        _Column(
+        _MeasureColumn(f"RMS jerk\n({jerk.printed})", scaled([row.motion.rms_jerk for row in rows], jerk.factor), None),
+        _MeasureColumn(
             f"settling\n({millimetres})", scaled([row.response.settling for row in rows], length), None, "not in zone"
         ),
     ]
@@ -109,12 +109,12 @@ def _columns(comparison: Comparison) -> list[_Column]:
         errors = scaled([row.value("sync_error") for row in rows], length)
         worst = "worst sync\nerror" if rows[0].worst_error is not None else "sync error\n"
         columns.append(
-            _Column(f"{worst} ({millimetres})".replace("\n ", "\n"), errors, job.cut.sync_tolerance * length)
+            _MeasureColumn(f"{worst} ({millimetres})".replace("\n ", "\n"), errors, job.cut.sync_tolerance * length)
         )
     asked = OBJECTIVES[job.objective if OBJECTIVES[job.objective].of == "motor" else "rms_torque"]
     loads = [row.value(asked.name) for row in rows]
     if any(load is not None for load in loads):
-        columns.insert(2, _Column(f"{asked.words}\n({'J' if asked.form == 'drawn' else 'N·m'})", loads, None))
+        columns.insert(2, _MeasureColumn(f"{asked.words}\n({'J' if asked.form == 'drawn' else 'N·m'})", loads, None))
     return columns
 
 
@@ -135,7 +135,9 @@ def _legend(frames: Sequence[Frame]) -> list[Item]:
     return [seen[label] for label in order if label in seen]
 
 
-def _panel(column: _Column, names: Sequence[str], ticks: Sequence[Tick], place: tuple[float, float, float]) -> Frame:
+def _panel(
+    column: _MeasureColumn, names: Sequence[str], ticks: Sequence[Tick], place: tuple[float, float, float]
+) -> Frame:
     """Draw one measure of all profiles, its numbers written beside the bars; arguments end with left, top and width (pt)."""
     limit = column.limit
     longest = max((value for value in column.values if value is not None), default=0.0) or limit or 1.0
@@ -168,7 +170,7 @@ def _xticks(high: float, width: float) -> list[Tick]:
     return chosen
 
 
-def _bar(at: float, name: str, value: float | None, column: _Column, width: float) -> list[Item]:
+def _bar(at: float, name: str, value: float | None, column: _MeasureColumn, width: float) -> list[Item]:
     """Draw the bar of a profile at a height, and what is written to it."""
     low, high = at - _HALF, at + _HALF
     if value is None:

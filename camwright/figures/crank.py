@@ -22,7 +22,7 @@ from camwright.figures.profile import curve
 from camwright.figures.strokes import BLACK, LINES, Stroke
 from camwright.figures.style import title
 from camwright.house.numbers import converted, number, unit_shown
-from camwright.house.pictures import Band, Frame, Item, Line, Marks, Picture, Tick
+from camwright.house.pictures import Band, DrawnLine, DrawnMarks, Frame, Item, Picture, Tick
 from camwright.jobs.job import Job
 from camwright.jobs.machine_words import machine_words
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
@@ -91,9 +91,9 @@ def _turn(job: Job, dead_centres: tuple[float, float], top: float, width: float)
     items: list[Item] = [
         Band(first, last, "grey"),
         *([Band(cut_first, cut_last, "hatched")] if cut_last > cut_first else []),
-        Line(np.array([[dead, low], [dead, high]]), "#8c8c8c", 1.0),
-        Line(way, BLACK, 1.6),
-        Marks(np.stack([[first, last], places], axis=1), BLACK, 6.0, "disc"),
+        DrawnLine(np.array([[dead, low], [dead, high]]), "#8c8c8c", 1.0),
+        DrawnLine(way, BLACK, 1.6),
+        DrawnMarks(np.stack([[first, last], places], axis=1), BLACK, 6.0, "disc"),
     ]
     start = float(np.degrees(back))
     turned: FloatArray = np.arange(np.ceil(start / 60.0), np.floor(start / 60.0 + 6.0) + 1.0) * 60.0

@@ -9,7 +9,7 @@ import numpy as np
 from camwright.figures.panel import LEFT, NOTHING, RIGHT, WIDTH, first_frame, head, page, stroked
 from camwright.figures.strokes import BLACK, LINES, Stroke
 from camwright.house.numbers import converted, unit_shown
-from camwright.house.pictures import Area, Frame, Hatch, Item, Line, Marks, Picture
+from camwright.house.pictures import Area, DrawnLine, DrawnMarks, Frame, Hatch, Item, Picture
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.studies.envelope import EnvelopeAnswer
 
@@ -41,7 +41,7 @@ def envelope_figure(answer: EnvelopeAnswer) -> Picture:
     ends = np.array([found.rows[0].length, found.rows[-1].length]) * shown[0]
     edges = _edges(answer, shown)
     cut = answer.job.cut
-    job = Marks(np.array([[cut.length, cut.line_speed]]) * shown, BLACK, 7.0, "open", "the job")
+    job = DrawnMarks(np.array([[cut.length, cut.line_speed]]) * shown, BLACK, 7.0, "open", "the job")
     heading = head(answer.job.name, "the limit that binds, in strong colour where a cut is possible")
     frame = Frame(
         LEFT, first_frame(heading), WIDTH - LEFT - RIGHT, _PANEL, np.array([ends[0], 0.0]), np.array([ends[1], top]),
@@ -88,7 +88,7 @@ def _mixed(colour: str, strength: float) -> str:
     return "#" + "".join(f"{round(255 - strength * (255 - part)):02x}" for part in parts)
 
 
-def _edges(answer: EnvelopeAnswer, shown: FloatArray) -> list[Line]:
+def _edges(answer: EnvelopeAnswer, shown: FloatArray) -> list[DrawnLine]:
     """Draw the highest line speeds: nodes are so close that what is drawn is true everywhere, or the legend says that it is not."""
     rows = answer.envelope.rows
     linear = [(row.length, np.nan if row.linear is None else row.linear) for row in rows]

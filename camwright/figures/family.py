@@ -7,7 +7,7 @@ import numpy as np
 from camwright.figures.panel import head
 from camwright.figures.speed_band import DEEPEST, POINTS, SLOWEST, over_speeds
 from camwright.figures.strokes import LINES, Stroke
-from camwright.house.pictures import Band, Line, Picture
+from camwright.house.pictures import Band, DrawnLine, Picture
 from camwright.jobs.servos import servos_of
 from camwright.production.family import Family
 from camwright.profiles.polynomial.profile import FloatArray
@@ -30,13 +30,13 @@ def family_figure(family: Family) -> Picture:
     own, tolerance = job.cut.line_speed, job.cut.sync_tolerance * length
     ends = [end for cam in family.cams for end in cam.line_speeds]
     speeds: FloatArray = np.unique([*np.linspace(SLOWEST * own, _BEYOND * own, POINTS), *ends])
-    curves: list[Line] = []
+    curves: list[DrawnLine] = []
     for cam in family.cams:
         errors = line_speed_errors(cam.solution.profile, cam.job.task, servos_of(job), speeds).max(axis=0) * length
         inside = np.clip(errors, DEEPEST * tolerance, _HIGHEST * tolerance)
         stroke = _STROKES[(cam.number - 1) % len(_STROKES)]
         points = np.stack([speeds * speed, np.log10(inside)], axis=1)
-        curves.append(Line(points, stroke.colour, stroke.width, f"cam {cam.number}", stroke.dash))
+        curves.append(DrawnLine(points, stroke.colour, stroke.width, f"cam {cam.number}", stroke.dash))
     bands = [
         *(
             Band(low * speed, high * speed, "green", "a cam of the family passed every check")

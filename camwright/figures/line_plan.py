@@ -7,7 +7,7 @@ import numpy as np
 from camwright.figures.panel import across, first_frame, head, page, stroked, wide_frame
 from camwright.figures.strokes import LIMIT, LINES
 from camwright.house.numbers import unit_shown
-from camwright.house.pictures import APART, Marks, Picture
+from camwright.house.pictures import APART, DrawnMarks, Picture
 from camwright.production.cut_list import ListStudy
 
 _ABOVE, _BELOW, _GAP = 180.0, 120.0, 18.0
@@ -27,7 +27,7 @@ def line_plan_figure(study: ListStudy) -> Picture:
     highest = stroked(LIMIT, steps, "highest speed of each piece")
     drawn = stroked(LINES["optimised"], np.stack([time, plan.speed(time) * speed], axis=1), "plan")
     words = "greatest sync error of each piece"
-    marks = Marks(
+    marks = DrawnMarks(
         np.stack([ends[1:], run.sync_errors * length], axis=1), LINES["linear_return"].colour, 4.0, "disc", words
     )
     tolerance = across(job.cut.sync_tolerance * length, 0.0, last, "sync tolerance")

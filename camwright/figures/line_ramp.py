@@ -8,7 +8,7 @@ import numpy as np
 
 from camwright.figures.panel import across, first_frame, head, page, wide_frame
 from camwright.house.numbers import converted, unit_shown
-from camwright.house.pictures import APART, Frame, Item, Line, Marks, Picture
+from camwright.house.pictures import APART, DrawnLine, DrawnMarks, Frame, Item, Picture
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.studies.line_ramps import LineRamps
 
@@ -36,7 +36,7 @@ def line_ramp_figure(ramps: LineRamps) -> Picture:
     for way in COLOURS:
         values = np.array([getattr(each, way).value for each in ramps.curve])
         shown = np.array([converted(value, "m/s^2", units) if math.isfinite(value) else math.nan for value in values])
-        line = Line(
+        line = DrawnLine(
             np.stack([speeds, shown], axis=1)[np.isfinite(shown)],
             COLOURS[way],
             2.0,
@@ -48,10 +48,12 @@ def line_ramp_figure(ramps: LineRamps) -> Picture:
         if asked:
             limit = converted(asked, "m/s^2", units)
             allowed.append(
-                Line(np.array([[0.0, limit], [top, limit]]), COLOURS[way], 1.1, f"asked, {_WORDS[way]}", (1.3, 2.0))
+                DrawnLine(
+                    np.array([[0.0, limit], [top, limit]]), COLOURS[way], 1.1, f"asked, {_WORDS[way]}", (1.3, 2.0)
+                )
             )
     highest = max(
-        (float(item.points[:, 1].max(initial=0.0)) for item in allowed if isinstance(item, Line)), default=1.0
+        (float(item.points[:, 1].max(initial=0.0)) for item in allowed if isinstance(item, DrawnLine)), default=1.0
     )
     heading = head(job.name, "a line that ramps")
     first = first_frame(heading)
@@ -68,7 +70,9 @@ def line_ramp_figure(ramps: LineRamps) -> Picture:
             )
             highest = max(highest, float(points[:, 1].max()))
             items.append(
-                Marks(points, COLOURS[way], 4.0, "disc" if way == "speeding" else "diamond", f"cut while {_WORDS[way]}")
+                DrawnMarks(
+                    points, COLOURS[way], 4.0, "disc" if way == "speeding" else "diamond", f"cut while {_WORDS[way]}"
+                )
             )
         items.append(across(tolerance, 0.0, top, "sync tolerance"))
         words = f"sync error in the\nshear zone ({unit_shown('m', units)})"

@@ -10,7 +10,7 @@ import numpy as np
 from camwright.figures.strokes import LIMIT, LINES, Stroke
 from camwright.figures.style import zone_parts
 from camwright.house.numbers import Units, converted
-from camwright.house.pictures import Band, Frame, Item, Line, Look, Picture, Tick
+from camwright.house.pictures import Band, DrawnLine, Frame, Item, Look, Picture, Tick
 from camwright.house.svg import legend_rows
 from camwright.profiles.cut import Cut
 from camwright.profiles.polynomial.profile import FloatArray
@@ -30,17 +30,17 @@ NOTHING: FloatArray = np.empty((0, 2))
 """No points: what a sample of a legend has."""
 
 
-def stroked(stroke: Stroke, points: FloatArray, label: str = "") -> Line:
+def stroked(stroke: Stroke, points: FloatArray, label: str = "") -> DrawnLine:
     """Draw a curve, points of shape ``(n, 2)``."""
-    return Line(points, stroke.colour, stroke.width, label, stroke.dash)
+    return DrawnLine(points, stroke.colour, stroke.width, label, stroke.dash)
 
 
-def profile_line(name: str, points: FloatArray, label: str = "") -> Line:
+def profile_line(name: str, points: FloatArray, label: str = "") -> DrawnLine:
     """Draw a curve of a profile in its own colour and dash; points of shape ``(n, 2)``."""
     return stroked(LINES[name], points, label)
 
 
-def phase_lines(name: str, curves: Sequence[FloatArray]) -> list[Line]:
+def phase_lines(name: str, curves: Sequence[FloatArray]) -> list[DrawnLine]:
     """Draw the curve of each sampling phase: the first in the profile's own line, the others thin below it, one line with gaps."""
     gap = np.full((1, 2), np.nan)
     others = [part for each in curves[1:] for part in (_stride(each), gap)]
@@ -53,12 +53,12 @@ def _stride(values: FloatArray) -> FloatArray:
     return values[:: max(1, len(values) // _MOST_POINTS)]
 
 
-def thin_line(name: str, points: FloatArray, label: str = "") -> Line:
+def thin_line(name: str, points: FloatArray, label: str = "") -> DrawnLine:
     """Draw what goes with a curve, thin and in its colour."""
-    return Line(points, LINES[name].colour, 0.5, label)
+    return DrawnLine(points, LINES[name].colour, 0.5, label)
 
 
-def across(value: float, start: float, end: float, label: str = "") -> Line:
+def across(value: float, start: float, end: float, label: str = "") -> DrawnLine:
     """Mark a limit: a dotted line at a height."""
     return stroked(LIMIT, np.array([[start, value], [end, value]]), label)
 

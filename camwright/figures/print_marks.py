@@ -7,8 +7,7 @@ import numpy as np
 from camwright.figures.panel import first_frame, head, page, stroked, wide_frame
 from camwright.figures.strokes import BLACK, LINES, Stroke
 from camwright.house.numbers import unit_shown
-from camwright.house.pictures import APART, Area, Item, Line, Picture
-from camwright.house.pictures import Marks as Dots
+from camwright.house.pictures import APART, Area, DrawnLine, DrawnMarks, Item, Picture
 from camwright.production.marks import Marks
 
 _LOOKS: tuple[tuple[str, str, Stroke, str], ...] = (
@@ -32,7 +31,7 @@ def print_marks_figure(found: Marks) -> Picture:
     edge = _TALLEST * job.cut.length
     speeds = np.array([each.line_speed for each in found.by_speed]) * speed
     areas: list[Item] = []
-    lines: list[Line] = []
+    lines: list[DrawnLine] = []
     dots: list[Item] = []
     for method, words, stroke, colour in _LOOKS:
         shown = [each for each in (each.ranges[method] for each in found.by_speed) if each is not None]
@@ -46,11 +45,11 @@ def print_marks_figure(found: Marks) -> Picture:
         ends = np.stack([speeds, high], axis=1)[high < edge * length]
         lines.append(stroked(stroke, ends))
         # what was computed; between these it is drawn straight
-        dots += [Dots(points, stroke.colour, 3.5, "disc") for points in (np.stack([speeds, low], axis=1), ends)]
+        dots += [DrawnMarks(points, stroke.colour, 3.5, "disc") for points in (np.stack([speeds, low], axis=1), ends)]
     top = float(speeds[-1])
     lowest = min((each.redesign.earliest or 0.0) for each in found.by_speed)
     heights = np.array([1.1 * max(lowest, -edge), 0.6 * job.cut.length]) * length
-    zero = Line(np.array([[0.0, 0.0], [top, 0.0]]), BLACK, 1.0)
+    zero = DrawnLine(np.array([[0.0, 0.0], [top, 0.0]]), BLACK, 1.0)
     heading = head(job.name, "how far a print mark may move the cut")
     frame = wide_frame(
         first_frame(heading),

@@ -19,7 +19,7 @@ from camwright.figures.panel import (
 from camwright.figures.strokes import LINES
 from camwright.figures.style import broken_note, marked
 from camwright.house.numbers import Units, converted, number, unit_shown, with_unit
-from camwright.house.pictures import Arrow, Frame, Item, Line, Note, Picture
+from camwright.house.pictures import Arrow, DrawnLine, Frame, Item, Note, Picture
 from camwright.jobs.job import Job
 from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
@@ -151,7 +151,7 @@ def curve(profile: CamProfile, order: int) -> tuple[FloatArray, FloatArray]:
     return x.ravel(), value.ravel()
 
 
-def _whole(lines: Sequence[Line], limits: tuple[float, ...]) -> tuple[float, float, tuple[float, ...]]:
+def _whole(lines: Sequence[DrawnLine], limits: tuple[float, ...]) -> tuple[float, float, tuple[float, ...]]:
     """Give least and greatest of a panel that holds its curves and all limits, with room around, and the limits."""
     values = np.concatenate([*(line.points[:, 1] for line in lines), limits])
     least, greatest = float(values.min()), float(values.max())
@@ -159,7 +159,7 @@ def _whole(lines: Sequence[Line], limits: tuple[float, ...]) -> tuple[float, flo
     return least - room, greatest + room, limits
 
 
-def _range(lines: Sequence[Line], limits: tuple[float, ...]) -> tuple[float, float, tuple[float, ...]]:
+def _range(lines: Sequence[DrawnLine], limits: tuple[float, ...]) -> tuple[float, float, tuple[float, ...]]:
     """Give least and greatest of a panel with room around its curves, and those limits that do not lie far beyond all that is drawn."""
     values = np.concatenate([line.points[:, 1] for line in lines])
     least, greatest = float(values.min()), float(values.max())

@@ -16,7 +16,7 @@ from camwright.figures.panel import (
     wide_frame,
 )
 from camwright.house.numbers import converted, unit_shown, with_unit
-from camwright.house.pictures import Frame, Item, Line, Note, Picture
+from camwright.house.pictures import DrawnLine, Frame, Item, Note, Picture
 from camwright.production.ramps import Ramps, one_shot_cycle, waiting
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.servo import spectral_radius
@@ -63,7 +63,7 @@ def ramps_figure(found: Ramps) -> Picture:
     frames.append(_error(found, top + 48.0))
     legend: list[Item] = [
         profile_line("optimised", NOTHING, "slave"),
-        Line(NOTHING, "#c0c0c0", _IN_SYNC, "in sync"),
+        DrawnLine(NOTHING, "#c0c0c0", _IN_SYNC, "in sync"),
         band(0.0, 1.0, "sync zone", units),
         band(0.0, 1.0, "shear zone", units),
         across(0.0, 0.0, 1.0, "limit or tolerance"),
@@ -95,7 +95,7 @@ def _motion(found: Ramps, order: int, top: float, height: float) -> Frame:
     ]
     if order == 0:
         met = at.zone(np.linspace(at.zone.start, at.zone.end, 50)) * shown.factor
-        items.append(Line(np.stack([np.linspace(*zone, 50) * length, met], axis=1), "#c0c0c0", _IN_SYNC))
+        items.append(DrawnLine(np.stack([np.linspace(*zone, 50) * length, met], axis=1), "#c0c0c0", _IN_SYNC))
     items.append(profile_line("optimised", curve))
     return wide_frame(
         top,

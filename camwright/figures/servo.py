@@ -25,7 +25,7 @@ from camwright.figures.panel import (
 from camwright.figures.strokes import BLACK, COMMAND, LINES
 from camwright.figures.style import broken_note, marked
 from camwright.house.numbers import Units, converted, unit_shown, with_unit
-from camwright.house.pictures import Frame, Item, Line, Marks, Note, Picture
+from camwright.house.pictures import DrawnLine, DrawnMarks, Frame, Item, Note, Picture
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.studies.comparison import Comparison
 from camwright.studies.measured import Measured
@@ -85,10 +85,10 @@ def servo_figure(comparison: Comparison, runs: Mapping[str, ServoRun]) -> Pictur
     tolerance = across(0.0, 0.0, 1.0, "sync tolerance")
     legend: list[Item] = [profile_line(name, NOTHING, f"axis, {marked(comparison[name])}") for name in AXES]
     legend += [
-        Line(NOTHING, BLACK, 1.1, "ideal sync line"),
+        DrawnLine(NOTHING, BLACK, 1.1, "ideal sync line"),
         stroked(COMMAND, NOTHING, "command"),
-        Marks(NOTHING, "#444444", _CROSSING, "open", "crossing (latest phase)"),
-        Marks(NOTHING, "#444444", _SETTLED, "diamond", "settled (latest phase)"),
+        DrawnMarks(NOTHING, "#444444", _CROSSING, "open", "crossing (latest phase)"),
+        DrawnMarks(NOTHING, "#444444", _SETTLED, "diamond", "settled (latest phase)"),
         tolerance,
         band(0.0, 1.0, "shear zone", units),
     ]
@@ -110,7 +110,7 @@ def _meetings(comparison: Comparison, runs: Mapping[str, ServoRun], top: float) 
     low, high = _room(*_extent([item for items in both for item in items]))
     width = 0.5 * (WIDTH - LEFT - RIGHT - _BETWEEN)
     length = unit_shown("m", units)
-    beginning = Line(np.array([[0.0, low[1]], [0.0, high[1]]]), "#8c8c8c", 1.0)
+    beginning = DrawnLine(np.array([[0.0, low[1]], [0.0, high[1]]]), "#8c8c8c", 1.0)
     return [
         Frame(
             LEFT + number * (width + _BETWEEN),
@@ -147,7 +147,7 @@ def _meeting(row: Measured, comparison: Comparison, run: ServoRun) -> list[Item]
     index = pieces[0]  # the command is the same at every phase
     command = np.stack([run.master[0, index] - start, tool(run.command[0, index])], axis=1) * factor
     items: list[Item] = [
-        Line(np.stack([ends, cut.sync_ratio * ends], axis=1) * factor, BLACK, 1.1),
+        DrawnLine(np.stack([ends, cut.sync_ratio * ends], axis=1) * factor, BLACK, 1.1),
         stroked(COMMAND, command),
         *phase_lines(row.name, axes),
     ]
@@ -155,7 +155,7 @@ def _meeting(row: Measured, comparison: Comparison, run: ServoRun) -> list[Item]
     if crossing is not None and crossing <= last:
         there = (crossing * factor, crossing * cut.sync_ratio * factor)
         words = _length(crossing, job.units)
-        items.append(Marks(np.array([there]), LINES[row.name].colour, _CROSSING, "open"))
+        items.append(DrawnMarks(np.array([there]), LINES[row.name].colour, _CROSSING, "open"))
         items.append(Note(there, words, "end", (-7.0, -9.0), 10.0))
     return items
 
@@ -208,16 +208,16 @@ def _error(row: Measured, comparison: Comparison, run: ServoRun) -> list[Item]:
     items: list[Item] = [*phase_lines(row.name, curves)]
     crossing, settling = row.response.crossing, row.response.settling
     if crossing is not None:
-        items.append(Marks(np.array([[crossing * factor, 0.0]]), colour, _CROSSING, "open"))
+        items.append(DrawnMarks(np.array([[crossing * factor, 0.0]]), colour, _CROSSING, "open"))
     if settling is not None:
         there = [float(np.interp(settling, x - start, y)) for x, y in zip(master, error, strict=True)]
-        items.append(Marks(np.array([[settling, max(there, key=abs)]]) * factor, colour, _SETTLED, "diamond"))
+        items.append(DrawnMarks(np.array([[settling, max(there, key=abs)]]) * factor, colour, _SETTLED, "diamond"))
     return items
 
 
 def _extent(items: Sequence[Item]) -> tuple[FloatArray, FloatArray]:
     """Least and greatest of the points of lines, shape ``(2,)`` each."""
-    points = np.concatenate([item.points for item in items if isinstance(item, Line)])
+    points = np.concatenate([item.points for item in items if isinstance(item, DrawnLine)])
     return np.nanmin(points, axis=0), np.nanmax(points, axis=0)
 
 

@@ -11,7 +11,7 @@ from camwright.figures.panel import across, first_frame, head, page, profile_lin
 from camwright.figures.strokes import BLACK, LINES
 from camwright.figures.style import title
 from camwright.house.numbers import unit_shown
-from camwright.house.pictures import APART, Frame, Line, Marks, Picture, Shape, Tick
+from camwright.house.pictures import APART, DrawnLine, DrawnMarks, Frame, Picture, Shape, Tick
 from camwright.production.simulation import MOTIONS, ShiftStudy
 from camwright.profiles.polynomial.profile import FloatArray
 
@@ -51,13 +51,13 @@ def _speed(study: ShiftStudy, last: float, top: float) -> Frame:
         _SPEED,
         np.zeros(2),
         np.array([last, high]),
-        [Line(np.stack([time, speeds], axis=1), BLACK, 1.5)],
+        [DrawnLine(np.stack([time, speeds], axis=1), BLACK, 1.5)],
         "",
         f"line speed\n({unit_shown('m/s', units)})",
     )
 
 
-def _errors(study: ShiftStudy, last: float, top: float) -> tuple[Frame, list[Marks]]:
+def _errors(study: ShiftStudy, last: float, top: float) -> tuple[Frame, list[DrawnMarks]]:
     """Draw the sync error of each piece."""
     job = study.planned.job
     length = job.units.shown["m"].factor
@@ -65,7 +65,7 @@ def _errors(study: ShiftStudy, last: float, top: float) -> tuple[Frame, list[Mar
     for motion in MOTIONS:
         at, error = _thinned(study.cut_times, study.runs[motion].nominal.sync_errors)
         points = np.stack([at, error * length], axis=1)
-        marks.append(Marks(points, LINES[motion].colour, 4.0, _MARKS[motion], title(motion)))
+        marks.append(DrawnMarks(points, LINES[motion].colour, 4.0, _MARKS[motion], title(motion)))
     tolerance = job.cut.sync_tolerance * length
     high = 1.08 * max(tolerance, *(float(each.points[:, 1].max()) for each in marks))
     frame = wide_frame(

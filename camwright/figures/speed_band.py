@@ -19,7 +19,7 @@ from camwright.figures.panel import (
 from camwright.figures.strokes import GREY, Stroke
 from camwright.figures.style import broken_note, marked
 from camwright.house.numbers import unit_shown, with_unit
-from camwright.house.pictures import APART, Band, Item, Line, Picture, Tick
+from camwright.house.pictures import APART, Band, DrawnLine, Item, Picture, Tick
 from camwright.jobs.job import Job
 from camwright.jobs.servos import servos_of
 from camwright.profiles.polynomial.profile import FloatArray
@@ -61,7 +61,7 @@ def speed_band_figure(design: Design) -> Picture:
     speeds: FloatArray = np.unique([*np.linspace(SLOWEST * top, top, POINTS), job.cut.line_speed])
     tolerance = job.cut.sync_tolerance * length
     servos = servos_of(job)
-    curves: list[Line] = []
+    curves: list[DrawnLine] = []
     for name in SHOWN:
         called = marked(design.comparison[name])
         errors = line_speed_errors(design.comparison[name].profile, job.task, servos, speeds) * length
@@ -75,7 +75,7 @@ def speed_band_figure(design: Design) -> Picture:
         errors = line_speed_errors(*alone, servos[:1], speeds)[0] * length
         points = np.stack([speeds * speed, np.log10(np.maximum(errors, DEEPEST * tolerance))], axis=1)
         own_speed = with_unit(job.cut.line_speed, "m/s", units=units)
-        curves.append(Line(points, _ALONE.colour, _ALONE.width, f"designed for {own_speed} alone", _ALONE.dash))
+        curves.append(DrawnLine(points, _ALONE.colour, _ALONE.width, f"designed for {own_speed} alone", _ALONE.dash))
     bands = [
         Band(start * speed, end * speed, "green", "every check of the optimised cam passes")
         for start, end in band.parts
@@ -84,7 +84,7 @@ def speed_band_figure(design: Design) -> Picture:
     return over_speeds(job, heading, top, curves, bands)
 
 
-def over_speeds(job: Job, heading: str, top: float, curves: Sequence[Line], bands: Sequence[Band]) -> Picture:
+def over_speeds(job: Job, heading: str, top: float, curves: Sequence[DrawnLine], bands: Sequence[Band]) -> Picture:
     """Draw the sync error over the line speed by powers of ten, with the tolerance and the job's own line speed.
 
     Parameters
@@ -105,7 +105,7 @@ def over_speeds(job: Job, heading: str, top: float, curves: Sequence[Line], band
     own = job.cut.line_speed * speed
     marks = [
         across(math.log10(tolerance), 0.0, top * speed, "sync tolerance"),
-        Line(np.array([[own, low], [own, high]]), GREY, 1.1, "line speed of the job"),
+        DrawnLine(np.array([[own, low], [own, high]]), GREY, 1.1, "line speed of the job"),
     ]
     items: list[Item] = [*bands, *marks, *reversed(curves)]
     frame = wide_frame(

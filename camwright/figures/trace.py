@@ -20,7 +20,7 @@ from camwright.figures.panel import (
 )
 from camwright.figures.strokes import BLACK, Stroke
 from camwright.house.numbers import converted, unit_shown, with_unit
-from camwright.house.pictures import Frame, Item, Line, Marks, Picture
+from camwright.house.pictures import DrawnLine, DrawnMarks, Frame, Item, Picture
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.studies.recording import RecordedRun
 from camwright.validation.recording.cut_errors import sync_parts
@@ -68,7 +68,7 @@ def _folded(found: RecordedRun) -> tuple[FloatArray, FloatArray]:
     return place, cycle
 
 
-def _curve(found: RecordedRun, place: FloatArray, values: FloatArray, stroke: Stroke) -> Line:
+def _curve(found: RecordedRun, place: FloatArray, values: FloatArray, stroke: Stroke) -> DrawnLine:
     """Draw a curve of the slave over the master, in the units of the job."""
     units = found.job.units
     scale = [converted(1.0, "m", units), converted(1.0, found.job.machine.slave_unit, units)]
@@ -78,7 +78,7 @@ def _curve(found: RecordedRun, place: FloatArray, values: FloatArray, stroke: St
 def _panel(found: RecordedRun, top: float, items: Sequence[Item], words: tuple[str, str, str]) -> Frame:
     """Draw a panel over the cycle; words are those below, beside and above it."""
     job = found.job
-    points = np.concatenate([item.points for item in items if isinstance(item, Line)])
+    points = np.concatenate([item.points for item in items if isinstance(item, DrawnLine)])
     low, high = float(np.nanmin(points[:, 1])), float(np.nanmax(points[:, 1]))
     room = 0.05 * (high - low) or 1.0
     end = converted(job.cut.length, "m", job.units)
@@ -159,7 +159,7 @@ def _cuts(found: RecordedRun, top: float) -> Frame:
         [
             *_tolerance(found, *ends),
             stroked(_LINE, np.stack([numbers, line], axis=1)),
-            Marks(np.stack([numbers, errors], axis=1), _AXIS.colour, 4.0, "disc"),
+            DrawnMarks(np.stack([numbers, errors], axis=1), _AXIS.colour, 4.0, "disc"),
         ],
         "cut",
         f"sync error ({unit_shown('m', units)})",
@@ -167,7 +167,7 @@ def _cuts(found: RecordedRun, top: float) -> Frame:
     )
 
 
-def _tolerance(found: RecordedRun, start: float, end: float) -> list[Line]:
+def _tolerance(found: RecordedRun, start: float, end: float) -> list[DrawnLine]:
     tolerance = converted(found.job.cut.sync_tolerance, "m", found.job.units)
     return [across(sign * tolerance, start, end) for sign in (-1.0, 1.0)]
 

@@ -13,7 +13,7 @@ from camwright.figures.panel import LEFT, NOTHING, RIGHT, WIDTH, first_frame, he
 from camwright.figures.strokes import BLACK, LINES
 from camwright.figures.style import title
 from camwright.house.numbers import Shown
-from camwright.house.pictures import Band, Frame, Item, Line, Marks, Note, Picture, Shape, Tick, ticks
+from camwright.house.pictures import Band, DrawnLine, DrawnMarks, Frame, Item, Note, Picture, Shape, Tick, ticks
 from camwright.profiles.objective import CommandObjective
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.studies.tradeoff import Row, TradeOff, words
@@ -115,7 +115,7 @@ def _panel(result: TradeOff, rows: Sequence[Row], measure: CommandObjective, top
     places = np.array([[x.at(a), y.at(b)] for a, b in pairs])
     items: list[Item] = []
     if x.edge < x.high:
-        items += [Band(x.edge, x.high, "grey"), Line(np.array([[x.edge, y.low], [x.edge, y.high]]), BLACK, 1.0)]
+        items += [Band(x.edge, x.high, "grey"), DrawnLine(np.array([[x.edge, y.low], [x.edge, y.high]]), BLACK, 1.0)]
         items.append(Note((x.high, y.high), "unbounded", "end", (-4.0, 8.0), _LABEL))
     items += [_mark(_kind(row), place[None]) for row, place in zip(rows, places, strict=True)]
     groups = _groups((places - low) / (high - low), [_label(row) for row in rows])
@@ -131,7 +131,7 @@ def _panel(result: TradeOff, rows: Sequence[Row], measure: CommandObjective, top
         centre = low + middle / size * (high - low)
         items.append(Note((float(centre[0]), float(centre[1])), text, "middle", size=_LABEL))
         if tip is not None:
-            items.append(Line(low + np.array([place, tip / size]) * (high - low), "#8c8c8c", 0.6))
+            items.append(DrawnLine(low + np.array([place, tip / size]) * (high - low), "#8c8c8c", 0.6))
     return Frame(
         LEFT, top, size[0], _PANEL, low, high, items, f"{words(measure)} ({across.printed}){note}",
         f"peak acceleration ({up.printed})", grid=True, xticks=x.ticks(int(size[0] / _APART)), yticks=y.ticks(8),
@@ -151,9 +151,9 @@ def _kind(row: Row) -> str:
     return row.kind if row.within_limits or row.kind == "objective" else "beyond"
 
 
-def _mark(kind: str, points: FloatArray, label: str = "") -> Marks:
+def _mark(kind: str, points: FloatArray, label: str = "") -> DrawnMarks:
     shape, colour, size, _ = _STYLES[kind]
-    return Marks(points, colour, size, shape, label)
+    return DrawnMarks(points, colour, size, shape, label)
 
 
 def _label(row: Row) -> str:

@@ -53,7 +53,7 @@ class Work:
 
 
 @dataclass(frozen=True)
-class Entry:
+class Owned:
     """Files of one work in a folder: SHA-256 by name."""
 
     command: str
@@ -154,7 +154,7 @@ def _settled(new: Path, directory: Path, work: Work, unlisted: frozenset[str], n
     return Changes(tuple(name for name in stale if name in there and name not in renamed), renamed)
 
 
-def _listed(entries: list[Entry], work: Work, fresh: Mapping[str, str], unlisted: frozenset[str]) -> list[Entry]:
+def _listed(entries: list[Owned], work: Work, fresh: Mapping[str, str], unlisted: frozenset[str]) -> list[Owned]:
     """Enter what was written; of the entries before, those of other works, and where a work adds to itself its own."""
     kept = [
         replace(entry, files={name: digest for name, digest in entry.files.items() if name not in fresh})
@@ -164,18 +164,18 @@ def _listed(entries: list[Entry], work: Work, fresh: Mapping[str, str], unlisted
     same = [entry for entry in kept if entry.of(work) and entry.sha256 == work.sha256]
     own = {name: digest for entry in same for name, digest in entry.files.items()}
     own |= {name: digest for name, digest in fresh.items() if name not in unlisted}
-    now = Entry(work.command, work.name, work.sha256, own)
+    now = Owned(work.command, work.name, work.sha256, own)
     return [*(entry for entry in kept if entry.files and entry not in same), now]
 
 
-def _is_news(entry: Entry, work: Work, fresh: Mapping[str, str]) -> bool:
+def _is_news(entry: Owned, work: Work, fresh: Mapping[str, str]) -> bool:
     """Whether people should be told that files of an entry are replaced: they were made of something else."""
     if entry.of(work) and entry.sha256 == work.sha256:
         return False
     return not fresh.keys().isdisjoint(entry.files) or (entry.of(work) and not work.adds)
 
 
-def _replaced(directory: Path, entry: Entry, work: Work, fresh: Mapping[str, str]) -> str:
+def _replaced(directory: Path, entry: Owned, work: Work, fresh: Mapping[str, str]) -> str:
     """Say what is replaced, and what stays though it is of something else."""
     state = "an earlier state of " if entry.of(work) else ""
     what = f"what {entry.command} made of {state}{entry.name!r} (SHA-256 {entry.sha256[:12]})"
@@ -191,7 +191,7 @@ def _names(names: list[str]) -> str:
     return f"{', '.join(names)} {'is' if len(names) == 1 else 'are'}"
 
 
-def read_list(directory: Path) -> list[Entry]:
+def read_list(directory: Path) -> list[Owned]:
     """Read the list of a folder; nothing where there is none.
 
     Raises
@@ -217,12 +217,12 @@ def read_list(directory: Path) -> list[Entry]:
     return entries
 
 
-def _entries(data: dict[str, Any]) -> list[Entry]:
+def _entries(data: dict[str, Any]) -> list[Owned]:
     """Read the entries; a name with a path in it, or a digest that is none, is no entry."""
     if data["kind"] != _KIND or data["schema_version"] != 1:
         raise ValueError("another kind of file")
     entries = [
-        Entry(entry["command"], entry["name"], entry["sha256"], dict(entry["files"].items()))
+        Owned(entry["command"], entry["name"], entry["sha256"], dict(entry["files"].items()))
         for entry in data["written"]
     ]
     for entry in entries:
@@ -235,7 +235,7 @@ def _entries(data: dict[str, Any]) -> list[Entry]:
     return entries
 
 
-def _text(entries: list[Entry]) -> str:
+def _text(entries: list[Owned]) -> str:
     """Write the list the one way in which it is written."""
     ordered = sorted(entries, key=lambda entry: (entry.command, entry.name))
     written = [{**vars(entry), "files": dict(sorted(entry.files.items()))} for entry in ordered]

@@ -34,7 +34,7 @@ DASHED = (5.0, 2.5)
 
 
 @dataclass(frozen=True, eq=False)
-class Line:
+class DrawnLine:
     """A line of a plot.
 
     Parameters
@@ -59,8 +59,8 @@ class Line:
 
 
 @dataclass(frozen=True, eq=False)
-class Marks:
-    """Places of a plot: arguments as of `Line`, with the size of each mark (pt)."""
+class DrawnMarks:
+    """Places of a plot: arguments as of `DrawnLine`, with the size of each mark (pt)."""
 
     points: FloatArray
     colour: str
@@ -168,7 +168,7 @@ class Arrow:
     place, start, tip
         Its place along x, and the heights of both ends, in the units of the frame.
     colour, width, label, dash
-        As of a `Line`.
+        As of a `DrawnLine`.
     """
 
     place: float
@@ -180,7 +180,7 @@ class Arrow:
     dash: tuple[float, ...] = ()
 
 
-Item = Line | Marks | Band | Bar | Area | Note | Arrow
+Item = DrawnLine | DrawnMarks | Band | Bar | Area | Note | Arrow
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,21 @@ from html import escape
 
 import numpy as np
 
-from camwright.house.pictures import APART, Area, Arrow, Band, Bar, Frame, Item, Line, Marks, Note, Picture, Tick, ticks
+from camwright.house.pictures import (
+    APART,
+    Area,
+    Arrow,
+    Band,
+    Bar,
+    DrawnLine,
+    DrawnMarks,
+    Frame,
+    Item,
+    Note,
+    Picture,
+    Tick,
+    ticks,
+)
 from camwright.profiles.polynomial.profile import FloatArray
 
 FINEST = 0.06
@@ -139,7 +153,7 @@ def _grid(frame: Frame, xticks: list[_Tick], yticks: list[_Tick]) -> Iterator[st
 
 def _layer(item: Item) -> int:
     """Give what lies below what: areas, bars, lines, marks."""
-    return (Area, Bar, Line, Marks, Band, Note, Arrow).index(type(item))
+    return (Area, Bar, DrawnLine, DrawnMarks, Band, Note, Arrow).index(type(item))
 
 
 def _drawn(frame: Frame, item: Item) -> Iterator[str]:
@@ -149,9 +163,9 @@ def _drawn(frame: Frame, item: Item) -> Iterator[str]:
     elif isinstance(item, Area):
         path = " ".join(map(str, _on_page(frame, item.points).ravel().tolist()))
         yield from _filled("path", f'd="M{path}Z"', item)
-    elif isinstance(item, Line):
+    elif isinstance(item, DrawnLine):
         yield from _line(frame, item)
-    elif isinstance(item, Marks):
+    elif isinstance(item, DrawnMarks):
         yield from (_mark(item, across, down) for across, down in _on_page(frame, item.points).tolist())
 
 
@@ -194,7 +208,7 @@ def _on_page(frame: Frame, points: FloatArray) -> FloatArray:
     return np.asarray(np.round(np.where([False, True], 1.0 - part, part) * size, 2), dtype=np.float64)
 
 
-def _line(frame: Frame, item: Line) -> Iterator[str]:
+def _line(frame: Frame, item: DrawnLine) -> Iterator[str]:
     """Draw the stretches of a line."""
     places = _on_page(frame, item.points)
     ends = np.flatnonzero(np.isnan(places).any(axis=1))
@@ -244,7 +258,7 @@ def _note(frame: Frame, item: Note) -> Iterator[str]:
         yield _text(line, across, down + 1.2 * item.size * (number - 0.5 * (len(lines) - 1)), item.anchor, item.size)
 
 
-def _mark(item: Marks, across: float, down: float) -> str:
+def _mark(item: DrawnMarks, across: float, down: float) -> str:
     """Draw one mark about a place."""
     half = 0.5 * item.size
     if item.shape == "square":
@@ -319,9 +333,9 @@ def _entry_width(item: Item) -> float:
 def _entry(item: Item, left: float, middle: float) -> Iterable[str]:
     """Draw a sample of an item, and its label beside it."""
     label = _text(item.label, left + _sample_width(item) + _GAP, middle, "start")
-    if isinstance(item, Line):
+    if isinstance(item, DrawnLine):
         return _stroke(f"M{left:.2f} {middle:g}h{_SAMPLE:g}", item.colour, item.width, dash=item.dash), label
-    if isinstance(item, Marks):
+    if isinstance(item, DrawnMarks):
         return _mark(item, left + 0.5 * item.size, middle), label
     if isinstance(item, Arrow):
         return *_arrow(item, left + 0.5 * _SAMPLE, middle + 6.0, middle - 6.0), label
@@ -333,7 +347,7 @@ def _entry(item: Item, left: float, middle: float) -> Iterable[str]:
 
 
 def _sample_width(item: Item) -> float:
-    return item.size if isinstance(item, Marks) else _SAMPLE
+    return item.size if isinstance(item, DrawnMarks) else _SAMPLE
 
 
 def text_width(text: str, size: float = _TEXT) -> float:

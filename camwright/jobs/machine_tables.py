@@ -16,7 +16,7 @@ from camwright.house.setting_fields import Table, number_field, quantity_field, 
 from camwright.house.units import KINDS
 from camwright.jobs.fields import Known
 from camwright.profiles.machines import MACHINES, Machine
-from camwright.profiles.machines.fields import Choice, Instead, MachineField, Number, Quantity, Whole, fields_of
+from camwright.profiles.machines.fields import BareNumber, Choice, Instead, MachineField, Quantity, Whole, fields_of
 
 
 class MachineTable(Table):
@@ -58,7 +58,7 @@ def _key(each: MachineField) -> tuple[Any, Any]:
         whole = whole_field(about.least, about.greatest, about.example)
         extra: dict[str, Any] = {"minimum": about.least, "maximum": about.greatest}
         return Annotated[int, whole, Field(description=about.description, json_schema_extra=extra)], default
-    if isinstance(about, Number):
+    if isinstance(about, BareNumber):
         number = number_field(about.above, about.greatest, about.advice, f"{about.example:g}", above=True)
         extra = {"exclusiveMinimum": about.above, "maximum": about.greatest}
         shown = Field(description=about.description, examples=[about.example], json_schema_extra=extra)

@@ -11,7 +11,7 @@ from camwright.jobs.job import Job
 from camwright.jobs.table_units import kernel_units, slave_length, units_of
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import FloatArray
-from camwright.profiles.tables.cam_table import CamTable, Units, make_table
+from camwright.profiles.tables.cam_table import CamTable, TableUnits, make_table
 
 _FEWEST = 12
 """Points from which on a jump can be told from motion."""
@@ -38,7 +38,7 @@ class WholeCycle:
     """A table with both its ends, its units, and what had to be assumed, a sentence each."""
 
     table: CamTable
-    units: Units
+    units: TableUnits
     notes: tuple[str, ...]
 
 
@@ -103,7 +103,7 @@ def _require_master_first(table: CamTable, job: Job, place: str) -> None:
         )
 
 
-def _sizes(table: CamTable, job: Job, place: str, units: str | None) -> Units | None:
+def _sizes(table: CamTable, job: Job, place: str, units: str | None) -> TableUnits | None:
     """Give the units where they are known without the table's ends; ``None`` where these are needed to tell them."""
     if units is not None and table.units is None:
         return None if units.replace(" ", "").startswith("cycle,") else units_of(table, units, job, place)[0]
@@ -112,7 +112,7 @@ def _sizes(table: CamTable, job: Job, place: str, units: str | None) -> Units | 
     return None
 
 
-def _listed_sizes(table: CamTable, job: Job, place: str, units: str | None) -> Units:
+def _listed_sizes(table: CamTable, job: Job, place: str, units: str | None) -> TableUnits:
     """Give the units of a list of slave positions; that of the master is a step, the slave's must be said.
 
     Raises
@@ -128,7 +128,9 @@ def _listed_sizes(table: CamTable, job: Job, place: str, units: str | None) -> U
     return units_of(table, units, job, place)[0]
 
 
-def _with_listed_end(table: CamTable, job: Job, units: Units, asked: float | None) -> tuple[CamTable, tuple[str, ...]]:
+def _with_listed_end(
+    table: CamTable, job: Job, units: TableUnits, asked: float | None
+) -> tuple[CamTable, tuple[str, ...]]:
     """Put the end of the cycle behind a list whose last row is a step before it: where a step more meets the travel better."""
     travel = (job.machine.pitch if asked is None else asked) / units.slave.size
     step = 0.5 * float(table.y[-1] - table.y[-2] + table.y[1] - table.y[0])
@@ -144,7 +146,7 @@ def _with_listed_end(table: CamTable, job: Job, units: Units, asked: float | Non
     return replace(longer, words=table.words, units=table.units), (note,)
 
 
-def _forwards(table: CamTable, job: Job, units: Units | None) -> tuple[CamTable, tuple[str, ...]]:
+def _forwards(table: CamTable, job: Job, units: TableUnits | None) -> tuple[CamTable, tuple[str, ...]]:
     """Turn the sign of a slave that runs on, but backwards: drives count as they are mounted."""
     pitch = job.machine.pitch
     back = table.advance < 0.0 if units is None else table.advance * units.slave.size < -_MOST_OF * pitch
@@ -155,7 +157,7 @@ def _forwards(table: CamTable, job: Job, units: Units | None) -> tuple[CamTable,
 
 
 def _unwrapped(
-    table: CamTable, job: Job, units: Units | None, asked: float | None, place: str
+    table: CamTable, job: Job, units: TableUnits | None, asked: float | None, place: str
 ) -> tuple[CamTable, tuple[str, ...]]:
     """Take out the jumps of a slave that is counted modulo its pitch or its turn."""
     y = table.y
@@ -235,7 +237,7 @@ def _plain(value: float, slack: float) -> float:
     return value
 
 
-def _with_end(table: CamTable, job: Job, units: Units, asked: float | None) -> tuple[CamTable, tuple[str, ...]]:
+def _with_end(table: CamTable, job: Job, units: TableUnits, asked: float | None) -> tuple[CamTable, tuple[str, ...]]:
     """Put the end of the cycle there where the last row is one step short of it; take a row away that is beyond it."""
     length = job.cut.length / units.master.size
     step = float(table.x[-1] - table.x[-2])

@@ -10,7 +10,7 @@ from camwright.jobs.job import Job
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
 from camwright.profiles.machines import Machine
-from camwright.profiles.tables.cam_table import CamTable, Unit, Units
+from camwright.profiles.tables.cam_table import CamTable, TableUnits, Unit
 from camwright.profiles.task import Task
 
 _ANGLE = re.compile(r"([+-]?[0-9]{1,9}(?:\.[0-9]{1,9})?(?:e-?[0-9])?) ?(deg|rev)")
@@ -19,13 +19,13 @@ _PER_TURN = re.compile(r"/ ?rev$")
 _LENGTHS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "um": 1e-6, "in": 0.0254, "ft": 0.3048}
 
 
-def default_units(machine: Machine) -> Units:
+def default_units(machine: Machine) -> TableUnits:
     """Millimetres; degrees for a slave that is counted in rad."""
     slave = Unit("mm", 1e-3) if machine.slave_unit == "m" else Unit("deg", math.radians(1.0), "rad")
-    return Units(Unit("mm", 1e-3), slave)
+    return TableUnits(Unit("mm", 1e-3), slave)
 
 
-def parse_units(text: str, task: Task, period: float | None = None) -> Units:
+def parse_units(text: str, task: Task, period: float | None = None) -> TableUnits:
     """Read ``mm,deg`` into the units of master and slave.
 
     A degree or a turn (``rev``) of the master is that part of the cycle, one of the slave that part of a turn of the
@@ -54,7 +54,7 @@ def parse_units(text: str, task: Task, period: float | None = None) -> Units:
     master = _master_units(cut)
     if period is not None:
         master["cycle"] = cut.length / period
-    return Units(
+    return TableUnits(
         Unit(*_unit(names[0], master, "length", cut.length)),
         Unit(*_unit(names[1], _slave_units(machine), _kind(machine), machine.slave_turn), machine.slave_unit),
     )
@@ -75,7 +75,7 @@ def slave_length(text: str, machine: Machine) -> float:
     return quantity(plain, _kind(machine), signed=True) if size is None else size
 
 
-def kernel_units(machine: Machine, length: float) -> list[Units]:
+def kernel_units(machine: Machine, length: float) -> list[TableUnits]:
     """Give the units that a kernel's own table may be in: 0.0001 deg or mm, as integers always; reals may be deg or mm."""
     master = Unit("0.0001 deg", length / 3_600_000)
     slaves = [
@@ -84,10 +84,10 @@ def kernel_units(machine: Machine, length: float) -> list[Units]:
         for word, each in _slave_units(machine).items()
         if word in ("deg", "mm")
     ]
-    return [Units(master, slave) for slave in slaves]
+    return [TableUnits(master, slave) for slave in slaves]
 
 
-def units_of(table: CamTable, asked: str | None, job: Job, place: str) -> tuple[Units, tuple[str, ...]]:
+def units_of(table: CamTable, asked: str | None, job: Job, place: str) -> tuple[TableUnits, tuple[str, ...]]:
     """Give the units that the file states, else those that the user states, else those in which the cycle is the job's.
 
     Returns
@@ -111,7 +111,7 @@ def units_of(table: CamTable, asked: str | None, job: Job, place: str) -> tuple[
     return _from_words(table, job, place)
 
 
-def _from_words(table: CamTable, job: Job, place: str) -> tuple[Units, tuple[str, ...]]:
+def _from_words(table: CamTable, job: Job, place: str) -> tuple[TableUnits, tuple[str, ...]]:
     """Units that the file names, as long as the job has them; what it does not name from the cycle and the pitch."""
     machine, cut = job.machine, job.cut
     master_word, slave_word = table.words
@@ -125,7 +125,7 @@ def _from_words(table: CamTable, job: Job, place: str) -> tuple[Units, tuple[str
             "(--units M,S says the truth)"
         )
     if slave_word is not None:
-        return Units(master, Unit(*_slave_word(slave_word, machine, place), machine.slave_unit)), tuple(notes)
+        return TableUnits(master, Unit(*_slave_word(slave_word, machine, place), machine.slave_unit)), tuple(notes)
     if not (table.advance > 0 and machine.pitch > 0):
         advance = table.advance if table.kind == "appending" else 0.0
         raise InputError(
@@ -137,7 +137,7 @@ def _from_words(table: CamTable, job: Job, place: str) -> tuple[Units, tuple[str
         f"the slave's unit is not in the file: its advance, {table.advance:.6g}, is taken for the pitch "
         f"(--units {master_word or 'cycle'},mm says the truth)"
     )
-    return Units(master, Unit("slave unit", machine.pitch / table.advance, machine.slave_unit)), tuple(notes)
+    return TableUnits(master, Unit("slave unit", machine.pitch / table.advance, machine.slave_unit)), tuple(notes)
 
 
 def _slave_word(word: str, machine: Machine, place: str) -> tuple[str, float]:

@@ -1,4 +1,4 @@
-"""`Drawing`: a figure that shows itself in a notebook."""
+"""`Plot`: a figure that shows itself in a notebook."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from camwright.house.svg import picture_svg
 
 
 @dataclass(frozen=True, eq=False)
-class Drawing:
+class Plot:
     """A figure of a result.
 
     Parameters

@@ -17,7 +17,7 @@ from camwright.house.numbers import number, shown, unit_shown
 from camwright.house.pictures import Picture
 from camwright.house.progress import Step, ignore
 from camwright.jobs.job import Job
-from camwright.notebook.drawing import Drawing
+from camwright.notebook.drawing import Plot
 from camwright.studies import design as designing
 from camwright.studies.comparison import Comparison
 from camwright.studies.speed_band import failed_words
@@ -39,7 +39,7 @@ class Result(designing.Design):
     (True, 'paper-600: all profiles, by peak acceleration\n† breaks a limit of the job')
     """
 
-    def plot(self, what: What = "profile") -> Drawing:
+    def plot(self, what: What = "profile") -> Plot:
         """Draw a figure of the design, as `camwright design` writes it.
 
         Parameters
@@ -59,7 +59,7 @@ class Result(designing.Design):
         """
         if what not in _FIGURES:
             raise ValueError(f"there is no figure {what!r}; the figures are {', '.join(_FIGURES)}")
-        return Drawing(_FIGURES[what](self.comparison))
+        return Plot(_FIGURES[what](self.comparison))
 
     def samples(self, points: int | None = None) -> dict[str, np.ndarray[Any, np.dtype[np.float64]]]:
         """Sample one cycle evenly over the master.

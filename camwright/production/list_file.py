@@ -13,7 +13,7 @@ from camwright.production.columns import columns, measured, read_table_text, rol
 from camwright.profiles.cut_list import PIECE_KINDS, CutList, ListRow, PieceKind
 from camwright.profiles.errors import InputError
 from camwright.profiles.line_run import LineRun
-from camwright.profiles.tables.delimited import Layout, is_unit_row, read_sheet
+from camwright.profiles.tables.delimited import RowLayout, is_unit_row, read_sheet
 from camwright.profiles.tables.numbers import GROUPS, grouped, number_in
 
 MOST_BYTES = 32 * 2**20
@@ -45,7 +45,7 @@ def read_cut_list(path: Path) -> CutList:
 
 def parse_cut_list(text: str, place: str) -> CutList:
     """Read a cut list from its text; as `read_cut_list`."""
-    layout = Layout(_is_list_cell, _above)
+    layout = RowLayout(_is_list_cell, _above)
     sheet = read_sheet(text, place, role, LIST_HEADER, "cut list", layout)
     at = columns(sheet, ("length", "quantity", "kind"), needed=2, header=LIST_HEADER)
     unit = unit_of(sheet.columns[at["length"]])

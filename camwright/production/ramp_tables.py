@@ -26,7 +26,7 @@ KINDS: tuple[RampKind, ...] = get_args(RampKind)
 
 
 @dataclass(frozen=True, eq=False)
-class RampTables:
+class AllRampTables:
     """The tables of start, stop and one-shot cam.
 
     Parameters
@@ -63,7 +63,7 @@ class RampTables:
         return names
 
 
-def write_ramps(found: Ramps, names: Sequence[str], *, required: bool = True, step: Step = ignore) -> RampTables:
+def write_ramps(found: Ramps, names: Sequence[str], *, required: bool = True, step: Step = ignore) -> AllRampTables:
     """Write start, stop and one-shot cam for targets.
 
     A drive runs one of them once, between the park and the running cam. So its table is judged in that place: with the others, as they
@@ -90,7 +90,7 @@ def write_ramps(found: Ramps, names: Sequence[str], *, required: bool = True, st
     hopeless = [name for name in names if required and all(name in refused[kind] for kind in KINDS)]
     if hopeless:
         raise InputError(*(f"{name}: {'; '.join(refused['one_shot'][name])}" for name in hopeless))
-    return RampTables(results, refused)
+    return AllRampTables(results, refused)
 
 
 def _named(kind: str) -> str:
@@ -135,6 +135,6 @@ def _continued(first: CamProfile, then: CamProfile) -> CamProfile:
     )
 
 
-def tables_answer(tables: RampTables, found: Ramps) -> dict[str, Any]:
+def tables_answer(tables: AllRampTables, found: Ramps) -> dict[str, Any]:
     """Contents of the report on the tables: by the kind of motion as of ``camwright export``."""
     return {kind: export_report(tables.results[kind], found.job, tables.refused[kind]) for kind in KINDS}

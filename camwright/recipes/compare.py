@@ -28,7 +28,7 @@ _CLOSING = ("position_closure", "position_joins", "ratio_joins", "ratio_slope_jo
 
 
 @dataclass(frozen=True)
-class Change:
+class RecipeChange:
     """One thing that differs.
 
     Parameters
@@ -65,12 +65,12 @@ def read_recipe(directory: Path) -> Recipe:
     return parse_recipe(read_text(file, "recipe", MOST_BYTES), str(file))
 
 
-def compare_recipes(before: Recipe, after: Recipe) -> list[Change]:
+def compare_recipes(before: Recipe, after: Recipe) -> list[RecipeChange]:
     """List what differs between two recipes, grouped in a fixed order; numbers in the units in which a fitter reads them."""
     return [change for change in _pairs(before, after) if not _same(change)]
 
 
-def _same(change: Change) -> bool:
+def _same(change: RecipeChange) -> bool:
     """Whether two values are the same, lengths and speeds to 1e-6: below that servo errors and a slave that stands are rounding."""
     before, after = change.before, change.after
     if isinstance(before, float) and isinstance(after, float):
@@ -80,17 +80,17 @@ def _same(change: Change) -> bool:
     return bool(before == after)
 
 
-def _pairs(before: Recipe, after: Recipe) -> Iterator[Change]:
+def _pairs(before: Recipe, after: Recipe) -> Iterator[RecipeChange]:
     """Set side by side everything that can differ, in the units of the newer recipe."""
     shown = catalogue_of(after.language, after.job.toml).units
-    yield Change("recipe", "name", "", before.name, after.name)
-    yield Change("recipe", "note", "", before.note, after.note)
+    yield RecipeChange("recipe", "name", "", before.name, after.name)
+    yield RecipeChange("recipe", "note", "", before.note, after.note)
     after_given = asdict(after.particulars)
     for name, value in asdict(before.particulars).items():
-        yield Change("recipe", name, "", value, after_given[name])
-    yield Change("recipe", "released", "", before.released, after.released)
-    yield Change("recipe", "objective", "", before.objective.name, after.objective.name)
-    yield Change("recipe", "camwright", "", before.provenance.camwright, after.provenance.camwright)
+        yield RecipeChange("recipe", name, "", value, after_given[name])
+    yield RecipeChange("recipe", "released", "", before.released, after.released)
+    yield RecipeChange("recipe", "objective", "", before.objective.name, after.objective.name)
+    yield RecipeChange("recipe", "camwright", "", before.provenance.camwright, after.provenance.camwright)
     for heading, listed in GROUPS.items():
         group = heading.rpartition(".")[2]
         facts = [{fact.key: fact for fact in listed(recipe)} for recipe in (before, after)]
@@ -106,24 +106,24 @@ def _pairs(before: Recipe, after: Recipe) -> Iterator[Change]:
     yield from _tables(before, after)
 
 
-def _change(group: str, name: str, units: list[str], values: list[Any], shown_in: Units) -> Change:
+def _change(group: str, name: str, units: list[str], values: list[Any], shown_in: Units) -> RecipeChange:
     """Make a change of a number in the unit in which a fitter reads it; of two kinds of slave both are told in SI."""
     unit = units[0]
     if len(set(units)) > 1:
         texts = [None if value is None else f"{value:.6g} {unit}" for value, unit in zip(values, units, strict=True)]
-        return Change(group, name, "", *texts)
+        return RecipeChange(group, name, "", *texts)
     if unit not in SHOWN or any(isinstance(value, str | bool) for value in values):
-        return Change(group, name, "", *values)
+        return RecipeChange(group, name, "", *values)
     shown = [None if value is None else converted(value, unit, shown_in) for value in values]
-    return Change(group, name, unit_shown(unit, shown_in), *shown)
+    return RecipeChange(group, name, unit_shown(unit, shown_in), *shown)
 
 
-def _cam(before: Recipe, after: Recipe, units: Units) -> Iterator[Change]:
-    yield Change("cam", "pieces", "", len(before.profile.coefficients), len(after.profile.coefficients))
+def _cam(before: Recipe, after: Recipe, units: Units) -> Iterator[RecipeChange]:
+    yield RecipeChange("cam", "pieces", "", len(before.profile.coefficients), len(after.profile.coefficients))
     if before.slave_unit == after.slave_unit:
         largest, at = position_difference(before, after)
         unit = before.slave_unit
-        yield Change(
+        yield RecipeChange(
             "cam",
             "largest position difference over the master",
             unit_shown(unit, units),
@@ -131,7 +131,7 @@ def _cam(before: Recipe, after: Recipe, units: Units) -> Iterator[Change]:
             converted(largest, unit, units),
         )
         if largest > 0.0:
-            yield Change("cam", "where it is, of the cycle", "%", None, 100.0 * at)
+            yield RecipeChange("cam", "where it is, of the cycle", "%", None, 100.0 * at)
 
 
 def position_difference(before: Recipe, after: Recipe) -> tuple[float, float]:
@@ -153,25 +153,27 @@ def position_difference(before: Recipe, after: Recipe) -> tuple[float, float]:
     return float(off.max()), float(part[off.argmax()])
 
 
-def _reached(before: tuple[RecipeCheck, ...], after: tuple[RecipeCheck, ...], shown_in: Units) -> Iterator[Change]:
+def _reached(
+    before: tuple[RecipeCheck, ...], after: tuple[RecipeCheck, ...], shown_in: Units
+) -> Iterator[RecipeChange]:
     found = [{check.name: check for check in checks} for checks in (before, after)]
     for name in dict.fromkeys([*found[0], *found[1]]):
         checks = [each.get(name) for each in found]
         units = [check.unit for check in checks if check is not None]
         if name not in _CLOSING:
             yield _change("reached", name, units, [check.value if check else None for check in checks], shown_in)
-        yield Change("reached", f"{name}: passed", "", *(check.passed if check else None for check in checks))
+        yield RecipeChange("reached", f"{name}: passed", "", *(check.passed if check else None for check in checks))
 
 
-def _range(before: Recipe, after: Recipe, shown_in: Units) -> Iterator[Change]:
+def _range(before: Recipe, after: Recipe, shown_in: Units) -> Iterator[RecipeChange]:
     for name, unit in (("min_length", "m"), ("max_length", "m"), ("min_line_speed", "m/s"), ("max_line_speed", "m/s")):
         ends = [getattr(recipe.working_range, name) for recipe in (before, after)]
         yield _change("range", name, [unit], [end.value for end in ends], shown_in)
-        yield Change("range", f"{name}: binding", "", *(end.binding for end in ends))
-    yield Change("range", "released at", "m/min", *(_released(recipe) for recipe in (before, after)))
+        yield RecipeChange("range", f"{name}: binding", "", *(end.binding for end in ends))
+    yield RecipeChange("range", "released at", "m/min", *(_released(recipe) for recipe in (before, after)))
 
 
-def _production(before: Recipe, after: Recipe, shown_in: Units) -> Iterator[Change]:
+def _production(before: Recipe, after: Recipe, shown_in: Units) -> Iterator[RecipeChange]:
     """Compare start and stop, and what print marks may ask at the line speed."""
     unit = before.slave_unit
     both = [recipe.start_stop for recipe in (before, after)]
@@ -194,7 +196,7 @@ def _released(recipe: Recipe) -> str:
     )
 
 
-def _speeds(before: Recipe, after: Recipe, shown_in: Units) -> Iterator[Change]:
+def _speeds(before: Recipe, after: Recipe, shown_in: Units) -> Iterator[RecipeChange]:
     for rows in zip(before.speeds, after.speeds, strict=False):
         for name, unit in AT_SPEED.items():
             yield _change(
@@ -202,21 +204,21 @@ def _speeds(before: Recipe, after: Recipe, shown_in: Units) -> Iterator[Change]:
             )
 
 
-def _tables(before: Recipe, after: Recipe) -> Iterator[Change]:
+def _tables(before: Recipe, after: Recipe) -> Iterator[RecipeChange]:
     found = [{table.target: table for table in recipe.tables} for recipe in (before, after)]
     for target in dict.fromkeys([*found[0], *found[1]]):
         tables = [each.get(target) for each in found]
-        yield Change(
+        yield RecipeChange(
             "tables", f"{target}: points", "", *(len(table.points.master) if table else None for table in tables)
         )
-        yield Change("tables", f"{target}: files", "", *(_sums(table) for table in tables))
+        yield RecipeChange("tables", f"{target}: files", "", *(_sums(table) for table in tables))
 
 
 def _sums(table: RecipeTable | None) -> dict[str, str] | None:
     return None if table is None else {file.path: file.sha256 for file in table.files}
 
 
-def compare_answer(before: Path, after: Path, changes: list[Change]) -> dict[str, Any]:
+def compare_answer(before: Path, after: Path, changes: list[RecipeChange]) -> dict[str, Any]:
     """Answer of ``camwright recipe --compare``."""
     return {
         "before": str(before),

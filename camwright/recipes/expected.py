@@ -20,8 +20,8 @@ from camwright.recipes.model import (
     AtSpeed,
     LineRampRecord,
     MarksAt,
-    Objective,
     RecipeCheck,
+    RecipeObjective,
     SpeedPart,
     StartStop,
     WorkingRange,
@@ -51,7 +51,7 @@ class Expected:
 
     slave_start: float
     pitch: float
-    objective: Objective
+    objective: RecipeObjective
     zones: Zones
     checks: tuple[RecipeCheck, ...]
     speeds: tuple[AtSpeed, ...]
@@ -91,14 +91,14 @@ def expected(design: StoredDesign, ramps: Ramps | None, step: Step = ignore) -> 
     )
 
 
-def _objective(job: Job, profile: CamProfile, report: ValidationReport) -> Objective:
+def _objective(job: Job, profile: CamProfile, report: ValidationReport) -> RecipeObjective:
     """Give the value of the job's objective for a cam, whoever made it."""
     objective = OBJECTIVES[job.objective]
     if objective.of == "axis":
         value = sync_error(profile, job)
     else:
         value = getattr(report.motor if objective.of == "motor" else report.motion, objective.name)
-    return Objective(objective.name, value, objective.unit(job.machine.slave_unit))
+    return RecipeObjective(objective.name, value, objective.unit(job.machine.slave_unit))
 
 
 def zones(cut: Cut) -> Zones:

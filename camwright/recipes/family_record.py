@@ -9,7 +9,7 @@ from pydantic import ConfigDict, Field
 from pydantic.dataclasses import dataclass
 
 from camwright.recipes.family_sheet import FAMILY_FILE
-from camwright.recipes.model import Objective, RecipeCheck
+from camwright.recipes.model import RecipeCheck, RecipeObjective
 from camwright.recipes.recipe_file import parse_record
 
 _STRICT = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
@@ -22,7 +22,7 @@ class FamilyCamRecord:
     cam: int
     name: str
     band_m_per_s: tuple[float, float]
-    objective: Objective
+    objective: RecipeObjective
     worst_sync_error_m: float
     worst_of_all_servos_m: float
     designed_sync_error_m: float | None

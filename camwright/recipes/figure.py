@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from camwright.house.numbers import Units, converted, unit_shown
-from camwright.house.pictures import DASHED, Band, Frame, Line, Look, Picture
+from camwright.house.pictures import DASHED, Band, DrawnLine, Frame, Look, Picture
 from camwright.house.svg import picture_svg
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.recipes.catalogue import Catalogue
@@ -117,7 +117,7 @@ def _frame(
         _PANEL,
         np.array([0.0, low - room]),
         np.array([length, high + room]),
-        [*zones, *(_limit(limit, length) for limit in limits), Line(curve, _INK, 1.5)],
+        [*zones, *(_limit(limit, length) for limit in limits), DrawnLine(curve, _INK, 1.5)],
         "" if below is None else below("figure.master"),
         f"{quantity}\n{unit}",
         grid=True,
@@ -125,5 +125,5 @@ def _frame(
     )
 
 
-def _limit(value: float, length: float, label: str = "") -> Line:
-    return Line(np.array([[0.0, value], [length, value]]), _INK, 1.0, label, DASHED)
+def _limit(value: float, length: float, label: str = "") -> DrawnLine:
+    return DrawnLine(np.array([[0.0, value], [length, value]]), _INK, 1.0, label, DASHED)

@@ -48,7 +48,7 @@ class JobRecord:
 
 
 @dataclass(frozen=True, config=_STRICT)
-class Objective:
+class RecipeObjective:
     """What was minimised, and its value at the job's line speed."""
 
     name: str
@@ -434,7 +434,7 @@ class Recipe:
     slave_unit: Literal["m", "rad"]
     slave_start: float
     pitch: float
-    objective: Objective
+    objective: RecipeObjective
     profile: Profile
     zones: Zones
     checks: tuple[RecipeCheck, ...]

@@ -12,7 +12,7 @@ from camwright.production.ramp_tables import KINDS, stretch_of
 from camwright.production.ramps import Ramps
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import CamProfile
-from camwright.profiles.tables.cam_table import Units
+from camwright.profiles.tables.cam_table import TableUnits
 from camwright.profiles.tables.deviation import deviation
 from camwright.profiles.tables.targets import TARGETS
 from camwright.recipes.model import Profile, RampTables, Recipe, RecipeTable
@@ -70,7 +70,7 @@ def _is_same(profile: CamProfile, record: Profile) -> bool:
 
 
 def _judged(
-    found: Ramps, stretch: Stretch, profile: CamProfile, table: RecipeTable, rebuilt: CamProfile, units: Units
+    found: Ramps, stretch: Stretch, profile: CamProfile, table: RecipeTable, rebuilt: CamProfile, units: TableUnits
 ) -> Iterator[str]:
     """Compare errors and checks of one table with the recorded ones."""
     yield from motion_faults(table, rebuilt, profile, found.job, stretch.slave_start)

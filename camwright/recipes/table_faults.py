@@ -13,7 +13,7 @@ from camwright.jobs.job import Job
 from camwright.profiles.errors import InputError
 from camwright.profiles.machines.machine import SlaveUnit
 from camwright.profiles.polynomial.profile import CamProfile
-from camwright.profiles.tables.cam_table import CamTable, Unit, Units
+from camwright.profiles.tables.cam_table import CamTable, TableUnits, Unit
 from camwright.profiles.tables.deviation import deviation
 from camwright.profiles.tables.targets import TARGETS, read_table
 from camwright.profiles.tables.text import decode
@@ -43,7 +43,7 @@ class Fault:
 _STATED = ("title", "interpolation", "number_format", "evidence", "tested_on_controller", "steps")
 """What a recipe holds of a target as the target states it."""
 
-Judged = Callable[[RecipeTable, CamProfile, Units], Iterator[str]]
+Judged = Callable[[RecipeTable, CamProfile, TableUnits], Iterator[str]]
 """Tells what is wrong with a rebuilt motion: the table, the motion in SI units, and the units of the table."""
 
 
@@ -84,7 +84,7 @@ def table_faults(
     path = table.files[0].path
     try:
         read = read_table(target, decode(content, path), path)
-        units = Units(
+        units = TableUnits(
             Unit(table.master_unit.symbol, table.master_unit.size),
             Unit(table.slave_unit.symbol, table.slave_unit.size, slave_unit),
         )
@@ -93,7 +93,7 @@ def table_faults(
         return [*faults, *(Fault(path, fault.removeprefix(f"{path}: ")) for fault in error.faults)]
 
 
-def _read_faults(table: RecipeTable, read: CamTable, units: Units, judged: Judged) -> Iterator[str]:
+def _read_faults(table: RecipeTable, read: CamTable, units: TableUnits, judged: Judged) -> Iterator[str]:
     """Compare the points of a table with the recorded ones, and judge its motion."""
     yield from _point_faults(table.points, read)
     if read.units is not None and read.units != units:
@@ -161,5 +161,5 @@ def target_faults(tables: Iterable[RecipeTable]) -> Iterator[Fault]:
                 yield Fault(RECIPE_FILE, f"{name} of {table.target}: {stated!r}, recorded {recorded!r}")
 
 
-def _units(units: Units) -> str:
+def _units(units: TableUnits) -> str:
     return ", ".join(f"{unit.symbol} ({unit.size!r} {unit.si})" for unit in (units.master, units.slave))

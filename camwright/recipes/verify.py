@@ -14,7 +14,7 @@ from camwright.house.provenance import camwright_version
 from camwright.jobs.numbers import job_numbers
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import CamProfile
-from camwright.profiles.tables.cam_table import Units
+from camwright.profiles.tables.cam_table import TableUnits
 from camwright.profiles.tables.targets import TARGETS
 from camwright.recipes.expected import expected
 from camwright.recipes.family_verify import family_faults, is_family
@@ -176,7 +176,7 @@ def _contents(data: dict[str, bytes | None]) -> list[Fault]:
     return faults
 
 
-def _cam_faults(design: StoredDesign, table: RecipeTable, rebuilt: CamProfile, units: Units) -> Iterator[str]:
+def _cam_faults(design: StoredDesign, table: RecipeTable, rebuilt: CamProfile, units: TableUnits) -> Iterator[str]:
     """Compare errors and checks of the cam's own table with the recorded ones."""
     job = design.job
     yield from motion_faults(table, rebuilt, covering(design.profile, rebuilt, job), job, job.task.slave_at_start)
@@ -184,7 +184,7 @@ def _cam_faults(design: StoredDesign, table: RecipeTable, rebuilt: CamProfile, u
     yield from check_faults(table, judge_table(rebuilt, job.task, job.servo, table.wraps, RUN, stored))
 
 
-def _unjudged(_table: RecipeTable, _rebuilt: CamProfile, _units: Units) -> Iterator[str]:
+def _unjudged(_table: RecipeTable, _rebuilt: CamProfile, _units: TableUnits) -> Iterator[str]:
     """Judge nothing: starts and stops are judged where the sheet is computed anew, for their motions are found so."""
     yield from ()
 

@@ -33,7 +33,7 @@ _LONGEST = 60
 
 
 @dataclass(frozen=True)
-class Call:
+class PageCall:
     """Commands to run, and the files that they need.
 
     Parameters
@@ -48,7 +48,7 @@ class Call:
     inputs: dict[str, bytes]
 
 
-def call_of(name: str, body: dict[str, Any]) -> Call:
+def call_of(name: str, body: dict[str, Any]) -> PageCall:
     """Make the call of a name from what the page sends.
 
     Raises
@@ -102,43 +102,43 @@ def _job(body: dict[str, Any]) -> dict[str, bytes]:
     return {JOB_FILE: job_text(body).encode()}
 
 
-def _check(body: dict[str, Any]) -> Call:
-    return Call((("check", JOB_FILE, "--json"),), _job(body))
+def _check(body: dict[str, Any]) -> PageCall:
+    return PageCall((("check", JOB_FILE, "--json"),), _job(body))
 
 
-def _design(body: dict[str, Any]) -> Call:
+def _design(body: dict[str, Any]) -> PageCall:
     figures = () if flag_of(body, "figures") else ("--no-figures",)
     brief = ("--brief",) if flag_of(body, "brief") else ()
-    return Call((("design", JOB_FILE, "--json", *figures, *brief, *_OUT),), _job(body))
+    return PageCall((("design", JOB_FILE, "--json", *figures, *brief, *_OUT),), _job(body))
 
 
-def _compare(body: dict[str, Any]) -> Call:
+def _compare(body: dict[str, Any]) -> PageCall:
     objectives = ("--objectives",) if flag_of(body, "objectives") else ()
-    return Call((("compare", JOB_FILE, "--json", "--no-figures", *objectives),), _job(body))
+    return PageCall((("compare", JOB_FILE, "--json", "--no-figures", *objectives),), _job(body))
 
 
-def _limits(body: dict[str, Any]) -> Call:
-    return Call((("limits", JOB_FILE, "--json"),), _job(body))
+def _limits(body: dict[str, Any]) -> PageCall:
+    return PageCall((("limits", JOB_FILE, "--json"),), _job(body))
 
 
-def _envelope(body: dict[str, Any]) -> Call:
+def _envelope(body: dict[str, Any]) -> PageCall:
     points = body.get("points", 9)
     if not isinstance(points, int) or isinstance(points, bool) or not 2 <= points <= 40:
         raise InputError(f'"points" is {points!r}; it is a whole number from 2 to 40')
     command = ("envelope", JOB_FILE, "--json", "--no-figures", "--points", str(points), *_OUT)
-    return Call((command,), _job(body))
+    return PageCall((command,), _job(body))
 
 
-def _export(body: dict[str, Any]) -> Call:
+def _export(body: dict[str, Any]) -> PageCall:
     design = ("design", JOB_FILE, "--json", "--brief", *_OUT)
     units = ("--units", _plain(body, "units")) if body.get("units") else ()
     tables = ("export", "out/design.json", "--to", _targets(body), *units, "--out", "tables", "--json")
-    return Call((design, tables), _job(body))
+    return PageCall((design, tables), _job(body))
 
 
-def _recipe(body: dict[str, Any]) -> Call:
+def _recipe(body: dict[str, Any]) -> PageCall:
     command = ("recipe", JOB_FILE, "--targets", _targets(body), "--language", language_of(body), "--out", "recipe")
-    return Call(((*command, "--json"),), _job(body))
+    return PageCall(((*command, "--json"),), _job(body))
 
 
 def language_of(body: Mapping[str, Any]) -> Language:
@@ -150,30 +150,30 @@ def language_of(body: Mapping[str, Any]) -> Language:
     raise InputError(f'"language" is {language!r}; it is {", ".join(LANGUAGES)}')
 
 
-def _audit(body: dict[str, Any]) -> Call:
+def _audit(body: dict[str, Any]) -> PageCall:
     """Judge a table that was dropped on the page."""
     name, data = file_of(body)
     units = ("--units", _plain(body, "units")) if body.get("units") else ()
     path = f"{_DROPPED}/{name}"
-    return Call((("audit", path, "--job", JOB_FILE, "--json", "--no-figures", *units),), _job(body) | {path: data})
+    return PageCall((("audit", path, "--job", JOB_FILE, "--json", "--no-figures", *units),), _job(body) | {path: data})
 
 
-def _identify(body: dict[str, Any]) -> Call:
+def _identify(body: dict[str, Any]) -> PageCall:
     """Find the servo of a recording that was dropped on the page."""
     name, data = file_of(body)
     path = f"{_DROPPED}/{name}"
-    return Call((("identify", path, "--json", "--out", "servo.toml"),), {path: data})
+    return PageCall((("identify", path, "--json", "--out", "servo.toml"),), {path: data})
 
 
-def _trace(body: dict[str, Any]) -> Call:
+def _trace(body: dict[str, Any]) -> PageCall:
     """Lay a recording over a design: the sync error of each cut."""
     name, data = file_of(body)
     path, design = f"{_DROPPED}/{name}", text_of(body, "design").encode()
     command = ("trace", path, "--job", JOB_FILE, "--design", _DESIGN, "--json", "--no-figures")
-    return Call((command,), _job(body) | {path: data, _DESIGN: design})
+    return PageCall((command,), _job(body) | {path: data, _DESIGN: design})
 
 
-def _bend(body: dict[str, Any]) -> Call:
+def _bend(body: dict[str, Any]) -> PageCall:
     """Bend a drawing that was dropped on the page; the bundled bender if no job of one is sent."""
     name, data = file_of(body)
     path = f"{_DROPPED}/{name}"
@@ -182,7 +182,7 @@ def _bend(body: dict[str, Any]) -> Call:
     accept = ("--accept-collisions",) if flag_of(body, "accept_collisions") else ()
     spoken = ("--language", language_of(body))
     command = ("bend", path, *bender, "--styles", "all", *reverse, *accept, *spoken, "--json", "--out", "bent")
-    return Call((command,), (_job(body) if bender else {}) | {path: data})
+    return PageCall((command,), (_job(body) if bender else {}) | {path: data})
 
 
 def number_of(body: Mapping[str, Any], key: str, otherwise: float) -> float:
@@ -217,7 +217,7 @@ def _targets(body: dict[str, Any]) -> str:
     return ",".join(target_of(name).name for name in names)
 
 
-_CALLS: dict[str, Callable[[dict[str, Any]], Call]] = {
+_CALLS: dict[str, Callable[[dict[str, Any]], PageCall]] = {
     "check": _check,
     "design": _design,
     "compare": _compare,

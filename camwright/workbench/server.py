@@ -28,7 +28,7 @@ from camwright.profiles.returns import baseline_names
 from camwright.profiles.tables.targets import TARGETS
 from camwright.workbench.calls import (
     NAMES,
-    Call,
+    PageCall,
     call_of,
     file_of,
     flag_of,
@@ -119,7 +119,7 @@ class Workbench:
         except StaleError:
             return _STALE
 
-    async def _run(self, request: Request, name: str, call: Call) -> Ran:
+    async def _run(self, request: Request, name: str, call: PageCall) -> Ran:
         """Run a call as long as somebody waits for it."""
         run = asyncio.create_task(self._runner.run(name, call.commands, call.inputs))
         gone = asyncio.create_task(_gone(request))

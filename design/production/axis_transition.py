@@ -81,7 +81,7 @@ def design_axis_transition(
     SolverError
         A solver ended without an answer.
     """
-    programme = _Programme(ChangeRows(before, after, command), line_speeds, servos)
+    programme = _TransitionProgramme(ChangeRows(before, after, command), line_speeds, servos)
     least = programme.solve(None)
     if least is None or least[1] > 1.0:
         return None
@@ -90,7 +90,7 @@ def design_axis_transition(
     return AxisTransition(programme.change.profile(unknowns), programme.share(unknowns))
 
 
-class _Programme:
+class _TransitionProgramme:
     """A linear programme whose rows come as answers break them."""
 
     def __init__(self, change: ChangeRows, line_speeds: tuple[float, float], servos: tuple[Servo, ...]) -> None:

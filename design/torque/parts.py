@@ -11,7 +11,7 @@ import numpy as np
 
 from camwright.design.line.forms import ramp_forms
 from camwright.design.torque.layout import Layout
-from camwright.design.torque.pieces import Laid, Piece
+from camwright.design.torque.pieces import Laid, ProgrammePiece
 from camwright.design.torque.task import TorqueTask
 from camwright.design.torque.zone import Zone, available_torque
 from camwright.profiles.polynomial.profile import FloatArray
@@ -96,7 +96,7 @@ def _motion(task: TorqueTask, *names: str) -> list[Any]:
 
 
 @lru_cache(KEPT)
-def _step(task: TorqueTask, free: bool) -> Piece:
+def _step(task: TorqueTask, free: bool) -> ProgrammePiece:
     """Hold the motion from node to node within its limits; the velocity between is the last row."""
     states = _motion(task, "a", "a1", "v", "v1", "q", "q1")
     a, a1, v, v1, q, q1 = (value for _, value in states)
@@ -121,7 +121,9 @@ def _step(task: TorqueTask, free: bool) -> Piece:
     elif task.aim == "peak_jerk":
         above += [bound - rise / h / unit, bound + rise / h / unit]
     unknowns = [symbol for symbol, _ in states] + [length] * free + [bound] * (task.aim == "peak_jerk")
-    return Piece(ca.vertcat(*unknowns), ca.vertcat(share, unit), cost, equal, ca.vertcat(*above, v + h * a / 2))
+    return ProgrammePiece(
+        ca.vertcat(*unknowns), ca.vertcat(share, unit), cost, equal, ca.vertcat(*above, v + h * a / 2)
+    )
 
 
 def _ramps(task: TorqueTask, a: Any, a1: Any, v: Any, v1: Any, h: Any, share: Any) -> list[Any]:
@@ -141,23 +143,25 @@ def _ramps(task: TorqueTask, a: Any, a1: Any, v: Any, v1: Any, h: Any, share: An
 
 
 @lru_cache(KEPT)
-def _whole(task: TorqueTask, phases: int) -> Piece:
+def _whole(task: TorqueTask, phases: int) -> ProgrammePiece:
     """Add the lengths of the phases up to the return, and let the bound of a peak pay."""
     lengths, bound, paid = ca.SX.sym("l", phases), ca.SX.sym("t"), ca.SX.sym("w")
     equal = ca.sum1(lengths) - 1.0 if phases > 1 else NONE
-    return Piece(ca.vertcat(lengths, bound), paid, paid * bound if _bounded(task) else ca.SX(0), equal, NONE)
+    return ProgrammePiece(ca.vertcat(lengths, bound), paid, paid * bound if _bounded(task) else ca.SX(0), equal, NONE)
 
 
 @lru_cache(KEPT)
-def _node(task: TorqueTask) -> Piece:
+def _node(task: TorqueTask) -> ProgrammePiece:
     """Hold the acceleration at a node under its bound."""
     ((symbol, a),) = _motion(task, "a")
     bound, unit = ca.SX.sym("t"), ca.SX.sym("u")
-    return Piece(ca.vertcat(symbol, bound), unit, ca.SX(0), NONE, ca.vertcat(bound - a / unit, bound + a / unit))
+    return ProgrammePiece(
+        ca.vertcat(symbol, bound), unit, ca.SX(0), NONE, ca.vertcat(bound - a / unit, bound + a / unit)
+    )
 
 
 @lru_cache(KEPT)
-def _point(task: TorqueTask, free: bool, placed: bool) -> Piece:
+def _point(task: TorqueTask, free: bool, placed: bool) -> ProgrammePiece:
     """Ask of the motor what a point of the return needs."""
     states = _motion(task, "a", "a1", "v", "q")
     a, a1, v, q = (value for _, value in states)
@@ -190,7 +194,7 @@ def _point(task: TorqueTask, free: bool, placed: bool) -> Piece:
             cost = ca.SX(0)
     above += _within(task, torque, available)
     unknowns = [symbol for symbol, _ in states] + [bound] + [length] * free + [drawn] * (task.aim == "energy")
-    return Piece(ca.vertcat(*unknowns, *[start] * placed), given, cost, NONE, ca.vertcat(*above))
+    return ProgrammePiece(ca.vertcat(*unknowns, *[start] * placed), given, cost, NONE, ca.vertcat(*above))
 
 
 def _within(task: TorqueTask, torque: Any, available: Any) -> list[Any]:
@@ -202,7 +206,7 @@ def _within(task: TorqueTask, torque: Any, available: Any) -> list[Any]:
 
 
 @lru_cache(KEPT)
-def _zone_point(task: TorqueTask, zone: Zone) -> Piece:
+def _zone_point(task: TorqueTask, zone: Zone) -> ProgrammePiece:
     """Ask of the motor and the limits what a point of the sync zone needs."""
     start, end, bound, drawn = (ca.SX.sym(name) for name in ("s", "e", "t", "d"))
     given = ca.SX.sym("p", 4)
@@ -224,17 +228,17 @@ def _zone_point(task: TorqueTask, zone: Zone) -> Piece:
             values = [point.jerk]
     above += [bound + sign * value / unit for value in values for sign in (-1.0, 1.0)]
     unknowns = ca.vertcat(start, end, bound, *[drawn] * (task.aim == "energy"))
-    return Piece(unknowns, given, cost, NONE, ca.vertcat(*above))
+    return ProgrammePiece(unknowns, given, cost, NONE, ca.vertcat(*above))
 
 
 @lru_cache(KEPT)
-def _join(task: TorqueTask, zone: Zone) -> Piece:
+def _join(task: TorqueTask, zone: Zone) -> ProgrammePiece:
     """Join the return to the ends of the sync zone."""
     start, end = ca.SX.sym("s"), ca.SX.sym("e")
     states = _motion(task, "a", "v", "q", "a1", "v1", "q1")
     closure, met = zone.met(start, end, task)
     own = ca.vertcat(*[value for _, value in states])
-    return Piece(
+    return ProgrammePiece(
         ca.vertcat(start, end, *[symbol for symbol, _ in states]),
         ca.SX.sym("u"),
         ca.SX(0),

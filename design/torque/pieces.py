@@ -22,7 +22,7 @@ Places = NDArray[np.intp]
 
 
 @dataclass(frozen=True, eq=False)
-class Piece:
+class ProgrammePiece:
     """What is the same at many places, in scalar symbols (`casadi.SX`), each a column.
 
     Parameters
@@ -85,7 +85,7 @@ class Laid:
         Where its unknowns lie among the programme's, none twice at a place, and its numbers among the programme's parameters.
     """
 
-    piece: Piece
+    piece: ProgrammePiece
     unknowns: Places
     given: Places
 

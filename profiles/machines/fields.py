@@ -82,7 +82,7 @@ class Quantity(About):
 
 
 @dataclass(frozen=True)
-class Number(About):
+class BareNumber(About):
     """A bare number in a range, its least value outside.
 
     Parameters
@@ -106,7 +106,7 @@ class Number(About):
 
 @dataclass(frozen=True)
 class Whole(About):
-    """A whole number in a range; arguments as of `Number`, its least value inside."""
+    """A whole number in a range; arguments as of `BareNumber`, its least value inside."""
 
     least: int
     greatest: int
@@ -130,7 +130,7 @@ class Choice(About):
     description: str
 
 
-GEAR_RATIO = Number(
+GEAR_RATIO = BareNumber(
     0,
     1e6,
     10,
@@ -158,7 +158,7 @@ class MachineField:
 
     name: str
     key: str
-    about: Quantity | Number | Whole | Choice
+    about: Quantity | BareNumber | Whole | Choice
     default: Any
 
     @property
@@ -192,7 +192,7 @@ def fields_of(machine: type[Any]) -> tuple[MachineField, ...]:
         hint = hints[each.name]
         marks = get_args(hint)[1:] if get_origin(hint) is Annotated else ()
         about = next((mark for mark in marks if isinstance(mark, About)), None)
-        if not isinstance(about, Quantity | Number | Whole | Choice):
+        if not isinstance(about, Quantity | BareNumber | Whole | Choice):
             raise TypeError(f"{machine.__name__}.{each.name} does not say what it is; annotate it with a Quantity")
         found.append(MachineField(each.name, about.key or each.name, about, each.default))
     return tuple(found)

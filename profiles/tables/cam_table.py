@@ -54,7 +54,7 @@ class Unit:
 
 
 @dataclass(frozen=True)
-class Units:
+class TableUnits:
     """The units of a table's two axes."""
 
     master: Unit
@@ -108,7 +108,7 @@ class CamTable:
     ratio: FloatArray
     ratio_slope: FloatArray
     laws: tuple[PieceLaw, ...]
-    units: Units | None = None
+    units: TableUnits | None = None
     periodic: bool = True
     notes: tuple[str, ...] = ()
     words: tuple[str | None, str | None] = (None, None)
@@ -167,7 +167,7 @@ class CamTable:
         """State the slave's travel per cycle of a table that leaves it out."""
         return replace(self, y=np.append(self.y[:-1], self.y[0] + travel), travel_known=True)
 
-    def with_units(self, units: Units) -> CamTable:
+    def with_units(self, units: TableUnits) -> CamTable:
         """State the units of a table."""
         return replace(self, units=units)
 
@@ -179,7 +179,7 @@ def make_table(
     ratio_slope: object = None,
     *,
     law: PieceLaw | tuple[PieceLaw, ...] = "quintic",
-    units: Units | None = None,
+    units: TableUnits | None = None,
     periodic: bool = True,
     notes: tuple[str, ...] = (),
     travel_known: bool = True,
@@ -194,7 +194,7 @@ def make_table(
     return CamTable(master, slave, columns[0], columns[1], laws, units, periodic, notes, travel_known=travel_known)
 
 
-def sample_profile(profile: CamProfile, x: FloatArray, units: Units, law: PieceLaw = "quintic") -> CamTable:
+def sample_profile(profile: CamProfile, x: FloatArray, units: TableUnits, law: PieceLaw = "quintic") -> CamTable:
     """Read a profile off at master positions and write it as a table.
 
     Parameters

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
-from camwright.profiles.tables.cam_table import Unit, Units, sample_profile
+from camwright.profiles.tables.cam_table import TableUnits, Unit, sample_profile
 from camwright.profiles.tables.interpolation import quintics
 from camwright.profiles.tables.target import Target
 
@@ -33,7 +33,7 @@ _CLOSEST = 1e-9
 """Spans shorter than this part of the cycle are not divided."""
 
 _NODES = np.linspace(0.02, 0.98, 13)
-_METRES = Units(Unit("m", 1.0), Unit("m", 1.0))
+_METRES = TableUnits(Unit("m", 1.0), Unit("m", 1.0))
 
 
 def zone_ends(profile: CamProfile) -> FloatArray:

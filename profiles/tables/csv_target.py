@@ -13,8 +13,8 @@ from camwright.profiles.tables.cam_rows import read_cam_csv
 from camwright.profiles.tables.cam_table import (
     CamTable,
     PieceLaw,
+    TableUnits,
     Unit,
-    Units,
     make_table,
 )
 from camwright.profiles.tables.splines import cyclic_spline
@@ -44,7 +44,7 @@ def write(table: CamTable, header: Header) -> dict[str, str]:
     x, y, shown = table.x, table.y, table.units
     if not {shown.master.symbol, shown.slave.symbol} <= CSV_LENGTHS.keys():
         x, y = _millimetres(x * master), y * slave if turned else _millimetres(y * slave)
-        shown = Units(Unit("mm", 1e-3), Unit("rad", 1.0, "rad") if turned else Unit("mm", 1e-3))
+        shown = TableUnits(Unit("mm", 1e-3), Unit("rad", 1.0, "rad") if turned else Unit("mm", 1e-3))
     written = CamTable(
         x, y, table.ratio * (slave / master), table.ratio_slope * (slave / master**2), table.laws, shown, table.periodic
     )
@@ -62,7 +62,7 @@ def read(text: str, place: str) -> CamTable:
     check_count(len(rows.x), 2, MOST_POINTS, place)
     law: PieceLaw = "spline" if rows.dy is None else "quintic"
     if rows.words is None:
-        units = Units(Unit("m", 1.0), Unit(rows.slave_unit, 1.0, rows.slave_unit))
+        units = TableUnits(Unit("m", 1.0), Unit(rows.slave_unit, 1.0, rows.slave_unit))
         return make_table(rows.x, rows.y, rows.dy, rows.d2y, law=law, units=units, notes=rows.notes)
     notes = (
         rows.notes if rows.dy is not None else (*rows.notes, "no derivatives in the file: a cubic spline is assumed")

@@ -77,7 +77,7 @@ def _spoilt(place: str, line: int, reason: str) -> RowError:
 
 
 @dataclass(frozen=True)
-class Layout:
+class RowLayout:
     """What the rows of a file look like where they are not all numbers.
 
     Parameters
@@ -159,7 +159,7 @@ class Sheet:
 
 
 def read_sheet(
-    text: str, place: str, names: Callable[[str], str | None], example: str, kind: str, layout: Layout | None = None
+    text: str, place: str, names: Callable[[str], str | None], example: str, kind: str, layout: RowLayout | None = None
 ) -> Sheet:
     """Find the rows of numbers in a text, and their headings.
 
@@ -217,7 +217,7 @@ def read_sheet(
 
 
 def _first_row(
-    split: list[tuple[int, list[str]]], comma: bool, found: str | None, layout: Layout | None, place: str
+    split: list[tuple[int, list[str]]], comma: bool, found: str | None, layout: RowLayout | None, place: str
 ) -> int:
     """Find the first row of numbers; words at the end, as of scopes, are taken off. A separator is given if it was found, not said."""
     if layout is not None:

@@ -15,8 +15,8 @@ from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.tables.cam_table import (
     CamTable,
     PieceLaw,
+    TableUnits,
     Unit,
-    Units,
     sample_profile,
 )
 from camwright.profiles.tables.candidates import candidates, required_points, zone_ends
@@ -61,7 +61,7 @@ class Accuracy:
 
 
 @dataclass(frozen=True)
-class Choice:
+class ChosenTable:
     """A table, the motion that the drive makes of it (SI units), and how far that is off."""
 
     table: CamTable
@@ -72,11 +72,11 @@ class Choice:
 def choose(
     profile: CamProfile,
     target: Target,
-    units: Units,
+    units: TableUnits,
     accuracy: Accuracy,
     points: int | None = None,
     zones: Sequence[float] | None = None,
-) -> Choice:
+) -> ChosenTable:
     """Choose the points of a table.
 
     The ends of the zones always get points. A target that carries the profile's pieces gets one at every break; if it
@@ -113,7 +113,7 @@ def choose(
         table, rebuilt = _rebuilt(profile, target, units, x)
         bound = _misses(glance(profile, rebuilt, peak), accuracy)
         if points is None and bound <= 1.0:
-            choice = Choice(table, rebuilt, deviation(profile, rebuilt))
+            choice = ChosenTable(table, rebuilt, deviation(profile, rebuilt))
             if accuracy.kept_by(choice.deviation):
                 return choice
         tried.append((bound, len(tried), x))
@@ -129,10 +129,10 @@ def choose(
 def _nearest(
     profile: CamProfile,
     target: Target,
-    units: Units,
+    units: TableUnits,
     accuracy: Accuracy,
     tried: Sequence[tuple[float, int, FloatArray]],
-) -> Choice:
+) -> ChosenTable:
     """Choose the candidate with the least deviation; of equals the first.
 
     Candidates come with what they miss the accuracy by at least, so most of them need not be looked at closely.
@@ -156,15 +156,15 @@ def _misses(found: Deviation, accuracy: Accuracy) -> float:
     return max(found.position / accuracy.position, found.ratio / accuracy.ratio, acceleration)
 
 
-def _chosen(profile: CamProfile, target: Target, units: Units, x: FloatArray) -> Choice:
+def _chosen(profile: CamProfile, target: Target, units: TableUnits, x: FloatArray) -> ChosenTable:
     table, rebuilt = _rebuilt(profile, target, units, x)
-    return Choice(table, rebuilt, deviation(profile, rebuilt))
+    return ChosenTable(table, rebuilt, deviation(profile, rebuilt))
 
 
-def _rebuilt(profile: CamProfile, target: Target, units: Units, x: FloatArray) -> tuple[CamTable, CamProfile]:
+def _rebuilt(profile: CamProfile, target: Target, units: TableUnits, x: FloatArray) -> tuple[CamTable, CamProfile]:
     """Sample the profile where the target's number format can put its points, and rebuild the motion."""
     if units.master.symbol == _STEP:  # the drive counts points
-        units = Units(Unit(_STEP, profile.length / (len(x) - 1)), units.slave)
+        units = TableUnits(Unit(_STEP, profile.length / (len(x) - 1)), units.slave)
     # the chord between two points in float32 has not quite the ratio that its neighbours end with
     straight = target.states_laws and target.number_format == "float64"
     return _sampled(profile, target.law, target.number_format, target.rebuild, units, x.tobytes(), straight)
@@ -176,7 +176,7 @@ def _sampled(
     law: PieceLaw,
     number_format: NumberFormat,
     rebuild: Callable[[CamTable], CamProfile],
-    units: Units,
+    units: TableUnits,
     places: bytes,
     straight: bool,
 ) -> tuple[CamTable, CamProfile]:
@@ -232,7 +232,7 @@ def _whole_steps(profile: CamProfile, target: Target, master: Unit, points: int 
     return found
 
 
-def closing_cuts(target: Target, profile: CamProfile, units: Units) -> int:
+def closing_cuts(target: Target, profile: CamProfile, units: TableUnits) -> int:
     """Count the cuts after which whole counts of the user's encoders close: the cycle of the table; 1 if there are none up to 24."""
     if not target.counts or units.master.symbol == units.slave.symbol == _STEP:
         return 1
@@ -254,8 +254,8 @@ def _finest(travel: float, si: SlaveUnit) -> Unit:
 
 
 def table_units(
-    target: Target, profile: CamProfile, units: Units, *, asked: bool = False, travel: float | None = None
-) -> Units:
+    target: Target, profile: CamProfile, units: TableUnits, *, asked: bool = False, travel: float | None = None
+) -> TableUnits:
     """Give the units that a target needs: the user's, or where it counts in its own, those.
 
     Parameters
@@ -285,11 +285,11 @@ def table_units(
                 f"{target.name} counts the master in 1e-4 deg and the slave in {'1e-4 deg' if turned else '1e-4 mm'}; leave --units out"
             )
         slave = Unit("1e-4deg", math.radians(1e-4), "rad") if turned else Unit("1e-4mm", 1e-7)
-        return Units(Unit("1e-4deg", profile.length / 3_600_000), slave)
+        return TableUnits(Unit("1e-4deg", profile.length / 3_600_000), slave)
     if target.name == "csv":
         metre = Unit("metre", 1.0)
         if not asked:
-            return Units(metre, Unit("rad", 1.0, "rad") if turned else metre)
+            return TableUnits(metre, Unit("rad", 1.0, "rad") if turned else metre)
         if turned or not {units.master.symbol, units.slave.symbol} <= CSV_LENGTHS.keys():
             raise InputError(
                 f"csv takes {', '.join(CSV_LENGTHS)} by name for a slave that is a length, and writes rad for one that turns; "
@@ -297,20 +297,20 @@ def table_units(
             )
         return units
     if target.name == "br":
-        return Units(_whole(units.master, profile.length), _whole(units.slave, profile.advance))
+        return TableUnits(_whole(units.master, profile.length), _whole(units.slave, profile.advance))
     return units
 
 
-def _counted(target: Target, profile: CamProfile, units: Units, travel: float, *, asked: bool) -> Units:
+def _counted(target: Target, profile: CamProfile, units: TableUnits, travel: float, *, asked: bool) -> TableUnits:
     """Give the units of a target that stores whole counts: the user's where they were asked for, else the finest that its numbers hold."""
     if not asked:
-        return Units(Unit(_STEP, profile.length), _finest(travel, units.slave.si))
+        return TableUnits(Unit(_STEP, profile.length), _finest(travel, units.slave.si))
     if not units.slave.counted:
         raise InputError(
             f"{target.name} stores whole counts of the slave, and {units.slave.symbol} is no count; write the size of one, as in "
             '--units "mm,9.25 um", or the counts of a turn, as in --units mm,36000/rev'
         )
-    return units if target.master_steps else Units(Unit(_STEP, profile.length), units.slave)
+    return units if target.master_steps else TableUnits(Unit(_STEP, profile.length), units.slave)
 
 
 def _whole(unit: Unit, length: float) -> Unit:

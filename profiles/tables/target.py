@@ -12,7 +12,7 @@ import numpy as np
 
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import CamProfile
-from camwright.profiles.tables.cam_table import CamTable, Unit, Units
+from camwright.profiles.tables.cam_table import CamTable, TableUnits, Unit
 from camwright.profiles.tables.interpolation import by_law
 from camwright.profiles.tables.number_formats import NumberFormat
 
@@ -104,7 +104,7 @@ class Header:
         return f"{plain[: _LONGEST - _DIGITS - 1].rstrip('_')}_{digest}"
 
 
-def units_in(text: str) -> Units | None:
+def units_in(text: str) -> TableUnits | None:
     """Find the units that a head written by `Header.lines` states; ``None`` without one."""
     facts = _stated(text)
     return facts[0] if facts else None
@@ -148,7 +148,7 @@ def no_cycle_in(head: str) -> str:
     return ""
 
 
-def _stated(text: str) -> tuple[Units, float] | None:
+def _stated(text: str) -> tuple[TableUnits, float] | None:
     found = _FACTS.search(text)
     if not found:
         return None
@@ -158,7 +158,7 @@ def _stated(text: str) -> tuple[Units, float] | None:
         return None
     if not (0 < master < 1e12 and 0 < slave < 1e12 and abs(advance) < 1e12):
         return None
-    return Units(Unit(found[1], master), Unit(found[3], slave, "rad" if found[5] else "m")), advance
+    return TableUnits(Unit(found[1], master), Unit(found[3], slave, "rad" if found[5] else "m")), advance
 
 
 def slash_comments(lines: list[str]) -> str:

@@ -29,7 +29,7 @@ from camwright.profiles.machines import CrankSlider
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import baseline
 from camwright.profiles.servo import Servo
-from camwright.profiles.tables.cam_table import Unit, Units, make_table
+from camwright.profiles.tables.cam_table import TableUnits, Unit, make_table
 from camwright.validation.rebuilt import judge_table
 
 JOB = load_job()
@@ -158,7 +158,7 @@ def test_a_crank_is_placed_as_the_file_says(tmp_path: Path) -> None:
     job: Job = replace(free, machine=replace(free.machine, sync_at=math.radians(85)))
     profile = baseline("poly_3_4_5", job.task)
     (written,) = export_possible(
-        profile, job, ["codesys"], force=True, units=Units(Unit("mm", 1e-3), Unit("deg", math.radians(1), "rad"))
+        profile, job, ["codesys"], force=True, units=TableUnits(Unit("mm", 1e-3), Unit("deg", math.radians(1), "rad"))
     )[0]
     name, text = next(iter(written.files.items()))
     (tmp_path / name).write_text(text)
@@ -344,7 +344,7 @@ def test_a_straight_line_over_half_the_cycle_is_no_jump(zone: float, wrapped: bo
     job = replace(JOB, cut=replace(JOB.cut, sync_zone=zone))
     x = np.append(np.linspace(0.0, 0.6 - zone, 200), 0.6)
     y = baseline("poly_3_4_5", job.task)(x)
-    units = Units(Unit("m", 1.0), Unit("m", 1.0))
+    units = TableUnits(Unit("m", 1.0), Unit("m", 1.0))
     found = whole_cycle(make_table(x, y % 0.4 if wrapped else y, law="line", units=units), job, "a table")
     np.testing.assert_allclose(found.table.y, y, atol=1e-12)
     assert len(found.notes) == wrapped

@@ -26,7 +26,7 @@ from camwright.profiles.tables.candidates import (
 from camwright.profiles.tables.deviation import Deviation, deviation, glance
 from camwright.profiles.tables.knots import (
     Accuracy,
-    Choice,
+    ChosenTable,
     _rebuilt,
     choose,
     table_units,
@@ -42,20 +42,20 @@ FINE = Accuracy(1e-9, 1e-6, 1e-4)
 """More than most targets reach: the nearest is chosen then."""
 
 
-def naive(profile: CamProfile, target: str, accuracy: Accuracy) -> Choice:
+def naive(profile: CamProfile, target: str, accuracy: Accuracy) -> ChosenTable:
     """Look at every candidate closely, one after the other."""
     units = table_units(TARGETS[target], profile, UNITS)
     required = required_points(profile, zone_ends(profile))
     peak = profile.peak(2)
     allowed = np.array([accuracy.position, accuracy.ratio, accuracy.acceleration * peak])
-    best: tuple[float, Choice] | None = None
+    best: tuple[float, ChosenTable] | None = None
     for x in candidates(profile, TARGETS[target], required, allowed, None):
         table, rebuilt = _rebuilt(profile, TARGETS[target], units, x)
         found = deviation(profile, rebuilt)
         parts = [found.position / accuracy.position, found.ratio / accuracy.ratio]
         parts += [] if found.acceleration is None else [found.acceleration / accuracy.acceleration]
         if best is None or max(parts) < best[0]:
-            best = max(parts), Choice(table, rebuilt, found)
+            best = max(parts), ChosenTable(table, rebuilt, found)
         if max(parts) <= 1:
             break
     assert best is not None

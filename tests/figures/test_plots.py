@@ -18,7 +18,7 @@ from camwright.figures.speed_band import speed_band_figure
 from camwright.figures.strokes import LINES
 from camwright.figures.style import title, zone_parts
 from camwright.house.picture_files import write_pictures
-from camwright.house.pictures import Arrow, Band, Bar, Frame, Line, Marks, Note, Picture
+from camwright.house.pictures import Arrow, Band, Bar, DrawnLine, DrawnMarks, Frame, Note, Picture
 from camwright.house.svg import legend_rows, picture_svg, text_width
 from camwright.jobs.job import BUNDLED_JOB, Job, load_job, parse_job
 from camwright.profiles.cut import Cut
@@ -38,8 +38,8 @@ def paper() -> Design:
     return optimise(load_job())
 
 
-def lines(frame: Frame) -> list[Line]:
-    return [item for item in frame.items if isinstance(item, Line)]
+def lines(frame: Frame) -> list[DrawnLine]:
+    return [item for item in frame.items if isinstance(item, DrawnLine)]
 
 
 def curve(frame: Frame, name: str) -> tuple[np.ndarray, np.ndarray]:
@@ -157,7 +157,7 @@ def test_servo_figure_draws_every_phase_and_marks_crossing_and_settling(paper: D
             assert not np.isnan(first.points).any()
             # the others are one line, a gap after each
             assert 1 + int(np.isnan(others.points[:, 1]).sum()) == runs[name].phases == response.phases
-            marks = [item for item in frame.items if isinstance(item, Marks) and item.colour == colour]
+            marks = [item for item in frame.items if isinstance(item, DrawnMarks) and item.colour == colour]
             assert [mark.shape for mark in marks] == ["open", "diamond"]
             (crossing, _), (settling, there) = (mark.points[0].tolist() for mark in marks)
             assert crossing == pytest.approx(response.crossing * 1e3)

@@ -16,7 +16,7 @@ from camwright.figures.profile import profile_figure
 from camwright.figures.servo import AXES, servo_figure
 from camwright.figures.strokes import BLACK
 from camwright.house.numbers import number
-from camwright.house.pictures import Frame, Line, Note
+from camwright.house.pictures import DrawnLine, Frame, Note
 from camwright.jobs.job import load_job
 from camwright.profiles.machines import CrankSlider, LinearCarriage
 from camwright.profiles.objective import ObjectiveName
@@ -53,13 +53,13 @@ def thick() -> Comparison:
 
 def curve_of(frame: Frame, name: str) -> tuple[np.ndarray, np.ndarray]:
     colour = STYLES[name].colour if name in STYLES else name
-    lines = [item.points for item in frame.items if isinstance(item, Line) and item.colour == colour]
+    lines = [item.points for item in frame.items if isinstance(item, DrawnLine) and item.colour == colour]
     points = max(lines, key=len)
     return points[:, 0], points[:, 1]
 
 
 def heights(frame: Frame) -> list[float]:
-    points = [item.points for item in frame.items if isinstance(item, Line) and len(item.points) == 2]
+    points = [item.points for item in frame.items if isinstance(item, DrawnLine) and len(item.points) == 2]
     return [float(ends[0, 1]) for ends in points if ends[0, 1] == ends[1, 1]]
 
 

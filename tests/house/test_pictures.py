@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from camwright.house.picture_files import write_pictures
-from camwright.house.pictures import Band, Frame, Line, Marks, Picture, ticks
+from camwright.house.pictures import Band, DrawnLine, DrawnMarks, Frame, Picture, ticks
 from camwright.house.svg import FINEST, picture_svg, simplified
 
 
@@ -71,7 +71,7 @@ def test_points_on_a_straight_line_go_and_corners_stay():
 def picture(count: int) -> Picture:
     wave = np.stack([np.arange(count), np.arange(count) % 2], axis=1).astype(np.float64)
     wave[count // 2] = np.nan  # two stretches
-    items = (Line(wave, "#11304f", 0.9, "a wave"), Marks(wave[:1], "#c1121f", 6.0, "ring", "its start"))
+    items = (DrawnLine(wave, "#11304f", 0.9, "a wave"), DrawnMarks(wave[:1], "#c1121f", 6.0, "ring", "its start"))
     panel = Frame(60, 48, 480, 240, np.array([0.0, -1.0]), np.array([count, 2.0]), items, "x (mm)", "y (mm)", "wave")
     return Picture(648, 360, "A <wave> & its start", 60, (panel,), items)
 

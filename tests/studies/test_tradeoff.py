@@ -22,7 +22,7 @@ from camwright.figures.labels import label_size
 from camwright.figures.tradeoff import tradeoff_figure
 from camwright.house.output import Voice
 from camwright.house.owned import LIST, Work
-from camwright.house.pictures import Frame, Marks, Note
+from camwright.house.pictures import DrawnMarks, Frame, Note
 from camwright.jobs.job import Job, load_job
 from camwright.profiles.errors import InfeasibleError, InputError, SolverError
 from camwright.profiles.limits import Limits
@@ -227,10 +227,10 @@ def test_every_bounded_profile_is_a_mark_and_a_label_and_the_others_are_named(pa
     for frame in (upper, lower):
         names = [name for note, _ in labels(frame) for name in note.text.splitlines()]
         assert len(names) == len(set(names)) == len(bounded)
-        assert sum(isinstance(item, Marks) for item in frame.items) == len(bounded)
+        assert sum(isinstance(item, DrawnMarks) for item in frame.items) == len(bounded)
     assert "linear return" in lower.xlabel
     # a mark stands where its two measures are, by logarithms where the axis is
-    marks = [item.points[0] for item in upper.items if isinstance(item, Marks)]
+    marks = [item.points[0] for item in upper.items if isinstance(item, DrawnMarks)]
     expected = [(row.values["rms_acceleration"], row.values["peak_acceleration"]) for row in bounded]
     for axis, ticks in enumerate((upper.xticks, upper.yticks)):
         assert ticks

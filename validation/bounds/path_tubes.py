@@ -75,7 +75,7 @@ def _share_proved(task: PathTask, kind: Kind, level: float) -> float:
     for number in range(ROUNDS + 1):
         if tube.empty:
             return 1.0
-        programme = _Programme(tube, kind)
+        programme = _TubeProgramme(tube, kind)
         before, best = best, max(best, programme.least_cost())
         if best >= 1.0 or number == ROUNDS or (number > 1 and best < before + STAYS):
             break
@@ -214,7 +214,7 @@ _W, _MEAN, _ROOT, _COST, _TIME = (_CELL, *(k * CELLS + 1 + _CELL for k in range(
 _SIZE = 5 * CELLS + 1
 
 
-class _Programme:
+class _TubeProgramme:
     """The programme in a tube."""
 
     def __init__(self, tube: _Tube, kind: Kind) -> None:

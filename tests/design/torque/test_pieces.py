@@ -9,7 +9,7 @@ import pytest
 from camwright.design.returns.problem import return_problem
 from camwright.design.torque.layout import Layout
 from camwright.design.torque.parts import lay
-from camwright.design.torque.pieces import Laid, Piece, programme
+from camwright.design.torque.pieces import Laid, ProgrammePiece, programme
 from camwright.design.torque.task import Aim, Pattern, TorqueTask
 from camwright.design.torque.zone import Zone
 from camwright.profiles.cut import Cut
@@ -52,7 +52,7 @@ def _same_derivatives(laid: list[Laid], unknowns: int, parameters: int) -> None:
 
 def test_a_programme_of_one_piece_at_places_that_share_unknowns() -> None:
     x, y, w = (ca.SX.sym(name) for name in ("x", "y", "w"))
-    piece = Piece(ca.vertcat(x, y), w, w * (y - x) ** 4, x * y - w, ca.sin(x) + y)
+    piece = ProgrammePiece(ca.vertcat(x, y), w, w * (y - x) ** 4, x * y - w, ca.sin(x) + y)
     nodes = np.arange(4)
     _same_derivatives([Laid(piece, np.stack([nodes, nodes + 1]), nodes[None, :])], 5, 4)
 

@@ -11,7 +11,7 @@ import pytest
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
 from camwright.profiles.machines import MACHINES, CrankSlider, LinearCarriage, Machine, RotaryKnife
-from camwright.profiles.machines.fields import Choice, Number, Quantity, Whole, fields_of
+from camwright.profiles.machines.fields import BareNumber, Choice, Quantity, Whole, fields_of
 
 CUT = Cut(0.6, 1.0, 0.2, 0.04, 0.16, 1e-4)
 KNIFE, CARRIAGE, CRANK = RotaryKnife(0.4), LinearCarriage(0.8, home=0.1), CrankSlider(0.15, 0.6)
@@ -33,7 +33,7 @@ def test_every_field_says_what_it_is(machine: type[Machine]) -> None:
         assert each.about.description
         if isinstance(each.about, Choice):
             assert each.required or each.default in each.about.words
-        elif isinstance(each.about, Whole | Number):
+        elif isinstance(each.about, Whole | BareNumber):
             least = each.about.least if isinstance(each.about, Whole) else math.nextafter(each.about.above, math.inf)
             for value in (each.about.example, *(() if each.required else (each.default,))):
                 assert least <= value <= each.about.greatest

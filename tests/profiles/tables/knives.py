@@ -10,10 +10,10 @@ from camwright.profiles.limits import Limits
 from camwright.profiles.machines import RotaryKnife
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.returns import baseline
-from camwright.profiles.tables.cam_table import Unit, Units
+from camwright.profiles.tables.cam_table import TableUnits, Unit
 from camwright.profiles.tables.knots import (
     Accuracy,
-    Choice,
+    ChosenTable,
     choose,
     table_units,
 )
@@ -24,7 +24,7 @@ from camwright.profiles.task import Task
 FREE = Limits(math.inf, math.inf, math.inf)
 """Nothing here asks for limits."""
 KNIFE = RotaryKnife(0.4)
-UNITS = Units(Unit("mm", 1e-3), Unit("deg", 0.4 / 360))
+UNITS = TableUnits(Unit("mm", 1e-3), Unit("deg", 0.4 / 360))
 HEADER = Header("knife-600", "0.3.0", "ab" * 32, (("peak acceleration", "12.5 m/s2"),))
 
 KNIVES: dict[str, tuple[str, float, str]] = {
@@ -46,7 +46,7 @@ def knife(name: str) -> CamProfile:
 
 
 @cache
-def chosen(target: str, name: str, points: int | None = None) -> Choice:
+def chosen(target: str, name: str, points: int | None = None) -> ChosenTable:
     profile = knife(name)
     units = table_units(TARGETS[target], profile, UNITS)
     return choose(profile, TARGETS[target], units, Accuracy(), points)

@@ -12,8 +12,8 @@ from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.tables.cam_table import (
     CamTable,
+    TableUnits,
     Unit,
-    Units,
     make_table,
 )
 from camwright.profiles.tables.deviation import deviation
@@ -179,7 +179,7 @@ def test_whole_periods() -> None:
     third = profile.scale(master=1 / 1.8)  # 333.333… mm
     with pytest.raises(InputError, match=r"takes whole periods, and 333\.33"):
         table_units(TARGETS["br"], third, UNITS)
-    fine = table_units(TARGETS["br"], profile.scale(master=1.0001), Units(Unit("mm", 1e-3), Unit("mm", 1e-3)))
+    fine = table_units(TARGETS["br"], profile.scale(master=1.0001), TableUnits(Unit("mm", 1e-3), Unit("mm", 1e-3)))
     assert fine.master.symbol == "1e-2mm"
     bad = make_table([0, 1.5], [0, 1], [0, 0], [0, 0])
     with pytest.raises(InputError, match=r"the master period is 1\.5 units; this drive takes a whole number"):
