@@ -134,7 +134,7 @@ def _settle(stop: Event) -> None:
     """Begin a worker: an interrupt is for the process that leads, and when that is gone nobody waits for results."""
     global _stop  # noqa: PLW0603 - what a worker process is told once
     _stop = stop
-    gc.freeze()  # what is imported stays; to look through it again and again is a twentieth of the time
+    gc.freeze()  # what is imported stays: nobody need look through it again and again
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     leader = multiprocessing.parent_process()
     if leader is not None:
