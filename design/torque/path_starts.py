@@ -19,7 +19,7 @@ from camwright.profiles.polynomial.profile import FloatArray
 PLACES = 161
 MARKS = (0.03, 0.08, 0.15, 0.25, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.92, 0.97)
 """Shares of the way at which the first torque may end and the second begin."""
-HALVINGS = 44
+HALVINGS = 22
 # Kinetic energies looked at, as powers of e times that of the mean speed.
 LEAST, GREATEST = -30.0, 10.0
 
@@ -101,16 +101,17 @@ def path_starts(
         for part in np.meshgrid(MARKS, MARKS, indexing="ij")
     )
     energies = 0.5 * mass[0] * speeds[0] ** 2, 0.5 * mass[-1] * speeds[1] ** 2
+    # between the two torques both are 1: the level
     out, back = np.minimum(share / first[:, None], 1.0), np.minimum((1.0 - share) / (1.0 - second[:, None]), 1.0)
+    of_level = np.where(share <= first[:, None], out, back)
+    of_ends = (1.0 - of_level) * np.where(share <= first[:, None], *energies)
+    per_root = np.sqrt(2.0 / mass)
     mean = 0.5 * float(mass.mean()) * ((y[-1] - y[0]) / time) ** 2
 
     def along(level: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Kinetic energy, speed and times of the intervals."""
-        top = level[:, None]
-        energy = np.where(
-            share <= first[:, None], energies[0] + (top - energies[0]) * out, energies[1] + (top - energies[1]) * back
-        )
-        speed = np.sqrt(2.0 * np.maximum(energy, 1e-300) / mass)
+        energy = of_ends + level[:, None] * of_level
+        speed = per_root * np.sqrt(np.maximum(energy, 1e-300))
         return energy, speed, 2.0 * step / (speed[:, 1:] + speed[:, :-1])
 
     low, high = np.full(len(first), LEAST), np.full(len(first), GREATEST)

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -36,6 +37,8 @@ SHORTEST_PHASE = 1e-5
 
 ACCURACY, MOST_ITERATIONS = 1e-8, 300
 """Accuracy of the solver, scaled, and its most iterations."""
+KEPT = 8
+"""Programmes that are kept: those of one design, whose starts of a kind have one, and of the same job designed again."""
 
 _OPTIONS: dict[str, Any] = QUIET | {
     "ipopt.mu_strategy": "adaptive",
@@ -335,3 +338,17 @@ class TorqueProgramme:
             lower[part.start] = upper[part.start] = first
             lower[part.stop - 1] = upper[part.stop - 1] = last
         return lower, upper
+
+
+@lru_cache(KEPT)
+def kept_programme(
+    task: TorqueTask,
+    pattern: Pattern,
+    counts: tuple[int, ...],
+    zone: Zone | None = None,
+    accuracy: float = ACCURACY,
+    iterations: int = MOST_ITERATIONS,
+    near: bool = False,
+) -> TorqueProgramme:
+    """Build a programme, or give it again: nothing of one solution is left for the next."""
+    return TorqueProgramme(task, pattern, counts, zone, accuracy, iterations, near)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 
 import numpy as np
 
@@ -27,7 +26,7 @@ from camwright.design.torque.guesses import (
 )
 from camwright.design.torque.mesh import remesh
 from camwright.design.torque.peaks import ABOVE, peaks, sharpened
-from camwright.design.torque.programme import MOST_ITERATIONS, Guess, TorqueAnswer, TorqueProgramme
+from camwright.design.torque.programme import MOST_ITERATIONS, Guess, TorqueAnswer, TorqueProgramme, kept_programme
 from camwright.design.torque.task import Pattern, TorqueTask
 from camwright.profiles.errors import SolverError
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
@@ -63,8 +62,6 @@ AT_FLOOR = 1e-2
 """A peak beyond this share of its floor on a mesh does not reach it on a finer one."""
 REACHED = 1e-6
 """A peak within this share of its floor is the floor."""
-KEPT = 4
-"""Programmes that are kept: starts of a kind have one."""
 ZONE_PLACES = 1001
 """Places of the sync zone at which its torque is looked at."""
 SAME = 1e-7
@@ -272,12 +269,7 @@ def _value(task: TorqueTask, answer: TorqueAnswer, pattern: Pattern) -> float:
 
 
 def _programme(task: TorqueTask, pattern: Pattern, guess: Guess, iterations: int = MOST_ITERATIONS) -> TorqueProgramme:
-    return _kept_programme(task, pattern, tuple(len(mesh) for mesh in guess.mesh), iterations)
-
-
-@lru_cache(KEPT)
-def _kept_programme(task: TorqueTask, pattern: Pattern, counts: tuple[int, ...], iterations: int) -> TorqueProgramme:
-    return TorqueProgramme(task, pattern, counts, iterations=iterations)
+    return kept_programme(task, pattern, tuple(len(mesh) for mesh in guess.mesh), iterations=iterations)
 
 
 def _distinct(answers: list[tuple[TorqueAnswer, Pattern]]) -> list[tuple[TorqueAnswer, Pattern]]:

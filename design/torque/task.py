@@ -27,7 +27,7 @@ Pattern = tuple[Phase, ...]
 """The phases of a return in turn; how long each takes is for the programme to find."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class TorqueTask:
     """What a programme is made for.
 

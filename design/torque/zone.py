@@ -46,19 +46,19 @@ class ZonePoint:
     jerk: Any
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Zone:
     """A sync zone to be placed.
 
     Parameters
     ----------
     range
-        Least and greatest slave coordinates of the zone's start and end, a pair of arrays (slave unit).
+        Least slave coordinates of the zone's start and end, and the greatest (slave unit).
     points
         Gauss-Legendre points at which the zone is looked at, besides its ends.
     """
 
-    range: tuple[FloatArray, FloatArray]
+    range: tuple[tuple[float, float], tuple[float, float]]
     points: int = 12
 
     @cached_property

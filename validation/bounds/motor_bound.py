@@ -43,10 +43,12 @@ PLACES = 2001
 """Places of the path at which the inertia is taken."""
 NEAR = 2e-3
 """Share of the mean square below which nothing is left to be proved."""
+WAITING = 0.1
+"""Share of the mean square below which the convex programme shows that time is wasted: a value function is asked first."""
 LOOSE = 0.05
 """Share of the mean square or the energy below which a bound that knows the jerk is asked too."""
 KNOWN = 0.02
-"""Share of the energy within which a closed form is good enough."""
+"""Share of the energy within which a closed form is good enough, and of the mean square within which a value function is."""
 EDGE = 5e-3
 """Share by which a peak may lie above that of the zone to need no other bound."""
 PEAKS = (0.97, 0.91, 0.85, 0.7)
@@ -208,13 +210,17 @@ def _square(path: PathTask, torque: CamProfile, task: Task) -> Bound:
 
 def _least_square(path: PathTask, level: float) -> tuple[float, str]:
     """Bound of the integral of the squared torque by both roads, at most the level, and the better one's name."""
-    found, method = min(max(least_square_in_time(path), least_square_limited(path)), level), CONVEX
+    in_time = least_square_in_time(path)
+    waits = in_time < WAITING * level
+    found, method = min(in_time if waits else max(in_time, least_square_limited(path)), level), CONVEX
     if found < level * (1 - NEAR):
         standing = standing_square(path)
         below = level if standing > level else BELOW**2 * standing
         seen = least_square(path, below)
         if seen > found:
             found, method = seen, STANDING if below < level and seen > 0.999 * below else PATH
+    if waits and found < level * (1 - KNOWN):
+        found, method = max((found, method), (min(least_square_limited(path), level), CONVEX))
     if found < level * (1 - LOOSE) and math.isfinite(path.acceleration):
         return max((found, method), (least_in_tubes(path, "square", level), TUBES))
     return found, method

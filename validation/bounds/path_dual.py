@@ -36,14 +36,14 @@ ROUNDS, MORE = 2, 300
 """How often the places where it is broken most are added, and how many of them."""
 SMALL = 1e-3
 """What broken inequalities may cost, as a share of the bound."""
-LEVELS, FINE = 5, 1.5e-2
-"""How many levels are tried for the greatest that is proved, and to what share of the one given."""
+LEVELS = 5
+"""How many levels are tried for the greatest that is proved."""
 HOPELESS, TOWARDS = 0.8, 0.6
 """Share of the level tried next where little was proved; how far between what is proved and what is not the others lie."""
 ACCURACY = 1e-4
 """Accuracy of the cone programmes (scaled): what they leave broken is looked at afterwards."""
-ENOUGH = {"square": 0.98, "drawn": 0.99, "peak": 0.0}
-"""Share of a level that need not be made any better; a peak's is proved or not."""
+ENOUGH = {"square": 0.98, "drawn": 0.985, "peak": 0.0}
+"""Share of a level that need not be made any better, nor parted any finer; a peak's is proved or not."""
 MOST = 1.1
 """Multiple of the level that is asked for at most: where no motion at all is in a tube its spline would run away."""
 REGULAR = 1e-9
@@ -190,7 +190,7 @@ def _proved(task: PathTask, tube_of: Callable[[PathTask, float], Tube], kind: st
         best = max(best, min(found, tried))
         if found < tried:
             high = tried
-        if high - best < FINE * level:
+        if high - best < (1.0 - ENOUGH[kind]) * level:
             break
         tried = best + TOWARDS * (high - best) if best > 0.0 else HOPELESS * level
     return best

@@ -65,7 +65,7 @@ def test_a_programme_of_one_piece_at_places_that_share_unknowns() -> None:
 def test_pieces_of_a_torque_have_the_derivatives_of_the_whole(
     task: Task, pattern: Pattern, placed: bool, aim: Aim
 ) -> None:
-    zone = Zone((np.array([1.0, 1.9]), np.array([1.2, 2.2])), 2) if placed else None
+    zone = Zone(((1.0, 1.9), (1.2, 2.2)), 2) if placed else None
     line = task.line if placed else Line(acceleration=0.3, stop=0.5)
     asked = TorqueTask(task.with_line(line), return_problem(task, "peak_acceleration"), aim, CURVE)
     layout = Layout(pattern, (2,) * (1 if placed else 2), zone, aim)

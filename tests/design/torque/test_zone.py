@@ -21,7 +21,7 @@ from camwright.profiles.task import Task
 CRANK = CrankSlider(crank=0.15, rod=0.6, crank_inertia=0.6, carriage_mass=60.0, sync_at=1.9)
 TASK = Task(CRANK, Cut(0.9, 0.5, 0.15, 0.04, 0.08, 2.5e-4), Limits(30.0, 400.0, 20_000.0, reversal=False))
 ENDS = TASK.slave_at_sync_start, TASK.slave_at_sync_end
-ZONE = Zone((np.array(ENDS), np.array(ENDS)))
+ZONE = Zone((ENDS, ENDS))
 
 
 def asked(aim: Aim) -> TorqueTask:
