@@ -151,7 +151,7 @@ def _passes(job: Job) -> bool:
 def remedies(job: Job, report: ValidationReport, band: SpeedBand) -> tuple[Remedy, ...]:
     """Try what may make a job pass of whose cam a check failed.
 
-    A lower line speed, a wider tolerance, the lead time that makes up for the mean lag, a command for the servo, in sync or shaped, least
+    The lead time that makes up for the mean lag, a lower line speed, a wider tolerance, a command for the servo, in sync or shaped, least
     RMS jerk and another sync zone, each alone and in this order; of a number the nearest of some values. What was not tried in `MOST`
     designs is not told.
 
@@ -171,12 +171,9 @@ def remedies(job: Job, report: ValidationReport, band: SpeedBand) -> tuple[Remed
     error = next((check.value for check in report.checks if check.name == "shear_zone_error"), None)
     lower = [high for _, high in band.parts if high < cut.line_speed]
     start = lower[-1] if lower else cut.line_speed
-    ways = [_values("line_speed", start, "m/s", _SLOWER if lower else _SLOWER[1:], job.units, up=False)]
+    ways = [_led(job), _values("line_speed", start, "m/s", _SLOWER if lower else _SLOWER[1:], job.units, up=False)]
     if error is not None:
         ways.append(_values("sync_tolerance", max(error, cut.sync_tolerance), "m", _WIDER, job.units, up=True))
-    lag = float(f"{mean_lag(job.servo) * 1e3:.{_DIGITS}g}")
-    if abs(lag - job.servo.lead_time * 1e3) > 0.01 * lag:
-        ways.append(iter([Remedy("lead_time", lag, "ms")]))
     if not job.servo_aware:
         ways.append(iter([Remedy("servo_aware", True, "")]))
     if job.command != "shaped":
@@ -208,7 +205,8 @@ def solve_or_advise(job: Job) -> Solution:
         if excess is None and error.binding == reason.binding:
             excess = error.excess  # by how much is found with what would work
     trial = _Trial(job)
-    found = [remedy for suggestion in offered for remedy in trial.first(_taken_further(suggestion, job.units))]
+    found = list(trial.first(_led(job))) if job.servo_aware else []
+    found += [remedy for suggestion in offered for remedy in trial.first(_taken_further(suggestion, job.units))]
     if job.servo_aware and job.command != "shaped":
         found += trial.first(iter([Remedy("command", "shaped", "")]))
     offers = "; ".join(remedy.words for remedy in found)
@@ -249,6 +247,13 @@ def family_words(bands: Bands, units: Units) -> str:
     speeds = [tuple(with_unit(speed, "m/s", 4, units) for speed in band) for band in bands]
     told = ", ".join(f"{low} to {high}" for low, high in speeds)
     return f"A family of {len(bands)} cams covers its line speeds, each holds a band (camwright family): {told}"
+
+
+def _led(job: Job) -> Iterator[Remedy]:
+    """Give the lead time that makes up for the mean lag, where another is set."""
+    lag = float(f"{mean_lag(job.servo) * 1e3:.{_DIGITS}g}")
+    if abs(lag - job.servo.lead_time * 1e3) > 0.01 * lag:
+        yield Remedy("lead_time", lag, "ms")
 
 
 def _taken_further(suggestion: Suggestion, units: Units) -> Iterator[Remedy]:

@@ -104,6 +104,17 @@ def test_a_servo_that_lags_is_told_the_lead_time_that_makes_up_for_it() -> None:
     assert passes(late.replace('dead_time = "4 ms"', 'dead_time = "4 ms"\nlead_time = "4 ms"'))
 
 
+@pytest.mark.slow
+def test_a_refused_axis_that_lags_is_told_it_too() -> None:
+    """A command cannot make up for a delay that grows with the speed, over a band of line speeds."""
+    late = PAPER.replace("velocity_feedforward = 1.0", 'velocity_feedforward = 1.0\ndead_time = "4 ms"')
+    aware = late.replace("[objective]", "[objective]\nservo_aware = true")
+    with pytest.raises(
+        InfeasibleError, match=r'What works, each alone, designed and checked: \[servo\] lead_time = "4 ms"'
+    ):
+        solve_or_advise(parse_job(aware, "late.toml"))
+
+
 def test_a_job_that_passes_needs_no_way_out() -> None:
     assert found(PAPER) == ()
 
