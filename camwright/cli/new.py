@@ -135,7 +135,7 @@ def run(
 def _base(machine: str | None, like: str | None) -> Example:
     """Find the example that lends its values."""
     known = examples()
-    kind = "rotary_knife" if machine is None else _joined(machine, "_")
+    kind = next(iter(MACHINES)) if machine is None else _joined(machine, "_")
     if like is not None:
         base = example(like)
         if (

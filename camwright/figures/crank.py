@@ -58,7 +58,7 @@ def crank_figure(comparison: Comparison) -> Picture:
     job = comparison.job
     machine = job.machine
     if machine.dead_centres is None:
-        raise TypeError(f"the crank figure is about a tool that turns back, not a {type(machine).__name__}")
+        raise TypeError(f"the crank figure is about a tool that turns back, not a {machine.kind}")
     profiles = {row.name: row.profile for row in comparison.rows}
     shown = {name: profiles[name] for name in STYLES if name in profiles}
     heading = head(job.name, f"{machine_words(machine, digits=6)}, gear {machine.motor_ratio:g}")

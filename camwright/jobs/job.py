@@ -165,10 +165,12 @@ class Job:
         >>> job.cut.length, round(optimise(job).objective, 3)
         (0.5, 6.212)
         """
-        turning = _turns(machine)
+        table = _table_of(machine)
+        known = MACHINES.get(str(table.get("kind")))
+        turning = known is not None and known.slave_unit == "rad"
         data: dict[str, Any] = {
             "name": name,
-            "machine": machine if isinstance(machine, Mapping) else machine_table(machine),
+            "machine": table,
             "cut": cut_table(cut) if isinstance(cut, Cut) else cut,
             "limits": limits_table(limits, turning=turning) if isinstance(limits, Limits) else limits,
             "servo": servo_table(servo, None) if isinstance(servo, Servo) else servo,
@@ -264,18 +266,15 @@ class Source:
     def says(self, job: Job) -> bool:
         """Whether a job has the numbers of the text; one whose sync zone is placed has those of a text that leaves its place free."""
         own, machine = self.job.machine, job.machine
-        if own.placed or type(own) is not type(machine):
+        if own.placed or own.place_name != machine.place_name:
             return job == self.job
         # a place that is free is not a number, which equals nothing: both are put at the same one
         return replace(job, machine=machine.placed_at(0.0)) == replace(self.job, machine=own.placed_at(0.0))
 
 
-def _turns(machine: Mapping[str, Any] | Machine) -> bool:
-    """Whether the slave of a machine, or of a machine's table, turns."""
-    if isinstance(machine, Mapping):
-        known = MACHINES.get(str(machine.get("kind")))
-        return known is not None and known.slave_unit == "rad"
-    return machine.slave_unit == "rad"
+def _table_of(given: Mapping[str, Any] | Machine) -> Mapping[str, Any]:
+    """Give a machine's table as it is, a machine as its table."""
+    return given if isinstance(given, Mapping) else machine_table(given)
 
 
 def load_job(path: str | Path | None = None) -> Job:

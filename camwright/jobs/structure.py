@@ -238,16 +238,16 @@ def read_structure(data: dict[str, Any]) -> tuple[JobFile | None, Known, list[st
         The file, or nothing if it has faults; what is right in itself, defaults of what was left out included; one
         message for each fault, each with its place.
     """
-    machine, objective = data.get("machine"), data.get("objective")
-    kind = machine.get("kind") if isinstance(machine, dict) else None
+    table, objective = data.get("machine"), data.get("objective")
+    kind = table.get("kind") if isinstance(table, dict) else None
     known = Known(
         kind=kind if isinstance(kind, str) and kind in MACHINES else None,
         servo_aware=isinstance(objective, dict) and objective.get("servo_aware", False) is not False,
         units=units_of(data),
     )
-    if isinstance(machine, dict):
-        known.choices.update(_choices(machine, known))
-    own = [] if known.machine is None or not isinstance(machine, dict) else list(either_faults(known.machine, machine))
+    if isinstance(table, dict):
+        known.choices.update(_choices(table, known))
+    own = [] if known.machine is None or not isinstance(table, dict) else list(either_faults(known.machine, table))
     file, faults = read_settings(job_model(), data, known)
     settle_times(known)
     settle_angles(known, None if own else machine_of(known))

@@ -163,7 +163,7 @@ def test_the_servo_curve_is_the_motor_s_and_never_turns_back(crank: Comparison) 
 
 
 def test_the_crank_figure_is_about_cranks(saw: Comparison) -> None:
-    with pytest.raises(TypeError, match="not a LinearCarriage"):
+    with pytest.raises(TypeError, match="not a linear_carriage"):
         crank_figure(saw)
 
 

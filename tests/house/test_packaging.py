@@ -162,6 +162,7 @@ def test_the_source_archive_builds_the_same_wheel(
 
 def test_the_source_archive_installs(plain: Path, crowded: Path, tmp_path: Path):
     python = fresh(tmp_path / "environment", built("sdist", plain, tmp_path))
+    (crowded / "numbers.py").write_text("raise SystemExit('the user\\'s numbers.py was imported')\n", encoding="utf-8")
     said = run([python, "-m", "camwright", "check", plain / "examples" / "paper-600.toml"], cwd=crowded)
     assert "paper-600" in said
 
