@@ -113,9 +113,9 @@ class ZoneTable:
         if (self.begun or self._basis.step) and self._short and command.coefficients is not None:
             matrix, constant = self._sums
             return np.asarray((matrix.reshape(-1, matrix.shape[2]) @ command.coefficients).reshape(-1, 4) + constant)
-        if self._basis.step:  # on that lattice none are shared
-            return np.asarray(command.profile(self._samples(slice(None)), outside="repeat") @ self._weights)
         past, step = memory(axis.servo.loop), axis.sample / PHASES
+        if self._basis.step or points.stride > past:  # on that lattice, or so far apart, none are shared
+            return np.asarray(command.profile(self._samples(slice(None)), outside="repeat") @ self._weights)
         ahead = shared(past)
         values = _on_grid(
             command.profile,

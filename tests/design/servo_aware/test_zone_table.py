@@ -42,7 +42,7 @@ def table(name: str, command: Command, share: float, *, robust: bool = False) ->
 
 @pytest.mark.parametrize("name", MACHINES)
 @pytest.mark.parametrize("command", ["in_sync", "shaped"])
-@pytest.mark.parametrize("share", [1.0, 0.13])
+@pytest.mark.parametrize("share", [1.0, 0.13, 0.002])
 @pytest.mark.parametrize("robust", [False, True])
 def test_rows_and_profile_are_judged_alike(name: str, command: Command, share: float, *, robust: bool) -> None:
     found, unknowns = table(name, command, share, robust=robust)
