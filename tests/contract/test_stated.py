@@ -17,6 +17,7 @@ from camwright import load_job
 from camwright.answers.axis import lead_answer
 from camwright.cli.main import INTERRUPTED
 from camwright.design import place
+from camwright.design.production import line_plan
 from camwright.design.returns import transcription
 from camwright.design.servo_aware import axis_response
 from camwright.design.torque import placing
@@ -26,17 +27,19 @@ from camwright.house import picture_files
 from camwright.house.output import BROKEN_PIPE
 from camwright.jobs import job as job_file
 from camwright.jobs.table_units import parse_units
+from camwright.production import list_checks, list_file
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import CamwrightError, InfeasibleError, InputError, MissingExtraError, SolverError
 from camwright.profiles.limits import Limits
 from camwright.profiles.machines import RotaryKnife
-from camwright.profiles.tables import cam_rows, text, trace_csv
+from camwright.profiles.tables import cam_rows, knots, text, trace_csv
 from camwright.profiles.tables.knots import Accuracy
 from camwright.profiles.tables.targets import TARGETS
 from camwright.profiles.task import Task
 from camwright.recipes import sheet_faults
 from camwright.stored import design_file, profile_files
 from camwright.studies import axis_lengths, screw
+from camwright.studies import recording as recorded_run
 from camwright.validation import motion, motor, rebuilt, report
 from camwright.validation.bounds import minimum_length
 from camwright.validation.identify import fit, identification, quality
@@ -82,6 +85,14 @@ NUMBERS: dict[str, tuple[object, object, str, str]] = {
     "cycle of a CSV": (profile_files._ROUNDING, 1e-6, "contract", "one cycle of the job to a millionth of the"),
     "rows of a trace, least": (quality.FEWEST_ROWS, 200, "contract", "200 to 10 000 rows"),
     "rows of a trace, most": (trace_csv.MOST_ROWS, 10_000, "contract", "200 to 10 000 rows"),
+    "pieces of a cut list": (list_file.MOST_PIECES, 200_000, "contract", "at most 200 000 pieces of 300 different gaps"),
+    "gaps of a cut list": (list_checks.MOST_CAMS, 300, "contract", "at most 200 000 pieces of 300 different gaps"),
+    "size of a cut list": (list_file.MOST_BYTES, 33_554_432, "contract", "and 32 MiB; its servos"),
+    "samples of a cut list": (list_checks.MOST_SAMPLES, 300_000_000, "contract", "at most 3e8 samples"),
+    "gentlest ramp": (list_checks.LEAST, 1e-6, "contract", "ramps with 1e-6 to 10 000 m/s²"),
+    "hardest ramp": (line_plan.HARDEST, 1e4, "contract", "ramps with 1e-6 to 10 000 m/s²"),
+    "rows of a recorded run": (recorded_run._MOST_ROWS, 200_000, "contract", "up to 200 000 rows"),
+    "cuts in one table": (knots._MOST_CUTS, 24, "targets", "several cuts (up to 24)"),
     "step of a trace": (trace_csv._UNEQUAL, 0.01, "contract", "equally spaced to 1 % of their step"),
     "length of a trace": (quality.SHORTEST, 0.3, "contract", "over 0.3 s at least"),
     "scale of a trace": (quality._SCALE, 8.0, "contract", "more than 8 times as far as the command or less than an 8th"),
