@@ -25,7 +25,7 @@ FREE = Limits(math.inf, math.inf, math.inf)
 """Nothing here asks for limits."""
 KNIFE = RotaryKnife(0.4)
 UNITS = TableUnits(Unit("mm", 1e-3), Unit("deg", 0.4 / 360))
-HEADER = Header("knife-600", "0.3.0", "ab" * 32, (("peak acceleration", "12.5 m/s2"),))
+HEADER = Header("knife-600", "0.4.0", "ab" * 32, (("peak acceleration", "12.5 m/s2"),))
 
 KNIVES: dict[str, tuple[str, float, str]] = {
     "quintic": ("poly_3_4_5", 0.6, "return"),
