@@ -80,6 +80,11 @@ class Covering:
     bands: tuple[tuple[float, float], ...]
     at_least: int
 
+    @property
+    def fewest(self) -> bool:
+        """Whether no covering has fewer bands."""
+        return len(self.bands) == self.at_least
+
 
 @dataclass(frozen=True)
 class Uncovered:

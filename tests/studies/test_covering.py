@@ -62,6 +62,7 @@ def test_bands_cover_and_none_are_spared(scale: float, exponent: float, low: flo
         assert reach(faster[1]) <= faster[0] <= reach(faster[1]) * (1.0 + 1.01 * FOUND_TO)
     assert found.at_least <= fewest
     assert found.at_least <= len(bands) <= found.at_least + 1
+    assert found.fewest == (len(bands) == found.at_least)
 
 
 def test_what_is_not_shown_is_not_said() -> None:
@@ -72,6 +73,7 @@ def test_what_is_not_shown_is_not_said() -> None:
     assert isinstance(found, Covering)
     assert len(found.bands) == 4
     assert found.at_least == 1
+    assert not found.fewest
 
 
 def test_one_band_that_holds_all_is_the_fewest() -> None:
