@@ -410,7 +410,13 @@ def _solve_torque(task: Task, objective: CommandObjective) -> Solution:
     floor = zone_peak(task) if objective == "peak_torque" else 0.0
     asked = TorqueTask(task, problem, objective)
     rested = standing(asked) if machine.constant_inertia and objective == "rms_torque" else None
-    found = rested or solve_torque(asked, starts=given, floor=floor)
+    try:
+        found = solve_torque(asked, starts=given, floor=floor)
+    except SolverError:
+        if rested is None:
+            raise
+        found = rested
+    found = rested if rested and rested.value < found.value else found
     return _searched(found, task, objective, found.value)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+from camwright.design.returns.possible import is_possible
 from camwright.design.returns.solver import solve_return
 from camwright.design.torque.finish import with_longer_rest
 from camwright.design.torque.search import TorqueSolution, solve_torque
@@ -13,6 +14,8 @@ from camwright.profiles.errors import SolverError
 
 SHORT = 4.0
 """Time of the short return in those of its moves, as no limit knows them: it stands for most of it, and its meshes still see the moves."""
+LONGER = 2.0
+"""Multiple by which it is made longer until limits allow it."""
 
 
 def standing(task: TorqueTask) -> TorqueSolution | None:
@@ -30,14 +33,19 @@ def standing(task: TorqueTask) -> TorqueSolution | None:
     problem, machine, v = task.problem, task.machine, task.cut.line_speed
     mobility = float(machine.inertia(task.start)) / machine.friction
     moves = mobility * v * max(problem.start_ratio, problem.end_ratio) + math.sqrt(6 * mobility * abs(problem.height))
-    length = SHORT * v * moves
-    if length >= problem.length:
+    short = replace(task, problem=replace(problem, length=SHORT * v * moves))
+    while short.problem.length < problem.length and not is_possible(short.problem):
+        short = replace(task, problem=replace(problem, length=LONGER * short.problem.length))
+    if short.problem.length >= problem.length:
         return None
-    short = replace(task, problem=replace(problem, length=length))
     try:
         start = solve_return(replace(short.problem, objective="rms_acceleration"))[0]
         found = solve_torque(short, starts=[start])
     except SolverError:
         return None
     back = with_longer_rest(found.back, problem.length)
-    return None if back is None else replace(found, back=back, value=found.value * math.sqrt(length / problem.length))
+    return (
+        None
+        if back is None
+        else replace(found, back=back, value=found.value * math.sqrt(short.problem.length / problem.length))
+    )

@@ -45,6 +45,7 @@ def multipliers(
     dual = np.ones_like(slack)
     across = equations.T.tocsc()
     for _ in range(STEPS):
+        before = x, prices, slack, dual
         together = float((slack * dual).mean())
         if together < ENOUGH:
             break
@@ -72,13 +73,17 @@ def multipliers(
             to_slack = open_ + np.stack([-moved, moved])
             return step[: len(weight)], step[len(weight) :], to_slack, (change - dual * to_slack) / slack  # noqa: B023
 
-        _, _, to_slack, to_dual = direction(-slack * dual)
-        ahead = (slack + _step(slack, to_slack) * to_slack) * (dual + _step(dual, to_dual) * to_dual)
-        centre = (float(ahead.mean()) / together) ** 3 * together
-        to_x, to_prices, to_slack, to_dual = direction(centre - slack * dual - to_slack * to_dual)
-        primal, adjoint = ASIDE * _step(slack, to_slack), ASIDE * _step(dual, to_dual)
-        x, slack = x + primal * to_x, slack + primal * to_slack
-        prices, dual = prices + adjoint * to_prices, dual + adjoint * to_dual
+        with np.errstate(over="ignore", invalid="ignore"):  # of a system that is all but singular
+            _, _, to_slack, to_dual = direction(-slack * dual)
+            ahead = (slack + _step(slack, to_slack) * to_slack) * (dual + _step(dual, to_dual) * to_dual)
+            centre = (float(ahead.mean()) / together) ** 3 * together
+            to_x, to_prices, to_slack, to_dual = direction(centre - slack * dual - to_slack * to_dual)
+            primal, adjoint = ASIDE * _step(slack, to_slack), ASIDE * _step(dual, to_dual)
+            x, slack = x + primal * to_x, slack + primal * to_slack
+            prices, dual = prices + adjoint * to_prices, dual + adjoint * to_dual
+        if not all(np.isfinite(each).all() for each in (x, prices, slack, dual)):
+            x, prices, slack, dual = before
+            break
     upper, lower = np.zeros(len(weight)), np.zeros(len(weight))
     upper[limited], lower[limited] = dual
     return upper, lower, prices

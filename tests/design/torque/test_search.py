@@ -364,3 +364,16 @@ def test_a_slave_that_rubs_stands_for_most_of_a_slow_lines_return(line_speed: fl
         for check in judge(solution.profile, task, Servo(150.0, 0.7, 45.0, 0.001, 1.0)).checks[:9]
         if not check.passed
     ] == []
+
+
+def test_a_slave_that_rubs_and_may_not_go_fast_stands_in_a_return_that_its_limits_allow() -> None:
+    """Where the limit of speed forbids the short return in which it stands, that is made longer."""
+    knife = RotaryKnife(circumference=1.0, blades=1, gear_ratio=2.0, drum_inertia=0.004, drum_friction=9.0)
+    task = Task(knife, Cut(11.5, 0.75, 0.6, 0.12, 0.48, 0.012), Limits(1.1, 3.5, 7.0, reversal=True))
+    solution = solve(task, "rms_torque")
+    assert [
+        check.name
+        for check in judge(solution.profile, task, Servo(150.0, 0.7, 45.0, 0.001, 1.0)).checks[:9]
+        if not check.passed
+    ] == []
+    assert lower_bound(solution.profile, task, "rms_torque").value <= measure_motor(solution.profile, task).rms_torque
