@@ -104,6 +104,7 @@ CHANGES = (
     Change("pieces of a cut list", "list_file.py", "\nMOST_PIECES = 200_000\n", "\nMOST_PIECES = 100_000\n"),
     Change("gaps of a cut list", "list_checks.py", "\nMOST_CAMS = 300\n", "\nMOST_CAMS = 600\n"),
     Change("longest cut", "machine.py", "\nLONGEST = 1000.0\n", "\nLONGEST = 500.0\n"),
+    Change("longest cut of a crank", "crank_slider.py", "\n_STROKES = 100.0\n", "\n_STROKES = 200.0\n"),
     Change("size of a cut list", "list_file.py", "\nMOST_BYTES = 32 * 2**20\n", "\nMOST_BYTES = 16 * 2**20\n"),
     Change("samples of a cut list", "list_checks.py", "\nMOST_SAMPLES = 300_000_000\n", "\nMOST_SAMPLES = 900_000_000\n"),
     Change("gentlest ramp", "list_checks.py", "\nLEAST = 1e-6\n", "\nLEAST = 1e-9\n"),

@@ -31,7 +31,7 @@ from camwright.production import list_checks, list_file
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import CamwrightError, InfeasibleError, InputError, MissingExtraError, SolverError
 from camwright.profiles.limits import Limits
-from camwright.profiles.machines import RotaryKnife, machine
+from camwright.profiles.machines import RotaryKnife, crank_slider, machine
 from camwright.profiles.tables import cam_rows, knots, text, trace_csv
 from camwright.profiles.tables.knots import Accuracy
 from camwright.profiles.tables.targets import TARGETS
@@ -88,6 +88,7 @@ NUMBERS: dict[str, tuple[object, object, str, str]] = {
     "pieces of a cut list": (list_file.MOST_PIECES, 200_000, "contract", "at most 200 000 pieces of 300 different gaps"),
     "gaps of a cut list": (list_checks.MOST_CAMS, 300, "contract", "at most 200 000 pieces of 300 different gaps"),
     "longest cut": (machine.LONGEST, 1000, "contract", "at most 1000 times as long as its sync zone"),
+    "longest cut of a crank": (crank_slider._STROKES, 100, "contract", "of a crank at most 100 times its stroke"),
     "size of a cut list": (list_file.MOST_BYTES, 33_554_432, "contract", "and 32 MiB; its servos"),
     "samples of a cut list": (list_checks.MOST_SAMPLES, 300_000_000, "contract", "at most 3e8 samples"),
     "gentlest ramp": (list_checks.LEAST, 1e-6, "contract", "ramps with 1e-6 to 10 000 m/s²"),
