@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sqlite3
 from collections.abc import Iterator
+from contextlib import ExitStack
 from pathlib import Path
 from types import TracebackType
 
@@ -39,28 +40,30 @@ class Journal:
 
     def __init__(self, path: Path, book: Book) -> None:
         self._path = path
-        try:
-            self._base = sqlite3.connect(path, timeout=1.0, isolation_level=None)
-            self._base.execute("PRAGMA journal_mode = WAL")
-            self._base.execute("PRAGMA synchronous = NORMAL")
-            self._base.execute("PRAGMA locking_mode = EXCLUSIVE")
-            self._base.execute("BEGIN IMMEDIATE")
-            for statement in _SCHEMA.strip().splitlines():
-                self._base.execute(statement)
-            stored = dict(self._base.execute("SELECT key, value FROM book"))
-            if not stored:
-                rows = [("fingerprint", book.fingerprint), ("parameters", json.dumps(book.parameters()))]
-                self._base.executemany("INSERT INTO book VALUES (?, ?)", rows)
-            self._base.execute("COMMIT")
-        except sqlite3.OperationalError as error:
-            raise InputError(
-                f"{path}: the journal of the book cannot be written: {error}; is another camwright book at work in this folder?"
-            ) from error
-        except sqlite3.DatabaseError as error:
-            raise InputError(f"{path}: not the journal of a book: {error}; choose another --out") from error
-        if stored and stored.get("fingerprint") != book.fingerprint:
-            self.close()
-            raise other_book(path.parent.parent, json.loads(stored.get("parameters", "{}")), book)
+        with ExitStack() as undone:
+            try:
+                self._base = sqlite3.connect(path, timeout=1.0, isolation_level=None)
+                undone.callback(self._base.close)
+                self._base.execute("PRAGMA journal_mode = WAL")
+                self._base.execute("PRAGMA synchronous = NORMAL")
+                self._base.execute("PRAGMA locking_mode = EXCLUSIVE")
+                self._base.execute("BEGIN IMMEDIATE")
+                for statement in _SCHEMA.strip().splitlines():
+                    self._base.execute(statement)
+                stored = dict(self._base.execute("SELECT key, value FROM book"))
+                if not stored:
+                    rows = [("fingerprint", book.fingerprint), ("parameters", json.dumps(book.parameters()))]
+                    self._base.executemany("INSERT INTO book VALUES (?, ?)", rows)
+                self._base.execute("COMMIT")
+            except sqlite3.OperationalError as error:
+                raise InputError(
+                    f"{path}: the journal of the book cannot be written: {error}; is another camwright book at work in this folder?"
+                ) from error
+            except sqlite3.DatabaseError as error:
+                raise InputError(f"{path}: not the journal of a book: {error}; choose another --out") from error
+            if stored and stored.get("fingerprint") != book.fingerprint:
+                raise other_book(path.parent.parent, json.loads(stored.get("parameters", "{}")), book)
+            undone.pop_all()
 
     def __enter__(self) -> Journal:
         """Use the journal for a while."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sqlite3
+from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
@@ -93,5 +94,6 @@ def test_a_journal_that_was_just_made_is_no_other_book(tmp_path: Path) -> None:
     (tmp_path / "journal.sqlite").write_bytes(b"")
     with Journal(tmp_path / "journal.sqlite", small_book()) as journal:
         assert journal.numbers() == set()
-    stored = sqlite3.connect(tmp_path / "journal.sqlite").execute("SELECT value FROM book WHERE key = 'parameters'")
-    assert json.loads(stored.fetchone()[0])["targets"] == ["csv"]
+    with closing(sqlite3.connect(tmp_path / "journal.sqlite")) as base:
+        stored = base.execute("SELECT value FROM book WHERE key = 'parameters'").fetchone()
+    assert json.loads(stored[0])["targets"] == ["csv"]
