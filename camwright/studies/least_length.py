@@ -31,12 +31,18 @@ _BEYOND = 1.1
 """Steps go so much farther than to where the share would be zero, to the other side of the edge."""
 
 
+def nowhere(_length: float) -> tuple[float, float]:
+    """Expect no length."""
+    return 0.0, STEEP
+
+
 def least_length(
     missed: Callable[[float], float],
     near: float,
     ends: tuple[float, float],
     resolution: float,
     steep: float = STEEP,
+    expected: Callable[[float], tuple[float, float]] = nowhere,
 ) -> float | None:
     """Find the least length at which something holds, as if it held at every longer one.
 
@@ -52,6 +58,9 @@ def least_length(
         Accuracy of the length, relative to it.
     steep
         What the share is taken to fall by, as `STEEP`.
+    expected
+        After a look at a length that fails, where the edge is expected (m), and what the share is taken to fall by there; a step that would
+        be shorter goes there. 0 where that is not told.
 
     Returns
     -------
@@ -84,6 +93,8 @@ def least_length(
         step = max(min(abs(found) / steep, longer * greatest), longer * _LEAST_STEP * resolution)
         length = min(length * (1.0 + step), high) if found > 0.0 else max(length / (1.0 + step), low)
         longer *= _GROWTH
+        if fails is not None and holds is None and (there := expected(fails[0]))[0] > length:
+            length, steep, fails = min(there[0], high), there[1] / _BEYOND, None
     return narrowed(seen, fails, holds, resolution)[0]
 
 

@@ -6,28 +6,23 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from camwright.design.feasible.extremes import Extremes
-from camwright.design.line.ramped import ramp_share
-from camwright.design.optimise import motion_objective, solve
+from camwright.design.optimise import motion_objective
 from camwright.design.returns.curve_limits import motor_limits
-from camwright.design.returns.problem import return_problem
 from camwright.design.servo_aware.axis_problem import AxisProblem, thinned
 from camwright.design.servo_aware.programme import AxisProgramme
 from camwright.design.servo_aware.refusal import AXIS_RATIO
 from camwright.jobs.job import Job
 from camwright.jobs.servos import between_of, servos_of
-from camwright.profiles.errors import InfeasibleError, InputError, SolverError
-from camwright.profiles.line import STEADY
+from camwright.profiles.errors import InputError, SolverError
 from camwright.profiles.objective import MotionObjective, of_command, of_motion
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
 from camwright.studies.axis_study import shares_of
-from camwright.studies.least_length import AWARE_STEEP, STEEP, SketchedFirst, least_length
+from camwright.studies.least_length import AWARE_STEEP, STEEP, SketchedFirst, least_length, nowhere
+from camwright.studies.look import RAMP, Failure, Looks, Verdict, look, named, ramp_missed
 from camwright.validation.report import judge
-from camwright.validation.servo.line_speeds import line_speed_errors
 
 ACCURACY, RAMPED_ACCURACY, SERVO_AWARE_ACCURACY = 1e-4, 1e-3, 5e-3
 """Accuracy of an edge, relative to it; of jobs whose line ramps, and of servo-aware ones: there a step is a design of up to a second."""
@@ -40,18 +35,6 @@ LEAST_ZONE = 1.01
 
 _INSIDE = 1e-6
 """What the perfect axis' own edge is asked with, relative to it: solvers need room."""
-
-RAMP = "line_ramp"
-"""What binds where no cam bears the ramps of the line: the check that would fail."""
-
-_UNSEEN = 1e-6
-"""Shares of the tolerance below this one are not told apart."""
-
-_OUTSIDE = 1e-6
-"""By how much the tolerance is surely missed, as a logarithm: simulations of the whole cycle and of a part of it round differently."""
-
-_ROOM = 0.1
-"""Where so great a share of the tolerance is left the ramps of the line may be what is nearer to its limit."""
 
 TOLERANCE, BAND, AXIS = "sync_tolerance", "sync_over_line_speeds", "axis_acceleration"
 """What binds where no servo-aware command brings the axis into the tolerance, none at every line speed of the job, none with the axis'
@@ -213,61 +196,9 @@ def stand_in(job: Job) -> MotionObjective:
     return motion_objective(job.machine, objective) or of_motion(objective)
 
 
-Failure = str | Callable[[], str]
-"""The first check that fails, or what makes a design impossible, empty where it passes; or what tells it, where all checks are yet to be
-made: of the many designs of a search only the last is asked."""
-
-Verdict = tuple[Failure, float]
-"""What fails; and by how much the sync error misses its tolerance, as the logarithm of a share: infinite where that is not what decides."""
-
-
-def named(failure: Failure) -> str:
-    """Tell what fails."""
-    return failure if isinstance(failure, str) else failure()
-
-
 def verdict(job: Job, task: Task, objective: MotionObjective, *, thorough: bool = False) -> Verdict:
     """Design a task as the job would and judge it; a cam that bears the ramps of the line on a first mesh where it is not `thorough`."""
-    if job.servo_aware:
-        return Programmes(job).verdict(task)
-    try:
-        solution = solve(task, objective, suggest=False, thorough=thorough)
-    except InfeasibleError as error:
-        if not error.binding.startswith("line."):
-            return error.binding, math.inf
-        missed = _ramp_missed(task)
-        return RAMP, missed if missed > 0.0 else math.inf
-    except (InputError, SolverError):
-        return "design", math.inf
-    profile, placed = solution.profile, task.with_machine(solution.machine)
-
-    def first_failed() -> str:
-        return next((check.name for check in judge(profile, placed, job.servo).checks if not check.passed), "")
-
-    off = _off_at_most(profile, placed, job.servo) / task.cut.sync_tolerance
-    missed = math.log(max(off, _UNSEEN))
-    if missed > _OUTSIDE:  # that check fails, whatever others do
-        return first_failed, missed
-    failed = first_failed()
-    if (missed > 0.0) != bool(failed):
-        return failed, math.copysign(math.inf, 1.0 if failed else -1.0)
-    return failed, missed if missed > -_ROOM else max(missed, _ramp_missed(task))
-
-
-def _ramp_missed(task: Task) -> float:
-    """By how much all cams miss the ramps of the line, as the logarithm of a share of the limits; nothing where a design has to tell."""
-    if not task.line.ramps or not task.machine.placed or task.limits.motor is not None:
-        return -math.inf
-    share = ramp_share(task, return_problem(task, "rms_acceleration"))
-    return -math.inf if share is None else math.log(max(share, _UNSEEN))
-
-
-def _off_at_most(profile: CamProfile, task: Task, servo: Servo) -> float:
-    """Greatest sync error that decides (m): in the shear zone, and at the end of the sync zone, where the axis must have settled, too."""
-    cut = task.cut
-    places = np.unique([cut.shear_zone_at, max(cut.shear_zone_at, cut.sync_zone - cut.shear_zone)])
-    zones = places, np.full(len(places), cut.shear_zone)
-    return float(line_speed_errors(profile, task, [servo], np.full(len(places), cut.line_speed), zones=zones).max())
+    return Programmes(job).verdict(task) if job.servo_aware else look(job, task, objective, thorough=thorough).verdict
 
 
 def _kept(
@@ -313,11 +244,20 @@ def _blind_edge(
 ) -> tuple[float | None, str]:
     """Find the edge of a job that is not servo-aware; of a line that ramps from that of one which keeps its speed."""
     if near is None or not job.line.ramps:
-        objective = stand_in(job)
-        near, failed = _edge(lambda share: verdict(job, at(share).with_line(STEADY), objective), least, accuracy, near)
+        near, failed = _steady_edge(Looks(job, at, stand_in(job)), least, accuracy, near)
         if near is None or not job.line.ramps:
             return near, failed
     return _ramped_edge(job, at, least, max(accuracy, RAMPED_ACCURACY), near)
+
+
+def _steady_edge(looks: Looks, least: float, accuracy: float, near: float | None) -> tuple[float | None, str]:
+    """Find the edge on a line that keeps its speed: by the sync error alone, and by all checks where one of them fails there."""
+    found, failed = _edge(looks.in_sync, least, accuracy, near, expected=looks.expected)
+    if found is not None and (above := looks.above_hole(found)):
+        found, failed = _edge(looks.in_sync, least, accuracy, above)
+    if looks.last_held is None or not named(looks.last_held.failed):
+        return found, failed
+    return _edge(looks.whole, least, accuracy, found)
 
 
 def _ramped_edge(
@@ -335,7 +275,7 @@ def _ramped_edge(
 
     def looked(share: float) -> Verdict:
         nonlocal ramps_bind
-        missed = _ramp_missed(at(share)) if ramps_bind else math.inf
+        missed = ramp_missed(at(share)) if ramps_bind else math.inf
         if math.isfinite(missed):
             return (RAMP if missed > 0.0 else ""), missed
         found = whole(share)
@@ -464,8 +404,11 @@ def _edge(
     accuracy: float,
     near: float | None = None,
     steep: float = STEEP,
+    expected: Callable[[float], tuple[float, float]] = nowhere,
 ) -> tuple[float | None, str]:
     """Find the greatest share of the perfect axis' edge that passes, from where it is expected or from above.
+
+    The inverse of a share that fails may tell where that of the edge is ``expected``.
 
     Returns
     -------
@@ -481,7 +424,8 @@ def _edge(
         return by
 
     first = 1.0 / (1.0 - _INSIDE)
-    found = least_length(missed, first if near is None else 1.0 / near, (first, 1.0 / least), accuracy, steep)
+    ends = first, 1.0 / least
+    found = least_length(missed, first if near is None else 1.0 / near, ends, accuracy, steep, expected)
     if found is None:
         return None, named(failures[max(failures)])
     if found <= first:
