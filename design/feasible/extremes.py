@@ -117,4 +117,4 @@ def _binding(beyond: Task) -> str:
     """Name what binds a little beyond an edge."""
     if beyond.cut.length <= beyond.cut.sync_zone:
         return "sync_zone"
-    return binding_limit(beyond, needed_limits(beyond))
+    return binding_limit(beyond, needed_limits(beyond, COARSE))
