@@ -16,7 +16,7 @@ from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import CamProfile, Extremum
 from camwright.profiles.servo import Servo, spectral_radius
 from camwright.profiles.task import Task
-from camwright.validation.bounds.minimum_length import cut_length_eq10, physical, required_sync_zone
+from camwright.validation.bounds.minimum_length import cut_length_eq10, physical_length, required_sync_zone
 from camwright.validation.check import Check
 from camwright.validation.motion import (
     POSITION_JUMP,
@@ -388,7 +388,7 @@ def _minimum_lengths(response: ServoResponse | None, task: Task) -> list[Check]:
         ),
         Check.at_most(
             "physical_cut_length",
-            physical(task.with_cut(as_one)).length / s,
+            physical_length(task.with_cut(as_one)) / s,
             cut.length,
             "m",
             "shortest cut length of a perfect axis under limits of speed, acceleration and jerk",

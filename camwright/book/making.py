@@ -24,6 +24,7 @@ from camwright.jobs.wording import error_words, unforeseen
 from camwright.production.marks import next_lengths
 from camwright.profiles.errors import InfeasibleError, InputError, SolverError
 from camwright.profiles.mark_range import MarkRange
+from camwright.profiles.polynomial.profile import CamProfile
 from camwright.stored.design_text import design_text
 from camwright.studies.axis_study import axis_study, solve_job, sync_error
 from camwright.studies.design import Design
@@ -100,9 +101,13 @@ def make(book: Book, combination: Combination) -> tuple[Entry, dict[str, str]]:
     """Make one combination; its entry and the texts of its files by name."""
     number, limit = combination.number, None
     try:
-        job = book.job(combination)
-        limit = _limit(job) if combination.first else None
-        return _exported(number, _designed(job), book.targets, limit)
+        job, cam = book.job(combination), None
+        try:
+            design = _designed(job)
+            cam = design.profile
+        finally:
+            limit = _limit(job, cam) if combination.first else None
+        return _exported(number, design, book.targets, limit)
     except InfeasibleError as error:
         return Entry(number, "infeasible", binding=error.binding, reason="\n".join(error_words(error)), limit=limit), {}
     except InputError as error:
@@ -129,12 +134,15 @@ def _no_job(number: int, error: InputError, limit: Limit | None) -> Entry:
     )
 
 
-def _limit(job: Job) -> Limit | None:
-    """Find how fast a cut length can be run; left out where each design places the sync zone anew, which would take minutes."""
+def _limit(job: Job, cam: CamProfile | None) -> Limit | None:
+    """Find how fast a cut length can be run, by the job's cam quicker; left out where each design places the sync zone anew.
+
+    That would take minutes.
+    """
     if not job.machine.placed:
         return None
     perfect, binding = fastest_line(job.task)
-    speed, failed = highest_speed(job, perfect)
+    speed, failed = highest_speed(job, perfect, cam=cam)
     return Limit(perfect, binding, speed, failed or binding)
 
 

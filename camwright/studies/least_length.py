@@ -27,7 +27,7 @@ _DEEP = 1.25
 _FLATTER = 0.4
 """No step takes the share to fall by less than so much of what the one before took: near the edge it is not known so well."""
 
-_BEYOND = 1.1
+BEYOND = 1.1
 """Steps go so much farther than to where the share would be zero, to the other side of the edge."""
 
 
@@ -89,12 +89,12 @@ def least_length(
             holds = length, found
         zero = zero_between((length, found), before)
         if zero is not None and zero != length:
-            steep = max(abs(found) * length / (_BEYOND * abs(zero - length)), _FLATTER * steep)
+            steep = max(abs(found) * length / (BEYOND * abs(zero - length)), _FLATTER * steep)
         step = max(min(abs(found) / steep, longer * greatest), longer * _LEAST_STEP * resolution)
         length = min(length * (1.0 + step), high) if found > 0.0 else max(length / (1.0 + step), low)
         longer *= _GROWTH
         if fails is not None and holds is None and (there := expected(fails[0]))[0] > length:
-            length, steep, fails = min(there[0], high), there[1] / _BEYOND, None
+            length, steep, fails = min(there[0], high), there[1] / BEYOND, None
     return narrowed(seen, fails, holds, resolution)[0]
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -19,6 +19,7 @@ from camwright.profiles.objective import MotionObjective
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
+from camwright.studies.least_length import BEYOND, STEEP
 from camwright.validation.report import judge
 from camwright.validation.servo.line_speeds import line_speed_errors
 
@@ -45,6 +46,9 @@ _BETWEEN = np.array([0.2, 0.4, 0.6, 0.8])
 
 _BESIDE, _ABOVE = 1.03, 12
 """Factor of the edge that was found from which on its cam tells of line speeds above a hole, and at how many it is asked."""
+
+_AT_END = 0.9
+"""From this share on a search begins at the perfect axis' edge: where that one passes nothing else is to be looked at."""
 
 Failure = str | Callable[[], str]
 """The first check that fails, or what makes a design impossible, empty where it passes; or what tells it, where all checks are yet to be
@@ -102,6 +106,8 @@ class Look:
         """
         if self.missed_at is None:
             return 0.0, 0.0
+        if self.missed <= 0.0:
+            return 1.0, 0.0
         own, high = self.task.cut.line_speed, self.missed
         for shares in _SLOWER:
             missed = np.append(high, self.missed_at(own * shares[1:]))
@@ -133,9 +139,13 @@ def look(job: Job, task: Task, objective: MotionObjective, *, thorough: bool = F
     def first_failed() -> str:
         return next((check.name for check in judge(profile, placed, job.servo).checks if not check.passed), "")
 
-    missed_at = partial(_missed, profile, placed, job.servo)
-    missed = float(missed_at(np.array([task.cut.line_speed]))[0])
-    return Look(placed, first_failed, missed, missed_at)
+    return replace(look_at_cam(profile, placed, job.servo), failed=first_failed)
+
+
+def look_at_cam(cam: CamProfile, task: Task, servo: Servo) -> Look:
+    """Look at a cam, by the sync error alone."""
+    missed_at = partial(_missed, cam, task, servo)
+    return Look(task, "", float(missed_at(np.array([task.cut.line_speed]))[0]), missed_at)
 
 
 def ramp_missed(task: Task) -> float:
@@ -170,18 +180,31 @@ class Looks:
         Gives the task at a share of the perfect axis' edge.
     objective
         What designs make least.
+    cam
+        A cam of the job, if there is one, where the search is for a line speed.
     """
 
-    def __init__(self, job: Job, at: Callable[[float], Task], objective: MotionObjective) -> None:
-        self._job, self._at, self._objective = job, at, objective
+    def __init__(
+        self, job: Job, at: Callable[[float], Task], objective: MotionObjective, cam: CamProfile | None
+    ) -> None:
+        self._designed: Callable[[float], Look] = lambda share: look(job, at(share).with_line(STEADY), objective)
+        self._slower: Callable[[], tuple[float, float]] = lambda: (
+            (0.0, 0.0) if cam is None else look_at_cam(cam, at(1.0), job.servo).slower()
+        )
+        self._length = job.cut.length
         self._known: dict[float, Look] = {}
         self._asked = 0
         self.last_held: Look | None = None
 
     def _look(self, share: float) -> Look:
         if share not in self._known:
-            self._known[share] = look(self._job, self._at(share).with_line(STEADY), self._objective)
+            self._known[share] = self._designed(share)
         return self._known[share]
+
+    def begun(self) -> tuple[float | None, float]:
+        """Tell at which share to begin, by the job's cam, which limits bind less; and how fast less is missed there, as `Look.slower`."""
+        share, falls = self._slower()
+        return (share, falls / BEYOND) if 0.0 < share < _AT_END else (None, STEEP)
 
     def in_sync(self, share: float) -> Verdict:
         """Judge the sync error alone, as if all other checks passed; a design that keeps it is remembered."""
@@ -202,7 +225,7 @@ class Looks:
         """
         seen = self._look(1.0 / longer)
         told = seen.missed > _MUCH and self.last_held is None and self._asked < _ASKED
-        if not told or seen.task.cut.length != self._job.cut.length:
+        if not told or seen.task.cut.length != self._length:
             return 0.0, 0.0
         self._asked += 1
         share, falls = seen.slower()

@@ -115,6 +115,7 @@ def highest_speed(
     near: float | None = None,
     accuracy: float = ACCURACY,
     programmes: Programmes | None = None,
+    cam: CamProfile | None = None,
 ) -> tuple[float | None, str]:
     """Find the highest line speed at the job's cut length that passes, and what fails beyond.
 
@@ -129,6 +130,8 @@ def highest_speed(
         Of the line speed, relative to it; of a servo-aware job no finer than `SERVO_AWARE_ACCURACY`.
     programmes
         Those of a search before for the same job, which began at it too.
+    cam
+        A cam of the job, which is not servo-aware: run at other line speeds it says where the edge is, if nothing else does.
 
     Returns
     -------
@@ -141,7 +144,7 @@ def highest_speed(
     if near is None and job.servo_aware:  # a job is made for a little less than what its machine can do
         near = min(job.cut.line_speed * _MADE_FOR, end)
     at = None if near is None else near / end
-    found, failed = _kept(job, lambda share: job.task.designed_at(end * share), SLOWEST, accuracy, at, programmes)
+    found, failed = _kept(job, lambda share: job.task.designed_at(end * share), SLOWEST, accuracy, at, programmes, cam)
     return (None if found is None else end if not failed else end * found), failed
 
 
@@ -208,6 +211,7 @@ def _kept(
     accuracy: float = ACCURACY,
     near: float | None = None,
     programmes: Programmes | None = None,
+    cam: CamProfile | None = None,
 ) -> tuple[float | None, str]:
     """Find the greatest share of the perfect axis' edge that passes, as `_edge`.
 
@@ -215,7 +219,7 @@ def _kept(
     between, where these hold.
     """
     if not job.servo_aware:
-        return _blind_edge(job, at, least, accuracy, near)
+        return _blind_edge(job, at, least, accuracy, near, cam)
     shares = shares_of(job.slowest)
     some, between = thinned(shares, _LOOKED), between_of(job)
     programmes = programmes or Programmes(job)
@@ -240,11 +244,11 @@ def _kept(
 
 
 def _blind_edge(
-    job: Job, at: Callable[[float], Task], least: float, accuracy: float, near: float | None
+    job: Job, at: Callable[[float], Task], least: float, accuracy: float, near: float | None, cam: CamProfile | None
 ) -> tuple[float | None, str]:
     """Find the edge of a job that is not servo-aware; of a line that ramps from that of one which keeps its speed."""
     if near is None or not job.line.ramps:
-        near, failed = _steady_edge(Looks(job, at, stand_in(job)), least, accuracy, near)
+        near, failed = _steady_edge(Looks(job, at, stand_in(job), cam), least, accuracy, near)
         if near is None or not job.line.ramps:
             return near, failed
     return _ramped_edge(job, at, least, max(accuracy, RAMPED_ACCURACY), near)
@@ -252,12 +256,15 @@ def _blind_edge(
 
 def _steady_edge(looks: Looks, least: float, accuracy: float, near: float | None) -> tuple[float | None, str]:
     """Find the edge on a line that keeps its speed: by the sync error alone, and by all checks where one of them fails there."""
-    found, failed = _edge(looks.in_sync, least, accuracy, near, expected=looks.expected)
+    near, steep = looks.begun() if near is None else (near, STEEP)
+    found, failed = _edge(looks.in_sync, least, accuracy, near, steep, looks.expected)
     if found is not None and (above := looks.above_hole(found)):
         found, failed = _edge(looks.in_sync, least, accuracy, above)
-    if looks.last_held is None or not named(looks.last_held.failed):
-        return found, failed
-    return _edge(looks.whole, least, accuracy, found)
+    if looks.last_held is not None and named(looks.last_held.failed):
+        return _edge(looks.whole, least, accuracy, found)
+    if found is not None and failed == TOLERANCE:  # nothing beyond was looked at
+        failed = named(looks.in_sync(found * (1.0 + accuracy))[0]) or TOLERANCE
+    return found, failed
 
 
 def _ramped_edge(

@@ -13,6 +13,7 @@ from camwright.design.feasible.extremes import fastest_line
 from camwright.jobs.job import Job, load_job
 from camwright.profiles.task import Task
 from camwright.studies import look as looks
+from camwright.studies.axis_study import solve_job
 from camwright.studies.look import Look, look, named
 from camwright.studies.reach import ACCURACY, highest_speed, stand_in, verdict
 
@@ -45,7 +46,8 @@ def test_a_cam_that_never_keeps_it_tells_nothing() -> None:
     assert Look(KNIFE.task, "jerk", math.inf).slower() == (0.0, 0.0)
 
 
-def test_a_search_makes_few_designs(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(("known", "most"), [(False, 6), (True, 3)])
+def test_a_search_makes_few_designs(monkeypatch: pytest.MonkeyPatch, known: bool, most: int) -> None:
     asked: list[float] = []
 
     def counted(job: Job, task: Task, objective: str, **options: bool) -> Look:
@@ -53,8 +55,11 @@ def test_a_search_makes_few_designs(monkeypatch: pytest.MonkeyPatch) -> None:
         return look(job, task, objective, **options)  # type: ignore[arg-type]
 
     monkeypatch.setattr(looks, "look", counted)
-    highest_speed(SEALER, fastest_line(SEALER.task)[0])
-    assert len(asked) == len(set(asked)) <= 6
+    cam = solve_job(SEALER, suggest=False).profile if known else None
+    found, failed = highest_speed(SEALER, fastest_line(SEALER.task)[0], cam=cam)
+    assert len(asked) == len(set(asked)) <= most
+    assert found == pytest.approx(0.64766, rel=2 * ACCURACY)
+    assert failed == "settling"
 
 
 def test_line_speeds_above_a_hole_count() -> None:

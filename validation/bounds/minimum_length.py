@@ -96,8 +96,8 @@ def cut_length_eq10(transition: float, shear_zone: float, pitch: float, line_spe
     return sync_zone + line_speed / speed * (pitch - sync_zone)
 
 
-def physical(task: Task) -> MinimumCutLength:
-    """Shortest cut length of a perfect axis: in sync in the shear zone alone, the fastest return beside it.
+def physical_length(task: Task) -> float:
+    """Shortest cut length of a perfect axis (m): in sync in the shear zone alone, the fastest return beside it.
 
     Seen from the material the return is a motion from rest to rest over ``y_c - x_c``, at no more than ``v_max - v``;
     so ``x_c = l_j + v t(y_c - x_c)`` with the shortest time ``t`` of a double-S, whose right side falls as ``x_c``
@@ -108,9 +108,13 @@ def physical(task: Task) -> MinimumCutLength:
     InputError
         The shear zone is not shorter than the pitch.
     """
-    cut = task.cut
     _require_room(task)
-    length = fastest_cut(task.machine.pitch, cut.line_speed, task.limits, cut.shear_zone)
+    return fastest_cut(task.machine.pitch, task.cut.line_speed, task.limits, task.cut.shear_zone)
+
+
+def physical(task: Task) -> MinimumCutLength:
+    """Shortest cut length of a perfect axis, as `physical_length`, and what binds."""
+    cut, length = task.cut, physical_length(task)
     gain = {
         name: length - fastest_cut(task.machine.pitch, cut.line_speed, eased, cut.shear_zone)
         for name, eased in _eased(task.limits).items()
