@@ -21,12 +21,15 @@ from pathlib import Path
 from camwright.book.entry import Entry
 from camwright.book.making import Made, make_chunk
 from camwright.book.plan import Book
+from camwright.house.interrupts import noted_interrupts
 from camwright.house.threads import VARIABLES
 from camwright.profiles.errors import InputError
 
 _AHEAD = 2
 """Chunks that lie ready for each worker."""
 
+_PAUSE = 0.2
+"""Time after which it is looked whether somebody interrupts (s), though nothing is done."""
 
 Work = Callable[[Book, Sequence[int]], list[Made]]
 """Makes a chunk of combinations, given by their numbers."""
@@ -167,24 +170,35 @@ def make_all(book: Book, numbers: Iterable[int], crew: Crew) -> Generator[Made, 
     rest = iter(numbers)
     chunks = deque(iter(lambda: tuple(islice(rest, crew.chunk)), ()))
     suspects: list[tuple[int, ...]] = []
-    while chunks:
-        yield from _round(book, chunks, suspects, crew, together=True)
-    chunks.extend((number,) for chunk in suspects for number in chunk)
-    suspects.clear()
-    while chunks:
-        yield from _round(book, chunks, suspects, crew, together=False)
+    with noted_interrupts() as interrupted:
+        while chunks:
+            yield from _round(book, chunks, suspects, crew, interrupted, together=True)
+        chunks.extend((number,) for chunk in suspects for number in chunk)
+        suspects.clear()
+        while chunks:
+            yield from _round(book, chunks, suspects, crew, interrupted, together=False)
     for (number,) in suspects:
         yield Made(Entry(number, "failed", reason="the process that designed it died, twice"), {}, "", 0)
 
 
 def _round(
-    book: Book, chunks: deque[tuple[int, ...]], lost: list[tuple[int, ...]], crew: Crew, *, together: bool
+    book: Book,
+    chunks: deque[tuple[int, ...]],
+    lost: list[tuple[int, ...]],
+    crew: Crew,
+    interrupted: Callable[[], None],
+    *,
+    together: bool,
 ) -> Iterator[Made]:
-    """Run chunks on one executor, together or one after another, until none is left or it broke; what died with it is lost."""
+    """Run chunks on one executor, together or one after another, until none is left or it broke; what died with it is lost.
+
+    An interrupt that was noted is raised where no lock is held.
+    """
     with crew.start() as executor:
         running: dict[Future[list[Made]], tuple[int, ...]] = {}
         broken = False
         while running or (chunks and not broken):
+            interrupted()
             ahead = _AHEAD * max(1, crew.size()) if together else 1
             while chunks and not broken and len(running) < ahead:
                 chunk = chunks.popleft()
@@ -193,7 +207,7 @@ def _round(
                 except crew.lost:
                     chunks.appendleft(chunk)
                     broken = True
-            done, _ = wait(running, return_when=FIRST_COMPLETED)
+            done, _ = wait(running, _PAUSE, FIRST_COMPLETED)
             for future in done:
                 chunk = running.pop(future)
                 try:

@@ -2,19 +2,29 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import random
 import signal
 import subprocess
 import sys
+import threading
 import time
+import weakref
+from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
+from typing import Any
 
 import pytest
 from books import JOB, RANGES, contents, dies_at_3, dies_once, inline_crew, small_book
 
+from camwright.book.entry import Entry
+from camwright.book.making import Made
+from camwright.book.plan import Book
 from camwright.book.run import make_book
-from camwright.book.workers import default_jobs, local_crew
+from camwright.book.workers import default_jobs, local_crew, make_all
+from camwright.house.interrupts import noted_interrupts
 
 COMMAND = [sys.executable, "-c", "import sys; from camwright.cli.main import main; sys.exit(main())", "book", str(JOB)]
 ASKED = ["--length", RANGES[0], "--line-speed", RANGES[1], "--objective", "peak_acceleration"]
@@ -113,6 +123,76 @@ def test_a_book_that_is_killed_at_any_moment_ends_with_the_same_bytes(whole: dic
         assert contents(root) == whole, moment
 
 
+def quick(_book: Book, numbers: Sequence[int]) -> list[Made]:
+    """Make nothing of a chunk, in a moment."""
+    time.sleep(0.02)
+    return [Made(Entry(number, "failed"), {}, "", 0) for number in numbers]
+
+
+def in_a_lock(patch: pytest.MonkeyPatch) -> None:
+    """Interrupt where this process takes a lock back for which it waited: raised there the lock would be released without being held."""
+    take, times = threading.Condition._acquire_restore, iter([True])  # type: ignore[attr-defined]
+
+    def taken(lock: threading.Condition, state: object) -> None:
+        here = threading.current_thread() is threading.main_thread()
+        if here and signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ()) and next(times, False):
+            signal.raise_signal(signal.SIGINT)
+        take(lock, state)
+
+    patch.setattr(threading.Condition, "_acquire_restore", taken)
+
+
+def in_a_callback(patch: pytest.MonkeyPatch) -> None:
+    """Interrupt while something that was dropped is cleared away: what is raised there is printed and forgotten."""
+
+    class Dropped:
+        """What is dropped when work is given."""
+
+    def submit(executor: ProcessPoolExecutor, *arguments: Any) -> Any:
+        future = given(executor, *arguments)
+        if next(times) == 3:  # the processes have started
+            dropped = Dropped()
+            reference = weakref.ref(dropped, lambda _: signal.raise_signal(signal.SIGINT))
+            del dropped
+            assert reference() is None
+        return future
+
+    given, times = ProcessPoolExecutor.submit, itertools.count(1)
+    patch.setattr(ProcessPoolExecutor, "submit", submit)
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+@pytest.mark.parametrize("comes", [in_a_lock, in_a_callback])
+def test_an_interrupt_is_not_lost_wherever_it_comes(
+    monkeypatch: pytest.MonkeyPatch, comes: Callable[[pytest.MonkeyPatch], None]
+) -> None:
+    comes(monkeypatch)
+    found: list[Made] = []
+    with pytest.raises(KeyboardInterrupt):
+        found.extend(make_all(small_book(), range(1, 13), local_crew(2, quick)))
+    assert len(found) < 12
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())
+
+
+def interrupt(times: int, passed: list[int]) -> None:
+    """Interrupt a few times where interrupts are noted."""
+    with noted_interrupts() as interrupted:
+        interrupted()
+        for time_ in range(times):
+            signal.raise_signal(signal.SIGINT)
+            passed.append(time_)
+
+
+@pytest.mark.parametrize(("times", "raised_at"), [(1, 1), (2, 1)])
+def test_an_interrupt_is_raised_at_the_end_a_second_one_at_once(times: int, raised_at: int) -> None:
+    passed: list[int] = []
+    with pytest.raises(KeyboardInterrupt):
+        interrupt(times, passed)
+    assert len(passed) == raised_at
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
 @pytest.mark.parametrize("designs", [0, 3])  # while the workers start, too, who must not tell of it
 def test_an_interrupt_keeps_what_is_done(whole: dict[str, bytes], tmp_path: Path, designs: int) -> None:
     root = tmp_path / "book"
@@ -122,10 +202,8 @@ def test_an_interrupt_keeps_what_is_done(whole: dict[str, bytes], tmp_path: Path
     until = time.monotonic() + 180
     while len(list(root.glob("designs/*/*/*"))) < designs and time.monotonic() < until:
         time.sleep(0.01)
-    while not (root / ".book" / "journal.sqlite").exists() and time.monotonic() < until:
-        time.sleep(0.01)
-    if not designs:
-        time.sleep(0.2)
+    while not children(process) and time.monotonic() < until:
+        time.sleep(0.001)
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does it: to the workers, too
     _, message = process.communicate(timeout=180)
     assert process.returncode == 130
