@@ -96,15 +96,16 @@ class Servo:
         >>> slower.bandwidth, slower.position_gain, slower.sample_time, slower.dead_time, slower.acceleration_feedforward
         (240.0, 70.0, 0.002, 0.001, 5e-05)
         """
-        return replace(
-            self,
-            bandwidth=self.bandwidth / share,
-            position_gain=self.position_gain / share,
-            sample_time=self.sample_time * share,
-            dead_time=self.dead_time * share,
-            lead_time=self.lead_time * share,
-            acceleration_feedforward=self.acceleration_feedforward * share**2,
-            jerk_feedforward=self.jerk_feedforward * share**3,
+        return Servo(  # of thousands of servos: `replace` takes three times as long
+            self.bandwidth / share,
+            self.damping,
+            self.position_gain / share,
+            self.sample_time * share,
+            self.velocity_feedforward,
+            self.dead_time * share,
+            self.lead_time * share,
+            self.acceleration_feedforward * share**2,
+            self.jerk_feedforward * share**3,
         )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import asdict, dataclass, fields, replace
 from itertools import product
 
 import numpy as np
@@ -94,7 +94,7 @@ class ServoTolerance:
         """
         low, high = np.array(list(self.ranges.values())).T
         points = low + (high - low) * np.random.default_rng(seed).random((count, len(low)))
-        names = tuple(self.ranges)
+        known, names = asdict(servo), tuple(self.ranges)
         return tuple(
-            replace(servo, **dict(zip(names, point, strict=True))) for point in np.minimum(points, high).tolist()
+            Servo(**(known | dict(zip(names, point, strict=True)))) for point in np.minimum(points, high).tolist()
         )

@@ -16,7 +16,7 @@ from camwright.profiles.task import Task
 from camwright.validation.motion import require_period
 from camwright.validation.servo.lifting import SUBSTEPS, lift_side_by_side, loops_of
 from camwright.validation.servo.response import shear_zone_of, shear_zone_peaks, slow_sync_error, worst_place
-from camwright.validation.servo.simulation import PHASES, WHOLE_PART, memory_at, shear_zone_run
+from camwright.validation.servo.simulation import PHASES, WHOLE_PART, memories_at, shear_zone_run
 
 _VALUES = 2**17
 """Command values that are held at a time."""
@@ -25,8 +25,11 @@ _VALUES = 2**17
 FEW_PHASES = 4
 """Sampling phases at which much is looked at first; some of all that count."""
 
-_LOOKED, _LOOKED_SLOW = 256, 8
-"""Servos that are run at all phases, in the whole shear zone, at a time; fewer on a slow line."""
+_ROUGHLY = 2, 2, 1e-6
+"""Sampling phases and points of a sample at which all servos are looked at first, and the part to which they then forget their past."""
+
+_LOOKED, _LOOKED_SLOW = 64, 8
+"""Servos that are run at all phases, in the whole shear zone, at first; fewer on a slow line. Twice as many each time."""
 
 _SHOWING = 8
 """Servos that show where in the shear zone others may be worst."""
@@ -69,19 +72,28 @@ def shear_zone_errors(profile: CamProfile, task: Task, servos: Sequence[Servo], 
     InputError
         The profile does not run over ``[0, x_c]``.
     """
+    return _greatest_errors(profile, task, servos, phases, SUBSTEPS)
+
+
+def _greatest_errors(
+    profile: CamProfile, task: Task, servos: Sequence[Servo], phases: int, parts: int, forgotten: float | None = None
+) -> FloatArray:
+    """As `shear_zone_errors`, at so many points of a sample, a servo's past forgotten to a part of itself."""
     require_period(profile, task.cut)
     found = np.full(len(servos), np.inf)
     if not len(servos):
         return found
-    loops = loops_of(servos)
+    loops = loops_of(servos, parts)
     radii = np.abs(np.linalg.eigvals(loops.closed())).max(axis=1)
-    past = np.array([memory_at(radius) if radius < 1.0 else 0 for radius in radii.tolist()])
+    past = memories_at(radii)
     travel = task.cut.line_speed * np.array([servo.sample_time for servo in servos])
     within = np.ceil(task.cut.shear_zone / travel).astype(np.intp)
     for i in np.nonzero((past > 0) & (past + within > WHOLE_PART))[0].tolist():
         closed = slow_sync_error(profile, task, servos[i], *shear_zone_of(task.cut), min(phases, SUBSTEPS))
         if closed is not None:
             found[i], past[i] = closed, 0
+    if forgotten is not None:
+        past = np.where(past > 0, memories_at(radii, forgotten), 0)
     for group in _groups(past, within, phases):
         lifted = lift_side_by_side(loops.take(group), int(past[group].max()), (1, 0))
         run = shear_zone_run(profile, task.cut, [servos[i] for i in group.tolist()], lifted, phases)
@@ -92,15 +104,15 @@ def shear_zone_errors(profile: CamProfile, task: Task, servos: Sequence[Servo], 
 def worst_shear_zone_error(profile: CamProfile, task: Task, servos: Sequence[Servo]) -> float:
     """Greatest sync error in the shear zone over many servos and all sampling phases (m): the greatest of `shear_zone_errors`.
 
-    All servos are run at a few phases, on a slow line about a few places only, then the worst at all: until the next one, and twice what
-    more phases and places have added to any, stay below the greatest. A third of the time, a hundredth on a slow line. Arguments as in
-    `shear_zone_errors`.
+    All servos are run roughly, on a slow line about a few places only, then the worst in full: until the next one, and twice what
+    more phases, points and places have added to any, stay below the greatest. A sixth of the time, a hundredth on a slow line. Arguments
+    as in `shear_zone_errors`.
     """
     parts = _shown_parts(profile, task, servos)
-    few = np.max([shear_zone_errors(profile, part, servos, FEW_PHASES) for part in parts], axis=0)
+    few = np.max([_greatest_errors(profile, part, servos, *_ROUGHLY) for part in parts], axis=0)
     order, step = np.argsort(-few, kind="stable"), _LOOKED if parts == [task] else _LOOKED_SLOW
-    worst = added = 0.0
-    for first in range(0, len(order), step):
+    worst, added, first = 0.0, 0.0, 0
+    while first < len(order):
         looked = order[first : first + step]
         if not np.isfinite(few[looked[0]]):
             return math.inf
@@ -108,6 +120,8 @@ def worst_shear_zone_error(profile: CamProfile, task: Task, servos: Sequence[Ser
             break
         found = shear_zone_errors(profile, task, [servos[row] for row in looked.tolist()])
         worst, added = max(worst, float(found.max())), max(added, float((found - few[looked]).max()))
+        first += step
+        step *= 2
     return worst
 
 

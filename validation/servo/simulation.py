@@ -20,6 +20,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
@@ -77,7 +78,16 @@ def memory(servo: Servo) -> int:
 
 def memory_at(radius: float) -> int:
     """Count the samples after which a servo whose largest pole has this magnitude, below 1, has forgotten its past."""
-    return max(4, math.ceil(math.log(_FORGOTTEN / _TRANSIENT_GROWTH) / math.log(max(radius, 1e-3))))
+    return int(memories_at(np.array([radius]))[0])
+
+
+def memories_at(radii: FloatArray, forgotten: float = _FORGOTTEN) -> NDArray[np.intp]:
+    """Count the samples after which servos have forgotten their past to a part of itself, by their largest poles; 0 for unstable ones."""
+    poles = np.clip(radii, 1e-3, None)
+    found = np.zeros(len(poles), dtype=np.intp)
+    stable = poles < 1.0
+    found[stable] = np.maximum(4, np.ceil(math.log(forgotten / _TRANSIENT_GROWTH) / np.log(poles[stable])))
+    return found
 
 
 def slow_axis(
@@ -310,8 +320,8 @@ def simulate_part(
     seen = deviation(profile, (grid - shift[:, None])[: 1 if alike else len(servos)])
     starts = grid[:, clocks.past * phases : (clocks.past + 1) * phases]
     found = _axes(profile, servos, speeds, lifted, starts, seen)
-    spacing = np.repeat(clocks.step * (phases / SUBSTEPS), phases)[:, None]
-    return starts.reshape(-1, 1) + spacing * np.arange(clocks.samples * SUBSTEPS), found
+    spacing = np.repeat(clocks.step * (phases / lifted.parts), phases)[:, None]
+    return starts.reshape(-1, 1) + spacing * np.arange(clocks.samples * lifted.parts), found
 
 
 def run_about(profile: CamProfile, cut: Cut, servo: Servo, part: tuple[float, float]) -> AxisRun:
