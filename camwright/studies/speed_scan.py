@@ -18,7 +18,7 @@ from camwright.validation.report import ALLOWANCE
 from camwright.validation.servo.axis_motion import ALLOWANCE as AXIS_ALLOWANCE
 from camwright.validation.servo.axis_motion import axis_checks, axis_peaks
 from camwright.validation.servo.creeping import creeping_axis, creeping_speeds, tracking
-from camwright.validation.servo.line_speeds import line_speed_errors
+from camwright.validation.servo.line_speeds import NEAR, line_speed_errors
 from camwright.validation.servo.monte_carlo import FEW_PHASES
 
 TOLERANCE = "servo_tolerance"
@@ -126,15 +126,15 @@ class SpeedScan:
         felt = math.inf if cut.shaped or not self.task.straight else self._forgotten * every - at
         length = np.clip(felt, 0.0, np.full(len(at), cut.shear_zone))
 
-        def off(columns: NDArray[np.bool_], phases: int) -> FloatArray:
-            zones = at[columns], length[columns]
-            errors = line_speed_errors(self.profile, self.task, self.servos, every[columns], phases, zones)
+        def off(asked: NDArray[np.bool_], phases: int) -> FloatArray:
+            errors = line_speed_errors(self.profile, self.task, self.servos, every, phases, (at, length), asked)
             return errors / cut.sync_tolerance
 
-        found = off(np.full(len(at), True), FEW_PHASES)
-        near = np.asarray(((found > _SURE[0]) & (found < _SURE[1])).any(axis=0))
+        found = off(np.full((len(self.servos), len(at)), True), FEW_PHASES)
+        near = np.tile(((found > _SURE[0]) & (found < _SURE[1])).any(axis=0), (len(found), 1))
+        near[1:] &= found[1:] >= NEAR * found[1:].max(axis=0, initial=0.0)  # of the corners the worst alone is told
         if near.any():
-            found[:, near] = off(near, phases)
+            found[near] = off(near, phases)[near]
         return found.reshape(len(found), len(places), -1)
 
     @cached_property

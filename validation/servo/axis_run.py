@@ -60,17 +60,29 @@ class AxisRun:
         (master, axis, axis_ratio)
             Shapes ``(phases, n)``.
         """
+        x, y, k = self._within(start, end, (self.master, self.axis, self.axis_ratio))
+        return x, y, k
+
+    def places(self, start: float | FloatArray, end: float | FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Give master position and axis alone, as `window` does; both belong to who asks."""
+        x, y = self._within(start, end, (self.master, self.axis))
+        return x, y
+
+    def _within(
+        self, start: float | FloatArray, end: float | FloatArray, wanted: tuple[FloatArray, ...]
+    ) -> list[FloatArray]:
+        """Copy what is wanted of master position, axis and axis ratio between two master positions, as `window` says."""
         most = self.master.shape[1] - 1
         start, end = (np.broadcast_to(bound, self.phases) for bound in (start, end))
         first, last = self._around(start, end)
         left, right = max(int(first.min()), 0), min(int(last.max()), most)
-        x, y, k = (values[:, left : right + 1].copy() for values in (self.master, self.axis, self.axis_ratio))
+        found = [values[:, left : right + 1].copy() for values in wanted]
         # the phases begin and end within a few columns of each other
         head, tail = slice(int(first.max()) - left + 2), slice(max(int(last.min()) - left - 1, 0), None)
         first, last = np.clip([first, np.maximum(last - 1, first)], 0, most - 1)
         edges = (
-            (start, first, head, x[:, head] <= start[:, None]),
-            (end, last, tail, x[:, tail] >= end[:, None]),
+            (start, first, head, found[0][:, head] <= start[:, None]),
+            (end, last, tail, found[0][:, tail] >= end[:, None]),
         )
         rows = np.arange(self.phases)
         for bound, point, columns, beyond in edges:
@@ -81,10 +93,9 @@ class AxisRun:
                 (self.axis[rows, point], self.axis[rows, point + 1]),
                 (self.axis_ratio[rows, point], self.axis_ratio[rows, point + 1]),
             )
-            np.copyto(x[:, columns], bound[:, None], where=beyond)
-            np.copyto(y[:, columns], value[:, None], where=beyond)
-            np.copyto(k[:, columns], ratio[:, None], where=beyond)
-        return x, y, k
+            for values, at_bound in zip(found, (bound, value, ratio), strict=False):
+                np.copyto(values[:, columns], at_bound[:, None], where=beyond)
+        return found
 
     def _around(self, start: FloatArray, end: FloatArray) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
         """Last point that is not after a start, and first that is not before an end, of every row."""

@@ -25,7 +25,7 @@ _VALUES = 2**16
 _ALIKE = 0.8
 """Line speeds are run side by side whose samples are no fewer than this share of the most."""
 
-_NEAR = 0.75
+NEAR = 0.75
 """Share of the greatest sync error at few sampling phases from which on all are looked at."""
 
 
@@ -36,6 +36,7 @@ def line_speed_errors(
     line_speeds: FloatArray,
     phases: int = PHASES,
     zones: tuple[FloatArray, FloatArray] | None = None,
+    asked: NDArray[np.bool_] | None = None,
 ) -> FloatArray:
     """Greatest sync error in the shear zone at each line speed, over all sampling phases.
 
@@ -55,11 +56,13 @@ def line_speed_errors(
     zones
         Beginning, from the start of the sync zone, and length of what is looked at with each line speed (m), shapes ``(n,)``; the shear
         zone if not given.
+    asked
+        Which servos are looked at with which line speeds, shape ``(servos, n)``; all if not given.
 
     Returns
     -------
     ndarray
-        Greatest magnitude of the sync error (m), infinite for a servo that is unstable; shape ``(servos, n)``.
+        Greatest magnitude of the sync error (m), infinite for a servo that is unstable or not asked for; shape ``(servos, n)``.
 
     Raises
     ------
@@ -70,10 +73,11 @@ def line_speed_errors(
     require_period(profile, cut)
     speeds = np.asarray(line_speeds, dtype=np.float64)
     found = np.full((len(servos), len(speeds)), np.inf)
-    stable = [row for row, servo in enumerate(servos) if spectral_radius(servo) < 1.0]
+    asked = np.ones(found.shape, dtype=bool) if asked is None else asked
+    stable = [row for row, servo in enumerate(servos) if asked[row].any() and spectral_radius(servo) < 1.0]
     if not stable or not len(speeds):
         return found
-    kept = [servos[row] for row in stable]
+    kept, asked = [servos[row] for row in stable], asked[stable]
     past = max(memory(servo.loop) for servo in kept)
     # one servo may be found lifted by another call
     lifted = (
@@ -85,19 +89,21 @@ def line_speed_errors(
     for column in np.nonzero(slow)[0].tolist():
         zone = replace(cut, shear_zone_at=float(at[column]), shear_zone=float(length[column]))
         slower = task.with_cut(zone).at_speed(float(speeds[column]))
-        found[stable, column] = [shear_zone_errors(profile, slower, [servo], phases)[0] for servo in kept]
+        for row in np.nonzero(asked[:, column])[0].tolist():
+            found[stable[row], column] = shear_zone_errors(profile, slower, [kept[row]], phases)[0]
     start = cut.return_start + cut.return_zone
     begin, end = start + at, start + np.minimum(at + length, cut.sync_zone)
-    quick = np.nonzero(~slow)[0]
+    quick = np.nonzero(~slow & asked.any(axis=0))[0]
     for group in _groups(samples[quick], _VALUES / (phases * len(kept))):
         columns = quick[group]
-        rows, of_each = np.repeat(np.arange(len(kept)), len(columns)), np.tile(columns, len(kept))
+        rows, at_columns = np.nonzero(asked[:, columns])
+        of_each = columns[at_columns]
         part = begin[of_each], end[of_each]
         every = lifted if len(kept) == 1 else lifted.take(rows)
         many = [kept[row] for row in rows.tolist()]
         master, (ratio, axis) = simulate_part(profile, cut, many, every, part, phases, speeds[of_each])
         peaks = shear_zone_peaks(AxisRun(master, axis, ratio), profile, task, len(rows), part)
-        found[np.array(stable)[:, None], columns] = peaks.reshape(len(kept), -1)
+        found[np.array(stable)[rows], of_each] = peaks
     return found
 
 
@@ -109,7 +115,7 @@ def worst_line_speed_error(profile: CamProfile, task: Task, servos: Sequence[Ser
     few = line_speed_errors(profile, task, servos, line_speeds, FEW_PHASES)
     if not np.isfinite(few).all():
         return math.inf
-    near = few >= _NEAR * few.max()
+    near = few >= NEAR * few.max()
     speeds = np.asarray(line_speeds, dtype=np.float64)
     return max(
         float(line_speed_errors(profile, task, [servo], speeds[columns]).max())

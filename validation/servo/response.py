@@ -127,6 +127,9 @@ def _noise(profile: CamProfile, task: Task) -> float:
     return _ROUNDING * max(abs(profile.advance), task.cut.length)
 
 
+_Bound = float | FloatArray
+"""A master position (m), or one of each phase."""
+
 _Curve = tuple[FloatArray, FloatArray]
 """Master positions (m) and what is seen there, shapes ``(phases, n)``."""
 
@@ -209,9 +212,7 @@ class _InSync:
         return np.asarray(moves - self.machine.tool_ratio(self.ideal[at]) * self.sync(self.along[at], 1))
 
 
-def _in_sync(
-    run: AxisRun, profile: CamProfile, task: Task, start: float | FloatArray, end: float | FloatArray
-) -> _InSync:
+def _in_sync(run: AxisRun, profile: CamProfile, task: Task, start: _Bound, end: _Bound) -> _InSync:
     """Put the axis beside the ideal sync line; arguments as in `sync_error`."""
     cut = task.cut
     zone = cut.return_start + cut.return_zone
@@ -219,10 +220,30 @@ def _in_sync(
     master, axis, ratio = run.window(start, end)
     along = np.minimum(np.maximum(master - zone, sync.start), sync.end)
     travel = sync(along)
-    met = task.machine.pitch if cut.shaped else float(profile(profile.end))
-    line = travel + (met - float(sync(min(max(cut.length - zone, sync.start), sync.end))))
+    line = travel + _line_at(profile, task)
     ideal = task.slave_at_sync_start + travel
     return _InSync(task.machine, sync, master, along, ideal, ideal + (axis - line), ratio)
+
+
+def _line_at(profile: CamProfile, task: Task) -> float:
+    """Slave position on the ideal line less the travel in the sync zone."""
+    cut, sync = task.cut, task.sync
+    met = task.machine.pitch if cut.shaped else float(profile(profile.end))
+    return met - float(sync(min(max(cut.length - cut.return_start - cut.return_zone, sync.start), sync.end)))
+
+
+def _off_line(run: AxisRun, profile: CamProfile, task: Task, start: _Bound, end: _Bound) -> FloatArray:
+    """Tool minus ideal sync line alone, quicker where that is a straight line; arguments as in `sync_error`."""
+    if not task.straight:
+        return _in_sync(run, profile, task, start, end).error()
+    sync, zone = task.sync, task.cut.return_start + task.cut.return_zone
+    master, axis = run.places(start, end)
+    ratio = float(sync(sync.start, 1))
+    master *= ratio
+    axis -= master
+    axis -= float(sync(sync.start)) + _line_at(profile, task) - ratio * (zone + sync.start)
+    per_slave = task.cut.sync_ratio / ratio  # of the tool, as constant as the ratio
+    return axis if per_slave == 1.0 else per_slave * axis
 
 
 def shear_zone_error(run: AxisRun, profile: CamProfile, task: Task) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -242,8 +263,9 @@ def greatest_sync_error(profile: CamProfile, task: Task, servo: Servo, start: fl
     """
     found = slow_sync_error(profile, task, servo, start, end, SUBSTEPS)
     if found is None:
-        error = _in_sync(run_about(profile, task.cut, servo, (start, end)), profile, task, start, end).error()
-        return float(np.abs(error).max())
+        return float(
+            np.abs(_off_line(run_about(profile, task.cut, servo, (start, end)), profile, task, start, end)).max()
+        )
     return found
 
 
@@ -255,8 +277,8 @@ def shear_zone_peaks(
     Of each in a part of its own (m), counted like `camwright.validation.servo.axis_run.AxisRun.master`, where such are given.
     """
     start, end = shear_zone_of(task.cut) if part is None else np.repeat(part, run.phases // servos, axis=1)
-    error = np.abs(_in_sync(run, profile, task, start, end).error())
-    return np.asarray(error.reshape(servos, -1).max(axis=1))
+    error = _off_line(run, profile, task, start, end).reshape(servos, -1)
+    return np.asarray(np.maximum(error.max(axis=1), -error.min(axis=1)))
 
 
 def slow_sync_error(
