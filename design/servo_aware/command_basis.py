@@ -214,10 +214,15 @@ class CommandBasis:
         """Samples that were laid out: servos differ in their weights alone, and in how many they have."""
         return {}
 
+    @cached_property
+    def _widest(self) -> dict[tuple[bytes, float, float], LaidSamples]:
+        """The last ones that were too many to be kept longer: servos that share them are looked at one after another."""
+        return {}
+
     def _laid(self, places: FloatArray, regular: int, delay: float, sample: float, count: int) -> LaidSamples:
         """Lay out samples behind places (m), at least so many, and give the command there that the unknowns are added to."""
         key = places.tobytes(), delay, sample
-        laid = self._lattices.get(key)
+        laid = self._widest.get(key) or self._lattices.get(key)
         if laid is None or laid.known.shape[1] < count:
             samples = delay + sample * np.arange(_SHARED * -(-count // _SHARED), dtype=np.float64)
             first = 0 if self.sync is None else _DEGREE
@@ -226,8 +231,9 @@ class CommandBasis:
             # what a shaped command is added to is a straight line
             known = past * (self.pitch / self.length) if self.sync is None else self._even(past, outside="repeat")
             laid = LaidSamples(places, regular, samples, splines, known)
-            if known.size <= _MOST_KEPT:
-                self._lattices[key] = laid
+            if known.size > _MOST_KEPT:
+                self._widest.clear()
+            (self._lattices if known.size <= _MOST_KEPT else self._widest)[key] = laid
         return laid
 
     @cached_property

@@ -150,8 +150,11 @@ class GatheredRows:
     def _add_over(self, every: list[list[ZoneTable]], command: Tried, limit: float) -> bool:
         """Add rows where line speeds exceed a limit; whether one does."""
         added = False
+        # servos that share their samples one after another
+        for table in sorted((table for tables in every for table in tables), key=lambda table: table.sampled):
+            table.peak(command)
         for tables in every:
-            over = np.array([table.peak(command) for table in tables]) - limit
+            over = np.array([table.last for table in tables]) - limit
             for number in np.argsort(-over, kind="stable")[:MOST_SPEEDS].tolist():
                 if over[number] <= 0.0:
                     break
@@ -331,7 +334,7 @@ class BetweenServos:
     def rows(self, command: Tried, limit: float, *, unseen: bool) -> list[AxisRows]:
         """Make rows where a servo between the corners is worse than its limit; those without rows are looked at last."""
         over = []
-        for table in self._seen + (self._unseen if unseen else []):
+        for table in sorted(self._seen + (self._unseen if unseen else []), key=lambda table: table.sampled):
             excess = np.abs(table.errors(command)) - limit
             if excess.max() > 0.0:
                 over.append((float(excess.max()), table, worst_places(excess, _most(self._problem))))

@@ -59,6 +59,11 @@ class ZoneTable:
         """Greatest sync error (m) of the command that was looked at last, without sign; infinite before the first."""
         return math.inf if self._judged is None else self._judged[2]
 
+    @property
+    def sampled(self) -> tuple[float, float, float, int]:
+        """What sorts tables so that those that see the same samples of a command come together, the most samples first."""
+        return self.axis.share, self.axis.sample, self.axis.servo.delay, -memory(self.axis.servo.loop)
+
     def _samples(self, instants: NDArray[np.intp] | slice) -> FloatArray:
         """Master positions that the loop sees at some of the instants, newest first."""
         cut, servo = self.axis.task.cut, self.axis.servo
@@ -89,7 +94,12 @@ class ZoneTable:
     @property
     def _short(self) -> bool:
         """Whether rows are so soon made of all instants at once that they serve to judge commands as well."""
-        return bool(self._basis.step) or memory(self.axis.servo.loop) * len(self.points.instants) <= MOST_SAMPLES
+        return bool(self._basis.step) or not self._long
+
+    @property
+    def _long(self) -> bool:
+        """Whether there are so many samples that rows are made of those that are looked at again."""
+        return memory(self.axis.servo.loop) * len(self.points.instants) > MOST_SAMPLES
 
     @cached_property
     def _sums(self) -> tuple[FloatArray, FloatArray]:
@@ -108,7 +118,8 @@ class ZoneTable:
     def _states(self, command: Tried) -> FloatArray:
         """State and reference at the instants: by rows once there are any, or of the command, whose samples many of them share."""
         points, axis = self.points, self.axis
-        if self._basis.step and command.coefficients is not None and "_sums" not in vars(self):
+        seldom = self._judged is None or not self._long
+        if self._basis.step and command.coefficients is not None and "_sums" not in vars(self) and seldom:
             return self._basis.looked(*self._past, command.coefficients)
         if (self.begun or self._basis.step) and self._short and command.coefficients is not None:
             matrix, constant = self._sums
