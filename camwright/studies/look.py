@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from functools import partial
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -106,11 +105,11 @@ class Look:
         """
         if self.missed_at is None:
             return 0.0, 0.0
-        if self.missed <= 0.0:
-            return 1.0, 0.0
-        own, high = self.task.cut.line_speed, self.missed
+        own = self.task.cut.line_speed
         for shares in _SLOWER:
-            missed = np.append(high, self.missed_at(own * shares[1:]))
+            missed = self.missed_at(own * shares)
+            if missed[0] <= 0.0:
+                return 1.0, 0.0
             if keeps := int((missed <= 0.0).argmax()):
                 part = shares[keeps] + (shares[keeps - 1] - shares[keeps]) * _BETWEEN
                 closer = np.concatenate([shares[keeps : keeps + 1], part, shares[keeps - 1 : keeps]])
@@ -119,7 +118,6 @@ class Look:
                 falls = float((off[last + 1] - off[last]) / (closer[last + 1] - closer[last]))
                 share = float(closer[last]) - float(off[last]) / falls
                 return share, falls * share
-            high = float(missed[-1])
         return 0.0, 0.0
 
 
@@ -139,13 +137,8 @@ def look(job: Job, task: Task, objective: MotionObjective, *, thorough: bool = F
     def first_failed() -> str:
         return next((check.name for check in judge(profile, placed, job.servo).checks if not check.passed), "")
 
-    return replace(look_at_cam(profile, placed, job.servo), failed=first_failed)
-
-
-def look_at_cam(cam: CamProfile, task: Task, servo: Servo) -> Look:
-    """Look at a cam, by the sync error alone."""
-    missed_at = partial(_missed, cam, task, servo)
-    return Look(task, "", float(missed_at(np.array([task.cut.line_speed]))[0]), missed_at)
+    missed_at = _missed_at(profile, placed, job.servo)
+    return Look(placed, first_failed, float(missed_at(np.array([task.cut.line_speed]))[0]), missed_at)
 
 
 def ramp_missed(task: Task) -> float:
@@ -156,17 +149,21 @@ def ramp_missed(task: Task) -> float:
     return -math.inf if share is None else math.log(max(share, _UNSEEN))
 
 
-def _missed(profile: CamProfile, task: Task, servo: Servo, line_speeds: FloatArray) -> FloatArray:
-    """By how much the sync error that decides misses the tolerance at line speeds, as the logarithm of a share.
+def _missed_at(profile: CamProfile, task: Task, servo: Servo) -> Callable[[FloatArray], FloatArray]:
+    """Give what tells by how much the sync error that decides misses the tolerance at line speeds (m/s), as the logarithm of a share.
 
     That is the error in the shear zone, and at the end of the sync zone, where the axis must have settled, too.
     """
     cut = task.cut
     places = np.unique([cut.shear_zone_at, max(cut.shear_zone_at, cut.sync_zone - cut.shear_zone)])
-    zones = np.tile(places, len(line_speeds)), np.full(len(places) * len(line_speeds), cut.shear_zone)
-    off = line_speed_errors(profile, task, [servo], np.repeat(line_speeds, len(places)), zones=zones)
-    greatest = off.reshape(len(line_speeds), len(places)).max(axis=1)
-    return np.asarray(np.log(np.maximum(greatest / cut.sync_tolerance, _UNSEEN)))
+
+    def missed(line_speeds: FloatArray) -> FloatArray:
+        zones = np.tile(places, len(line_speeds)), np.full(len(places) * len(line_speeds), cut.shear_zone)
+        off = line_speed_errors(profile, task, [servo], np.repeat(line_speeds, len(places)), zones=zones)
+        greatest = off.reshape(len(line_speeds), len(places)).max(axis=1)
+        return np.asarray(np.log(np.maximum(greatest / cut.sync_tolerance, _UNSEEN)))
+
+    return missed
 
 
 class Looks:
@@ -189,7 +186,7 @@ class Looks:
     ) -> None:
         self._designed: Callable[[float], Look] = lambda share: look(job, at(share).with_line(STEADY), objective)
         self._slower: Callable[[], tuple[float, float]] = lambda: (
-            (0.0, 0.0) if cam is None else look_at_cam(cam, at(1.0), job.servo).slower()
+            (0.0, 0.0) if cam is None else Look(at(1.0), "", math.inf, _missed_at(cam, at(1.0), job.servo)).slower()
         )
         self._length = job.cut.length
         self._known: dict[float, Look] = {}
