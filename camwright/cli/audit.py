@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from camwright.cli.options import Json, NoFigures, Out, Quiet, StoredTravel, StoredUnits, destination
+from camwright.cli.destination import destination
+from camwright.cli.options import Json, NoFigures, Out, Quiet, StoredTravel, StoredUnits
 from camwright.cli.views.checks import checks_view
 from camwright.cli.views.line_ramps import plc_words
 from camwright.cli.views.parts import View, files_view, new_table, new_text, stacked

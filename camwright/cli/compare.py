@@ -10,7 +10,8 @@ from typing import Annotated, Any
 import typer
 
 from camwright.answers.measures import profiles_answer
-from camwright.cli.options import Destination, GivenJob, Json, NoFigures, Out, Quiet, destination
+from camwright.cli.destination import Destination, destination
+from camwright.cli.options import GivenJob, Json, NoFigures, Out, Quiet
 from camwright.cli.views.parts import files_view, stacked
 from camwright.cli.views.profiles import profiles_view
 from camwright.cli.views.tradeoff import tradeoff_view

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from camwright.answers.measures import with_files
+from camwright.cli.destination import destination
 from camwright.cli.options import (
     CommonPlace,
     GivenJob,
@@ -15,7 +16,6 @@ from camwright.cli.options import (
     NoFigures,
     Quiet,
     TableTargets,
-    destination,
     optional_quantity,
     out_folder,
 )

@@ -23,7 +23,8 @@ from camwright.answers.measures import (
     objective_unit,
     profiles_answer,
 )
-from camwright.cli.options import JobOrPaper, Json, NoFigures, Out, Quiet, destination
+from camwright.cli.destination import destination
+from camwright.cli.options import JobOrPaper, Json, NoFigures, Out, Quiet
 from camwright.cli.views.checks import checks_view
 from camwright.cli.views.lead import lead_view
 from camwright.cli.views.lengths import lengths_view

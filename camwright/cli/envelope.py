@@ -7,7 +7,8 @@ from typing import Annotated
 import typer
 
 from camwright.answers.measures import with_files
-from camwright.cli.options import GivenJob, Json, NoFigures, Out, Quiet, destination
+from camwright.cli.destination import destination
+from camwright.cli.options import GivenJob, Json, NoFigures, Out, Quiet
 from camwright.cli.views.parts import View, files_view, new_table, stacked
 from camwright.figures.envelope import envelope_figure
 from camwright.house.numbers import shown, unit_shown

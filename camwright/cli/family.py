@@ -8,7 +8,8 @@ from typing import Annotated
 import typer
 
 from camwright.answers.measures import with_files
-from camwright.cli.options import Destination, GivenJob, Json, NoFigures, Quiet, TableTargets, destination, out_folder
+from camwright.cli.destination import Destination, destination
+from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, TableTargets, out_folder
 from camwright.cli.views.parts import View, files_view, new_table, new_text, stacked
 from camwright.cli.views.seams import seams_view
 from camwright.drives.options import chosen_targets

@@ -11,7 +11,8 @@ from typing import Annotated, Any
 import typer
 
 from camwright.answers.measures import millimetres
-from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, destination, option_quantity, out_folder
+from camwright.cli.destination import destination
+from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, option_quantity, out_folder
 from camwright.cli.views.parts import View, files_view, new_table, new_text, stacked
 from camwright.figures.print_marks import print_marks_figure
 from camwright.house.json_text import to_json

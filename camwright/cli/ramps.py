@@ -10,17 +10,8 @@ from typing import Annotated, Any, cast, get_args
 import typer
 
 from camwright.answers.measures import checks_answer, millimetres
-from camwright.cli.options import (
-    Destination,
-    GivenJob,
-    Json,
-    NoFigures,
-    Quiet,
-    To,
-    destination,
-    option_quantity,
-    out_folder,
-)
+from camwright.cli.destination import Destination, destination
+from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, To, option_quantity, out_folder
 from camwright.cli.views.checks import checks_view
 from camwright.cli.views.parts import View, files_view, new_table, new_text, stacked
 from camwright.drives.export import export_answer

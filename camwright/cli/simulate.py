@@ -9,16 +9,8 @@ import numpy as np
 import typer
 
 from camwright.answers.measures import with_files
-from camwright.cli.options import (
-    GivenJob,
-    Json,
-    NoFigures,
-    Quiet,
-    destination,
-    option_quantity,
-    optional_quantity,
-    out_folder,
-)
+from camwright.cli.destination import destination
+from camwright.cli.options import GivenJob, Json, NoFigures, Quiet, option_quantity, optional_quantity, out_folder
 from camwright.cli.views.parts import View, files_view, new_table, new_text, stacked
 from camwright.figures.shift import shift_figure
 from camwright.figures.style import title

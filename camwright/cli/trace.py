@@ -9,16 +9,8 @@ from typing import Annotated
 import typer
 
 from camwright.answers.trace import trace_answer
-from camwright.cli.options import (
-    Json,
-    JudgedBy,
-    NoFigures,
-    Out,
-    Quiet,
-    TraceColumns,
-    destination,
-    optional_quantity,
-)
+from camwright.cli.destination import destination
+from camwright.cli.options import Json, JudgedBy, NoFigures, Out, Quiet, TraceColumns, optional_quantity
 from camwright.cli.views.checks import checks_view
 from camwright.cli.views.parts import View, files_view, new_table, new_text, stacked
 from camwright.figures.trace import trace_figure

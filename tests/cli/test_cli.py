@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import io
 import json
 import math
@@ -62,6 +63,26 @@ def designed(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, 
     )
     assert (run.returncode, run.stderr) == (0, "")
     return place, strict(run.stdout)
+
+
+@pytest.mark.parametrize("collects", [True, False])
+def test_garbage_is_collected_after_a_command_is_imported_as_before(
+    monkeypatch: pytest.MonkeyPatch, collects: bool
+) -> None:
+    seen: list[bool] = []
+
+    def imported(name: str) -> Any:
+        seen.append(gc.isenabled())
+        return import_module(name)
+
+    monkeypatch.setattr("camwright.cli.main.import_module", imported)
+    before = gc.isenabled()
+    try:
+        gc.enable() if collects else gc.disable()
+        assert main(["targets", "--json"]) == 0
+        assert (seen, gc.isenabled()) == ([False], collects)
+    finally:
+        gc.enable() if before else gc.disable()
 
 
 def test_design_prints_the_promised_object(designed: tuple[Path, dict[str, Any]]) -> None:
@@ -175,7 +196,7 @@ def figures(monkeypatch: pytest.MonkeyPatch) -> None:
         return [directory / "figure.svg"]
 
     monkeypatch.setattr("camwright.cli.design.design_figures", lambda _: {"figure": None})
-    monkeypatch.setattr("camwright.cli.options.write_pictures", draw)
+    monkeypatch.setattr("camwright.cli.destination.write_pictures", draw)
 
 
 def test_figures_are_written_with_the_other_files(
@@ -193,7 +214,7 @@ def test_a_figure_that_fails_leaves_nothing(
     def fail(_what: object, _directory: Path) -> list[Path]:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("camwright.cli.options.write_pictures", fail)
+    monkeypatch.setattr("camwright.cli.destination.write_pictures", fail)
     assert main(["design", "--out", str(tmp_path / "new" / "cam")]) == 2
     assert "No space left on device" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
@@ -509,7 +530,7 @@ def test_the_table_of_commands_says_what_each_module_does(name: str) -> None:
 
 
 def test_a_module_of_the_command_line_is_a_command() -> None:
-    others = {"__init__", "commands", "main", "options"}
+    others = {"__init__", "commands", "destination", "main", "options"}
     assert {file.stem for file in Path(import_module("camwright.cli").__path__[0]).glob("*.py")} == {*COMMANDS, *others}
 
 

@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 from record_kinds import kinds
 
+from camwright.cli.destination import Destination
 from camwright.cli.family import write_family
 from camwright.cli.main import main
-from camwright.cli.options import Destination
 from camwright.house.json_text import to_json
 from camwright.house.language import LANGUAGES, Language
 from camwright.house.owned import LIST, Work

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from camwright.cli.compare import compare_objectives
-from camwright.cli.options import Destination
+from camwright.cli.destination import Destination
 from camwright.cli.views.tradeoff import tradeoff_view
 from camwright.design.optimise import (
     Solution,
