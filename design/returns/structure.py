@@ -30,6 +30,8 @@ LEVEL = 0.02
 ACTIVE = 1e-4
 # A piece shorter than this has vanished.
 VANISHED = 1e-9
+# End conditions missed by no more than this (scaled) are met: sums of so many numbers round no better.
+ROUNDED = 1e-15
 # Intervals that even the shortest arc gets on a grid made from an extreme motion.
 LEAST_INTERVALS = 3
 # A node that lies this close to the chord of its neighbours (as a share of the peak acceleration) is no corner.
@@ -264,6 +266,8 @@ def tidy(motion: ScaledMotion, problem: ScaledProblem, *, corners: bool = True) 
         lengths[int(np.argmax(lengths))] -= lengths.sum() - 1.0
         q, v = ScaledMotion(lengths, a, 0.0).nodes()
         gap = np.array([problem.end_ratio - v[-1], problem.height - q[-1]])
+        if np.abs(gap).max() <= ROUNDED:
+            break
         a = a.copy()
         a[1:-1] += np.linalg.lstsq(_end_response(lengths, p)[:, 1:-1], gap, rcond=None)[0]
     return ScaledMotion(lengths, a, motion.objective)
