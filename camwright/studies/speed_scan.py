@@ -18,7 +18,7 @@ from camwright.validation.report import ALLOWANCE
 from camwright.validation.servo.axis_motion import ALLOWANCE as AXIS_ALLOWANCE
 from camwright.validation.servo.axis_motion import axis_checks, axis_peaks
 from camwright.validation.servo.creeping import creeping_axis, creeping_speeds, tracking
-from camwright.validation.servo.line_speeds import NEAR, line_speed_errors
+from camwright.validation.servo.line_speeds import line_speed_errors
 from camwright.validation.servo.monte_carlo import FEW_PHASES
 
 TOLERANCE = "servo_tolerance"
@@ -130,11 +130,18 @@ class SpeedScan:
             errors = line_speed_errors(self.profile, self.task, self.servos, every, phases, (at, length), asked)
             return errors / cut.sync_tolerance
 
-        found = off(np.full((len(self.servos), len(at)), True), FEW_PHASES)
-        near = np.tile(((found > _SURE[0]) & (found < _SURE[1])).any(axis=0), (len(found), 1))
-        near[1:] &= found[1:] >= NEAR * found[1:].max(axis=0, initial=0.0)  # of the corners the worst alone is told
-        if near.any():
-            found[near] = off(near, phases)[near]
+        few = off(np.full((len(self.servos), len(at)), True), FEW_PHASES)
+        near = np.asarray(((few > _SURE[0]) & (few < _SURE[1])).any(axis=0))
+        found, asked, rest = few.copy(), np.zeros(few.shape, dtype=bool), np.tile(near, (len(few), 1))
+        asked[0] = near
+        if (
+            len(few) > 1
+        ):  # of the corners the worst alone is told: first that at few phases, then those that may be worse at all
+            asked[1 + few[1:].argmax(axis=0), np.arange(len(at))] = near
+        while asked.any():
+            found[asked] = off(asked, phases)[asked]
+            rest &= ~asked
+            asked = rest & (few + 2.0 * (found - few).max() > found[1:].max(axis=0, initial=0.0))
         return found.reshape(len(found), len(places), -1)
 
     @cached_property

@@ -25,7 +25,7 @@ _VALUES = 2**16
 _ALIKE = 0.8
 """Line speeds are run side by side whose samples are no fewer than this share of the most."""
 
-NEAR = 0.75
+_NEAR = 0.75
 """Share of the greatest sync error at few sampling phases from which on all are looked at."""
 
 
@@ -115,7 +115,7 @@ def worst_line_speed_error(profile: CamProfile, task: Task, servos: Sequence[Ser
     few = line_speed_errors(profile, task, servos, line_speeds, FEW_PHASES)
     if not np.isfinite(few).all():
         return math.inf
-    near = few >= NEAR * few.max()
+    near = few >= _NEAR * few.max()
     speeds = np.asarray(line_speeds, dtype=np.float64)
     return max(
         float(line_speed_errors(profile, task, [servo], speeds[columns]).max())
