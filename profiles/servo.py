@@ -132,7 +132,14 @@ class SampledPlant:
 
 @lru_cache(maxsize=4096)
 def sample_plant(servo: Servo, time: float) -> SampledPlant:
-    """Discretise the plant exactly for an input held over ``time`` (s): closed form of the matrix exponential.
+    """Discretise the plant exactly for an input held over ``time`` (s), as `plant_rows` has it."""
+    rows = np.array(plant_rows(servo, time))
+    rows.setflags(write=False)  # kept for whoever asks next
+    return SampledPlant(rows[:, :3], rows[:, 3])
+
+
+def plant_rows(servo: Servo, time: float) -> list[list[float]]:
+    """Give the rows of a `SampledPlant`, each of the transition and the input: closed form of the matrix exponential.
 
     The velocity loop has the poles ``-zeta omega ± omega sqrt(zeta² - 1)``: a damped oscillation, a double pole or two real
     poles, told apart by the sign of ``zeta² - 1``; one formula with ``sinc``-like functions covers all three.
@@ -156,12 +163,9 @@ def sample_plant(servo: Servo, time: float) -> SampledPlant:
     # position: integral of the velocity; from v'' + 2 sigma v' + w² v = w² u follows
     # w² (p(t) - p(0)) = w² u t - (v'(t) - v'(0)) - 2 sigma (v(t) - v(0))
     p0, p1 = (1.0 - f00 - 2 * sigma * s) / (w * w), (-f01 + 2 * sigma * (1.0 - f11)) / (w * w)
-    transition = np.array([[f00, f01, 0.0], [s, f11, 0.0], [p0, p1, 1.0]])
     # rest at v = u: the response to the input is what is missing from the response to that state
-    held = np.array([-f01, 1.0 - f11, time - (-f01 + 2 * sigma * (1.0 - f11)) / (w * w)])
-    for array in (transition, held):  # kept for whoever asks next
-        array.setflags(write=False)
-    return SampledPlant(transition, held)
+    held = time - (-f01 + 2 * sigma * (1.0 - f11)) / (w * w)
+    return [[f00, f01, 0.0, -f01], [s, f11, 0.0, 1.0 - f11], [p0, p1, 1.0, held]]
 
 
 def closed_loop(servo: Servo) -> tuple[FloatArray, FloatArray]:

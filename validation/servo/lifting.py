@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camwright.profiles.polynomial.profile import FloatArray
-from camwright.profiles.servo import Servo, sample_plant
+from camwright.profiles.servo import Servo, plant_rows
 
 SUBSTEPS = 8
 """Points of the axis per sample, the sampling instant included."""
@@ -57,18 +57,16 @@ def loops_of(servos: Sequence[Servo], parts: int = SUBSTEPS) -> Loops:
     held = np.zeros((len(servos), parts + 1, 4, 4))
     held[:, 0] = np.eye(4)
     held[:, 1, 3, 3] = 1.0
-    for servo, matrix in zip(servos, held[:, 1], strict=True):
-        plant = sample_plant(servo, servo.sample_time / parts)
-        matrix[:3, :3], matrix[:3, 3] = plant.transition, plant.input
+    held[:, 1, :3] = [plant_rows(servo, servo.sample_time / parts) for servo in servos]
     known = 1
     while known < parts:  # twice as many in each round
         more = min(known, parts - known)
         held[:, known + 1 : known + more + 1] = held[:, known, None] @ held[:, 1 : more + 1]
         known += more
     gain, sample_time = np.array([(servo.position_gain, servo.sample_time) for servo in servos]).T
-    drive = np.zeros((len(servos), max(len(servo.drive) for servo in servos)))
-    for servo, weights in zip(servos, drive, strict=True):
-        weights[: len(servo.drive)] = servo.drive
+    drives = [servo.drive for servo in servos]
+    most = max(len(each) for each in drives)
+    drive = np.array([each + (0.0,) * (most - len(each)) for each in drives])
     return Loops(held, gain, drive, sample_time)
 
 

@@ -314,7 +314,7 @@ def simulate_part(
     speeds = np.broadcast_to(cut.line_speed if speeds is None else speeds, len(servos))
     clocks = _clocks(cut, speeds, lifted, part, phases)
     grid = clocks.grid()
-    shift = np.array([_shift(cut, servo, speed) for servo, speed in zip(servos, speeds.tolist(), strict=True)])
+    shift = np.fmod(speeds * [servo.delay for servo in servos], cut.length)  # as `_shift`
     # one grid for all, if it is
     alike = all(each.min() == each.max() for each in (clocks.step, clocks.first, shift))
     seen = deviation(profile, (grid - shift[:, None])[: 1 if alike else len(servos)])
