@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from camwright.jobs.wording import in_job_words
 from camwright.profiles.errors import InfeasibleError, InputError, SolverError
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.servo import Servo
+from camwright.profiles.servo_tolerance import ServoTolerance
 from camwright.profiles.task import Task
 from camwright.validation.servo.line_speeds import line_speed_errors, worst_line_speed_error
 from camwright.validation.servo.monte_carlo import worst_shear_zone_error
@@ -175,13 +177,19 @@ def robustness(job: Job, profile: CamProfile, solution: Solution | None = None) 
     ranges = job.servo_tolerance
     if ranges is None or not ranges.varying:
         return None
-    drawn = ranges.draw(job.servo, DRAWS, SEED)
-    if job.slowest < 1.0:  # each at a line speed of its own
-        shares = np.random.default_rng(SEED).uniform(job.slowest, 1.0, DRAWS).tolist()
-        drawn = tuple(servo.at_speed(share) for servo, share in zip(drawn, shares, strict=True))
-    worst = worst_shear_zone_error(profile, job.task, drawn)
+    worst = worst_shear_zone_error(profile, job.task, _drawn(ranges, job.servo, job.slowest))
     designed = solution.axis.error if solution is not None and solution.axis is not None else None
     return Robustness(len(ranges.vertices(job.servo)), designed, worst, DRAWS)
+
+
+@lru_cache(maxsize=2)  # all cams of a book are for the same servos
+def _drawn(ranges: ServoTolerance, servo: Servo, slowest: float) -> tuple[Servo, ...]:
+    """Draw the servos of `Robustness`, each at a line speed of its own where there is a band of them."""
+    drawn = ranges.draw(servo, DRAWS, SEED)
+    if slowest == 1.0:
+        return drawn
+    shares = np.random.default_rng(SEED).uniform(slowest, 1.0, DRAWS).tolist()
+    return tuple(each.at_speed(share) for each, share in zip(drawn, shares, strict=True))
 
 
 @dataclass(frozen=True, eq=False)
