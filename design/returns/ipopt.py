@@ -17,6 +17,8 @@ QUIET: dict[str, Any] = {
     "ipopt.print_level": 0,
     "ipopt.sb": "yes",
     "ipopt.acceptable_iter": 0,
+    # multipliers of what is held fixed, which nobody asks for, cost another gradient an iteration
+    "ipopt.fixed_variable_treatment": "make_parameter_nodual",
 }
 
 # A first look on the grid: convex, so any start will do; it need not be more exact than the grid.
