@@ -80,6 +80,16 @@ def test_another_solver_on_a_grid_finds_a_little_more(name: str, order: int) -> 
     assert found == pytest.approx(grid, rel=1.5e-2)
 
 
+@pytest.mark.parametrize("acceleration", [1e2, 1e4, 1e6])
+@pytest.mark.parametrize("jerk", [1e5, 1e7, 1e9])
+def test_limits_far_beyond_the_motion_leave_the_cubic(acceleration: float, jerk: float) -> None:
+    """Half of ``12 d² / T³`` for a way ``d`` more than the even one; from a start at zero the multipliers were not found in 60 steps."""
+    task = replace(FREE, acceleration=acceleration, jerk=jerk, velocities=(-1e3, 1e3))
+    found = least_square_acceleration(task, np.linspace(0.0, 1.0, 301), 1.0)
+    assert found == pytest.approx(6 * 0.4**2, rel=2e-3)
+    assert found <= 6 * 0.4**2 * (1 + 1e-9 + 30 / jerk)
+
+
 @given(st.floats(0.2, 5.0), st.floats(0.05, 20.0), st.sampled_from(sorted(TASKS)), st.sampled_from([2, 3]))
 @settings(max_examples=20)
 def test_units_do_not_matter(time: float, unit: float, name: str, order: int) -> None:
