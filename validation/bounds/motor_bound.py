@@ -41,8 +41,8 @@ BELOW = 0.985
 """Share of the cost of standing still below which a value function is asked where standing is cheaper than what was found."""
 PLACES = 2001
 """Places of the path at which the inertia is taken."""
-NEAR = 2e-3
-"""Share of the mean square below which nothing is left to be proved."""
+NEAR = 1e-2
+"""Share of the mean square below which no value function is asked: it is made no better than to twice that."""
 WAITING = 0.1
 """Share of the mean square below which the convex programme shows that time is wasted: a value function is asked first."""
 LOOSE = 0.05
@@ -222,7 +222,7 @@ def _least_square(path: PathTask, level: float) -> tuple[float, str]:
     if waits and found < level * (1 - KNOWN):
         found, method = max((found, method), (min(least_square_limited(path), level), CONVEX))
     if found < level * (1 - LOOSE) and math.isfinite(path.acceleration):
-        return max((found, method), (least_in_tubes(path, "square", level), TUBES))
+        return max((found, method), (least_in_tubes(path, "square", level, found), TUBES))
     return found, method
 
 
@@ -230,13 +230,13 @@ def _least_drawn(path: PathTask, level: float) -> tuple[float, str]:
     """Bound of the energy drawn on the way, at most the level, and the better road's name."""
     found = least_drawn(path, level), PATH
     if found[0] < level * (1 - LOOSE) and math.isfinite(path.acceleration):
-        return max(found, (least_in_tubes(path, "drawn", level), TUBES))
+        return max(found, (least_in_tubes(path, "drawn", level, found[0]), TUBES))
     return found
 
 
 def _least_peak(path: PathTask, low: float, high: float) -> tuple[float, str]:
     """Bound of the peak torque on the way, at most the high one, and its road; the low one, that of the zone, if it is none."""
-    found = least_in_tubes(path, "peak", high) if math.isfinite(path.acceleration) else 0.0
+    found = least_in_tubes(path, "peak", high, low) if math.isfinite(path.acceleration) else 0.0
     for share in PEAKS:
         if high * share <= max(low, found):
             break

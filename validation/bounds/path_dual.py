@@ -34,6 +34,8 @@ SMALL = 1e-3
 """What broken inequalities may cost, as a share of the bound."""
 LEVELS = 5
 """How many levels are tried for the greatest that is proved."""
+GOOD, GAIN = 0.95, 5e-3
+"""Share of the level beyond which another is tried only if the last raised what is proved by so much of it."""
 HOPELESS, TOWARDS = 0.8, 0.6
 """Share of the level tried next where little was proved; how far between what is proved and what is not the others lie."""
 ACCURACY = 1e-4
@@ -168,10 +170,10 @@ def _proved(task: PathTask, tube_of: Callable[[PathTask, float], Tube], kind: st
     for _ in range(LEVELS):
         tube = tube_of(task, tried)
         found = tried if tube.empty else _bound(task, tube, kind, tried, max(best, HOPELESS * level))
-        best = max(best, min(found, tried))
+        before, best = best, max(best, min(found, tried))
         if found < tried:
             high = tried
-        if high - best < (1.0 - ENOUGH[kind]) * level:
+        if high - best < (1.0 - ENOUGH[kind]) * level or GOOD * level < best < before + GAIN * level:
             break
         tried = best + TOWARDS * (high - best) if best > 0.0 else HOPELESS * level
     return best

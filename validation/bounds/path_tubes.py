@@ -38,6 +38,8 @@ LEVELS = {"square": (0.93, 0.82, 0.7), "drawn": (0.98, 0.955, 0.925, 0.87), "pea
 """Shares of a level that are tried, until one is proved."""
 ROUNDS, STAYS = 5, 0.01
 """How often a tube is made narrower at most, and the share of the level by which that must raise the bound to go on."""
+HOPELESS = 0.05
+"""Share of its level below which a tube is not made narrower: it holds motions that waste time for nothing, and then still does."""
 SAFE = 1e-6
 """Share by which what the solver answers is lowered."""
 BENT = 1e30
@@ -48,8 +50,8 @@ ROUNDING = 1e-9
 Kind = Literal["square", "drawn", "peak"]
 
 
-def least_in_tubes(task: PathTask, kind: Kind, level: float) -> float:
-    """Lower bound of a cost of motions that never turn, at most the level.
+def least_in_tubes(task: PathTask, kind: Kind, level: float, known: float = 0.0) -> float:
+    """Lower bound of a cost of motions that never turn, at most the level; 0 where it would be no better than what is known.
 
     Parameters
     ----------
@@ -59,10 +61,12 @@ def least_in_tubes(task: PathTask, kind: Kind, level: float) -> float:
         The integral of the squared torque over time, (N·m)² s; the energy drawn (J); or the peak of the torque (N·m).
     level
         Cost of a motion.
+    known
+        Lower bound of it that is known.
     """
     best = 0.0
     for share in LEVELS[kind]:
-        if best >= share:
+        if max(best, known / level) >= share:
             break
         best = max(best, share * _share_proved(task, kind, share * level))
     return best * level
@@ -77,7 +81,7 @@ def _share_proved(task: PathTask, kind: Kind, level: float) -> float:
             return 1.0
         programme = _TubeProgramme(tube, kind)
         before, best = best, max(best, programme.least_cost())
-        if best >= 1.0 or number == ROUNDS or (number > 1 and best < before + STAYS):
+        if best >= 1.0 or best < HOPELESS or number == ROUNDS or (number > 0 and best < before + STAYS):
             break
         tube = tube.narrowed(*programme.ranges())
     return min(best, 1.0)

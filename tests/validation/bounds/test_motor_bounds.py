@@ -323,6 +323,15 @@ def test_the_only_motion_within_a_jerk_is_the_bound_in_tubes() -> None:
     assert 0.6 * peak < least_in_tubes(path, "peak", peak) <= peak * (1 + 1e-4)
 
 
+@pytest.mark.parametrize("kind", ["square", "peak"])
+def test_no_tube_is_asked_that_cannot_raise_what_is_known(kind: Kind) -> None:
+    path, t, _, _, a = _jerky(1)
+    level = 1.01 * float(np.trapezoid(a**2, t) if kind == "square" else np.abs(a).max())
+    plain = least_in_tubes(path, kind, level)
+    assert least_in_tubes(path, kind, level, 0.999 * level) == 0.0
+    assert least_in_tubes(path, kind, level, 0.5 * plain) == plain
+
+
 def test_a_level_is_lowered_until_it_is_proved() -> None:
     """Where standing costs little more than the motion, its own level proves little; nine tenths of it are."""
     slow = replace(EVEN, time=7.0)
