@@ -11,8 +11,8 @@ import numpy as np
 
 from camwright.design.line.forms import ramp_forms
 from camwright.design.torque.layout import Layout
-from camwright.design.torque.pieces import Laid, ProgrammePiece
-from camwright.design.torque.task import TorqueTask
+from camwright.design.torque.pieces import NONE, Laid, ProgrammePiece
+from camwright.design.torque.task import PEAKS, TorqueTask
 from camwright.design.torque.zone import Zone, available_torque
 from camwright.profiles.polynomial.profile import FloatArray
 
@@ -28,7 +28,6 @@ CURVE_DRAWN_IN = 2e-3
 """Share by which the motor's torque is drawn in, which is looked at in Gauss-Lobatto points only."""
 KEPT = 32
 """Pieces that are kept: those of the last few programmes."""
-NONE = ca.SX(0, 1)
 
 
 def moved(task: TorqueTask) -> float:
@@ -80,7 +79,7 @@ def _rows(count: int, *rows: Any) -> Any:
 
 def _bounded(task: TorqueTask) -> bool:
     """Whether a bound of what is to be least is an unknown."""
-    return task.aim in ("peak_torque", "load", "peak_acceleration", "peak_jerk")
+    return task.aim in PEAKS
 
 
 def _pace(task: TorqueTask) -> float:
@@ -170,9 +169,13 @@ def _point(task: TorqueTask, free: bool, placed: bool) -> ProgrammePiece:
     share, weight, s, sign, unit, power_unit, rounding = ca.vertsplit(given)
     h, rise = share * (length if free else 1.0), a1 - a
     machine = task.machine
-    y = (start if placed else task.start) + task.scale * (q + h * s * (v + h * s * (a / 2 + rise * s / 6)))
-    velocity = task.scale / task.duration * (v + h * s * (a + rise * s / 2))
-    acceleration = task.scale / task.duration**2 * (a + rise * s)
+    between = ca.SX.sym("m", 3)
+    y, velocity, acceleration = ca.vertsplit(between)
+    made = ca.vertcat(
+        (start if placed else task.start) + task.scale * (q + h * s * (v + h * s * (a / 2 + rise * s / 6))),
+        task.scale / task.duration * (v + h * s * (a + rise * s / 2)),
+        task.scale / task.duration**2 * (a + rise * s),
+    )
     torque = machine.inertia(y) * acceleration + machine.inertia_slope(y) * velocity**2 / 2 + machine.friction * sign
     available = available_torque(task, velocity)
     if task.task.line.ramps:  # what a ramp takes of it
@@ -194,7 +197,9 @@ def _point(task: TorqueTask, free: bool, placed: bool) -> ProgrammePiece:
             cost = ca.SX(0)
     above += _within(task, torque, available)
     unknowns = [symbol for symbol, _ in states] + [bound] + [length] * free + [drawn] * (task.aim == "energy")
-    return ProgrammePiece(ca.vertcat(*unknowns, *[start] * placed), given, cost, NONE, ca.vertcat(*above))
+    return ProgrammePiece(
+        ca.vertcat(*unknowns, *[start] * placed), given, cost, NONE, ca.vertcat(*above), between, made
+    )
 
 
 def _within(task: TorqueTask, torque: Any, available: Any) -> list[Any]:

@@ -17,6 +17,8 @@ from numpy.typing import NDArray
 
 from camwright.profiles.polynomial.profile import FloatArray
 
+NONE = ca.SX(0, 1)
+"""A column of nothing."""
 Places = NDArray[np.intp]
 """Where something lies, a column for each place."""
 
@@ -33,6 +35,8 @@ class ProgrammePiece:
         What it adds to the objective.
     equal, above
         What must be zero, and what must not be negative.
+    between, made
+        Symbols in which cost and constraints are stated besides, and what the unknowns make of them; none where there are none.
     """
 
     unknowns: Any
@@ -40,6 +44,8 @@ class ProgrammePiece:
     cost: Any
     equal: Any
     above: Any
+    between: Any = NONE
+    made: Any = NONE
 
     @property
     def rows(self) -> Any:
@@ -47,29 +53,45 @@ class ProgrammePiece:
         return ca.vertcat(self.equal, self.above)
 
     @cached_property
+    def plain(self) -> tuple[Any, Any]:
+        """Cost and rows, of the unknowns alone."""
+        cost, rows = ca.substitute([self.cost, self.rows], [self.between], [self.made])
+        return cost, rows
+
+    @cached_property
     def value(self) -> Any:
         """Function of unknowns and what is given: cost and rows."""
-        return ca.Function("value", [self.unknowns, self.given], ca.cse([self.cost, self.rows]))
+        return ca.Function("value", [self.unknowns, self.given], ca.cse(list(self.plain)))
 
     @cached_property
     def slope(self) -> Any:
         """Function that has the cost and its gradient."""
-        held = ca.cse([self.cost, ca.densify(ca.gradient(self.cost, self.unknowns))])
+        cost, _ = self.plain
+        held = ca.cse([cost, ca.densify(ca.gradient(cost, self.unknowns))])
         return ca.Function("slope", [self.unknowns, self.given], held)
 
     @cached_property
     def bend(self) -> tuple[Any, Any]:
         """Function that has the rows and what their Jacobian holds, and its pattern."""
-        bend = ca.jacobian(self.rows, self.unknowns)
-        return ca.Function("bend", [self.unknowns, self.given], ca.cse([self.rows, _held(bend)])), bend.sparsity()
+        _, rows = self.plain
+        bend = ca.jacobian(rows, self.unknowns)
+        return ca.Function("bend", [self.unknowns, self.given], ca.cse([rows, _held(bend)])), bend.sparsity()
 
     @cached_property
     def curve(self) -> tuple[Any, Any]:
-        """Function that has what the upper triangle of the Lagrangian's Hessian holds, of multipliers too, and its pattern."""
+        """Function that has what the upper triangle of the Lagrangian's Hessian holds, of multipliers too, and its pattern.
+
+        By the chain rule through what lies between: half of the work of differentiating it as a whole.
+        """
         of_cost, of_rows = ca.SX.sym("of_cost"), ca.SX.sym("of_rows", self.rows.numel())
-        bend, _ = ca.hessian(of_cost * self.cost + ca.dot(of_rows, self.rows), self.unknowns)
+        lagrangian, count = of_cost * self.cost + ca.dot(of_rows, self.rows), self.unknowns.numel()
+        whole, slope = ca.hessian(lagrangian, ca.vertcat(self.unknowns, self.between))
+        chain = ca.vertcat(ca.SX.eye(count), ca.jacobian(self.made, self.unknowns))
+        paid = ca.SX.sym("paid", self.made.numel())
+        own, _ = ca.hessian(ca.dot(paid, self.made), self.unknowns)
+        bend = chain.T @ whole @ chain + ca.substitute(own, paid, slope[count:])
         upper: Any = ca.triu(bend)
-        held = ca.cse([_held(upper)])
+        held = ca.cse([ca.substitute(_held(upper), self.between, self.made)])
         return ca.Function("curve", [self.unknowns, self.given, of_cost, of_rows], held), upper.sparsity()
 
 
@@ -163,7 +185,7 @@ def programme(laid: list[Laid], unknowns: int, parameters: int) -> tuple[dict[st
 
 def _held(matrix: Any) -> Any:
     """Give what a sparse matrix of symbols holds, as a column."""
-    return ca.vertcat(ca.SX(0, 1), *matrix.nonzeros())
+    return ca.vertcat(NONE, *matrix.nonzeros())
 
 
 def _added(parts: list[Any], places: list[Places], rows: int, columns: int) -> Any:

@@ -16,6 +16,10 @@ from camwright.profiles.task import Task
 
 Aim = CommandObjective | Literal["load"]
 """What is minimised; the load is the greatest share of the motor's torque at its speed that is used."""
+PEAKS: tuple[Aim, ...] = ("peak_torque", "load", "peak_acceleration", "peak_jerk")
+"""Aims that are the greatest of something."""
+ROOTS: tuple[Aim, ...] = ("rms_torque", "rms_acceleration", "rms_jerk")
+"""Aims that are root mean squares."""
 
 SHORTEST_CROSSING = 1e-3
 """Least share of a return that counts as its crossing."""
@@ -87,6 +91,11 @@ class TorqueTask:
     def inertia(self, y: Any) -> Any:
         """Inertia that the aim weighs: the machine's for what the motor feels, one for what the slave does."""
         return 1.0 + 0.0 * y if self.aim in MOTION_OBJECTIVES else self.machine.inertia(y)
+
+    @property
+    def friction(self) -> float:
+        """Friction against the motion that the aim weighs (N or N·m): none for what the slave does."""
+        return 0.0 if self.aim in MOTION_OBJECTIVES else self.machine.friction
 
     @property
     def feels_motor(self) -> bool:
