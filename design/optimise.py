@@ -104,7 +104,14 @@ class Solution:
     axis: AxisMotion | None = None
 
 
-def solve(task: Task, objective: CommandObjective, *, suggest: bool = True, thorough: bool = True) -> Solution:
+def solve(
+    task: Task,
+    objective: CommandObjective,
+    *,
+    suggest: bool = True,
+    thorough: bool = True,
+    starts: Sequence[CamProfile] = (),
+) -> Solution:
     """Design the optimal cycle of a cutting machine.
 
     Parameters
@@ -117,6 +124,8 @@ def solve(task: Task, objective: CommandObjective, *, suggest: bool = True, thor
         Whether a second road is taken where the first ends with less than the optimum, and the mesh of a return that bears the ramps of
         its line is refined. It takes many times as long, and gains little at the edge of what is possible, where motions have no room to
         differ.
+    starts
+        Returns from which an objective of the motor is searched for, instead of the least mean square of the acceleration.
 
     Raises
     ------
@@ -143,10 +152,10 @@ def solve(task: Task, objective: CommandObjective, *, suggest: bool = True, thor
         return _solve_free_place(task, objective, suggest, thorough)
     machine.sync_start(cut)
     if task.limits.motor is not None:
-        return _solve_for_motor(task, objective, suggest, thorough)
+        return _solve_for_motor(task, objective, suggest, thorough, starts)
     require_feasible(task, suggest=suggest)
     require_moving(machine, objective)
-    solution = _solve_steady(task.with_line(STEADY), objective, thorough)
+    solution = _solve_steady(task.with_line(STEADY), objective, thorough, starts)
     if not keeps_ramp(solution.profile, task):
         found, as_good = _solve_slow(task, objective, solution, thorough)
         if found is not None and as_good:
@@ -164,11 +173,13 @@ def solve(task: Task, objective: CommandObjective, *, suggest: bool = True, thor
     return solution
 
 
-def _solve_steady(task: Task, objective: CommandObjective, thorough: bool) -> Solution:
+def _solve_steady(
+    task: Task, objective: CommandObjective, thorough: bool, starts: Sequence[CamProfile] = ()
+) -> Solution:
     """Design the cycle for a line that keeps its speed."""
     decisive = motion_objective(task.machine, objective)
     if decisive is None:
-        return _solve_torque(task, objective)
+        return _solve_torque(task, objective, starts)
     back, status, value, iterations = _solve_motion(task, decisive, thorough)
     # of a slave that never leaves the line's speed it is 0, not −0
     return Solution(task.machine, assemble(back, task), back, status, objective, value + 0.0, iterations)
@@ -275,7 +286,7 @@ def _second_opinion(task: Task, problem: ReturnProblem, back: CamProfile) -> tup
         )
         return returns, 0
     try:
-        found = solve_torque(TorqueTask(task, problem, problem.objective))
+        found = solve_torque(TorqueTask(task, problem, problem.objective), starts=[back])
     except SolverError:
         return back, 0
     return min(back, found.back, key=lambda each: objective_value(each, problem.objective)), found.iterations
@@ -286,7 +297,9 @@ def _over_time(back: CamProfile, objective: MotionObjective, cut: Cut) -> float:
     return OBJECTIVES[objective].over_time(objective_value(back, objective), cut.line_speed)
 
 
-def _solve_for_motor(task: Task, objective: CommandObjective, suggest: bool, thorough: bool) -> Solution:
+def _solve_for_motor(
+    task: Task, objective: CommandObjective, suggest: bool, thorough: bool, starts: Sequence[CamProfile]
+) -> Solution:
     """Solve without the motor's torque, which is the answer if it keeps to the curve; else within the curve, and take the best.
 
     Within the curve are its rectangles, of which the grid tells the best. Where they do not do, or say little, a programme knows the whole
@@ -302,7 +315,7 @@ def _solve_for_motor(task: Task, objective: CommandObjective, suggest: bool, tho
     assert curve is not None  # noqa: S101 - that is what this function is for
     if not is_feasible(task.with_limits(plain)):
         raise infeasible(task, suggest=suggest)
-    free = solve(task.with_limits(plain), objective, thorough=thorough)
+    free = solve(task.with_limits(plain), objective, thorough=thorough, starts=starts)
     if keeps_curve(free.profile, task, curve):
         return free
     found: list[Solution] = []
@@ -316,8 +329,8 @@ def _solve_for_motor(task: Task, objective: CommandObjective, suggest: bool, tho
     # a rectangle says little where the torque depends on the place, and of energy, or where friction helps to brake, not all
     if not found or decisive is None or not machine.constant_inertia:
         easiest = None if found and machine.constant_inertia else least_load(task)
-        starts = [each.back for each in (*found, easiest) if each is not None]
-        found += _within_curve(task, objective, decisive, starts)
+        near = [each.back for each in (*found, easiest) if each is not None]
+        found += _within_curve(task, objective, decisive, [*starts, *near])
     if not found and task.line.ramps and is_feasible(task):
         raise ramp_infeasible(task, suggest=suggest)
     if not found:
@@ -395,10 +408,10 @@ def motion_objective(machine: Machine, objective: CommandObjective) -> MotionObj
     return "rms_acceleration" if objective == "rms_torque" else "peak_acceleration"
 
 
-def _solve_torque(task: Task, objective: CommandObjective) -> Solution:
+def _solve_torque(task: Task, objective: CommandObjective, starts: Sequence[CamProfile]) -> Solution:
     """Solve an objective of the motor that no objective of the motion stands for."""
     machine, problem = task.machine, return_problem(task, "peak_acceleration")
-    given: list[CamProfile] = []
+    given = list(starts)
     if machine.constant_inertia and objective == "energy" and not machine.friction:
         back, iterations = least_speed(problem)
         if task.straight:
@@ -428,9 +441,9 @@ def _solve_free_place(task: Task, objective: CommandObjective, suggest: bool, th
         plain = motor_speed_limits(task.machine, task.limits)
         placement = place_by_objective(task.with_limits(plain).with_line(STEADY), objective, task.limits.motor)
     placed = placement or place_for(task.with_line(STEADY), objective)
-    solution = solve(
-        placed.task.with_limits(task.limits).with_line(task.line), objective, suggest=suggest, thorough=thorough
-    )
+    starts = () if placed.back is None else (placed.back,)
+    at_place = placed.task.with_limits(task.limits).with_line(task.line)
+    solution = solve(at_place, objective, suggest=suggest, thorough=thorough, starts=starts)
     solution = replace(solution, status=SolveStatus.BEST_FOUND)  # no bound knows all places
     if solution.agreement is None:
         return replace(solution, agreement=Agreement(1, 1, 0.0, 0.0, placed.valleys))

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from camwright.profiles.errors import InputError
+from camwright.profiles.polynomial.profile import CamProfile
 from camwright.profiles.task import Task
 
 PLACES = 9
@@ -38,11 +39,14 @@ class Placement:
         Objective there.
     valleys
         Local minima found among the places looked at first.
+    back
+        The best return there as far as the search for the place knows it; None where it looked at none.
     """
 
     task: Task
     cost: float
     valleys: int
+    back: CamProfile | None = None
 
 
 def place_sync(

@@ -10,13 +10,15 @@ import numpy as np
 from camwright.design.torque.mesh import density, spread
 from camwright.design.torque.path_starts import PathStarts, path_starts
 from camwright.design.torque.programme import Guess
-from camwright.design.torque.task import Pattern, TorqueTask
+from camwright.design.torque.task import ROOTS, Pattern, TorqueTask
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 
 _States = Callable[[FloatArray], tuple[FloatArray, ...]]
 
 # Points at which a profile is looked at for its mesh.
 LOOKS = 400
+# Decimals of the shares of the return at which it is looked at, beside where its own pieces meet: a mesh has no use for closer ones.
+PLACES = 6
 ANYHOW: Pattern = ("any",)
 FORWARDS: Pattern = ("forth",)
 RESTING: Pattern = ("forth", "rest", "forth")
@@ -28,8 +30,9 @@ STOPS = (0.1, 0.3)
 def from_profile(back: CamProfile, task: TorqueTask, count: int) -> Guess:
     """Guess of one phase from a return over ``[0, length]``."""
     length, scale = task.problem.length, task.scale
-    look = np.linspace(0.0, 1.0, LOOKS + 1)
-    mesh = spread(look, density(look, back(look * length), back(look * length, 2)), count)
+    places = np.append(np.linspace(0.0, 1.0, LOOKS + 1), back.breaks[1:-1] / length if task.aim in ROOTS else [])
+    look: FloatArray = np.unique(np.round(places, PLACES))
+    mesh = spread(look, density(look, back(look * length), back(look * length, 2), task.aim), count)
     x = np.minimum(_nodes(mesh) * length, back.end)
     return Guess((mesh,), np.ones(1), back(x, 2) * length**2 / scale, back(x, 1) * length / scale, back(x) / scale)
 
@@ -45,7 +48,7 @@ def turning_from(back: CamProfile, task: TorqueTask, count: int) -> Guess | None
     for number, (first, last) in enumerate(itertools.pairwise(edges)):
         look = np.linspace(0.0, 1.0, LOOKS + 1)
         x = first + look * (last - first)
-        meshes.append(spread(look, density(look, back(x), back(x, 2)), count))
+        meshes.append(spread(look, density(look, back(x), back(x, 2), task.aim), count))
         x = np.minimum(first + _nodes(meshes[-1]) * (last - first), back.end)[0 if number == 0 else 1 :]
         rows.append((back(x, 2) * length**2 / scale, back(x, 1) * length / scale, back(x) / scale))
     a, v, q = (np.concatenate([row[k] for row in rows]) for k in range(3))
@@ -57,7 +60,7 @@ def from_path(family: PathStarts, k: int, task: TorqueTask, count: int) -> Guess
     passed = np.concatenate([[0.0], np.cumsum(family.times[k])])
     time = float(passed[-1])
     change = np.append(np.diff(family.speeds[k]) / family.times[k], 0.0)
-    mesh = spread(passed / time, density(passed / time, family.y, change), count)
+    mesh = spread(passed / time, density(passed / time, family.y, change, task.aim), count)
     a, v, y = family.states(k, np.minimum(_nodes(mesh) * time, time))
     unit = task.duration / task.scale
     return Guess((mesh,), np.ones(1), a * task.duration * unit, v * unit, (y - family.y[0]) / task.scale)
@@ -70,7 +73,7 @@ def family_of(task: TorqueTask) -> PathStarts | None:
         return None
     ends = task.start, task.start + problem.height
     speeds = problem.start_ratio * v, problem.end_ratio * v
-    return path_starts(task.inertia, task.machine.friction, ends, speeds, task.duration, task.aim)
+    return path_starts(task.inertia, task.friction, ends, speeds, task.duration, task.aim)
 
 
 def resting(task: TorqueTask, count: int) -> Iterator[tuple[Pattern, Guess]]:

@@ -19,7 +19,7 @@ from camwright.profiles.polynomial.profile import FloatArray
 PLACES = 161
 MARKS = (0.03, 0.08, 0.15, 0.25, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.92, 0.97)
 """Shares of the way at which the first torque may end and the second begin."""
-HALVINGS = 22
+HALVINGS = 14
 # Kinetic energies looked at, as powers of e times that of the mean speed.
 LEAST, GREATEST = -30.0, 10.0
 
@@ -91,7 +91,7 @@ def path_starts(
     time
         Time of the return (s).
     aim
-        ``"rms_torque"``, ``"energy"`` or any other, for which the peak of the torque counts.
+        ``"rms_torque"`` or ``"rms_acceleration"``, ``"energy"``, or any other, for which the peak of the torque counts.
     """
     y = np.linspace(*ends, PLACES)
     mass = np.asarray(inertia(y)) + 0.0 * y
@@ -124,7 +124,7 @@ def path_starts(
     slowest = np.argmin(speed[:, 1:] + speed[:, :-1], axis=1)
     times[np.arange(len(times)), slowest] += np.maximum(time - times.sum(axis=1), 0.0)
     torque = np.diff(energy, axis=1) / step + friction
-    if aim == "rms_torque":
+    if aim in ("rms_torque", "rms_acceleration"):
         costs = np.sqrt((torque**2 * times).sum(axis=1) / time)
     elif aim == "energy":
         costs = (np.maximum(torque, 0.0) * step).sum(axis=1) / time

@@ -6,16 +6,18 @@ import math
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from camwright.design.feasible.feasibility import is_feasible
 from camwright.design.place import Placement, is_smooth
 from camwright.design.returns.problem import return_problem
+from camwright.design.torque.finish import finish
 from camwright.design.torque.guesses import ANYHOW, from_path
 from camwright.design.torque.mesh import remesh
 from camwright.design.torque.parts import greatest_share, zone_floor
 from camwright.design.torque.path_starts import PathStarts, path_starts
-from camwright.design.torque.programme import TorqueAnswer, kept_programme
-from camwright.design.torque.task import Aim, TorqueTask
+from camwright.design.torque.programme import Guess, TorqueAnswer, kept_programme
+from camwright.design.torque.task import ROOTS, Aim, TorqueTask
 from camwright.design.torque.zone import Zone
 from camwright.profiles.machines import Machine
 from camwright.profiles.motor import MotorCurve
@@ -29,9 +31,11 @@ LEAST_PLACES = 3
 MARGIN = 0.01
 """Share of that range kept free at both ends: at a dead centre the crank would need infinite speed."""
 COARSE, FINE, FINEST = 40, 120, 300
-"""Intervals of the scan, of the search about its best places, and of the last about the best of these, where meshes still tell."""
+"""Intervals of the scan, of the search about its best places, and of the last look, where a finer mesh is no better laid."""
 SETTLED = 1e-3
-"""Share by which the search about the best places must be below the scan for the last to be made."""
+"""Share by which a finer mesh must be below the coarse one for another to be laid."""
+STILL = 5e-3
+"""Move of the place from mesh to mesh (rad) below which no other is laid: about a round valley the objective changes with its square."""
 SCANNED = 1e-3
 """Accuracy of the solver on the scan, scaled: it tells valleys, whose floors are then looked for."""
 EDGE = 1e-6
@@ -95,12 +99,13 @@ def place_by_objective(task: Task, aim: Aim, curve: MotorCurve | None = None) ->
     if not found_valleys:
         return None
     deepest = min(found_valleys, key=lambda answer: answer.value)
-    if best > deepest.value * (1 + SETTLED):
-        deepest = down.finest(deepest)
-    at = _middle(task.machine, deepest)
+    placed = task.placed_at(_middle(task.machine, deepest))
     apart = {round(_middle(task.machine, answer) / APART) for answer in found_valleys}
     apart |= {round(float(places[k]) / APART) for k in valleys if answers[k].value > best * (1 + NEAR)}
-    return Placement(task.placed_at(at), deepest.value, len(apart))
+    # what has a least peak on one mesh has none on another, so to search from it is no gain
+    found = None if aim not in ROOTS else TorqueTask(placed, return_problem(placed, "peak_acceleration"), aim, curve)
+    back = None if found is None else finish(deepest.guess, ANYHOW, found)
+    return Placement(placed, deepest.value, len(apart), back)
 
 
 def _edges(task: Task, places: FloatArray) -> list[float]:
@@ -127,25 +132,24 @@ class _Descent:
     """The way down to the floor of a valley: the place is one more unknown, on the scan's mesh, then on a finer one."""
 
     def __init__(self, middle: TorqueTask, zone: Zone) -> None:
-        self._coarse, self._fine = (
-            kept_programme(middle, ANYHOW, (count,), zone, near=True) for count in (COARSE, FINE)
-        )
-        self._held = kept_programme(middle, ANYHOW, (FINE,), zone)
         self._middle, self._zone = middle, zone
 
-    def finest(self, answer: TorqueAnswer) -> TorqueAnswer:
-        """Answer about one of `floor` on the finest mesh; that one if there is none, or one of another valley that is dearer."""
-        programme = kept_programme(self._middle, ANYHOW, (FINEST,), self._zone, near=True)
-        found = programme.solve(remesh(answer.guess, ANYHOW, (FINEST,)))
-        return found if found.success and found.value <= answer.value * (1 + SETTLED) else answer
-
     def floor(self, answer: TorqueAnswer) -> TorqueAnswer:
-        """Best answer about one at a place of the scan."""
-        coarse = self._coarse.solve(answer.guess)
-        start = remesh((coarse if coarse.success else answer).guess, ANYHOW, (FINE,))
-        held = self._held.solve(start, hold=True)
-        free = self._fine.solve(held.guess if held.success else start)
-        return min((each for each in (held, free) if each.success), key=lambda each: each.value, default=answer)
+        """Best answer about one at a place of the scan; of finer meshes the second is laid where the first still told."""
+        coarse = self._beside(answer, COARSE)
+        first = self._beside(coarse, FINE)
+        moved = abs(_middle(self._middle.machine, first) - _middle(self._middle.machine, coarse))
+        if first.value >= coarse.value * (1 - SETTLED) or moved < STILL:
+            return first
+        second = self._beside(first, FINE if self._middle.aim in ROOTS else FINEST)
+        return second if second.value <= first.value * (1 + SETTLED) else first  # else that of another valley
+
+    def _beside(self, answer: TorqueAnswer, count: int) -> TorqueAnswer:
+        """Answer about one on a mesh laid for it, or on its own where that is as good and as fine; that one if there is none."""
+        aim, same = self._middle.aim, count == len(answer.guess.mesh[0])
+        guess = answer.guess if same and aim not in ROOTS else remesh(answer.guess, ANYHOW, (count,), aim)
+        found = kept_programme(self._middle, ANYHOW, (count,), self._zone, near=True).solve(guess)
+        return found if found.success else answer
 
 
 def _middle(machine: Machine, answer: TorqueAnswer) -> float:
@@ -169,34 +173,58 @@ def _scan(
     programme = kept_programme(task, ANYHOW, (COARSE,), zone, SCANNED)
     pairs = list(zip(starts.tolist(), ends.tolist(), strict=True))
     able = greatest_share(task, zone, starts, ends) <= 1.0
-    floors = np.array(
-        [zone_floor(task, zone, *pair) if fits else np.inf for fits, pair in zip(able, pairs, strict=True)]
-    )
+    paths = _Paths(task, zone, pairs, able)
+    # the place that seems best goes first, so that dear ones need not be looked at
+    while able.any() and not paths.knows(first := int(np.argmin(paths.floors))):
+        paths.guesses(first)
     answers: dict[int, TorqueAnswer] = {}
     best = np.inf
-    for k in (int(np.argmin(floors)), *range(len(pairs))):
-        if k in answers or not floors[k] <= best * (1 + NEAR) or not able[k]:
+    for k in (int(np.argmin(paths.floors)), *np.nonzero(able)[0].tolist()):
+        if k in answers or paths.floors[k] > best * (1 + NEAR):
             continue
-        family = _family(task, pairs[k])
-        valleys = family.valleys()[:PATHS]
-        if valleys:
-            floors[k] = max(floors[k], _of_cycle(task, float(family.costs[valleys[0]]), floors[k]) / (1 + OFF))
-        if floors[k] > best * (1 + NEAR):
+        guesses = paths.guesses(k)
+        if paths.floors[k] > best * (1 + NEAR):
             continue
-        guesses = [from_path(family, valley, task, COARSE) for valley in valleys]
         # to a smooth objective the neighbour's answer leads no other way where the path has one valley
         if k - 1 in answers and not (task.aim == "rms_torque" and len(guesses) == 1):
-            guesses.append(answers[k - 1].guess)
+            guesses = [*guesses, answers[k - 1].guess]
         found = [programme.solve(replace(guess, ends=pairs[k]), rough=True, hold=True) for guess in guesses]
         found = [answer for answer in found if answer.success]
         if found:
             answers[k] = min(found, key=lambda answer: answer.value)
             best = min(best, answers[k].value)
-    return answers, floors
+    return answers, paths.floors
+
+
+class _Paths:
+    """Returns along the path with the zone at places, and what a place costs at least: by its zone, and by its path once known."""
+
+    def __init__(self, task: TorqueTask, zone: Zone, pairs: list[tuple[float, float]], able: NDArray[np.bool_]) -> None:
+        self._task, self._pairs = task, pairs
+        self._known: dict[int, list[Guess]] = {}
+        self.floors: FloatArray = np.array(
+            [zone_floor(task, zone, *pair) if fits else np.inf for fits, pair in zip(able, pairs, strict=True)]
+        )
+
+    def knows(self, k: int) -> bool:
+        """Whether the path of a place is known."""
+        return k in self._known
+
+    def guesses(self, k: int) -> list[Guess]:
+        """Guesses along the path with the zone at a place, whose floor they raise."""
+        if k not in self._known:
+            task = self._task
+            family = _family(task, self._pairs[k])
+            valleys = family.valleys()[:PATHS]
+            if valleys:
+                cost = _of_cycle(task, float(family.costs[valleys[0]]), self.floors[k])
+                self.floors[k] = max(self.floors[k], cost / (1 + OFF))
+            self._known[k] = [from_path(family, valley, task, COARSE) for valley in valleys]
+        return self._known[k]
 
 
 def _of_cycle(task: TorqueTask, cost: float, zone: float) -> float:
-    """Objective of a cycle whose return has a cost and whose sync zone alone costs so much; 0 where that of the motor tells nothing."""
+    """Objective of a cycle whose return has a cost and whose sync zone alone costs so much; 0 where that of the path tells nothing."""
     match task.aim:
         case "rms_torque":
             return math.hypot(zone, cost * math.sqrt(task.cut.return_zone / task.cut.length))
@@ -204,6 +232,8 @@ def _of_cycle(task: TorqueTask, cost: float, zone: float) -> float:
             return zone + cost
         case "peak_torque":
             return max(zone, cost)
+        case "rms_acceleration":  # of the return, scaled
+            return cost * task.duration**2 / task.scale
     return 0.0
 
 
@@ -218,4 +248,4 @@ def _family(task: TorqueTask, ends: tuple[float, float]) -> PathStarts:
     pace = task.cut.sync_ratio * task.cut.line_speed
     speeds = pace / float(machine.tool_ratio(ends[1])), pace / float(machine.tool_ratio(ends[0]))
     way = ends[1], ends[0] + machine.pitch
-    return path_starts(task.inertia, machine.friction, way, speeds, task.duration, task.aim)
+    return path_starts(task.inertia, task.friction, way, speeds, task.duration, task.aim)

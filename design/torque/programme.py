@@ -37,12 +37,14 @@ SHORTEST_PHASE = 1e-5
 
 ACCURACY, MOST_ITERATIONS = 1e-8, 300
 """Accuracy of the solver, scaled, and its most iterations."""
-KEPT = 8
+KEPT = 16
 """Programmes that are kept: those of one design, whose starts of a kind have one, and of the same job designed again."""
 
 _OPTIONS: dict[str, Any] = QUIET | {
     "ipopt.mu_strategy": "adaptive",
     "ipopt.bound_relax_factor": 1e-10,
+    # steps are refined where they need it, not always
+    "ipopt.min_refinement_steps": 0,
 }
 _FROM_NEAR: dict[str, Any] = {"ipopt.mu_strategy": "monotone", "ipopt.mu_init": 1e-4}
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 
@@ -24,10 +25,10 @@ from camwright.design.torque.guesses import (
     turning,
     turning_from,
 )
-from camwright.design.torque.mesh import remesh
-from camwright.design.torque.peaks import ABOVE, peaks, sharpened
+from camwright.design.torque.mesh import paces, remesh
+from camwright.design.torque.peaks import ABOVE, drawn_between, peaks, sharpened
 from camwright.design.torque.programme import MOST_ITERATIONS, Guess, TorqueAnswer, TorqueProgramme, kept_programme
-from camwright.design.torque.task import Pattern, TorqueTask
+from camwright.design.torque.task import ROOTS, Pattern, TorqueTask
 from camwright.profiles.errors import SolverError
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.returns import quintic_between
@@ -41,19 +42,23 @@ LADDER = (200, 300, 450, 675, 1000, 1500)
 """Intervals of the meshes on which the best of these is taken further, until the objective settles: hardly any but a slave that nearly
 coasts, whose torque is what its mesh leaves over, goes beyond the second."""
 PEAK_RUNGS = 2
-"""Of these for a peak, which intervals divided where it hides bring down further than finer meshes do."""
+"""Of these for a peak, which intervals divided where it hides bring down further than finer meshes do; none for one at its floor."""
 GIVEN = 300
 """Intervals on which a return that is given is measured."""
-SETTLED = 1e-4
-"""Share of the cycle's objective by which a finer mesh must still gain for another to be tried."""
+SETTLED, SHRINKS = 1e-4, 0.45
+"""Share of the cycle's objective that a finer mesh must promise to gain to be tried, and the share of the last one's gain that it promises:
+it is finer by a half, and the error falls with the square of that."""
 AGREEMENT = 1e-2
 """Starts whose objectives differ by less than this share on the first mesh have found the same optimum; its own error is as large."""
-NEAR = 0.05
-"""Answers within this share of the best on the first mesh are taken further, one of each value."""
+NEAR = 0.25
+"""Answers within this share of the best on the first mesh are taken further, one of each motion."""
 MOST_PATHS = 4
 """Returns along the path that are started from."""
 MOST_TAKEN = 3
 """Answers that are taken further."""
+ONE_MOTION, ONE_EXACTLY, LOOKS = 0.15, 0.03, 101
+"""Share of the greatest velocity by which motions differ that are two, for a root mean square and for all others, whose valleys are flat or
+have corners; and the times at which they are looked at."""
 PATIENCE = 100
 """Most iterations of a first look."""
 TURNING_SHARE = 0.5
@@ -66,6 +71,10 @@ ZONE_PLACES = 1001
 """Places of the sync zone at which its torque is looked at."""
 SAME = 1e-7
 """Peaks that differ by less than this share are the same; the last found is the smoothest."""
+
+
+_Given = Callable[[], Sequence[CamProfile]]
+"""Returns to start from, not made before they are asked for."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,13 +130,12 @@ def solve_torque(
     SolverError
         No start converged to a motion that keeps the limits.
     """
-    profiles = list(starts) or [solve_return(replace(task.problem, objective="rms_acceleration"))[0]]
-    first, iterations = _first_look(task, profiles, FIRST, floor)
-    # the limits of a motion can be kept, but maybe not so soon, or on so coarse a mesh
-    for count in (FIRST, SECOND) if task.curve is None else ():
-        if not first:
-            first, more = _first_look(task, profiles, count, floor, MOST_ITERATIONS)
-            iterations += more
+
+    @cache
+    def profiles() -> Sequence[CamProfile]:
+        return starts or [solve_return(replace(task.problem, objective="rms_acceleration"))[0]]
+
+    first, iterations = _first_looks(task, profiles, floor)
     accepted = keeps or (lambda _: True)
     found: list[tuple[float, CamProfile, float]] = []
 
@@ -137,7 +145,7 @@ def solve_torque(
             found.append((max(_value(task, answer, pattern), floor), back, answer.residual))
 
     second: list[tuple[TorqueAnswer, Pattern]] = []
-    for answer, pattern in _distinct(first):
+    for answer, pattern in _distinct(first, ONE_MOTION if task.aim in ROOTS else ONE_EXACTLY):
         finer = _finer(task, pattern, answer, SECOND, floor)
         iterations += finer.iterations
         second.append((finer if finer.success else answer, pattern))
@@ -145,7 +153,7 @@ def solve_torque(
     if second:
         answer, pattern = min(second, key=lambda entry: entry[0].value)
         iterations += _taken_further(task, pattern, answer, floor, keep)
-    found += [entry for entry in _given(task, starts if found else profiles) if accepted(entry[1])]
+    found += [entry for entry in _given(task, starts if found else profiles()) if accepted(entry[1])]
     if not found:
         raise SolverError(
             f"IPOPT found no return of least {task.aim} from any start, although the limits can be kept; minimise peak_acceleration or "
@@ -173,15 +181,19 @@ def _taken_further(
 ) -> int:
     """Take an answer to finer meshes until it settles, then divide intervals where its peak hides; the iterations."""
     iterations, zone = 0, _zone_share(task)
-    for count in LADDER[: PEAK_RUNGS if task.aim == "peak_torque" else None]:
+    rungs = len(LADDER)
+    if task.aim == "peak_torque":
+        rungs = 0 if answer.value <= floor * (1 + REACHED) else PEAK_RUNGS
+    for count in LADDER[:rungs]:
         finer = _finer(task, pattern, answer, count, floor)
         iterations += finer.iterations
         if not finer.success:
             break
         keep(finer, pattern)
-        settled = _of_cycle(finer.value, zone) > _of_cycle(answer.value, zone) * (1 - SETTLED)
+        reached = _of_cycle(_value(task, finer, pattern), zone)
+        gained = _of_cycle(_value(task, answer, pattern), zone) - reached
         answer = finer
-        if settled:
+        if SHRINKS * gained < SETTLED * reached:
             break
     for above in ABOVE if task.aim == "peak_torque" else ():
         guess = sharpened(answer.guess, pattern, task, max(answer.value, floor), above)
@@ -196,15 +208,28 @@ def _taken_further(
     return iterations
 
 
+def _first_looks(task: TorqueTask, profiles: _Given, floor: float) -> tuple[list[tuple[TorqueAnswer, Pattern]], int]:
+    """Answers of a first look, of one that takes longer or of one on a finer mesh, whichever has any, and the iterations of all."""
+    first, iterations = _first_look(task, profiles, FIRST, floor)
+    # the limits of a motion can be kept, but maybe not so soon, or on so coarse a mesh
+    for count in (FIRST, SECOND) if task.curve is None else ():
+        if not first:
+            first, more = _first_look(task, profiles, count, floor, MOST_ITERATIONS)
+            iterations += more
+    return first, iterations
+
+
 def _first_look(
-    task: TorqueTask, profiles: Sequence[CamProfile], count: int, floor: float, patience: int = PATIENCE
+    task: TorqueTask, profiles: _Given, count: int, floor: float, patience: int = PATIENCE
 ) -> tuple[list[tuple[TorqueAnswer, Pattern]], int]:
     """Answers of the guesses of every kind on a mesh of a number of intervals, the best first, and the iterations of all."""
-    # a start that takes long has none of the best ends, and its iterations are slow ones: a Hessian that must be corrected each time
-    answers = [
-        (_programme(task, pattern, guess, patience).solve(guess, rough=True, floor=floor), pattern)
-        for pattern, guess in _guesses(task, profiles, count)
-    ]
+    answers: list[tuple[TorqueAnswer, Pattern]] = []
+    for pattern, guess in _guesses(task, profiles, count):
+        # a start that takes long has none of the best ends, and its iterations are slow ones: a Hessian that must be corrected each time
+        answer = _programme(task, pattern, guess, patience).solve(guess, rough=True, floor=floor)
+        answers.append((answer, pattern))
+        if answer.success and answer.value <= floor * (1 + REACHED):
+            break  # none goes below its floor
     good = sorted((entry for entry in answers if entry[0].success), key=lambda entry: entry[0].value)
     return good, sum(answer.iterations for answer, _ in answers)
 
@@ -244,7 +269,8 @@ def _of_cycle(value: float, zone: tuple[float, int]) -> float:
 def _finer(task: TorqueTask, pattern: Pattern, answer: TorqueAnswer, count: int, floor: float) -> TorqueAnswer:
     """Solve again on a finer mesh."""
     parts = len(answer.guess.mesh)
-    return _solved(task, pattern, remesh(answer.guess, pattern, (count // parts,) * parts), answer.value, floor)
+    guess = remesh(answer.guess, pattern, (count // parts,) * parts, task.aim)
+    return _solved(task, pattern, guess, answer.value, floor)
 
 
 def _solved(task: TorqueTask, pattern: Pattern, guess: Guess, value: float, floor: float) -> TorqueAnswer:
@@ -264,24 +290,32 @@ def _solved(task: TorqueTask, pattern: Pattern, guess: Guess, value: float, floo
 
 
 def _value(task: TorqueTask, answer: TorqueAnswer, pattern: Pattern) -> float:
-    """Objective of an answer; a peak is looked for between the programme's points too."""
-    return float(peaks(answer.guess, pattern, task).max()) if task.aim == "peak_torque" else answer.value
+    """Objective of an answer; a peak is looked for between the programme's points too, and what is drawn there."""
+    if task.aim == "peak_torque":
+        return float(peaks(answer.guess, pattern, task).max())
+    return drawn_between(answer.guess, pattern, task) if task.aim == "energy" else answer.value
 
 
 def _programme(task: TorqueTask, pattern: Pattern, guess: Guess, iterations: int = MOST_ITERATIONS) -> TorqueProgramme:
     return kept_programme(task, pattern, tuple(len(mesh) for mesh in guess.mesh), iterations=iterations)
 
 
-def _distinct(answers: list[tuple[TorqueAnswer, Pattern]]) -> list[tuple[TorqueAnswer, Pattern]]:
-    """Best answers of each value, if not far above the best."""
+def _distinct(answers: list[tuple[TorqueAnswer, Pattern]], alike: float) -> list[tuple[TorqueAnswer, Pattern]]:
+    """Best of the answers whose motions are alike, if not far above the best of all."""
     kept: list[tuple[TorqueAnswer, Pattern]] = []
     for entry in answers:
-        value = entry[0].value
-        if len(kept) == MOST_TAKEN or value > answers[0][0].value * (1 + NEAR):
+        if len(kept) == MOST_TAKEN or entry[0].value > answers[0][0].value * (1 + NEAR):
             break
-        if not kept or value > kept[-1][0].value * (1 + SETTLED):
+        if not any(entry[1] == other[1] and _apart(entry, other) <= alike for other in kept):
             kept.append(entry)
     return kept
+
+
+def _apart(entry: tuple[TorqueAnswer, Pattern], other: tuple[TorqueAnswer, Pattern]) -> float:
+    """By how much the velocities of two motions differ at most, as a share of the first one's greatest."""
+    times = np.linspace(0.0, 1.0, LOOKS)
+    one, two = (paces(answer.guess, pattern, times) for answer, pattern in (entry, other))
+    return float(np.abs(two - one).max()) / max(float(np.abs(one).max()), 1e-300)
 
 
 def _given(task: TorqueTask, starts: Sequence[CamProfile]) -> list[tuple[float, CamProfile, float]]:
@@ -312,16 +346,21 @@ def _turns(back: CamProfile, problem: ReturnProblem) -> bool:
     return problem.least_ratio >= 0.0 and back.extrema(1)[0].value < -TURNING_SHARE * problem.start_ratio
 
 
-def _guesses(task: TorqueTask, given: Sequence[CamProfile], count: int) -> Iterator[tuple[Pattern, Guess]]:
-    """Guesses of every kind that the task has, and from the returns given, on a mesh of a number of intervals."""
-    problem = task.problem
-    quintic = quintic_between(task.task.sync, problem.length, problem.height)
+def _profiles(task: TorqueTask, given: _Given) -> Iterator[CamProfile]:
+    """Quintic and the returns given, these not before they are asked for."""
+    quintic = quintic_between(task.task.sync, task.problem.length, task.problem.height)
     # where the slave may not turn, one that would is no start: the solver wanders from it
-    profiles = [*([] if _turns(quintic, problem) else [quintic]), *given]
+    if not _turns(quintic, task.problem):
+        yield quintic
+    yield from given()
+
+
+def _guesses(task: TorqueTask, given: _Given, count: int) -> Iterator[tuple[Pattern, Guess]]:
+    """Guesses of every kind that the task has, and from the returns given, on a mesh of a number of intervals."""
     rubs = task.machine.friction > 0
     turns = rubs and task.may_turn  # where friction counts its sign must be known
     one_way = FORWARDS if turns else ANYHOW
-    for profile in profiles:
+    for profile in _profiles(task, given):
         yield one_way, from_profile(profile, task, count)
     family = family_of(task)
     if family is not None:
@@ -331,9 +370,9 @@ def _guesses(task: TorqueTask, given: Sequence[CamProfile], count: int) -> Itera
         yield from resting(task, count // 2)
     if turns:
         yield from turning(task, count // 3)
-    if turns or problem.height < 0:
+    if turns or task.problem.height < 0:
         # where it turns a slave is at rest, so a stroke that it may not leave is kept there exactly
-        for profile in profiles:
+        for profile in _profiles(task, given):
             turned = turning_from(profile, task, count // 3)
             if turned is not None:
                 yield TURNING[0], turned

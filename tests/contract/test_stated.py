@@ -71,6 +71,8 @@ NUMBERS: dict[str, tuple[object, object, str, str]] = {
     "meshes of a torque": ((torque_search.FIRST, *torque_search.LADDER[-1:]), (60, 1500), "contract", "intervals, the best on up to 1500"),
     "settled torque": (torque_search.SETTLED, 1e-4, "contract", "gains less than 1e-4"),
     "places of a torque": (placing.PLACES, 24, "contract", "24 places of the sync zone for all other objectives"),
+    "meshes of a place": ((placing.FINE, placing.FINEST), (120, 300), "contract", "on a mesh laid anew (300 intervals for a peak)"),
+    "meshes of a place that tell": ((placing.SETTLED, placing.STILL), (1e-3, 5e-3), "contract", "than 1e-3 and moved the place by 0.005"),
     "places of the sync zone": (place.PLACES, 9, "contract", "9 places and to 0.002 rad"),
     "places for a peak": (place.PEAK_PLACES, 41, "contract", "41 places of the sync zone are tried"),
     "accuracy of the place for a peak": (place.PEAK_RESOLUTION, 1e-5, "contract", "gone down to 1e-5 rad"),

@@ -14,11 +14,12 @@ from camwright.design.optimise import solve
 from camwright.design.returns.measures import objective_value
 from camwright.design.returns.problem import return_problem
 from camwright.design.returns.solver import solve_return
+from camwright.design.torque import search
 from camwright.design.torque.finish import finish
 from camwright.design.torque.guesses import ANYHOW, RESTING, from_profile, resting
-from camwright.design.torque.mesh import divide, remesh, spread
+from camwright.design.torque.mesh import density, divide, paces, remesh, spread
 from camwright.design.torque.path_starts import path_starts
-from camwright.design.torque.peaks import peaks
+from camwright.design.torque.peaks import drawn_between, peaks
 from camwright.design.torque.placing import _edges, place_by_objective
 from camwright.design.torque.programme import TorqueProgramme
 from camwright.design.torque.search import solve_torque, zone_peak
@@ -233,7 +234,7 @@ def test_a_finer_mesh_is_the_same_motion() -> None:
     task = _torque_task(Task(CRANK, SHEAR, TURNS), "rms_torque")
     back = quintic_between(task.task.sync, SHEAR.return_zone, task.problem.height)
     guess = from_profile(back, task, 40)
-    finer = remesh(guess, ANYHOW, (90,))
+    finer = remesh(guess, ANYHOW, (90,), "rms_torque")
     x = np.concatenate([[0.0], np.cumsum(finer.mesh[0])])
     assert sum(finer.mesh[0]) == pytest.approx(1.0)
     assert finer.position == pytest.approx(back(x * back.end) / task.scale, abs=2e-3)
@@ -295,6 +296,65 @@ def test_the_best_place_may_be_the_last_one_that_keeps_the_limits() -> None:
 def test_a_mesh_shares_its_density_evenly() -> None:
     lengths = spread(np.array([0.0, 0.5, 1.0]), np.array([1.0, 3.0]), 8)
     assert lengths == pytest.approx([0.25, 0.25, *[1 / 12] * 6])
+
+
+def test_a_mesh_of_a_mean_square_is_fine_where_the_acceleration_bends() -> None:
+    """Up and down in straight lines: only the corner asks for intervals, whatever the slope."""
+    nodes = np.linspace(0.0, 1.0, 101)
+    acceleration, way = np.abs(nodes - 0.5), nodes
+    found, even = (density(nodes, way, acceleration, aim) for aim in ("rms_torque", "peak_torque"))
+    assert even == pytest.approx(np.full(100, even[0]))
+    corner = np.abs(nodes[:-1] + 0.005 - 0.5) < 0.025
+    assert found[~corner] == pytest.approx(np.full(int((~corner).sum()), 0.5), rel=0.01)
+    assert float(found[corner] @ np.diff(nodes)[corner]) == pytest.approx(0.5, rel=0.05)
+
+
+def test_velocities_of_a_motion_that_rests_are_nothing_there() -> None:
+    rubbing = _torque_task(Task(KNIFE, CUT, LIMITS), "energy")
+    pattern, guess = next(iter(resting(rubbing, 20)))
+    out, rest, _ = guess.lengths
+    found = paces(guess, pattern, np.array([0.0, out + 0.01 * rest, out + 0.99 * rest, 1.0]))
+    assert found == pytest.approx([guess.velocity[0], 0.0, 0.0, guess.velocity[-1]], abs=1e-12)
+    nodes = out * np.cumsum(guess.mesh[0])
+    assert paces(guess, pattern, nodes) == pytest.approx(guess.velocity[1:21], abs=1e-12)
+
+
+def test_what_is_drawn_between_the_points_is_what_the_motion_draws() -> None:
+    """The naive twin looks at the finished return ten thousand times."""
+    task = Task(CRANK, SHEAR, TURNS)
+    asked = _torque_task(task, "energy")
+    guess = from_profile(solve(task, "rms_acceleration").back, asked, 60)
+    back = finish(guess, ANYHOW, asked)
+    x = np.linspace(0.0, back.end, 10_001)
+    y, v = asked.start + back(x), SHEAR.line_speed
+    force = CRANK.inertia(y) * v**2 * back(x, 2) + CRANK.inertia_slope(y) * v**2 * back(x, 1) ** 2 / 2
+    power = np.maximum(force * v * back(x, 1), 0.0)
+    assert drawn_between(guess, ANYHOW, asked) == pytest.approx(float(np.trapezoid(power, x)) / back.length, rel=1e-3)
+
+
+def test_where_a_start_reaches_the_floor_of_a_peak_no_other_is_made(monkeypatch: pytest.MonkeyPatch) -> None:
+    task = Task(CRANK, replace(SHEAR, length=1.2), TURNS)
+
+    def none(*_: object, **__: object) -> None:
+        pytest.fail("another start was made")
+
+    monkeypatch.setattr(search, "solve_return", none)
+    found = solve_torque(_torque_task(task, "peak_torque"), floor=zone_peak(task))
+    assert (found.starts, found.agreeing, found.value) == (1, 1, pytest.approx(zone_peak(task), rel=1e-4))
+
+
+@pytest.mark.parametrize("aim", ["rms_torque", "rms_acceleration"])
+def test_the_search_for_a_place_hands_on_the_return_that_it_ends_with(aim: CommandObjective) -> None:
+    task = Task(replace(CRANK, sync_at=math.nan), SHEAR, TURNS)
+    placed = place_by_objective(task, aim)
+    assert placed is not None
+    assert placed.back is not None
+    asked = _torque_task(placed.task, aim)
+    found = solve_torque(asked, starts=[placed.back])
+    own = TorqueProgramme(asked, ANYHOW, (300,)).value(from_profile(placed.back, asked, 300))
+    assert found.value <= own * (1 + 1e-9)
+    assert found.value == pytest.approx(own, rel=2e-2)
+    assert found.value <= solve_torque(asked).value * (1 + 1e-4)
 
 
 @pytest.mark.parametrize("time", [0.2, 1.0, 9.0])
