@@ -18,8 +18,8 @@ INTERVALS = (300, 1200, 2400)
 ENOUGH = 5e-4
 INSIDE = 12
 """Intervals that each piece of the motion is given at least; short pieces are where the jerk does its work."""
-MOST_PIECES = 60
-"""A motion of more pieces than this is one on a grid, whose breaks say nothing."""
+MOST_PIECES, FEW_INSIDE = 60, 2
+"""A motion of more pieces than this is one on a mesh, and the intervals that each of these is given at least."""
 DUAL = "weak duality, multipliers by an interior point"
 NOTHING = Bound(0.0, NONE)
 
@@ -77,11 +77,10 @@ def _dual_task(task: Task) -> DualTask:
 
 
 def _nodes(breaks: FloatArray, time: float, intervals: int) -> FloatArray:
-    """Place nodes evenly on each piece of a motion with few pieces, else evenly on all."""
-    if len(breaks) > MOST_PIECES:
-        return np.linspace(0.0, time, intervals + 1)
+    """Place nodes evenly on each piece of a motion, few at least on one of many pieces: its mesh is close where the motion bends."""
+    least = INSIDE if len(breaks) <= MOST_PIECES else FEW_INSIDE
     parts = [
-        np.linspace(low, high, max(INSIDE, math.ceil(intervals * (high - low) / time)) + 1)[:-1]
+        np.linspace(low, high, max(least, math.ceil(intervals * (high - low) / time)) + 1)[:-1]
         for low, high in pairwise(breaks)
         if high - low > 1e-9 * time
     ]
