@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
 from pathlib import Path
 
@@ -17,6 +18,11 @@ settings.load_profile("camwright")
 for name in VARIABLES:  # as the command line has it; numpy is not loaded yet
     os.environ.setdefault(name, "1")
 os.environ.pop("COLUMNS", None)  # tables are as wide as they are told, not as the terminal of whoever runs the tests
+
+if (
+    signal.getsignal(signal.SIGINT) == signal.SIG_IGN
+):  # in the background of a script interrupts are tested all the same
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 if (ROOT / "camwright" / "design").is_dir():
     # Processes that a test starts see this checkout first, as the tests themselves do (pythonpath of pytest), not a copy installed earlier.
