@@ -39,8 +39,12 @@ def finish(guess: Guess, pattern: Pattern, task: TorqueTask) -> CamProfile:
         h, a = without_false_corners(mesh / mesh.sum() * share * length, a)
         target = problem.end_ratio if last else 0.0
         goal = problem.height if last else float(guess.position[node]) * scale
-        rows += _cubics(h, a, (position, velocity), (goal, target))
-        breaks += (breaks[-1] + np.cumsum(h)).tolist()
+        ends = breaks[-1] + np.cumsum(h)
+        if last:
+            ends[-1] = length
+        # widths as the breaks have them: of a millionth of the return rounding is 1e-10
+        rows += _cubics(np.diff(ends, prepend=breaks[-1]), a, (position, velocity), (goal, target))
+        breaks += ends.tolist()
         velocity, position = target, goal
     return CamProfile.from_arrays(np.append(breaks[:-1], length), rows)
 

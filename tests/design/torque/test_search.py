@@ -21,7 +21,7 @@ from camwright.design.torque.mesh import density, divide, paces, remesh, spread
 from camwright.design.torque.path_starts import path_starts
 from camwright.design.torque.peaks import drawn_between, peaks
 from camwright.design.torque.placing import _edges, place_by_objective
-from camwright.design.torque.programme import TorqueProgramme
+from camwright.design.torque.programme import Guess, TorqueProgramme
 from camwright.design.torque.search import solve_torque, zone_peak
 from camwright.design.torque.task import TorqueTask
 from camwright.profiles.cut import Cut
@@ -228,6 +228,20 @@ def test_answers_meet_their_ends_and_stand_still_at_rest() -> None:
     ]
     assert all(float(found) == pytest.approx(value, abs=1e-10) for found, value in ends)
     assert float(back(0.5 * (answer.guess.lengths[0] + 1 - answer.guess.lengths[2]) * back.end, 1)) == 0.0
+
+
+@pytest.mark.parametrize("width", [1e-3, 1e-6, 1e-8])
+def test_ends_are_met_on_the_shortest_intervals(width: float) -> None:
+    """An acceleration that jumps lies on an interval of a millionth of the return: its width is that of the breaks, rounding included."""
+    task = _torque_task(Task(CRANK, SHEAR, TURNS), "rms_torque")
+    guess = from_profile(quintic_between(task.task.sync, task.problem.length, task.problem.height), task, 40)
+    mesh = np.concatenate([guess.mesh[0][:-1], [guess.mesh[0][-1] - width, width]])
+    parts = (np.insert(part, -1, part[-2]) for part in (guess.acceleration, guess.velocity, guess.position))
+    back = finish(Guess((mesh,), guess.lengths, *parts), ANYHOW, task)
+    problem, slope = task.problem, back.peak(2)
+    assert float(back(back.end, 2)) == pytest.approx(problem.end_slope, abs=1e-13 * slope)
+    assert float(back(back.end, 1)) == pytest.approx(problem.end_ratio, rel=1e-13)
+    assert float(back(back.end)) == pytest.approx(problem.height, rel=1e-13)
 
 
 def test_a_finer_mesh_is_the_same_motion() -> None:
