@@ -40,7 +40,7 @@ class Placement:
     valleys
         Local minima found among the places looked at first.
     back
-        The best return there as far as the search for the place knows it; None where it looked at none.
+        The best return there as far as the search for the place knows it; None where it looked at none, or where it is no good start.
     """
 
     task: Task

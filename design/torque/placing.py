@@ -102,10 +102,10 @@ def place_by_objective(task: Task, aim: Aim, curve: MotorCurve | None = None) ->
     placed = task.placed_at(_middle(task.machine, deepest))
     apart = {round(_middle(task.machine, answer) / APART) for answer in found_valleys}
     apart |= {round(float(places[k]) / APART) for k in valleys if answers[k].value > best * (1 + NEAR)}
-    # what has a least peak on one mesh has none on another, so to search from it is no gain
-    found = None if aim not in ROOTS else TorqueTask(placed, return_problem(placed, "peak_acceleration"), aim, curve)
-    back = None if found is None else finish(deepest.guess, ANYHOW, found)
-    return Placement(placed, deepest.value, len(apart), back)
+    if aim not in ROOTS:  # a peak has another least on each mesh, and an energy is flat: to search from it is no gain
+        return Placement(placed, deepest.value, len(apart))
+    found = TorqueTask(placed, return_problem(placed, "peak_acceleration"), aim, curve)
+    return Placement(placed, deepest.value, len(apart), finish(deepest.guess, ANYHOW, found))
 
 
 def _edges(task: Task, places: FloatArray) -> list[float]:
