@@ -18,8 +18,8 @@ from camwright.profiles.message import Message, Value
 from camwright.profiles.polynomial.fitting import fit_profile
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 
-_SETTLED = 1e-15
-"""Step of the inverse map (rad) that is rounding."""
+_SETTLED, _ROUNDING = 1e-15, 2e-16
+"""Step of the inverse map (rad), and gap left as a share of crank and rod, that are rounding."""
 _MOST_STEPS = 64
 """Steps of the inverse map, and of the place of least speed: bisection alone needs no more."""
 _NOT_CHOSEN = (
@@ -242,17 +242,27 @@ class CrankSlider(Machine):
         return _in_sync(self, self.sync_start(cut), cut.sync_zone, cut.sync_ratio)
 
     def angle_at(self, position: FloatArray) -> FloatArray:
-        """Crank angle of the forward stroke at which the carriage stands at a position (m), by safeguarded Newton steps."""
+        """Crank angle of the forward stroke at which the carriage stands at a position (m).
+
+        The pin lies at ``(-R cos alpha, R sin alpha)``, a rod ``L`` away from the carriage at ``(X, E)``: ``X cos alpha - E sin alpha =
+        (L² - R² - E² - X²) / 2 R``. Solved for ``alpha``, then by safeguarded Newton steps down to rounding.
+        """
         back, front = self.dead_centres
         low, high = np.full(position.shape, back), np.full(position.shape, front)
-        angle = 0.5 * (low + high)
+        across = self.rod**2 - self.crank**2 - self.offset**2 - position**2
+        with np.errstate(divide="ignore", invalid="ignore"):
+            cosine = across / (2 * self.crank * np.hypot(position, self.offset))
+        angle = np.arccos(np.clip(cosine, -1.0, 1.0)) - np.arctan2(self.offset, position)
+        angle = np.clip(angle, low, high)
+        rounding = _ROUNDING * (self.crank + self.rod)
         for _ in range(_MOST_STEPS):
             gap = np.asarray(self.tool(angle)) - position
             low, high = np.where(gap <= 0, angle, low), np.where(gap >= 0, angle, high)
             with np.errstate(divide="ignore", invalid="ignore"):
                 step = angle - gap / np.asarray(self.tool_ratio(angle))
-            new = np.where((step > low) & (step < high), step, 0.5 * (low + high))
-            settled = np.all(np.abs(new - angle) <= _SETTLED)
+            met = np.abs(gap) <= rounding
+            new = np.where((step > low) & (step < high), step, np.where(met, angle, 0.5 * (low + high)))
+            settled = np.all(met | (np.abs(new - angle) <= _SETTLED))
             angle = new
             if settled:
                 break

@@ -99,6 +99,31 @@ def test_angle_at_is_the_inverse_of_the_map(seed: int) -> None:
     assert np.abs((found - angle) * crank.tool_ratio(angle)).max() <= 1e-15
 
 
+@pytest.mark.parametrize("shape", [(0.15, 0.6, 0.0), (0.15, 0.6, 0.05), (0.2, 0.35, -0.1), (0.3, 0.5, 0.15)])
+def test_the_inverse_map_takes_few_steps(shape: tuple[float, float, float], monkeypatch: pytest.MonkeyPatch) -> None:
+    crank, asked = CrankSlider(*shape), []
+    back, front = crank.dead_centres
+    angle = back + (front - back) * np.linspace(1e-3, 1 - 1e-3, 4001)
+    position, forward = crank.tool(angle), CrankSlider.tool
+
+    def counted(machine: CrankSlider, y: np.ndarray) -> np.ndarray:
+        asked.append(y)
+        return np.asarray(forward(machine, y))
+
+    monkeypatch.setattr(CrankSlider, "tool", counted)
+    found = crank.angle_at(position)
+    assert np.abs(forward(crank, found) - position).max() <= 1e-15
+    assert len(asked) <= 5
+
+
+def test_the_inverse_map_ends_at_a_dead_centre_for_positions_out_of_reach() -> None:
+    crank = CrankSlider(0.2, 0.35, -0.1)
+    back, front = crank.dead_centres
+    reach = np.array([float(crank.tool(back)), float(crank.tool(front))])
+    found = crank.angle_at(np.array([0.0, reach[0] - 1e-3, reach[1] + 1e-3, 10.0]))
+    np.testing.assert_allclose(found, [back, back, front, front], rtol=0, atol=1e-12)
+
+
 def test_carriage_moves_with_the_material_on_200_random_cranks() -> None:
     rng = np.random.default_rng(3)
     for _ in range(200):
