@@ -249,7 +249,8 @@ class _Laws:
         Of several line speeds the first at which the axis does not follow decides.
         """
         task = self.task.with_cut(shape)
-        start = shape.shear_start + self.relief * shape.shear_zone_at
+        # a shear zone that is shorter than the relief is its end alone
+        start = min(shape.shear_start + self.relief * shape.shear_zone_at, shape.length)
         cycle, greatest = self.cycle(task), 0.0
         for share in self.shares:
             error = greatest_sync_error(cycle, task, self.servo.at_speed(share), start, shape.length)

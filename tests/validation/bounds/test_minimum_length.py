@@ -232,3 +232,14 @@ def test_a_shear_zone_as_long_as_the_pitch_is_refused() -> None:
         physical(Task(KNIFE, replace(CUT, shear_zone=0.4), QUICK))
     with pytest.raises(InputError, match="no room for a return"):
         to_tolerance(Task(KNIFE, replace(CUT, shear_zone=0.5), QUICK), PAPER, "linear_return")
+
+
+@pytest.mark.parametrize("sample_time", [0.004, 4e-5])
+@pytest.mark.parametrize("law", ["linear_return", "poly_3_4_5"])
+def test_shear_zone_shorter_than_what_settling_is_eased_by(law: Law, sample_time: float) -> None:
+    """One hundredth of the transition is some 0.7 mm: the eased shear zone began after the end of the cut."""
+    servo = replace(PAPER, sample_time=sample_time)
+    cuts = [replace(CUT, shear_zone=zone, shear_zone_at=0.2 - zone) for zone in (0.0, 4e-5, 4e-4)]
+    found = [to_tolerance(Task(KNIFE, cut, QUICK), servo, law) for cut in cuts]
+    assert [each.binding for each in found] == ["speed"] * 3
+    assert found[0].length < found[1].length < found[2].length
