@@ -324,14 +324,14 @@ def _without_note(line: str) -> str:
 
 
 def _separator(lines: Sequence[str], holds: Callable[[str, bool], bool]) -> str:
-    """Find the sign that makes most cells numbers, or what rows hold, and fewest words."""
+    """Find the sign that makes most cells numbers, with thousands set apart or not, or what rows hold, and fewest words."""
     sample = lines[len(lines) // 2 :][:_SAMPLE] if len(lines) > 2 * _SAMPLE else lines[-_SAMPLE:]
 
     def score(sign: str) -> int:
         total = 0
         for line in sample:
             cells = [cell for cell in _cells(line, sign) if cell.strip()]
-            found = sum(holds(cell, sign != "," or '"' in line) for cell in cells)
+            found = sum(holds(cell, sign != "," or '"' in line) or grouped(cell) for cell in cells)
             total += found - 2 * (len(cells) - found) if found > 1 else 0
         return total
 

@@ -222,6 +222,16 @@ def test_cells_and_headings_of_other_pens(text: str) -> None:
     assert found.y * scale == pytest.approx(Y)
 
 
+def grouped(row: str) -> str:
+    """Rows, more than are looked at for the sign between cells, with all thousands set apart as in English ``{0}`` and German ``{1}``."""
+    cells = [f"{1000.5 * k:,.3f}" for k in range(1, 700)]
+    swapped = [cell.translate(str.maketrans(".,", ",.")) for cell in cells]
+    return "".join(row.format(*pair).replace("<TAB>", "\t") + "\n" for pair in zip(cells, swapped, strict=True))
+
+
+QUOTED = '"{0}","{0}"'
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
@@ -231,6 +241,9 @@ def test_cells_and_headings_of_other_pens(text: str) -> None:
         ("".join(f"{k},{7 * k % 90 + 10}\n" for k in range(20)), "t, line 1: '0,10' may be two numbers, or one with a decimal comma"),
         ("t [ms],y [mm]\n0,0\n1,1\n2,2\n3,3\n", "t, line 1: column x is missing, a time stands there; write the master's position"),
         ("x [mm];y [mm]\n0;0\n1'000.5;2\n2000;3\n3000;4\n", "t, line 3: \"1'000.5\" has its thousands set apart"),
+        (f"x [um];y [um]\n0.0;0.0\n{grouped('{0};{0}')}", "t, line 3: '1,000.500' has its thousands set apart"),
+        (f'x [um],y [um]\n"0.0","0.0"\n{grouped(QUOTED)}', "t, line 3: '1,000.500' has its thousands set apart"),
+        (f"x [um]\ty [um]\n0,0\t0,0\n{grouped('{1}<TAB>{1}')}", "t, line 3: '1.000,500' has its thousands set apart"),
     ],
 )  # fmt: skip
 def test_what_would_be_a_guess_is_refused_by_its_line(text: str, message: str) -> None:
