@@ -44,8 +44,6 @@ def standing(task: TorqueTask) -> TorqueSolution | None:
     except SolverError:
         return None
     back = with_longer_rest(found.back, problem.length)
-    return (
-        None
-        if back is None
-        else replace(found, back=back, value=found.value * math.sqrt(short.problem.length / problem.length))
-    )
+    if back is None:
+        return None
+    return replace(found, back=back, value=found.value * math.sqrt(short.problem.length / problem.length))
