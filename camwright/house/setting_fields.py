@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Self, cast
+from typing import Any, ClassVar, Literal, Self, cast, get_args, get_origin
 
 from pydantic import (
     BaseModel,
@@ -21,6 +21,9 @@ from pydantic_core import PydanticCustomError
 
 from camwright.house.units import KINDS, quantity, shown
 from camwright.profiles.errors import InputError
+
+Path = list[str | int]
+"""Keys from the top of a file to a place in it, and numbers where tables or rows are several."""
 
 
 @dataclass
@@ -69,6 +72,26 @@ class Table(BaseModel):
             return handler(data)
         finally:
             settings.place = outer
+
+
+def tables_in(annotation: Any) -> list[type[Table]]:
+    """List the models of tables that a type is made of."""
+    if isinstance(annotation, type) and get_origin(annotation) is None:
+        return [annotation] if issubclass(annotation, Table) else []
+    return (
+        []
+        if get_origin(annotation) is Literal
+        else [table for part in get_args(annotation) for table in tables_in(part)]
+    )
+
+
+def place_of(path: Path) -> str:
+    """Write the name of a table, or of one of several that share a name: ``[servo.tolerance]``, ``[[rule]] 2``."""
+    for at, part in enumerate(path):
+        if isinstance(part, int):
+            rest = f" {place_of(path[at + 1 :])}" if path[at + 1 :] else ""
+            return f"[[{'.'.join(map(str, path[:at]))}]] {part + 1}{rest}"
+    return f"[{'.'.join(map(str, path))}]"
 
 
 def refusal(message: str) -> PydanticCustomError:

@@ -5,16 +5,16 @@ from __future__ import annotations
 import difflib
 import json
 from collections.abc import Sequence
-from typing import Any, Literal, TypeVar, get_args, get_origin
+from typing import Any, TypeVar, get_args, get_origin
 
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from camwright.house.setting_fields import Settings, Table
+from camwright.house.setting_fields import Path, Settings, Table, place_of, tables_in
+from camwright.house.unit_keys import plain_keys
 from camwright.house.units import shown
 
 File = TypeVar("File", bound=Table)
-_Path = list[str | int]
 
 
 def read_settings(model: type[File], data: dict[str, Any], settings: Settings) -> tuple[File | None, list[str]]:
@@ -34,10 +34,12 @@ def read_settings(model: type[File], data: dict[str, Any], settings: Settings) -
     (file, faults)
         The file, or nothing if it has faults; one message for each fault, each with its place.
     """
+    data, faults = plain_keys(model, data)
     try:
-        return model.model_validate(data, context=settings), []
+        file = model.model_validate(data, context=settings)
     except ValidationError as error:
-        return None, [_fault(entry, model, settings) for entry in error.errors(include_url=False)]
+        return None, faults + [_fault(entry, model, settings) for entry in error.errors(include_url=False)]
+    return None if faults else file, faults
 
 
 def _fault(error: ErrorDetails, model: type[Table], settings: Settings) -> str:
@@ -76,15 +78,15 @@ def _tag_fault(error: ErrorDetails, where: str, inner: list[type[Table]]) -> str
     return f"{where} {tag} = {shown(error['input'][tag])}: not known; write {_choice(words.split(', '))}"
 
 
-def _key_fault(path: _Path, known: list[str]) -> str:
+def _key_fault(path: Path, known: list[str]) -> str:
     """Say that there is no such key, and which are known."""
-    key, before = str(path[-1]), f"{_place(path[:-1])} " if path[:-1] else ""
+    key, before = str(path[-1]), f"{place_of(path[:-1])} " if path[:-1] else ""
     near = difflib.get_close_matches(key[:100], known, n=1, cutoff=0.5)
     advice = f"did you mean {near[0]}?" if near else f"the keys here are {', '.join(known)}"
     return f"{before}{shown(key)[1:-1]}: there is no such key; {advice}"
 
 
-def _resolved(model: type[Table], location: Sequence[str | int]) -> tuple[_Path, type[Table], list[type[Table]]]:
+def _resolved(model: type[Table], location: Sequence[str | int]) -> tuple[Path, type[Table], list[type[Table]]]:
     """Follow the location of a fault through the models.
 
     Returns
@@ -93,7 +95,7 @@ def _resolved(model: type[Table], location: Sequence[str | int]) -> tuple[_Path,
         The path in the file, without the words by which tables of several kinds are told apart; the model of the table
         that the fault stands in; the models of tables that the place itself may hold.
     """
-    path: _Path = []
+    path: Path = []
     table, inner = model, [model]
     for part in location:
         if isinstance(part, int):
@@ -103,19 +105,8 @@ def _resolved(model: type[Table], location: Sequence[str | int]) -> tuple[_Path,
         else:
             path.append(part)
             table = inner[0]
-            inner = _tables_in(table.model_fields[part].annotation) if part in table.model_fields else []
+            inner = tables_in(table.model_fields[part].annotation) if part in table.model_fields else []
     return path, table, inner
-
-
-def _tables_in(annotation: Any) -> list[type[Table]]:
-    """List the models of tables that a type is made of."""
-    if isinstance(annotation, type) and get_origin(annotation) is None:
-        return [annotation] if issubclass(annotation, Table) else []
-    return (
-        []
-        if get_origin(annotation) is Literal
-        else [table for part in get_args(annotation) for table in _tables_in(part)]
-    )
 
 
 def _tags(table: type[Table], key: str) -> tuple[str, ...]:
@@ -123,29 +114,20 @@ def _tags(table: type[Table], key: str) -> tuple[str, ...]:
     return get_args(table.model_fields[key].annotation)
 
 
-def _where(path: _Path, *, is_table: bool) -> str:
+def _where(path: Path, *, is_table: bool) -> str:
     """Write the place of a key or table."""
     if isinstance(path[-1], int):
-        return _place(path) if is_table else f"{_where(path[:-1], is_table=False)}, row {path[-1] + 1}"
+        return place_of(path) if is_table else f"{_where(path[:-1], is_table=False)}, row {path[-1] + 1}"
     if not path[:-1]:
-        return _place(path) if is_table else str(path[-1])
-    return f"{_place(path[:-1])} {path[-1]}"
+        return place_of(path) if is_table else str(path[-1])
+    return f"{place_of(path[:-1])} {path[-1]}"
 
 
-def _place(path: _Path) -> str:
-    """Write the name of a table, or of one of several that share a name: ``[servo.tolerance]``, ``[[rule]] 2``."""
-    for at, part in enumerate(path):
-        if isinstance(part, int):
-            rest = f" {_place(path[at + 1 :])}" if path[at + 1 :] else ""
-            return f"[[{'.'.join(map(str, path[:at]))}]] {part + 1}{rest}"
-    return f"[{'.'.join(map(str, path))}]"
-
-
-def _advice(path: _Path, table: type[Table], inner: list[type[Table]], settings: Settings) -> str:
+def _advice(path: Path, table: type[Table], inner: list[type[Table]], settings: Settings) -> str:
     """Say what to write for a key or table that is missing."""
     key = str(path[-1])
     if inner:
-        return f"add the table {_place(path)}"
+        return f"add the table {place_of(path)}"
     entry = table.model_json_schema()["properties"][key]
     examples = entry.get("examples", entry.get("enum"))
     return (

@@ -207,6 +207,23 @@ def _number_and_unit(text: str, wanted: Kind, hint: str) -> tuple[str, str]:
     return number, unit
 
 
+def dimension_of(text: str) -> dict[str, int] | None:
+    """Powers of the base dimensions of a text that is a number and a unit; None where it is not.
+
+    Examples
+    --------
+    >>> dimension_of("80 m/min"), dimension_of("10 %")
+    ({'[length]': 1, '[time]': -1}, None)
+    """
+    found = _TEXT.fullmatch(text.strip()) if len(text) <= _LONGEST else None
+    if found is None or not found[2]:
+        return None
+    try:
+        return _unit(found[2], text, KINDS["length"])[1]
+    except InputError:
+        return None
+
+
 def shown(value: object) -> str:
     """Render what the user wrote for a message: one line, at most 60 characters."""
     if isinstance(value, int) and not isinstance(value, bool) and value.bit_length() > 200:

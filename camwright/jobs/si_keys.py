@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
+
+from camwright.house.units import dimension_of, shown
 
 _UNITS = {
     "_m_per_s2": "m/s^2",
@@ -33,7 +35,7 @@ def with_units(data: Mapping[str, Any], place: str, faults: list[str]) -> dict[s
     place
         That place, for messages: empty, or the name of a table.
     faults
-        Told of each quantity that is given twice.
+        Told of each quantity that is given twice, and of each whose key and value both have a unit.
 
     Examples
     --------
@@ -46,18 +48,32 @@ def with_units(data: Mapping[str, Any], place: str, faults: list[str]) -> dict[s
             found[key] = with_units(value, f"{place}.{key}" if place else key, faults)
             continue
         name, text = _with_unit(key, value)
+        where = f"[{place}] {key}" if place else key
         if name in found or (name != key and name in data):
-            faults.append(f"[{place}] {key}: given twice, as {name} and as {key}; leave one out")
+            faults.append(f"{where}: given twice, as {name} and as {key}; leave one out")
+        faults += _unit_twice(where, key, value)
         found[name] = text
     return found
 
 
 def _with_unit(key: str, value: Any) -> tuple[str, Any]:
     """Give an entry its unit, if its key names one and its value is a number."""
-    if isinstance(value, int | float) and not isinstance(value, bool):
-        for end, unit in _UNITS.items():
-            if key.endswith(end):
-                return key.removesuffix(end), f"{float(value)!r} {unit}"
+    end = _unit_of(key)
+    if end and isinstance(value, int | float) and not isinstance(value, bool):
+        return key.removesuffix(end), f"{float(value)!r} {_UNITS[end]}"
     return key, [list(pair) if isinstance(pair, tuple) else pair for pair in value] if isinstance(
         value, tuple
     ) else value
+
+
+def _unit_twice(where: str, key: str, value: Any) -> Iterator[str]:
+    """Say that a key names a unit and its value has one."""
+    end = _unit_of(key)
+    if end and isinstance(value, str) and dimension_of(value) is not None:
+        name, unit = key.removesuffix(end), _UNITS[end]
+        yield f'{where} = {shown(value)}: the key names its unit; give it a number of {unit}, or write {name} = "{value}"'
+
+
+def _unit_of(key: str) -> str:
+    """Find the end of a key that names a unit; empty where none does."""
+    return next((end for end in _UNITS if key.endswith(end)), "")

@@ -13,6 +13,7 @@ from camwright.house.numbers import units_of
 from camwright.house.servo_table import ServoNumbers
 from camwright.house.setting_fields import Table, checked, number_field, quantity_field, whole_field
 from camwright.house.settings import read_settings
+from camwright.house.unit_keys import plain_keys
 from camwright.house.units import shown
 from camwright.jobs.angles import settle_angles, settle_times
 from camwright.jobs.fields import Known, Spread, curve_field, slave_field, targets_field, zone_field
@@ -238,6 +239,7 @@ def read_structure(data: dict[str, Any]) -> tuple[JobFile | None, Known, list[st
         The file, or nothing if it has faults; what is right in itself, defaults of what was left out included; one
         message for each fault, each with its place.
     """
+    data, misnamed = plain_keys(job_model(), data)
     table, objective = data.get("machine"), data.get("objective")
     kind = table.get("kind") if isinstance(table, dict) else None
     known = Known(
@@ -251,7 +253,8 @@ def read_structure(data: dict[str, Any]) -> tuple[JobFile | None, Known, list[st
     file, faults = read_settings(job_model(), data, known)
     settle_times(known)
     settle_angles(known, None if own else machine_of(known))
-    return None if own else file, known, [*own, *faults]
+    faults = [*misnamed, *own, *faults]
+    return None if faults else file, known, faults
 
 
 def _choices(table: dict[str, Any], known: Known) -> dict[str, str]:

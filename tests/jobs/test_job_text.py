@@ -199,6 +199,14 @@ def test_objects_are_taken_as_they_are() -> None:
         ),
         ({"cut": {**TABLES["cut"], "length": 600}}, "mine: [cut] length = 600: a number without a unit"),
         ({"cut": {**TABLES["cut"], "length_m": 0.6}}, "mine: [cut] length_m: given twice, as length and as length_m"),
+        (
+            {"cut": {**TABLES["cut"], "sync_tolerance_m": "0.1 mm"}},
+            "mine: [cut] sync_tolerance_m = '0.1 mm': the key names its unit; give it a number of m, or write sync_tolerance = \"0.1 mm\"",
+        ),
+        (
+            {"servo": {"bandwidth_rad_per_s": "x"}},
+            "mine: [servo] bandwidth_rad_per_s = 'x': the key names a unit, which belongs to the value; write e.g. bandwidth = ",
+        ),
         ({"machine": RotaryKnife(0.1)}, "mine: [cut] sync_zone = 200 mm: not below [machine] circumference = 100 mm"),
         ({"limits": {**TABLES["limits"], "speed_m_per_s": -1.0}}, "mine: [limits] speed_m_per_s: given twice"),
         ({"servo": {"bandwith": "1 rad/s"}}, "mine: [servo] bandwith: there is no such key; did you mean bandwidth?"),
