@@ -43,6 +43,8 @@ _OPTIONS = {
 }
 """Keys that have an option of their own."""
 
+_KINDS = " or ".join((", ".join([*MACHINES][:-1]), [*MACHINES][-1]))
+
 _OWN = ("machine.", "cut.", "limits.", "servo.")
 """Tables whose numbers are the user's machine's own."""
 
@@ -64,7 +66,7 @@ def run(
         str | None,
         typer.Argument(
             metavar="[MACHINE]",
-            help="rotary_knife, linear_carriage or crank_slider; or an example: flying-saw, chasing-shear, thick-product …",
+            help=f"{_KINDS}; or an example: flying-saw, chasing-shear, thick-product …",
         ),
     ] = None,
     like: Annotated[

@@ -13,14 +13,18 @@ from camwright import load_job
 from camwright.cli import book as book_command
 from camwright.cli.main import main
 from camwright.house.language import LANGUAGES
+from camwright.jobs.keys import job_keys
 from camwright.jobs.structure import job_schema
 from camwright.profiles.machines import MACHINES
 from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.tables.targets import TARGETS
 from camwright.recipes.catalogue import catalogue
+from camwright.workbench.files import PAGE
+from camwright.workbench.words import page_words
 from tests.book.books import inline_crew
 from tests.cli.added.pendulum_shear import PendulumShear
 
+ROOT = Path(__file__).parents[2]
 ADDED = Path(__file__).parent / "added"
 JOB = ADDED / "pendulum-shear.toml"
 LINES = {"twincat-cnc", "lenze", "technosoft", "trio"}
@@ -61,6 +65,20 @@ def test_check_reads_it_and_says_what_it_is_like(capsys: pytest.CaptureFixture[s
 def test_its_keys_have_their_meaning(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["keys", "machine.arm"]) == 0
     assert "length of the arm" in " ".join(capsys.readouterr().out.split())
+
+
+def test_its_lines_of_words_are_those_that_the_text_counts() -> None:
+    messages, words = (
+        json.loads((ADDED / f"{name}.json").read_text(encoding="utf-8")) for name in ("messages", "words")
+    )
+    for language in ("de", "zh"):
+        own = json.loads((PAGE / "words" / f"{language}.json").read_text(encoding="utf-8"))
+        keys = {key.path for key in job_keys() if key.machine in ("", PendulumShear.kind)}
+        assert {f"meaning.{path}" for path in keys} - own.keys() == words[language].keys()
+        assert {f"field.{path}" for path in keys} <= page_words(language).keys()
+    counted = [sum(map(len, each.values())) for each in (messages, words)]
+    text = " ".join((ROOT / "docs" / "extending.md").read_text(encoding="utf-8").split())
+    assert f"{counted[0]} lines of messages, {counted[1]} of words" in text
 
 
 def test_its_table_stands_in_the_schema() -> None:
