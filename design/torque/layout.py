@@ -10,8 +10,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from camwright.design.torque.task import Aim, Pattern
-from camwright.design.torque.zone import Zone
+from camwright.design.torque.numbers import TorqueForm
+from camwright.design.torque.task import Pattern
+from camwright.design.torque.zone import zone_looks
 from camwright.profiles.polynomial.profile import FloatArray
 
 LOBATTO = (
@@ -35,20 +36,22 @@ class Layout:
     Unknowns are the accelerations, velocities and positions at the nodes, the lengths of the phases, the bound of a peak, the power drawn
     at each point, the ends of a sync zone that is to be placed, and the power drawn at each of its points. Parameters are the lengths of
     the intervals as shares of their phase; of each point its weight in a mean over its phase, its place in its interval and the direction
-    of the motion; of each point of the zone its place and weight; and the `NUMBERS`.
+    of the motion; of each point of the zone its place and weight; the `NUMBERS`; and those in which tasks of one form differ.
 
     Parameters
     ----------
     pattern, counts
         The phases, and the intervals of each that has motion.
-    zone, aim
-        A sync zone that is to be placed, and what is minimised.
+    looks
+        Points at which a sync zone that is to be placed is looked at, besides its ends; 0 where there is none.
+    form
+        What the pieces are made of.
     """
 
     pattern: Pattern
     counts: tuple[int, ...]
-    zone: Zone | None
-    aim: Aim
+    looks: int
+    form: TorqueForm
 
     @cached_property
     def phase(self) -> Indices:
@@ -78,6 +81,11 @@ class Layout:
         return len(self.pattern) > 1
 
     @property
+    def placed(self) -> bool:
+        """Whether the programme places a sync zone."""
+        return self.looks > 0
+
+    @property
     def points(self) -> int:
         """Points at which the torque of the return is looked at."""
         return len(self.owner)
@@ -85,7 +93,7 @@ class Layout:
     @property
     def zone_points(self) -> int:
         """The same of the sync zone."""
-        return 0 if self.zone is None else len(self.zone.looks[0])
+        return len(zone_looks(self.looks)[0]) if self.placed else 0
 
     @cached_property
     def signs(self) -> FloatArray:
@@ -96,8 +104,8 @@ class Layout:
     def sizes(self) -> list[int]:
         """Numbers of unknowns by kind."""
         nodes = [self.intervals + 1] * 3
-        drawn = (self.points, self.zone_points) if self.aim == "energy" else (0, 0)
-        return [*nodes, len(self.pattern), 1, drawn[0], 0 if self.zone is None else 2, drawn[1]]
+        drawn = (self.points, self.zone_points) if self.form.aim == "energy" else (0, 0)
+        return [*nodes, len(self.pattern), 1, drawn[0], 2 if self.placed else 0, drawn[1]]
 
     @cached_property
     def slices(self) -> list[slice]:
@@ -107,11 +115,11 @@ class Layout:
     @cached_property
     def given(self) -> list[slice]:
         """Where the parameters of each kind lie."""
-        return _slices([self.intervals, *[self.points] * 3, *[self.zone_points] * 2, NUMBERS])
+        return _slices([self.intervals, *[self.points] * 3, *[self.zone_points] * 2, NUMBERS, self.form.count])
 
     def parameters(self, mesh: FloatArray, numbers: tuple[float, ...]) -> FloatArray:
-        """Parameters on a mesh."""
-        zone = () if self.zone is None else self.zone.looks
+        """Parameters on a mesh; the numbers are the `NUMBERS` and those of the task."""
+        zone = zone_looks(self.looks) if self.placed else ()
         return np.concatenate([mesh, self.weights(mesh), LOBATTO[0][self.place], self.signs, *zone, numbers])
 
     def weights(self, mesh: FloatArray) -> FloatArray:

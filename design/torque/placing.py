@@ -16,7 +16,7 @@ from camwright.design.torque.guesses import ANYHOW, from_path
 from camwright.design.torque.mesh import remesh
 from camwright.design.torque.parts import greatest_share, zone_floor
 from camwright.design.torque.path_starts import PathStarts, path_starts
-from camwright.design.torque.programme import Guess, TorqueAnswer, kept_programme
+from camwright.design.torque.programme import Guess, TorqueAnswer, TorqueProgramme
 from camwright.design.torque.task import ROOTS, Aim, TorqueTask
 from camwright.design.torque.zone import Zone
 from camwright.profiles.machines import Machine
@@ -148,7 +148,7 @@ class _Descent:
         """Answer about one on a mesh laid for it, or on its own where that is as good and as fine; that one if there is none."""
         aim, same = self._middle.aim, count == len(answer.guess.mesh[0])
         guess = answer.guess if same and aim not in ROOTS else remesh(answer.guess, ANYHOW, (count,), aim)
-        found = kept_programme(self._middle, ANYHOW, (count,), self._zone, near=True).solve(guess)
+        found = TorqueProgramme(self._middle, ANYHOW, (count,), self._zone, near=True).solve(guess)
         return found if found.success else answer
 
 
@@ -170,7 +170,7 @@ def _scan(
 
     None is looked for where the zone breaks a limit, or costs far more than the best.
     """
-    programme = kept_programme(task, ANYHOW, (COARSE,), zone, SCANNED)
+    programme = TorqueProgramme(task, ANYHOW, (COARSE,), zone, SCANNED)
     pairs = list(zip(starts.tolist(), ends.tolist(), strict=True))
     able = greatest_share(task, zone, starts, ends) <= 1.0
     paths = _Paths(task, zone, pairs, able)

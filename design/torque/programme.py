@@ -18,7 +18,8 @@ import numpy as np
 
 from camwright.design.returns.ipopt import QUIET
 from camwright.design.torque.layout import LOBATTO, Layout
-from camwright.design.torque.parts import FAR_SLOPE, lay, moved, zone_numbers
+from camwright.design.torque.numbers import FAR_SLOPE, TorqueForm, TorqueNumbers, moved
+from camwright.design.torque.parts import lay, zone_numbers
 from camwright.design.torque.pieces import Laid, programme
 from camwright.design.torque.task import Pattern, TorqueTask
 from camwright.design.torque.watch import MOST_AT_FIRST, MOST_MULTIPLIER, WatchedSolver
@@ -38,7 +39,7 @@ SHORTEST_PHASE = 1e-5
 ACCURACY, MOST_ITERATIONS = 1e-8, 300
 """Accuracy of the solver, scaled, and its most iterations."""
 KEPT = 16
-"""Programmes that are kept: those of one design, whose starts of a kind have one, and of the same job designed again."""
+"""Solvers that are kept: those of one design, whose starts of a kind have one, and of jobs of the same form, as a book's are."""
 
 _OPTIONS: dict[str, Any] = QUIET | {
     "ipopt.mu_strategy": "adaptive",
@@ -115,7 +116,7 @@ class TorqueProgramme:
         Parameters
         ----------
         task
-            What it is for.
+            What it is for; programmes that differ in its numbers alone share a solver.
         pattern
             The phases of the return.
         counts
@@ -127,18 +128,18 @@ class TorqueProgramme:
         near
             Whether its guesses are near an answer: the solver then does not leave the valley that they lie in.
         """
-        self._task = task
-        layout = self._layout = Layout(pattern, counts, zone, task.aim)
-        pace = 1.0 / task.crossing
+        self._task, self._zone = task, zone
+        looks = 0 if zone is None else zone.points
+        kept = _kept_solver(TorqueForm.of(task), pattern, counts, looks, accuracy, iterations, near)
+        layout = self._layout = kept.layout
+        self._watched = kept.watched
+        self._numbers = TorqueNumbers.of(task)
+        pace = self._numbers.pace
         self._units = np.repeat([pace**2, pace, *np.ones(len(layout.sizes) - 2)], layout.sizes)
-        laid = lay(task, layout)
-        nlp, derivatives = programme(laid, sum(layout.sizes), layout.given[-1].stop)
-        self._limits = self._rows(laid)
-        options = _OPTIONS | derivatives | {"ipopt.tol": accuracy, "ipopt.max_iter": iterations}
-        self._watched = WatchedSolver.of("camwright_torque", nlp, options | (_FROM_NEAR if near else {}))
+        self._limits = self._rows(kept.laid)
 
     def _state(self, guess: Guess) -> FloatArray:
-        ends = np.array(guess.ends if self._layout.zone is not None and guess.ends is not None else [])
+        ends = np.array(guess.ends if self._zone is not None and guess.ends is not None else [])
         parts = (
             guess.acceleration,
             guess.velocity,
@@ -160,7 +161,7 @@ class TorqueProgramme:
         h = mesh * lengths[layout.phase]
         i, s = layout.owner, LOBATTO[0][layout.place]
         rise, d = (a[1:] - a[:-1])[i], h[i] * s
-        start = task.start if layout.zone is None else float(ends[1])
+        start = task.start if self._zone is None else float(ends[1])
         y = start + task.scale * (q[i] + d * (v[i] + d * (a[i] / 2 + rise * s / 6)))
         velocity = task.scale / task.duration * (v[i] + d * (a[i] + rise * s / 2))
         acceleration = task.scale / task.duration**2 * (a[i] + rise * s)
@@ -176,7 +177,7 @@ class TorqueProgramme:
 
     def _value(self, state: FloatArray, mesh: FloatArray) -> float:
         torque, power, available, weights, h = self._looked(state, mesh)
-        zone = self._layout.zone
+        zone = self._zone
         if zone is not None:
             more = zone_numbers(self._task, zone, *state[self._layout.slices[6]])
             torque, power, weights = (
@@ -230,7 +231,7 @@ class TorqueProgramme:
         motion = self._task.aim in MOTION_OBJECTIVES
         unit = value if motion else float(np.sqrt(np.mean(torque**2)))
         units = [max(unit, 1e-300), max(float(np.abs(power).max()), 1e-300)]
-        parameters = layout.parameters(mesh, (*units, *self._payment(rough, ceiling)))
+        parameters = layout.parameters(mesh, (*units, *self._payment(rough, ceiling), *self._numbers.flat))
         a, v, q, lengths, bound, drawn, ends, zone_drawn = layout.slices
         if self._task.aim == "energy":
             start[drawn] = np.maximum(power / units[1], 0.0) + 0.1
@@ -267,7 +268,7 @@ class TorqueProgramme:
             flat[a],
             flat[v],
             flat[q],
-            None if self._layout.zone is None else (float(flat[ends][0]), float(flat[ends][1])),
+            None if self._zone is None else (float(flat[ends][0]), float(flat[ends][1])),
         )
         finite = bool(np.isfinite(flat).all()) and math.isfinite(residual)
         value = self._value(flat, mesh) if finite else math.inf
@@ -328,8 +329,8 @@ class TorqueProgramme:
                 lower[a.start + node] = upper[a.start + node] = 0.0
             if k < len(self._layout.pattern) - 1:
                 lower[v.start + node] = upper[v.start + node] = 0.0
-        if self._layout.zone is not None:
-            lower[ends], upper[ends] = self._layout.zone.range
+        if self._zone is not None:
+            lower[ends], upper[ends] = self._zone.range
             return lower, upper
         ratio = length / scale
         for part, first, last in (
@@ -342,15 +343,29 @@ class TorqueProgramme:
         return lower, upper
 
 
+@dataclass(frozen=True, eq=False)
+class _KeptSolver:
+    """What programmes share that differ in numbers alone."""
+
+    layout: Layout
+    laid: list[Laid]
+    watched: WatchedSolver
+
+
 @lru_cache(KEPT)
-def kept_programme(
-    task: TorqueTask,
+def _kept_solver(
+    form: TorqueForm,
     pattern: Pattern,
     counts: tuple[int, ...],
-    zone: Zone | None = None,
-    accuracy: float = ACCURACY,
-    iterations: int = MOST_ITERATIONS,
-    near: bool = False,
-) -> TorqueProgramme:
-    """Build a programme, or give it again: nothing of one solution is left for the next."""
-    return TorqueProgramme(task, pattern, counts, zone, accuracy, iterations, near)
+    looks: int,
+    accuracy: float,
+    iterations: int,
+    near: bool,
+) -> _KeptSolver:
+    """Build a solver, or give it again: nothing of one solution is left for the next."""
+    layout = Layout(pattern, counts, looks, form)
+    laid = lay(layout)
+    nlp, derivatives = programme(laid, sum(layout.sizes), layout.given[-1].stop)
+    options = _OPTIONS | derivatives | {"ipopt.tol": accuracy, "ipopt.max_iter": iterations}
+    watched = WatchedSolver.of("camwright_torque", nlp, options | (_FROM_NEAR if near else {}))
+    return _KeptSolver(layout, laid, watched)

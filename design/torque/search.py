@@ -27,7 +27,7 @@ from camwright.design.torque.guesses import (
 )
 from camwright.design.torque.mesh import paces, remesh
 from camwright.design.torque.peaks import ABOVE, drawn_between, peaks, sharpened
-from camwright.design.torque.programme import MOST_ITERATIONS, Guess, TorqueAnswer, TorqueProgramme, kept_programme
+from camwright.design.torque.programme import MOST_ITERATIONS, Guess, TorqueAnswer, TorqueProgramme
 from camwright.design.torque.task import ROOTS, Pattern, TorqueTask
 from camwright.profiles.errors import SolverError
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
@@ -297,7 +297,7 @@ def _value(task: TorqueTask, answer: TorqueAnswer, pattern: Pattern) -> float:
 
 
 def _programme(task: TorqueTask, pattern: Pattern, guess: Guess, iterations: int = MOST_ITERATIONS) -> TorqueProgramme:
-    return kept_programme(task, pattern, tuple(len(mesh) for mesh in guess.mesh), iterations=iterations)
+    return TorqueProgramme(task, pattern, tuple(len(mesh) for mesh in guess.mesh), iterations=iterations)
 
 
 def _distinct(answers: list[tuple[TorqueAnswer, Pattern]], alike: float) -> list[tuple[TorqueAnswer, Pattern]]:

@@ -98,11 +98,6 @@ class TorqueTask:
         return 0.0 if self.aim in MOTION_OBJECTIVES else self.machine.friction
 
     @property
-    def feels_motor(self) -> bool:
-        """Whether the motor's torque counts, in what is minimised or in what limits it."""
-        return self.curve is not None or self.aim not in MOTION_OBJECTIVES
-
-    @property
     def may_turn(self) -> bool:
         """Whether the slave may run backwards in the return."""
         return self.problem.least_ratio < 0.0

@@ -27,7 +27,7 @@ class Machine(ABC):
     The slave coordinate ``y`` (m or rad, see `slave_unit`) is the machine's own; a profile counts from zero where its cycle starts, so
     a profile's position plus the coordinate at its start (`camwright.profiles.returns.slave_at_start`) is a slave coordinate. Methods
     that take
-    a slave coordinate are plain formulas: they accept floats, numpy arrays and symbols alike.
+    a slave coordinate are plain formulas: they accept floats, numpy arrays and symbols alike, and say the same wherever the sync zone lies.
 
     Examples
     --------

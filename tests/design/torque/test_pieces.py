@@ -8,10 +8,10 @@ import pytest
 
 from camwright.design.returns.problem import return_problem
 from camwright.design.torque.layout import Layout
+from camwright.design.torque.numbers import TorqueForm
 from camwright.design.torque.parts import lay
 from camwright.design.torque.pieces import Laid, ProgrammePiece, programme
 from camwright.design.torque.task import Aim, Pattern, TorqueTask
-from camwright.design.torque.zone import Zone
 from camwright.profiles.cut import Cut
 from camwright.profiles.limits import Limits
 from camwright.profiles.line import Line
@@ -65,8 +65,7 @@ def test_a_programme_of_one_piece_at_places_that_share_unknowns() -> None:
 def test_pieces_of_a_torque_have_the_derivatives_of_the_whole(
     task: Task, pattern: Pattern, placed: bool, aim: Aim
 ) -> None:
-    zone = Zone(((1.0, 1.9), (1.2, 2.2)), 2) if placed else None
     line = task.line if placed else Line(acceleration=0.3, stop=0.5)
     asked = TorqueTask(task.with_line(line), return_problem(task, "peak_acceleration"), aim, CURVE)
-    layout = Layout(pattern, (2,) * (1 if placed else 2), zone, aim)
-    _same_derivatives(lay(asked, layout), sum(layout.sizes), layout.given[-1].stop)
+    layout = Layout(pattern, (2,) * (1 if placed else 2), 2 if placed else 0, TorqueForm.of(asked))
+    _same_derivatives(lay(layout), sum(layout.sizes), layout.given[-1].stop)

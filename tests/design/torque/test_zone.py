@@ -9,6 +9,7 @@ import pytest
 
 from camwright.design.returns.problem import return_problem
 from camwright.design.torque.layout import Layout
+from camwright.design.torque.numbers import TorqueForm
 from camwright.design.torque.parts import greatest_share, zone_floor
 from camwright.design.torque.search import zone_peak
 from camwright.design.torque.task import Aim, TorqueTask
@@ -62,7 +63,7 @@ def test_the_share_of_a_limit_is_that_of_the_zones_own_profile() -> None:
 
 
 def test_weights_of_points_add_up_to_their_phases() -> None:
-    layout = Layout(("forth", "rest", "back"), (3, 2), None, "energy")
+    layout = Layout(("forth", "rest", "back"), (3, 2), 0, TorqueForm.of(asked("energy")))
     mesh = np.array([0.2, 0.5, 0.3, 0.6, 0.4])
     weights, phase = layout.weights(mesh), layout.phase[layout.owner]
     assert weights[phase == 0].sum() == pytest.approx(1.0)
