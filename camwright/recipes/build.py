@@ -25,7 +25,7 @@ from camwright.recipes.model import (
 )
 from camwright.recipes.production import found_ramps
 from camwright.recipes.ramp_tables import STEPS as START_STEPS
-from camwright.recipes.ramp_tables import recipe_table, start_tables
+from camwright.recipes.ramp_tables import beside_cam, recipe_table, start_tables
 from camwright.stored.design_file import StoredDesign
 from camwright.studies.remedies import solve_or_advise
 
@@ -99,7 +99,9 @@ def make_recipe(
         raise InputError(*(f"{name}: {fault}" for name, faults in refused.items() for fault in faults))
     origin = provenance(job.sha256)
     libraries = origin["libraries"]
-    starts, start_texts = start_tables(ramps, targets, step)
+    cams = [result.target.name for result in results if result.passed] if sound(values) else []
+    results = [beside_cam(result, cams) for result in results]
+    starts, start_texts = start_tables(ramps, targets, cams, step)
     recipe = Recipe(
         schema_version=RECIPE_VERSION,
         kind="camwright recipe",

@@ -258,7 +258,7 @@ class RecipeTable:
     target, title
         Name of the target; maker and mechanism.
     released
-        Whether every check passed; a table that is not released has no files.
+        Whether every check of it and of the cam passed; a table that is not released has no files.
     files
         Its files, the one that holds the points first.
     master_unit, slave_unit

@@ -107,18 +107,21 @@ def _table_blocks(recipe: Recipe, words: Catalogue) -> list[Block]:
     for number, record in enumerate(motions):
         for table in record.tables:
             failed = [words.named("check", check.name) for check in table.checks if not check.passed]
-            told = str(len(table.points.master)) if table.files else f"✗ {', '.join(failed)}"
+            why = ", ".join(failed) or words("start.no_cam")
+            told = str(len(table.points.master)) if table.files else f"✗ {why}"
             cells.setdefault(table.target, [words("nothing")] * len(motions))[number] = told
         for refusal in record.refused:
             cells.setdefault(refusal.target, [words("nothing")] * len(motions))
             reasons.setdefault(refusal.target, "; ".join(refusal.reasons))
     head = [words("start.target"), *(words(_MOTIONS[record.motion]) for record in motions)]
-    why = [text_block(words("start.refused", target=target, reasons=reason)) for target, reason in reasons.items()]
+    not_taken = [
+        text_block(words("start.refused", target=target, reasons=reason)) for target, reason in reasons.items()
+    ]
     return [
         table_block(head, [[target, *row] for target, row in cells.items()], widths=[0.8, *(1.0,) * len(motions)]),
         text_block(words("start.tables")),
         *([text_block(words("start.files"))] if written else []),
-        *why,
+        *not_taken,
     ]
 
 

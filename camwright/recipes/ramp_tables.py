@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -23,7 +24,7 @@ STEPS = len(KINDS)
 
 
 def start_tables(
-    found: Ramps | None, targets: Sequence[str], step: Step = ignore
+    found: Ramps | None, targets: Sequence[str], cams: Collection[str], step: Step = ignore
 ) -> tuple[tuple[RampTables, ...], dict[str, str]]:
     """Write start, stop and one piece on demand for the targets of a recipe.
 
@@ -33,6 +34,8 @@ def start_tables(
         Start and stop of the machine; ``None`` where it has none at its line speed.
     targets
         Names of targets.
+    cams
+        Those of them for which the cam itself is released; the others get no files, for a start leads into a cam.
 
     Returns
     -------
@@ -42,16 +45,23 @@ def start_tables(
     if found is None:
         return (), {}
     written = write_ramps(found, targets, required=False, step=step)
+    results = {kind: tuple(beside_cam(result, cams) for result in made) for kind, made in written.results.items()}
     records = tuple(
         RampTables(
             kind,
             Profile(tuple(profile.breaks.tolist()), tuple(map(tuple, profile.coefficients.tolist()))),
-            tuple(recipe_table(result, FOLDER) for result in written.results[kind]),
+            tuple(recipe_table(result, FOLDER) for result in results[kind]),
             tuple(Refusal(name, why) for name, why in written.refused[kind].items()),
         )
         for kind, profile in motions_of(found).items()
     )
-    return records, {f"{FOLDER}/{name}": text for name, text in written.files.items()}
+    files = {name: text for made in results.values() for result in made for name, text in result.files.items()}
+    return records, {f"{FOLDER}/{name}": text for name, text in files.items()}
+
+
+def beside_cam(result: Exported, cams: Collection[str]) -> Exported:
+    """Withhold a table where the cam is not released for its target."""
+    return result if result.target.name in cams else replace(result, files={})
 
 
 def motions_of(found: Ramps) -> dict[RampKind, CamProfile]:
@@ -65,7 +75,7 @@ def recipe_table(result: Exported, folder: str) -> RecipeTable:
     return RecipeTable(
         target=target.name,
         title=target.title,
-        released=result.passed,
+        released=result.passed and bool(result.files),
         files=tuple(TableFile(f"{folder}/{name}", sha256(text.encode())) for name, text in result.files.items()),
         master_unit=TableUnit(units.master.symbol, units.master.size),
         slave_unit=TableUnit(units.slave.symbol, units.slave.size),
