@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -17,6 +18,7 @@ from camwright.profiles.machines import (
     Machine,
     RotaryKnife,
 )
+from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.returns import baseline
 from camwright.profiles.servo import PAPER_RANGES, Servo
 from camwright.profiles.servo_tolerance import ServoTolerance
@@ -119,6 +121,39 @@ def test_the_worst_servo_is_that_of_all_phases(monkeypatch: pytest.MonkeyPatch) 
         every = shear_zone_errors(profile, task, drawn)
         assert worst_shear_zone_error(profile, task, drawn) == pytest.approx(every.max(), rel=1e-12)
     assert worst_shear_zone_error(profile, task, (replace(PAPER, position_gain=1e4), *drawn)) == math.inf
+
+
+@pytest.mark.parametrize(
+    ("machine", "cut", "spread", "seed", "before", "run"),
+    [
+        (KNIFE, CUT, 1e-2, 1, 0, 1),  # the worst is the one that is so roughly
+        (KNIFE, CUT, 3e-3, 2, 1, 3),  # it is the second
+        (CRANK, replace(CUT, length=0.9, sync_zone=0.1, shear_zone_at=0.05), 1e-3, 1, 13, 100),  # all are alike
+    ],
+)
+def test_servos_that_are_run_roughly_first_have_the_worst_of_all(
+    machine: Machine, cut: Cut, spread: float, seed: int, before: int, run: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The naive twin runs each in full, by itself. A servo that looks less bad roughly than others may be the worst in full."""
+    bandwidth, damping, gain, sample = (
+        (each * (1 - spread), each * (1 + spread)) for each in (120.0, 0.7, 35.0, 0.004)
+    )
+    about = ServoTolerance(bandwidth, damping, gain, sample, (0.0, 0.0))
+    task = Task(machine, cut, FREE)
+    profile, drawn = baseline("linear_return", task), about.draw(PAPER, 100, seed)
+    every = np.array([servo_response(profile, task, each).shear_zone_error for each in drawn])
+    roughly = monte_carlo._greatest_errors(profile, task, drawn, *monte_carlo._ROUGHLY)
+    assert int((roughly > roughly[every.argmax()]).sum()) == before
+    looked: list[Servo] = []
+
+    def full(profile: CamProfile, task: Task, servos: Sequence[Servo]) -> FloatArray:
+        looked.extend(servos)
+        return shear_zone_errors(profile, task, servos)
+
+    monkeypatch.setattr(monte_carlo, "shear_zone_errors", full)
+    monkeypatch.setattr(monte_carlo, "_LOOKED", 1)
+    assert worst_shear_zone_error(profile, task, drawn) == pytest.approx(every.max(), rel=1e-9)
+    assert len(looked) == run
 
 
 @pytest.mark.parametrize(
