@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
@@ -14,6 +15,7 @@ from camwright.design.torque.numbers import TorqueForm, TorqueNumbers
 from camwright.design.torque.pieces import NONE, Laid, Places, ProgrammePiece
 from camwright.design.torque.task import PEAKS, TorqueTask
 from camwright.design.torque.zone import Zone, available_torque, zone_looks, zone_met, zone_point
+from camwright.profiles.machines import Machine
 from camwright.profiles.polynomial.profile import FloatArray
 
 # NumPy's functions on CasADi's symbols are meant: a machine is written once, for numbers and symbols alike.
@@ -72,21 +74,11 @@ def _rows(count: int, rows: list[Any]) -> Places:
     return np.stack([np.broadcast_to(row, count) for row in rows])
 
 
-def _part(
-    form: TorqueForm,
-    unknowns: Any,
-    given: Any,
-    cost: Any,
-    equal: Any,
-    above: Any,
-    between: Any = NONE,
-    made: Any = NONE,
-) -> tuple[ProgrammePiece, list[int]]:
-    """Make a piece, and say which of the task's numbers it asks for, given after what else is."""
-    used = {symbol.name() for symbol in ca.symvar(ca.vertcat(cost, equal, above, made))}
+def _part(form: TorqueForm, piece: ProgrammePiece) -> tuple[ProgrammePiece, list[int]]:
+    """Give a piece the numbers of the task that it asks for, after what else it is given; and say which these are."""
+    used = {symbol.name() for symbol in ca.symvar(ca.vertcat(piece.cost, piece.rows, piece.made))}
     asked = [k for k, symbol in enumerate(form.numbers.flat) if symbol.name() in used]
-    given = ca.vertcat(given, *(form.numbers.flat[k] for k in asked))
-    return ProgrammePiece(unknowns, given, cost, equal, above, between, made), asked
+    return replace(piece, given=ca.vertcat(piece.given, *(form.numbers.flat[k] for k in asked))), asked
 
 
 def _motion(form: TorqueForm, *names: str) -> list[Any]:
@@ -122,7 +114,10 @@ def _step(form: TorqueForm, free: bool) -> tuple[ProgrammePiece, list[int]]:
     elif form.aim == "peak_jerk":
         above += [bound - rise / h / unit, bound + rise / h / unit]
     unknowns = [symbol for symbol, _ in states] + [length] * free + [bound] * (form.aim == "peak_jerk")
-    return _part(form, ca.vertcat(*unknowns), ca.vertcat(share, unit), cost, equal, ca.vertcat(*above, v + h * a / 2))
+    return _part(
+        form,
+        ProgrammePiece(ca.vertcat(*unknowns), ca.vertcat(share, unit), cost, equal, ca.vertcat(*above, v + h * a / 2)),
+    )
 
 
 def _ramps(form: TorqueForm, a: Any, a1: Any, v: Any, v1: Any, h: Any, share: Any) -> list[Any]:
@@ -141,7 +136,7 @@ def _whole(form: TorqueForm, phases: int) -> tuple[ProgrammePiece, list[int]]:
     lengths, bound, paid = ca.SX.sym("l", phases), ca.SX.sym("t"), ca.SX.sym("w")
     equal = ca.sum1(lengths) - 1.0 if phases > 1 else NONE
     cost = paid * bound if form.aim in PEAKS else ca.SX(0)
-    return _part(form, ca.vertcat(lengths, bound), paid, cost, equal, NONE)
+    return _part(form, ProgrammePiece(ca.vertcat(lengths, bound), paid, cost, equal, NONE))
 
 
 @lru_cache(KEPT)
@@ -150,7 +145,7 @@ def _node(form: TorqueForm) -> tuple[ProgrammePiece, list[int]]:
     ((symbol, a),) = _motion(form, "a")
     bound, unit = ca.SX.sym("t"), ca.SX.sym("u")
     above = ca.vertcat(bound - a / unit, bound + a / unit)
-    return _part(form, ca.vertcat(symbol, bound), unit, ca.SX(0), NONE, above)
+    return _part(form, ProgrammePiece(ca.vertcat(symbol, bound), unit, ca.SX(0), NONE, above))
 
 
 @lru_cache(KEPT)
@@ -170,10 +165,11 @@ def _point(form: TorqueForm, free: bool, placed: bool) -> tuple[ProgrammePiece, 
         numbers.scale / numbers.duration * (v + h * s * (a + rise * s / 2)),
         numbers.scale / numbers.duration**2 * (a + rise * s),
     )
-    torque = machine.inertia(y) * acceleration + machine.inertia_slope(y) * velocity**2 / 2 + machine.friction * sign
+    inertia, inertia_slope, *around = _inertia_about(machine, y)
+    torque = inertia * acceleration + inertia_slope * velocity**2 / 2 + machine.friction * sign
     available = available_torque(form, velocity)
     if form.forms:  # what a ramp takes of it
-        available -= machine.inertia(y) * ca.fabs(velocity) * numbers.hardest
+        available -= inertia * ca.fabs(velocity) * numbers.hardest
     part = weight * (length if free else 1.0)
     square = part * (torque / unit) ** 2
     cost, above = rounding * square, []
@@ -191,7 +187,26 @@ def _point(form: TorqueForm, free: bool, placed: bool) -> tuple[ProgrammePiece, 
             cost = ca.SX(0)
     above += _within(form, torque, available)
     unknowns = [symbol for symbol, _ in states] + [bound] + [length] * free + [drawn] * (form.aim == "energy")
-    return _part(form, ca.vertcat(*unknowns, *[start] * placed), given, cost, NONE, ca.vertcat(*above), between, made)
+    return _part(
+        form,
+        ProgrammePiece(
+            ca.vertcat(*unknowns, *[start] * placed), given, cost, NONE, ca.vertcat(*above), between, made, *around
+        ),
+    )
+
+
+def _inertia_about(machine: Machine, y: Any) -> tuple[Any, Any, Any, Any]:
+    """Inertia and its slope about a slave coordinate to the second order; the symbols that hold it and its derivatives, and what they are.
+
+    The slope is the derivative of the inertia, which CasADi would work out again, and its derivatives twice.
+    """
+    place, *inertias = (ca.SX.sym(name) for name in ("at", "i", "i1", "i2", "i3"))
+    off, (own, first, second, third) = y - place, inertias
+    slope = machine.inertia_slope(y)
+    bend = ca.jacobian(slope, y)  # forward, which is shorter here than a gradient
+    settled = ca.densify(ca.vertcat(y, machine.inertia(y), slope, bend, ca.jacobian(bend, y)))
+    inertia = own + off * (first + off * second / 2)
+    return inertia, first + off * (second + off * third / 2), ca.vertcat(place, *inertias), settled
 
 
 def _within(form: TorqueForm, torque: Any, available: Any) -> list[Any]:
@@ -225,7 +240,7 @@ def _zone_point(form: TorqueForm) -> tuple[ProgrammePiece, list[int]]:
             values = [point.jerk]
     above += [bound + sign * value / unit for value in values for sign in (-1.0, 1.0)]
     unknowns = ca.vertcat(start, end, bound, *[drawn] * (form.aim == "energy"))
-    return _part(form, unknowns, given, cost, NONE, ca.vertcat(*above))
+    return _part(form, ProgrammePiece(unknowns, given, cost, NONE, ca.vertcat(*above)))
 
 
 @lru_cache(KEPT)
@@ -237,11 +252,13 @@ def _join(form: TorqueForm) -> tuple[ProgrammePiece, list[int]]:
     own = ca.vertcat(*[value for _, value in states])
     return _part(
         form,
-        ca.vertcat(start, end, *[symbol for symbol, _ in states]),
-        ca.SX.sym("u"),
-        ca.SX(0),
-        ca.vertcat(closure, own - ca.vertcat(*met)),
-        NONE,
+        ProgrammePiece(
+            ca.vertcat(start, end, *[symbol for symbol, _ in states]),
+            ca.SX.sym("u"),
+            ca.SX(0),
+            ca.vertcat(closure, own - ca.vertcat(*met)),
+            NONE,
+        ),
     )
 
 

@@ -37,6 +37,9 @@ class ProgrammePiece:
         What must be zero, and what must not be negative.
     between, made
         Symbols in which cost and constraints are stated besides, and what the unknowns make of them; none where there are none.
+    about, settled
+        Symbols of the place about which cost and constraints are stated as they are to the second order, and what these are, in what lies
+        between: derivatives look at them as at constants.
     """
 
     unknowns: Any
@@ -46,36 +49,40 @@ class ProgrammePiece:
     above: Any
     between: Any = NONE
     made: Any = NONE
+    about: Any = NONE
+    settled: Any = NONE
 
     @property
     def rows(self) -> Any:
         """Constraints, equations first."""
         return ca.vertcat(self.equal, self.above)
 
+    def _plain(self, *parts: Any) -> list[Any]:
+        """Say all in the unknowns alone, what is the same once."""
+        settled = ca.substitute(list(parts), [self.about], [self.settled])
+        return list(ca.cse(ca.substitute(settled, [self.between], [self.made])))
+
     @cached_property
-    def plain(self) -> tuple[Any, Any]:
-        """Cost and rows, of the unknowns alone."""
-        cost, rows = ca.substitute([self.cost, self.rows], [self.between], [self.made])
-        return cost, rows
+    def chain(self) -> Any:
+        """Derivatives of the unknowns and of what lies between by the unknowns."""
+        return ca.vertcat(ca.SX.eye(self.unknowns.numel()), ca.jacobian(self.made, self.unknowns))
 
     @cached_property
     def value(self) -> Any:
         """Function of unknowns and what is given: cost and rows."""
-        return ca.Function("value", [self.unknowns, self.given], ca.cse(list(self.plain)))
+        return ca.Function("value", [self.unknowns, self.given], self._plain(self.cost, self.rows))
 
     @cached_property
     def slope(self) -> Any:
         """Function that has the cost and its gradient."""
-        cost, _ = self.plain
-        held = ca.cse([cost, ca.densify(ca.gradient(cost, self.unknowns))])
-        return ca.Function("slope", [self.unknowns, self.given], held)
+        slope = self.chain.T @ ca.gradient(self.cost, ca.vertcat(self.unknowns, self.between))
+        return ca.Function("slope", [self.unknowns, self.given], self._plain(self.cost, ca.densify(slope)))
 
     @cached_property
     def bend(self) -> tuple[Any, Any]:
         """Function that has the rows and what their Jacobian holds, and its pattern."""
-        _, rows = self.plain
-        bend = ca.jacobian(rows, self.unknowns)
-        return ca.Function("bend", [self.unknowns, self.given], ca.cse([rows, _held(bend)])), bend.sparsity()
+        bend = ca.jacobian(self.rows, ca.vertcat(self.unknowns, self.between)) @ self.chain
+        return ca.Function("bend", [self.unknowns, self.given], self._plain(self.rows, _held(bend))), bend.sparsity()
 
     @cached_property
     def curve(self) -> tuple[Any, Any]:
@@ -86,12 +93,11 @@ class ProgrammePiece:
         of_cost, of_rows = ca.SX.sym("of_cost"), ca.SX.sym("of_rows", self.rows.numel())
         lagrangian, count = of_cost * self.cost + ca.dot(of_rows, self.rows), self.unknowns.numel()
         whole, slope = ca.hessian(lagrangian, ca.vertcat(self.unknowns, self.between))
-        chain = ca.vertcat(ca.SX.eye(count), ca.jacobian(self.made, self.unknowns))
         paid = ca.SX.sym("paid", self.made.numel())
         own, _ = ca.hessian(ca.dot(paid, self.made), self.unknowns)
-        bend = chain.T @ whole @ chain + ca.substitute(own, paid, slope[count:])
+        bend = self.chain.T @ whole @ self.chain + ca.substitute(own, paid, slope[count:])
         upper: Any = ca.triu(bend)
-        held = ca.cse([ca.substitute(_held(upper), self.between, self.made)])
+        held = self._plain(_held(upper))
         return ca.Function("curve", [self.unknowns, self.given, of_cost, of_rows], held), upper.sparsity()
 
 
