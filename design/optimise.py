@@ -49,9 +49,9 @@ class Agreement:
     Parameters
     ----------
     converged, agreeing
-        Starts that converged, and those among them that found the best objective.
+        Starts that converged, and those among them that found the best motion or one as good.
     spread
-        Greatest objective over least, less one.
+        Greatest objective over least, less one, of those that converged, each on a mesh of its own.
     residual
         Largest KKT residual of the best, scaled.
     valleys

@@ -152,8 +152,8 @@ def _head(design: Design) -> list[str]:
     starts = solution.agreement
     if starts is not None:
         lines.append(
-            f"{starts.agreeing} of {starts.converged} starts agree, spread {starts.spread:.1e}, KKT residual "
-            f"{starts.residual:.1e}; local minima over the place of the sync zone: {starts.valleys}"
+            f"{starts.agreeing} of {starts.converged} starts found this motion or one as good (objectives on their first meshes within "
+            f"{starts.spread:.1e}); KKT residual {starts.residual:.1e}; local minima over the place of the sync zone: {starts.valleys}"
         )
     return [*lines, *machine.remarks(design.job.cut)]
 

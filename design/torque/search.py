@@ -49,7 +49,7 @@ SETTLED, SHRINKS = 1e-4, 0.45
 """Share of the cycle's objective that a finer mesh must promise to gain to be tried, and the share of the last one's gain that it promises:
 it is finer by a half, and the error falls with the square of that."""
 AGREEMENT = 1e-2
-"""Starts whose objectives differ by less than this share on the first mesh have found the same optimum; its own error is as large."""
+"""Starts whose objectives on their first meshes differ by less than this share are as good as each other, whatever their motions."""
 NEAR = 0.25
 """Answers within this share of the best on the first mesh are taken further, one of each motion."""
 MOST_PATHS = 4
@@ -87,10 +87,11 @@ class TorqueSolution:
         The return over ``[0, length]`` from slave zero.
     value
         Its objective at the slave: root mean square or peak (N or N·m), or mean power drawn (W), over the return.
-    spread
-        Greatest objective over least, less one, of the starts that converged, on the first mesh.
     starts, agreeing
-        How many starts converged, and how many of them to the best objective.
+        How many starts converged, and how many of them to the motion of the best, or to one as good. Each has a mesh of its own at first,
+        whose error may be some per cent of the objective: so one motion need not have one value.
+    spread
+        Greatest objective over least, less one, of the starts that converged, each on its first mesh.
     residual
         Largest KKT residual of the best (scaled).
     iterations
@@ -144,14 +145,17 @@ def solve_torque(
         if _keeps_limits(back, task) and accepted(back):
             found.append((max(_value(task, answer, pattern), floor), back, answer.residual))
 
-    second: list[tuple[TorqueAnswer, Pattern]] = []
-    for answer, pattern in _distinct(first, ONE_MOTION if task.aim in ROOTS else ONE_EXACTLY):
+    alike = ONE_MOTION if task.aim in ROOTS else ONE_EXACTLY
+    taken, second, agreeing = _distinct(first, alike), list[tuple[TorqueAnswer, Pattern]](), 0
+    for answer, pattern in taken:
         finer = _finer(task, pattern, answer, SECOND, floor)
         iterations += finer.iterations
         second.append((finer if finer.success else answer, pattern))
         keep(*second[-1])
     if second:
-        answer, pattern = min(second, key=lambda entry: entry[0].value)
+        best = min(range(len(second)), key=lambda at: second[at][0].value)
+        answer, pattern = second[best]
+        agreeing = _agreeing(first, taken[best], alike)
         iterations += _taken_further(task, pattern, answer, floor, keep)
     found += [entry for entry in _given(task, starts if found else profiles()) if accepted(entry[1])]
     if not found:
@@ -159,17 +163,21 @@ def solve_torque(
             f"IPOPT found no return of least {task.aim} from any start, although the limits can be kept; minimise peak_acceleration or "
             f"rms_acceleration instead"
         )
-    return _agreed(found, [answer.value for answer, _ in first], iterations)
+    least = min(entry[0] for entry in found)
+    value, back, residual = [entry for entry in found if entry[0] <= least * (1 + SAME)][-1]
+    return TorqueSolution(back, value, _spread(first), len(first), agreeing, residual, iterations)
 
 
-def _agreed(found: list[tuple[float, CamProfile, float]], values: list[float], iterations: int) -> TorqueSolution:
-    """Take the last of the best motions found, and say how well the values of the first look, least first, agree."""
-    best = min(entry[0] for entry in found)
-    value, back, residual = [entry for entry in found if entry[0] <= best * (1 + SAME)][-1]
-    least, greatest = (values[0], values[-1]) if values else (best, best)
-    agreeing = sum(each <= least * (1 + AGREEMENT) for each in values or [best])
-    spread = greatest / least - 1.0 if least > 0 else 0.0
-    return TorqueSolution(back, value, spread, len(values), agreeing, residual, iterations)
+def _agreeing(first: list[tuple[TorqueAnswer, Pattern]], best: tuple[TorqueAnswer, Pattern], alike: float) -> int:
+    """How many answers of the first look, the best value first, are as good as that, or one motion with the best."""
+    as_good = first[0][0].value * (1 + AGREEMENT)
+    return sum(entry[0].value <= as_good or _apart(best, entry) <= alike for entry in first)
+
+
+def _spread(first: list[tuple[TorqueAnswer, Pattern]]) -> float:
+    """Greatest value over least, less one, of the answers of the first look."""
+    values = [answer.value for answer, _ in first]
+    return values[-1] / values[0] - 1.0 if values and values[0] > 0 else 0.0
 
 
 def _taken_further(
@@ -306,13 +314,15 @@ def _distinct(answers: list[tuple[TorqueAnswer, Pattern]], alike: float) -> list
     for entry in answers:
         if len(kept) == MOST_TAKEN or entry[0].value > answers[0][0].value * (1 + NEAR):
             break
-        if not any(entry[1] == other[1] and _apart(entry, other) <= alike for other in kept):
+        if not any(_apart(entry, other) <= alike for other in kept):
             kept.append(entry)
     return kept
 
 
 def _apart(entry: tuple[TorqueAnswer, Pattern], other: tuple[TorqueAnswer, Pattern]) -> float:
-    """By how much the velocities of two motions differ at most, as a share of the first one's greatest."""
+    """By how much the velocities of two motions differ at most, as a share of the first one's greatest; infinite between patterns."""
+    if entry[1] != other[1]:
+        return math.inf
     times = np.linspace(0.0, 1.0, LOOKS)
     one, two = (paces(answer.guess, pattern, times) for answer, pattern in (entry, other))
     return float(np.abs(two - one).max()) / max(float(np.abs(one).max()), 1e-300)

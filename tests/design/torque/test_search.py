@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -21,9 +22,9 @@ from camwright.design.torque.mesh import density, divide, paces, remesh, spread
 from camwright.design.torque.path_starts import path_starts
 from camwright.design.torque.peaks import drawn_between, peaks
 from camwright.design.torque.placing import _edges, place_by_objective
-from camwright.design.torque.programme import Guess, TorqueProgramme
-from camwright.design.torque.search import solve_torque, zone_peak
-from camwright.design.torque.task import TorqueTask
+from camwright.design.torque.programme import Guess, TorqueAnswer, TorqueProgramme
+from camwright.design.torque.search import _first_looks, solve_torque, zone_peak
+from camwright.design.torque.task import Pattern, TorqueTask
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InfeasibleError
 from camwright.profiles.limits import Limits
@@ -355,6 +356,36 @@ def test_where_a_start_reaches_the_floor_of_a_peak_no_other_is_made(monkeypatch:
     monkeypatch.setattr(search, "solve_return", none)
     found = solve_torque(_torque_task(task, "peak_torque"), floor=zone_peak(task))
     assert (found.starts, found.agreeing, found.value) == (1, 1, pytest.approx(zone_peak(task), rel=1e-4))
+
+
+@pytest.mark.parametrize(
+    ("task", "aim", "agreeing", "starts"),
+    [
+        (Task(CRANK, SHEAR, TURNS), "rms_torque", 3, 3),  # one motion, whose value on three meshes differs by 3 %
+        (Task(KNIFE, CUT, LIMITS), "rms_torque", 4, 6),  # of one value, standing at two places; two that turn
+        (Task(CRANK, replace(SHEAR, length=1.8), TURNS), "rms_torque", 2, 2),
+    ],
+)
+def test_starts_agree_that_found_one_motion_or_are_as_good(
+    task: Task, aim: CommandObjective, agreeing: int, starts: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    looks: list[tuple[TorqueAnswer, Pattern]] = []
+
+    def kept(*arguments: Any) -> tuple[list[tuple[TorqueAnswer, Pattern]], int]:
+        first, iterations = _first_looks(*arguments)
+        looks.extend(first)
+        return first, iterations
+
+    monkeypatch.setattr(search, "_first_looks", kept)
+    asked = _torque_task(task, aim)
+    found = solve_torque(asked)
+    x = np.linspace(0.0, found.back.end, 10_001)
+    best = found.back(x, 1)
+    values = np.array([answer.value for answer, _ in looks])
+    apart = np.array([np.abs(finish(answer.guess, pattern, asked)(x, 1) - best).max() for answer, pattern in looks])
+    agree = (values <= 1.01 * values.min()) | (apart <= 0.15 * np.abs(best).max())
+    assert (found.agreeing, found.starts) == (int(agree.sum()), len(looks)) == (agreeing, starts)
+    assert found.spread == pytest.approx(values.max() / values.min() - 1.0)
 
 
 @pytest.mark.parametrize("aim", ["rms_torque", "rms_acceleration"])
