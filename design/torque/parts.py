@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any
@@ -288,17 +287,18 @@ def zone_numbers(task: TorqueTask, zone: Zone, start: float, end: float) -> list
     return [torque, torque * velocity, zone_looks(zone.points)[1] * weight]
 
 
-def zone_floor(task: TorqueTask, zone: Zone, start: float, end: float) -> float:
-    """Bound the objective, as `TorqueAnswer.value` has it, by what a sync zone between two slave coordinates needs; 0 for others."""
-    torque, power, weights = zone_numbers(task, zone, start, end)
+def zone_floors(task: TorqueTask, zone: Zone, starts: FloatArray, ends: FloatArray) -> FloatArray:
+    """Bound the objective, as `TorqueAnswer.value` has it, by what sync zones between pairs of coordinates need; 0 for others."""
+    torque, velocity, weight, _ = _zones(task, zone, starts, ends)
+    weights = zone_looks(zone.points)[1] * weight
     match task.aim:
         case "rms_torque":
-            return math.sqrt(float(weights @ torque**2) / (1.0 + float(weights.sum())))
+            return np.asarray(np.sqrt((weights * torque**2).sum(axis=1) / (1.0 + weights.sum(axis=1))))
         case "peak_torque":
-            return float(np.abs(torque).max())
+            return np.asarray(np.abs(torque).max(axis=1))
         case "energy":
-            return float(weights @ np.maximum(power, 0.0))
-    return 0.0
+            return np.asarray((weights * np.maximum(torque * velocity, 0.0)).sum(axis=1))
+    return np.zeros(len(starts))
 
 
 def greatest_share(task: TorqueTask, zone: Zone, starts: FloatArray, ends: FloatArray) -> FloatArray:

@@ -6,7 +6,6 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from camwright.design.feasible.feasibility import is_feasible
 from camwright.design.place import Placement, is_smooth
@@ -14,7 +13,7 @@ from camwright.design.returns.problem import return_problem
 from camwright.design.torque.finish import finish
 from camwright.design.torque.guesses import ANYHOW, from_path
 from camwright.design.torque.mesh import remesh
-from camwright.design.torque.parts import greatest_share, zone_floor
+from camwright.design.torque.parts import greatest_share, zone_floors
 from camwright.design.torque.path_starts import PathStarts, path_starts
 from camwright.design.torque.programme import Guess, TorqueAnswer, TorqueProgramme
 from camwright.design.torque.task import ROOTS, Aim, TorqueTask
@@ -173,7 +172,9 @@ def _scan(
     programme = TorqueProgramme(task, ANYHOW, (COARSE,), zone, SCANNED)
     pairs = list(zip(starts.tolist(), ends.tolist(), strict=True))
     able = greatest_share(task, zone, starts, ends) <= 1.0
-    paths = _Paths(task, zone, pairs, able)
+    floors = np.full(len(pairs), np.inf)
+    floors[able] = zone_floors(task, zone, starts[able], ends[able])
+    paths = _Paths(task, pairs, floors)
     # the place that seems best goes first, so that dear ones need not be looked at
     while able.any() and not paths.knows(first := int(np.argmin(paths.floors))):
         paths.guesses(first)
@@ -199,12 +200,10 @@ def _scan(
 class _Paths:
     """Returns along the path with the zone at places, and what a place costs at least: by its zone, and by its path once known."""
 
-    def __init__(self, task: TorqueTask, zone: Zone, pairs: list[tuple[float, float]], able: NDArray[np.bool_]) -> None:
+    def __init__(self, task: TorqueTask, pairs: list[tuple[float, float]], floors: FloatArray) -> None:
         self._task, self._pairs = task, pairs
         self._known: dict[int, list[Guess]] = {}
-        self.floors: FloatArray = np.array(
-            [zone_floor(task, zone, *pair) if fits else np.inf for fits, pair in zip(able, pairs, strict=True)]
-        )
+        self.floors = floors
 
     def knows(self, k: int) -> bool:
         """Whether the path of a place is known."""

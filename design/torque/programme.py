@@ -20,7 +20,7 @@ from camwright.design.returns.ipopt import QUIET
 from camwright.design.torque.layout import LOBATTO, Layout
 from camwright.design.torque.numbers import FAR_SLOPE, TorqueForm, TorqueNumbers, moved
 from camwright.design.torque.parts import lay, zone_numbers
-from camwright.design.torque.pieces import Laid, programme
+from camwright.design.torque.pieces import programme
 from camwright.design.torque.task import Pattern, TorqueTask
 from camwright.design.torque.watch import MOST_AT_FIRST, MOST_MULTIPLIER, WatchedSolver
 from camwright.design.torque.zone import Zone
@@ -136,7 +136,7 @@ class TorqueProgramme:
         self._numbers = TorqueNumbers.of(task)
         pace = self._numbers.pace
         self._units = np.repeat([pace**2, pace, *np.ones(len(layout.sizes) - 2)], layout.sizes)
-        self._limits = self._rows(kept.laid)
+        self._limits = self._rows(kept)
 
     def _state(self, guess: Guess) -> FloatArray:
         ends = np.array(guess.ends if self._zone is not None and guess.ends is not None else [])
@@ -282,11 +282,10 @@ class TorqueProgramme:
             return 0.0, 1.0
         return 1.0, (FIRST_ROUNDING if rough else ROUNDING).get(self._task.aim, 0.0)
 
-    def _rows(self, laid: list[Laid]) -> tuple[FloatArray, FloatArray]:
+    def _rows(self, kept: _KeptSolver) -> tuple[FloatArray, FloatArray]:
         """Limits of all rows; the last of every step from node to node is the velocity between."""
-        lower, upper = (np.concatenate([getattr(each, side) for each in laid]) for side in ("lower", "upper"))
-        step = laid[0].piece.rows.numel()
-        steps = slice(step - 1, step * self._layout.intervals, step)
+        lower, upper = (each.copy() for each in kept.limits)
+        steps = slice(kept.step - 1, kept.step * self._layout.intervals, kept.step)
         lower[steps], upper[steps] = self._paces()
         return lower, upper
 
@@ -345,10 +344,19 @@ class TorqueProgramme:
 
 @dataclass(frozen=True, eq=False)
 class _KeptSolver:
-    """What programmes share that differ in numbers alone."""
+    """What programmes share that differ in numbers alone.
+
+    Parameters
+    ----------
+    limits
+        Least and greatest values of all rows, but for those of velocities.
+    step
+        Rows of a step from node to node, which come first.
+    """
 
     layout: Layout
-    laid: list[Laid]
+    limits: tuple[FloatArray, FloatArray]
+    step: int
     watched: WatchedSolver
 
 
@@ -368,4 +376,5 @@ def _kept_solver(
     nlp, derivatives = programme(laid, sum(layout.sizes), layout.given[-1].stop)
     options = _OPTIONS | derivatives | {"ipopt.tol": accuracy, "ipopt.max_iter": iterations}
     watched = WatchedSolver.of("camwright_torque", nlp, options | (_FROM_NEAR if near else {}))
-    return _KeptSolver(layout, laid, watched)
+    lower, upper = (np.concatenate([getattr(each, side) for each in laid]) for side in ("lower", "upper"))
+    return _KeptSolver(layout, (lower, upper), laid[0].piece.rows.numel(), watched)

@@ -10,7 +10,7 @@ import pytest
 from camwright.design.returns.problem import return_problem
 from camwright.design.torque.layout import Layout
 from camwright.design.torque.numbers import TorqueForm
-from camwright.design.torque.parts import greatest_share, zone_floor
+from camwright.design.torque.parts import greatest_share, zone_floors
 from camwright.design.torque.search import zone_peak
 from camwright.design.torque.task import Aim, TorqueTask
 from camwright.design.torque.zone import Zone
@@ -30,6 +30,10 @@ def asked(aim: Aim) -> TorqueTask:
     return TorqueTask(TASK, return_problem(TASK, "peak_acceleration"), aim)
 
 
+def _floor(aim: Aim) -> float:
+    return float(zone_floors(asked(aim), ZONE, np.array([ENDS[0]]), np.array([ENDS[1]]))[0])
+
+
 def zone_torque() -> tuple[np.ndarray, np.ndarray]:
     """Torque and speed of the sync zone over time, by the profile that the return joins."""
     x = np.linspace(TASK.sync.start, TASK.sync.end, 20_001)
@@ -44,12 +48,10 @@ def test_a_zone_costs_what_its_own_profile_says() -> None:
     back = TASK.cut.return_zone
     square = np.trapezoid(torque**2, x) / (TASK.cut.sync_zone + back)
     drawn = np.trapezoid(np.maximum(torque * speed, 0.0), x) / back
-    assert zone_floor(asked("peak_torque"), ZONE, *ENDS) == pytest.approx(zone_peak(TASK), rel=1e-6)
-    assert zone_floor(asked("rms_torque"), ZONE, *ENDS) == pytest.approx(math.sqrt(square), rel=1e-6)
-    assert zone_floor(asked("energy"), ZONE, *ENDS) == pytest.approx(
-        drawn, rel=0.05
-    )  # the power's corner lies between points
-    assert zone_floor(asked("peak_jerk"), ZONE, *ENDS) == 0.0
+    assert _floor("peak_torque") == pytest.approx(zone_peak(TASK), rel=1e-6)
+    assert _floor("rms_torque") == pytest.approx(math.sqrt(square), rel=1e-6)
+    assert _floor("energy") == pytest.approx(drawn, rel=0.05)  # the power's corner lies between points
+    assert _floor("peak_jerk") == 0.0
 
 
 def test_the_share_of_a_limit_is_that_of_the_zones_own_profile() -> None:
@@ -70,3 +72,14 @@ def test_weights_of_points_add_up_to_their_phases() -> None:
     assert weights[phase == 2].sum() == pytest.approx(1.0)
     assert layout.points == 3 * 5 + 2  # neighbours share a point, phases do not
     assert layout.signs.tolist() == [1.0] * 10 + [-1.0] * 7
+
+
+@pytest.mark.parametrize("aim", ["rms_torque", "peak_torque", "energy"])
+def test_zones_that_are_looked_at_together_cost_what_each_does(aim: Aim) -> None:
+    places = [TASK.placed_at(place) for place in (1.6, 1.9, 2.1)]
+    starts = np.array([place.slave_at_sync_start for place in places])
+    ends = np.array([place.slave_at_sync_end for place in places])
+    together = zone_floors(asked(aim), ZONE, starts, ends)
+    alone = [zone_floors(asked(aim), ZONE, starts[[k]], ends[[k]])[0] for k in range(3)]
+    assert together == pytest.approx(alone, rel=1e-14)
+    assert np.ptp(together) > 0.1 * together.max()
