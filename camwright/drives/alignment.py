@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from camwright.drives.axis_path import axis_path
 from camwright.jobs.job import Job
+from camwright.profiles.cut import Cut
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.validation.rebuilt import cuts_in, each_cut, one_cycle
 from camwright.validation.servo.response import shear_zone_of
@@ -36,7 +37,8 @@ _SNAP = 0.05
 _TOLD = 0.1
 """Misfit at the file's own zero, as a part of what is allowed, from which on another zero is told."""
 _LINE_SPEEDS = 5
-"""Line speeds of the job's range at which the axis of a shaped cam is looked at: one alone leaves its place open by a millimetre."""
+"""Line speeds of the job's range at which the axis of a shaped cam is looked at: one alone leaves its place open by
+millimetres, for the axis is straight beyond the shear zone too, and elsewhere nothing says where a command has to be."""
 _ROUNDS = 60
 """Steps of the golden section: the last is far below a nanometre."""
 
@@ -52,7 +54,8 @@ def aligned(
 ) -> tuple[CamProfile, tuple[str, ...]]:
     """Begin the cycle where it fits the job's sync zone best, and put the slave's zero where the job has it.
 
-    A shaped command is not in sync itself: there it is the axis that is put into the shear zone.
+    A shaped command is not in sync itself: there it is the axis that is put into the shear zone. One that is for one line speed alone is
+    left where the file has it if it is in tolerance there.
 
     The zero is found from the cam alone: the beginnings tried are those at which an end of the zone falls on a point of
     the cam, so that the answer does not depend on where the file begins. Where many fit, as in a cam that stays in sync
@@ -120,11 +123,10 @@ def aligned(
         begin = _between_sides(begins, misfit(begins), cut.length, slack, anchored)
     else:
         begin = _best(begins, misfit, cut.length, max(_EXACT, slack), anchored)
-    here, there = misfit(np.array([0.0, begin])).tolist()
+    begin, notes = _settled(begin, begins, misfit, cut, slack, len(paths))
     met = 0.0
     if begin:  # even where the file's own zero is as good: figures must not depend on where a file begins
         rebuilt, met = rebuilt.roll(begin * stretch), float(rebuilt(begin * stretch))
-    notes = _told(begin, here, there + slack, cut.shaped)
     off = np.concatenate([path((begin + zone + in_zone) * stretch) - met - meant for path in paths])
     wanted = task.height if cut.origin == "return" else machine.pitch - float(sync(0.5 * cut.sync_zone))
     return rebuilt.shift(0.0, wanted - 0.5 * float(off.max() + off.min())), notes
@@ -138,6 +140,33 @@ def _told(begin: float, here: float, there: float, shaped: bool) -> tuple[str, .
     note = (
         f"the file's master zero is not the job's: the job's cycle begins {begin * 1e3:.6g} mm into the file's, "
         f"where the {fits} zone best ([output] origin says which zero is meant)"
+    )
+    return (note,)
+
+
+def _settled(
+    begin: float, begins: FloatArray, misfit: Misfit, cut: Cut, slack: float, line_speeds: int
+) -> tuple[float, tuple[str, ...]]:
+    """Keep the file's own zero where nothing tells a better one, and say where the cycle begins if it is elsewhere or open."""
+    here, there = misfit(np.array([0.0, begin])).tolist()
+    left_open = cut.shaped and line_speeds == 1
+    if left_open and here <= 1.0:
+        begin, there = 0.0, here
+    notes = _told(begin, here, there + slack, cut.shaped)
+    return begin, (*notes, *_told_open(begin, begins, misfit, cut.length)) if left_open else notes
+
+
+def _told_open(begin: float, begins: FloatArray, misfit: Misfit, length: float) -> tuple[str, ...]:
+    """Say how far the beginning of a shaped cam is open whose axis is in sync at one line speed: wherever it is in tolerance."""
+    least, good = int(np.abs(begins - begin).argmin()), misfit(begins) <= 1.0
+    if not good[least]:
+        return ()
+    first, last = _run(good, least)
+    width = (begins[last] - begins[first]) % length
+    taken = "the own zero of the file" if begin == 0.0 else "what fits best"
+    note = (
+        "the axis of a shaped command is in sync at one line speed, which leaves open where its cycle begins: anywhere within "
+        f"{width * 1e3:.3g} mm it is in tolerance; {taken} is taken"
     )
     return (note,)
 

@@ -31,6 +31,8 @@ from camwright.profiles.returns import baseline
 from camwright.profiles.servo import Servo
 from camwright.profiles.tables.cam_table import TableUnits, Unit, make_table
 from camwright.validation.rebuilt import judge_table
+from camwright.validation.servo.response import shear_zone_of
+from camwright.validation.servo.simulation import simulate
 
 JOB = load_job()
 PROFILE = baseline("double_s", JOB.task)
@@ -430,6 +432,38 @@ def test_a_shaped_cam_is_put_where_its_axis_is_in_sync() -> None:
     assert np.array(figures) == pytest.approx(
         np.broadcast_to(figures[0], np.shape(figures)), rel=1e-4, abs=1e-3 * job.cut.sync_tolerance
     )
+
+
+def test_a_shaped_cam_for_one_line_speed_stays_where_it_is_in_tolerance() -> None:
+    """It was moved by 3 mm to where its axis fits a little better, and was said to be a sixth nearer to the material than it is."""
+    job = replace(load_job(EXAMPLES / "short-cut.toml"), slowest=1.0)
+    profile = optimise(job).profile
+    grid = np.linspace(0.0, 0.999 * job.cut.length, 301)
+    moved, (note,) = aligned(profile, job)
+    assert np.abs(moved(grid) - profile(grid)).max() < job.cut.sync_tolerance
+    assert note.endswith("the own zero of the file is taken")
+    # how far it is open is what the naive twin finds: beginnings at which the axis is in tolerance, the slave's zero free
+    open_by = 1e-3 * float(note.split("within ")[1].split(" ")[0])
+    begins = np.arange(-60, 60) * 5e-4
+    errors = np.array([axis_error(profile.roll(begin % job.cut.length), job) for begin in begins.tolist()])
+    within = errors <= job.cut.sync_tolerance
+    assert within[60]
+    first, last = np.flatnonzero(~within[:60])[-1] + 1, 60 + np.flatnonzero(~within[60:])[0] - 1
+    assert open_by == pytest.approx(begins[last] - begins[first], abs=1e-3)
+    # a file that begins elsewhere is put where it fits best, and told so
+    _, (first_note, second_note) = aligned(profile.roll(0.1712), job)
+    assert "where the axis fits the shear zone best" in first_note
+    assert second_note.endswith("what fits best is taken")
+
+
+def axis_error(profile: CamProfile, job: Job) -> float:
+    """By how much the axis is off the material in the shear zone, the slave's zero where that is least (m)."""
+    run, (start, end) = simulate(profile, job.cut, job.servo), shear_zone_of(job.cut)
+    x, y = run.master.ravel(), run.axis.ravel()
+    cycles = np.floor(x / job.cut.length)
+    place, axis = x - cycles * job.cut.length, y - cycles * job.machine.pitch
+    off = (axis - place)[(place >= start) & (place <= end)]
+    return float(0.5 * np.ptp(off))
 
 
 @pytest.mark.parametrize("digits", [3, 4, 6])
