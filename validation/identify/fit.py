@@ -46,6 +46,9 @@ _LOGARITHMIC = frozenset({"bandwidth", "damping", "position_gain", "sample_time"
 _FARTHEST = 300.0
 """Greatest logarithm of a value: a bound that nothing is known of is no overflow."""
 
+_UNTOLD = 1e6
+"""Standard error of a coordinate that moves nothing: far more than any range, and finite, as it is multiplied and divided."""
+
 _RUN_IN = 0.06
 """Beginning of the trace that is not judged (s): the greatest dead time and some samples, whose commands must be known."""
 
@@ -341,11 +344,15 @@ class TraceFit:
         jacobian = found.jac * size
         rows, width = jacobian.shape
         scale = np.sqrt((jacobian**2).sum(axis=0))
+        moves = scale > 0.0  # at the end of its range a parameter may move nothing
         cost = 2.0 * found.cost * size * size
-        _, singular, directions = np.linalg.svd(jacobian / scale, full_matrices=False)
-        singular = np.maximum(singular, np.finfo(np.float64).eps * singular[0])  # what is not told at all is told badly
+        _, singular, directions = np.linalg.svd(jacobian[:, moves] / scale[moves], full_matrices=False)
+        singular = np.maximum(
+            singular, np.finfo(np.float64).eps * singular[:1]
+        )  # what is not told at all is told badly
         variances = ((directions / singular[:, None]) ** 2).sum(axis=0)
-        deviations = np.sqrt(variances * cost / (rows - width - 3)) / scale
+        deviations = np.full(width, _UNTOLD)
+        deviations[moves] = np.sqrt(variances * cost / (rows - width - 3)) / scale[moves]
         errors = {name: float(each) for name, each in zip(names, deviations, strict=False)}
         bounds = {
             name: (moved(name, values[name], -CONFIDENCE * each), moved(name, values[name], CONFIDENCE * each))

@@ -24,7 +24,7 @@ from camwright.validation.identify.fit import (
 )
 from camwright.validation.identify.level import with_level
 from camwright.validation.identify.preparation import geared, unwrapped
-from camwright.validation.identify.quality import require_usable
+from camwright.validation.identify.quality import require_lag, require_usable
 from camwright.validation.identify.rounding import count_of, with_rounding
 
 Origin = Literal["trace", "assumed", "given"]
@@ -108,13 +108,13 @@ def identify(
     Raises
     ------
     InputError
-        The trace cannot be used (`camwright.validation.identify.quality.require_usable`), does not tell a parameter, or no servo of
-        this kind does what it
-        shows.
+        The trace cannot be used (`camwright.validation.identify.quality.require_usable`, `require_lag`), does not tell a parameter, or no
+        servo of this kind does what it shows.
     """
     trace = unwrapped(trace, place)
     require_usable(trace, place)
     trace = geared(trace, place)
+    require_lag(trace, place)
     counts = count_of(trace.command), count_of(trace.actual)
     asked = beyond or {}
     fit = replace(

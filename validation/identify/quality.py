@@ -23,6 +23,12 @@ _MOVED = 0.05
 _STRAIGHT = 5.0
 """Deviation of the command from a straight line that counts as excitation, as a multiple of the noise of the actual position."""
 
+_ALIKE = 1e-8
+"""Lag of the actual position, as a part of its range, that is rounding of numbers with nine digits."""
+
+_BY_CHANCE = 6.0
+"""Share by which the variance of white noise seems greater than its third differences tell, times the root of its rows: never by chance."""
+
 _AGAINST = 0.8
 """Correlation from which on two signals run against each other."""
 _SCALE = 8.0
@@ -49,6 +55,24 @@ def require_usable(trace: Trace, place: str) -> None:
     faults = list(_faults(trace))
     if faults:
         raise InputError(*(f"{place}: {fault}" for fault in faults))
+
+
+def require_lag(trace: Trace, place: str) -> None:
+    """Refuse a trace whose actual position is its command, but for noise: it tells nothing of an axis.
+
+    Raises
+    ------
+    InputError
+        Beside another zero and another ratio there is nothing but white noise between the two.
+    """
+    command = trace.command - trace.command.mean()
+    lag = trace.actual - float(command @ trace.actual) / float(command @ command) * command
+    left, noise = float(np.std(lag)), noise_of(lag) * (1.0 + _BY_CHANCE / len(lag) ** 0.5) ** 0.5
+    if left <= max(noise, _ALIKE * float(np.ptp(trace.actual))):
+        raise InputError(
+            f"{place}: the actual position is the command itself, but for {left:.2g} {trace.unit} rms of noise or rounding: a simulated "
+            "axis, or one column taken twice; record the position that the encoder measures"
+        )
 
 
 def noise_of(signal: FloatArray) -> float:

@@ -23,9 +23,10 @@ from camwright.profiles.returns import baseline
 from camwright.profiles.servo import Servo, sample_plant
 from camwright.profiles.task import Task
 from camwright.profiles.trace import Trace
+from camwright.validation.identify.fit import RANGES, TraceFit
 from camwright.validation.identify.identification import identify
 from camwright.validation.identify.preparation import geared, unwrapped, without_jumps
-from camwright.validation.identify.quality import require_usable
+from camwright.validation.identify.quality import require_lag, require_usable
 
 FREE = Limits(math.inf, math.inf, math.inf)
 """Nothing here asks for limits."""
@@ -448,3 +449,39 @@ def test_a_modulus_that_is_no_plain_number_is_measured() -> None:
     jumping = replace(CUT_TRACE, command=CUT_TRACE.command % modulus, actual=CUT_TRACE.actual % modulus)
     found = unwrapped(jumping, "t")
     assert float(np.abs(found.command - CUT_TRACE.command).max()) < 2e-6
+
+
+@pytest.mark.parametrize("kind", ["same", "zero", "gear", "noise", "nine digits"])
+def test_an_axis_that_is_its_command_is_refused(kind: str) -> None:
+    """What a simulated axis, or one column exported twice, looks like."""
+    command = np.array([sweep(0.05, 20.0)(STEP * row) for row in range(ROWS)])
+    noise = np.random.default_rng(3).standard_normal(ROWS)
+    actual = {
+        "same": command,
+        "zero": command + 0.02,
+        "gear": 2.0 * command,
+        "noise": command + NOISE * noise,
+        "nine digits": np.array([float(f"{2 * each:.9g}") for each in command]),
+    }[kind]
+    trace = Trace(0.0, STEP, command, actual, "m")
+    with pytest.raises(
+        InputError, match=r"^t: the actual position is the command itself, but for .* m rms of noise or"
+    ):
+        identify(trace, "t")
+
+
+def test_a_lag_that_noise_hides_for_the_eye_is_no_copy() -> None:
+    """The lag of a servo with full feed-forward, a third of the noise: the copy's refusal does not touch it."""
+    trace = recorded(PAPER, cam("poly_3_4_5"), 5, noise=3e-4)
+    require_lag(trace, "t")
+
+
+def test_parameters_that_move_nothing_are_untold_not_a_fault() -> None:
+    """A loop that is not stable leaves the same whatever its parameters: each may be anything, which is no division by zero."""
+    command = np.array([sweep(0.05, 20.0)(STEP * row) for row in range(ROWS + 5)])
+    fit = TraceFit.of(Trace(0.0, STEP, command[5:], command[:-5], "m"))
+    start = {"bandwidth": 477.0, "damping": 0.1, "position_gain": 129.0, "sample_time": 0.0076, "dead_time": 0.0}
+    names = ("bandwidth", "position_gain", "dead_time")
+    found = fit.minimum({**start, "velocity_feedforward": 0.0}, names, None, 5)
+    assert all(found.bounds[name][0] < RANGES[name][0] and found.bounds[name][1] > RANGES[name][1] for name in names)
+    assert all(math.isfinite(error) and error > 1e3 for error in found.errors.values())
