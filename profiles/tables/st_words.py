@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from camwright.profiles.tables.cam_table import LARGEST_VALUE
 from camwright.profiles.tables.text import refuse, shown
 
 MOST_TOKENS = 200_000
@@ -22,23 +23,31 @@ _WORD = re.compile(
 )
 
 
+_BLANK, _DIGITS = r"[ \t]{0,99}", r"[0-9]{1,40}(?:\.[0-9]{1,40})?(?:[eE][+-]?[0-9]{1,4})?"
+_MEMBER = re.compile(rf"([A-Za-z_][A-Za-z0-9_]{{0,200}}){_BLANK}:={_BLANK}([+-]?)({_DIGITS})")
+_ONE = rf"{_BLANK}[A-Za-z_][A-Za-z0-9_]{{0,200}}{_BLANK}:={_BLANK}[+-]?{_DIGITS}{_BLANK}"
+_MEMBERS = re.compile(rf"{_ONE}(?:,{_ONE}){{0,99}}\)")
+
+
 class Token(NamedTuple):
-    """A word of the text: what kind, as written, in which line."""
+    """A word of the text: what kind, as written, in which line; where it ends, and how many words there are so far."""
 
     kind: str
     text: str
     line: int
+    end: int = 0
+    number: int = 0
 
 
-def tokens_of(text: str, place: str) -> Iterator[Token]:
-    """Cut the text into words; comments, pragmas and blanks are passed over.
+def tokens_of(text: str, place: str, behind: Token | None = None) -> Iterator[Token]:
+    """Cut the text into words, from its beginning or behind one of them; comments, pragmas and blanks are passed over.
 
     Raises
     ------
     InputError
         A character that no word begins with, a comment without an end, more than `MOST_TOKENS` words.
     """
-    at, line, count = 0, 1, 0
+    at, line, count = (0, 1, 0) if behind is None else (behind.end, behind.line, behind.number)
     match = _WORD.match
     while True:
         found = match(text, at)
@@ -62,7 +71,7 @@ def tokens_of(text: str, place: str) -> Iterator[Token]:
             count += 1
             if count > MOST_TOKENS:
                 raise refuse(place, line, f"the text goes on beyond {MOST_TOKENS} words; no cam table needs as many")
-            yield Token(kind, text[word:at], line)
+            yield Token(kind, text[word:at], line, at, count)
 
 
 _END = Token("end", "", 0)
@@ -74,6 +83,7 @@ class Words:
     def __init__(self, text: str, place: str) -> None:
         self.place = place
         self.line = 1
+        self._text = text
         self._rest = tokens_of(text, place)
         self.now, self.after = _END, next(self._rest, _END)
         self.step()
@@ -97,6 +107,26 @@ class Words:
         """Go on if this is the word that stands here, refuse otherwise."""
         if not self.accept(text):
             raise self.refusal(f"{text!r} is missing before {shown(self.now.text) if self.now.text else 'the end'}")
+
+    def members(self) -> dict[str, float] | None:
+        """Go on behind a structure of nothing but numbers in one line, ``(a := 1.0, b := -2)``, and give them by lower-case names.
+
+        None where another begins here, or one with a fault: word by word it is said where that lies. Tables are long lists of such
+        structures, and one match of a pattern takes a tenth of the time of their words.
+        """
+        found = _MEMBERS.match(self._text, self.now.end) if self.now.text == "(" else None
+        if found is None:
+            return None
+        pairs = _MEMBER.findall(found[0])
+        members = {name.lower(): float(sign + digits) for name, sign, digits in pairs}
+        words = self.now.number + 4 * len(pairs) + sum(1 for _, sign, _ in pairs if sign)
+        within = all(abs(value) <= LARGEST_VALUE for value in members.values())
+        if len(members) < len(pairs) or words > MOST_TOKENS or not within:
+            return None
+        self._rest = tokens_of(self._text, self.place, Token("op", ")", self.now.line, found.end(), words))
+        self.now, self.after = next(self._rest, _END), next(self._rest, _END)
+        self.line = self.now.line or self.line
+        return members
 
     def close(self, bracket: str) -> None:
         """Go on behind the next closing bracket."""

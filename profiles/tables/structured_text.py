@@ -264,6 +264,8 @@ class Reader:
     def structure(self, depth: int) -> Value:
         """Read ``(a := 1, b := 2)``; a bracket around anything else is an expression."""
         line = self.words.line
+        if depth + 1 < DEEPEST and (numbers := self.words.members()) is not None:
+            return Struct(dict[str, Value](numbers), line)
         self.words.expect("(")
         if not (self.words.now.kind == "name" and self.words.after.text == ":="):
             inner = self.value(depth + 1)

@@ -1,0 +1,71 @@
+"""Structures of numbers are read at one stroke: as word by word, faults included."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+
+from camwright.profiles.errors import InputError
+from camwright.profiles.tables.st_words import Words
+from camwright.profiles.tables.structured_text import parse
+
+_PIECES = (
+    *(
+        "(",
+        ")",
+        "a",
+        ":=",
+        "1.5",
+        "-",
+        "+",
+        " ",
+        "\n",
+        ",",
+        "[",
+        "]",
+        "16#FF",
+        "1e5",
+        "1e400",
+        "1e13",
+        "(* c *)",
+        "//x\n",
+    ),
+    *(
+        "(a := 1, b := 2)",
+        "(a:=1,A:=2)",
+        "(a := -1.0)",
+        "(A:=1 , B := 2.5e-3)",
+        ";",
+        "x : INT := ",
+        "x := ",
+        "'s'",
+        "$é",
+    ),
+    *("1_000", "9" * 41),
+)
+
+
+def _read(text: str) -> str:
+    try:
+        return repr(parse(text, "file"))
+    except InputError as error:
+        return str(error)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_structures_of_numbers_are_read_as_word_by_word(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    draw = random.Random(seed)
+    begun = "v : ARRAY[0..3] OF T := "
+    texts = [begun * (n % 2) + "".join(draw.choices(_PIECES, k=draw.randint(1, 14))) for n in range(300)]
+    found = [_read(text) for text in texts]
+    assert sum("Struct" in each for each in found) > 1
+    with monkeypatch.context() as slow:
+        slow.setattr(Words, "members", lambda _: None)
+        assert [_read(text) for text in texts] == found
+
+
+def test_a_list_of_structures_is_not_read_word_by_word() -> None:
+    words = Words("(a := 1.0, B := -2e-3) , c", "file")
+    assert words.members() == {"a": 1.0, "b": -2e-3}
+    assert (words.now.text, words.after.text) == (",", "c")
