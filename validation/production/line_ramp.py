@@ -57,6 +57,11 @@ WAYS = 1.0, -1.0
 FREE = Allowed(math.inf, "none", None)
 
 
+Quotient = tuple[rows.Rows, rows.Rows, FloatArray, FloatArray]
+"""Coefficients over and under on pieces, as in `camwright.profiles.polynomial.rows`, where the pieces begin and how long they are (m). The
+lower one is positive or zero on each; where it is zero the quotient is infinite, of the upper one's sign."""
+
+
 @dataclass(frozen=True)
 class LineRamp:
     """How hard the line may ramp.
@@ -112,7 +117,7 @@ def line_ramp(profile: CamProfile, task: Task, *, speeds: Literal["at", "up_to"]
         bounds = [*by_acceleration[number], by_jerk[number]]
         if task.limits.motor is not None and task.machine.moves_something:
             speeds_at = tuple(share * v for share in (0.0, *SHARES)) if whole else (v,)
-            value, at = torque_ramp(parts, task, way, speeds_at)
+            value, at = torque_ramp(parts.profile, task, way, speeds_at)
             bounds.append(FREE if math.isinf(value) else Allowed(value, "torque", at))
         if not is_steady(profile, task.machine):
             bounds = [Allowed(0.0, "acceleration", _worst_jump(profile, 1))]
@@ -149,26 +154,59 @@ def _worst_jump(profile: CamProfile, order: int) -> float:
     return float(profile.breaks[1:][int(np.abs(profile.jumps(order)).argmax())])
 
 
-def _parts(profile: CamProfile) -> CamProfile:
+@dataclass(frozen=True, eq=False)
+class _Pieces:
+    """Pieces of a cycle on which neither ratio nor ratio slope changes sign: tables as in `camwright.profiles.polynomial.rows`.
+
+    Parameters
+    ----------
+    profile
+        The cycle, split so.
+    start, width
+        Where the pieces begin, and how long they are (m).
+    ratio, bend, jerk
+        Derivatives over the master, the first three.
+    turn, sway
+        Signs of ratio and ratio slope, shape ``(pieces, 1)``.
+    """
+
+    profile: CamProfile
+    start: FloatArray
+    width: FloatArray
+    ratio: rows.Rows
+    bend: rows.Rows
+    jerk: rows.Rows
+    turn: FloatArray
+    sway: FloatArray
+
+
+def _pieces(profile: CamProfile) -> _Pieces:
+    """Tabulate a cycle that is split where its ratio or its ratio slope changes sign."""
+    breaks, ratio = profile.breaks, rows.differentiated(profile.coefficients)
+    bend, inside = rows.differentiated(ratio), _middles(profile) - breaks[:-1]
+    turn, sway = (np.sign(rows.at_ends(table, inside))[:, None] for table in (ratio, bend))
+    return _Pieces(profile, breaks[:-1], breaks[1:] - breaks[:-1], ratio, bend, rows.differentiated(bend), turn, sway)
+
+
+def _middles(profile: CamProfile) -> FloatArray:
+    """Middles of the pieces (m)."""
+    return np.asarray(0.5 * (profile.breaks[:-1] + profile.breaks[1:]))
+
+
+def _parts(profile: CamProfile) -> _Pieces:
     """Split a profile where its ratio or its ratio slope changes sign."""
-    return profile.split(np.union1d(profile.roots(1), profile.roots(2)))
+    return _pieces(profile.split(np.union1d(profile.roots(1), profile.roots(2))))
 
 
-def _signs(parts: CamProfile, order: int) -> FloatArray:
-    """Sign of a derivative on each piece, on which it does not change; shape ``(pieces,)``."""
-    return np.asarray(np.sign(parts(0.5 * (parts.breaks[:-1] + parts.breaks[1:]), order)))
-
-
-def _by_acceleration(parts: CamProfile, limit: float, speeds: Sequence[float]) -> list[list[Allowed]]:
+def _by_acceleration(parts: _Pieces, limit: float, speeds: Sequence[float]) -> list[list[Allowed]]:
     """Bound ``(A - σ y'' v²) / |y'|``, with the direction ``σ`` in which the ramp pushes the slave, each way at each line speed."""
-    ratio, bend = (parts.derivative(order).coefficients for order in (1, 2))
-    sign = _signs(parts, 1)[:, None]
+    under = parts.ratio * parts.turn
     quotients = []
     for way in WAYS:
         for speed in speeds:
-            room = bend * (-way * sign * speed**2)
+            room = parts.bend * (-way * parts.turn * speed**2)
             room[:, 0] += limit
-            quotients.append((room, ratio * sign, parts.breaks[:-1], np.diff(parts.breaks)))
+            quotients.append((room, under, parts.start, parts.width))
     found = [_allowed(value, "acceleration", at) for value, at in least_quotients(quotients)]
     return [found[: len(speeds)], found[len(speeds) :]]
 
@@ -180,7 +218,7 @@ def _allowed(value: float, binds: str, at: float) -> Allowed:
     return FREE if value > 0 else Allowed(0.0, binds, at)
 
 
-def _by_jerk(parts: CamProfile, task: Task, *, whole: bool) -> list[Allowed]:
+def _by_jerk(parts: _Pieces, task: Task, *, whole: bool) -> list[Allowed]:
     """Bound ``(J - |y'| j - σ y''' v³) / (3 |y''| v)`` each way, with the direction ``σ`` in which the ramp jerks the slave.
 
     Of the line speeds up to ``v`` the highest is the worst where ``σ y''' >= 0``. Elsewhere it is that with
@@ -189,20 +227,13 @@ def _by_jerk(parts: CamProfile, task: Task, *, whole: bool) -> list[Allowed]:
     v = task.cut.line_speed
     if v == 0.0:
         return [FREE] * len(WAYS)
+    left, bend = _jerk_left(parts, task), parts.bend * parts.sway
     highest, lower = [], []
     for way in WAYS:
-        left, bend, against, eased = _jerk_terms(parts, task, way)
-        room = rows.added(left, against * v**3)
-        highest.append((room, bend * (3.0 * v), parts.breaks[:-1], np.diff(parts.breaks)))
+        against = parts.jerk * (-way * parts.sway)
+        highest.append((rows.added(left, against * v**3), bend * (3.0 * v), parts.start, parts.width))
         if whole:
-            split = parts.split(eased.roots())
-            if split is not parts:
-                left, bend, against, eased = _jerk_terms(split, task, way)
-            kept = eased(0.5 * (split.breaks[:-1] + split.breaks[1:])) > 0
-            left, bend, against = left[kept], bend[kept], against[kept]
-            over = rows.multiplied(rows.multiplied(left, left), against)
-            cube = rows.multiplied(rows.multiplied(bend, bend), bend) * 4.0
-            lower.append((over, cube, split.breaks[:-1][kept], np.diff(split.breaks)[kept]))
+            lower.append(_at_lower_speed(parts, task, way))
     found = least_quotients(highest)
     if whole:
         roots = [(math.copysign(abs(value) ** (1 / 3), value), at) for value, at in least_quotients(lower)]
@@ -210,26 +241,27 @@ def _by_jerk(parts: CamProfile, task: Task, *, whole: bool) -> list[Allowed]:
     return [_allowed(value, "jerk", at) for value, at in found]
 
 
-def _jerk_terms(parts: CamProfile, task: Task, way: float) -> tuple[rows.Rows, rows.Rows, rows.Rows, CamProfile]:
-    """Give what the bounds by the jerk are made of.
+def _at_lower_speed(parts: _Pieces, task: Task, way: float) -> Quotient:
+    """Give the cube of the bound by the jerk at the worst line speed, on the pieces where that is a lower one."""
+    left, against = _jerk_left(parts, task), parts.jerk * (-way * parts.sway)
+    # positive where a lower line speed is the worst
+    eased = CamProfile(parts.profile.breaks, rows.added(against * (2.0 * task.cut.line_speed**3), -left))
+    split = parts.profile.split(eased.roots())
+    if split is not parts.profile:
+        parts = _pieces(split)
+        left, against = _jerk_left(parts, task), parts.jerk * (-way * parts.sway)
+    lower = eased(_middles(split)) > 0
+    left, bend, against = left[lower], (parts.bend * parts.sway)[lower], against[lower]
+    over = rows.multiplied(rows.multiplied(left, left), against)
+    under = rows.multiplied(rows.multiplied(bend, bend), bend) * 4.0
+    return over, under, parts.start[lower], parts.width[lower]
 
-    Returns
-    -------
-    (left, bend, against, eased)
-        ``J - |y'| j``, ``|y''|``, ``-σ y'''``, and what is positive where a lower line speed is the worst.
-    """
-    ratio, bend, jerk = (parts.derivative(order).coefficients for order in (1, 2, 3))
-    of_bend = _signs(parts, 2)[:, None]
-    left = ratio * (-_signs(parts, 1)[:, None] * task.line.known_jerk)
+
+def _jerk_left(parts: _Pieces, task: Task) -> rows.Rows:
+    """Give ``J - |y'| j``."""
+    left = parts.ratio * (-parts.turn * task.line.known_jerk)
     left[:, 0] += task.limits.jerk
-    against = jerk * (-way * of_bend)
-    eased = rows.added(against * (2.0 * task.cut.line_speed**3), -left)
-    return left, bend * of_bend, against, CamProfile(parts.breaks, eased)
-
-
-Quotient = tuple[rows.Rows, rows.Rows, FloatArray, FloatArray]
-"""Coefficients over and under on pieces, as in `camwright.profiles.polynomial.rows`, where the pieces begin and how long they are (m). The
-lower one is positive or zero on each; where it is zero the quotient is infinite, of the upper one's sign."""
+    return left
 
 
 def least_quotients(quotients: Sequence[Quotient]) -> list[tuple[float, float]]:
