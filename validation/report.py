@@ -165,7 +165,6 @@ def judge(
 def _closure(profile: CamProfile, machine: Machine) -> list[Check]:
     """Closure of the cycle and continuity at every join, the seam included."""
     unit, turned = machine.slave_unit, machine.slave_unit == "rad"
-    least, greatest = profile.extrema(0)
     joins = (
         ("position_joins", POSITION_JUMP * position_scale(profile, machine), unit, "position at any join"),
         (
@@ -186,7 +185,7 @@ def _closure(profile: CamProfile, machine: Machine) -> list[Check]:
         Check.at_most(
             "position_closure",
             abs(profile.advance - machine.pitch),
-            CLOSURE * (machine.pitch or greatest.value - least.value),
+            CLOSURE * (machine.pitch or _travel(profile)),
             unit,
             "the slave advances by the pitch in one cycle" if machine.pitch else "the slave comes back in one cycle",
             profile.end,
@@ -196,6 +195,12 @@ def _closure(profile: CamProfile, machine: Machine) -> list[Check]:
             for jump, (name, allowed, per, what) in zip(jumps, joins, strict=True)
         ),
     ]
+
+
+def _travel(profile: CamProfile) -> float:
+    """Way between the slave's least and greatest position (slave unit)."""
+    least, greatest = profile.extrema(0)
+    return greatest.value - least.value
 
 
 def _motion(profile: CamProfile, task: Task, motion: MotionMeasures) -> list[Check]:

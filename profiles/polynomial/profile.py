@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cache
@@ -75,11 +76,13 @@ class CamProfile:
             )
         if len(self.coefficients) == 0 or self.coefficients.shape[1] == 0:
             raise InputError("a profile needs at least one piece with at least one coefficient")
-        if not (np.isfinite(self.breaks).all() and np.isfinite(self.coefficients).all()):
+        # breaks that rise from a finite number to another have no other between
+        rises = self.breaks[1:] > self.breaks[:-1]
+        rising = bool(rises.all()) and math.isfinite(self.breaks[0]) and math.isfinite(self.breaks[-1])
+        if not (np.isfinite(self.coefficients).all() and (rising or np.isfinite(self.breaks).all())):
             raise InputError("a profile's breaks and coefficients must be finite numbers; one is NaN or infinite")
-        falls = self.breaks[1:] <= self.breaks[:-1]
-        if falls.any():
-            i = int(falls.argmax())
+        if not rising:
+            i = int(rises.argmin())
             raise InputError(
                 f"a profile's breaks must increase: break {i + 1} ({float(self.breaks[i + 1])!r} m) does not lie beyond "
                 f"break {i} ({float(self.breaks[i])!r} m)"
@@ -139,7 +142,9 @@ class CamProfile:
 
     # -- evaluation -------------------------------------------------------------------------------------------------
 
-    def __call__(self, x: ArrayLike, order: int = 0, *, side: Side = "right", outside: Outside = "raise") -> FloatArray:
+    def __call__(
+        self, x: ArrayLike | float, order: int = 0, *, side: Side = "right", outside: Outside = "raise"
+    ) -> FloatArray:
         """Evaluate the profile or a derivative over the master.
 
         Parameters
@@ -163,9 +168,11 @@ class CamProfile:
         InputError
             A position lies outside the domain and ``outside="raise"``.
         """
+        start, end = self.start, self.end
+        if isinstance(x, float) and outside == "raise" and start <= x <= end:
+            return self._at_one(float(x), order, side)
         position = np.asarray(x, dtype=np.float64)
         turns: FloatArray | None = None
-        start, end = self.start, self.end
         if outside == "repeat":
             turns = np.floor((position - start) / (end - start))
             if side == "left":  # a seam belongs to the cycle that ends there
@@ -179,13 +186,21 @@ class CamProfile:
             value = value + turns * self.advance
         return np.asarray(value, dtype=np.float64)
 
+    def _at_one(self, x: float, order: int, side: Side) -> FloatArray:
+        """Evaluate a derivative at one place inside the domain: single numbers are quicker than arrays of one."""
+        table = self._derived(order)
+        piece = int(self.breaks[1:-1].searchsorted(x, side=side))
+        local, value = x - float(self.breaks[piece]), 0.0
+        for coefficient in reversed(table[piece].tolist()):  # Horner
+            value = value * local + coefficient
+        return np.array(value)
+
     def _valued(self, position: FloatArray, order: int, side: Side) -> FloatArray:
         """Evaluate a derivative inside the domain."""
         table = self._derived(order)
-        if position.ndim == 0 or len(table) == 1:  # one piece for all positions
-            piece = int(self.breaks[1:-1].searchsorted(position, side=side)) if position.ndim == 0 else 0
-            local = position - self.breaks[piece]
-            *others, most = table[piece].tolist()
+        if len(table) == 1:  # one piece for all positions
+            local = position - self.breaks[0]
+            *others, most = table[0].tolist()
             value = np.full(local.shape, most + 0.0)
             for number in reversed(others):  # Horner
                 value *= local
@@ -387,7 +402,10 @@ class CamProfile:
     def split(self, places: FloatArray) -> CamProfile:
         """Give the profile further breaks, none nearer to another than 1e-12 of its length."""
         least = 1e-12 * self.length
-        apart = [float(x) for x in places if np.abs(self.breaks - x).min() > least]
+        if not len(places):
+            return self
+        away = np.abs(self.breaks[:, None] - places).min(axis=0)
+        apart = [x for x, off in zip(places.tolist(), away.tolist(), strict=True) if off > least]
         kept = [x for i, x in enumerate(apart) if i == 0 or x - apart[i - 1] > least]
         return self.recut(np.union1d(self.breaks, kept)) if kept else self
 

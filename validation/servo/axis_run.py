@@ -73,28 +73,24 @@ class AxisRun:
     ) -> list[FloatArray]:
         """Copy what is wanted of master position, axis and axis ratio between two master positions, as `window` says."""
         most = self.master.shape[1] - 1
-        start, end = (np.broadcast_to(bound, self.phases) for bound in (start, end))
-        first, last = self._around(start, end)
+        bounds = np.empty((2, self.phases))
+        bounds[0], bounds[1] = start, end
+        first, last = self._around(*bounds)
         left, right = max(int(first.min()), 0), min(int(last.max()), most)
         found = [values[:, left : right + 1].copy() for values in wanted]
         # the phases begin and end within a few columns of each other
         head, tail = slice(int(first.max()) - left + 2), slice(max(int(last.min()) - left - 1, 0), None)
-        first, last = np.clip([first, np.maximum(last - 1, first)], 0, most - 1)
-        edges = (
-            (start, first, head, found[0][:, head] <= start[:, None]),
-            (end, last, tail, found[0][:, tail] >= end[:, None]),
-        )
+        point = np.minimum(np.maximum([first, np.maximum(last - 1, first)], 0), most - 1)
         rows = np.arange(self.phases)
-        for bound, point, columns, beyond in edges:
-            step = self.master[rows, point + 1] - self.master[rows, point]
-            value, ratio = hermite(
-                (bound - self.master[rows, point]) / step,
-                step,
-                (self.axis[rows, point], self.axis[rows, point + 1]),
-                (self.axis_ratio[rows, point], self.axis_ratio[rows, point + 1]),
-            )
-            for values, at_bound in zip(found, (bound, value, ratio), strict=False):
-                np.copyto(values[:, columns], at_bound[:, None], where=beyond)
+        (x, beyond_x), axis, ratio = (
+            (values[rows, point], values[rows, point + 1]) for values in (self.master, self.axis, self.axis_ratio)
+        )
+        step = beyond_x - x
+        at_bounds = (bounds, *hermite((bounds - x) / step, step, axis, ratio))
+        edges = ((head, found[0][:, head] <= bounds[0, :, None]), (tail, found[0][:, tail] >= bounds[1, :, None]))
+        for number, (columns, beyond) in enumerate(edges):
+            for values, at_bound in zip(found, at_bounds, strict=False):
+                np.copyto(values[:, columns], at_bound[number, :, None], where=beyond)
         return found
 
     def _around(self, start: FloatArray, end: FloatArray) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

@@ -25,8 +25,8 @@ def deviation(profile: CamProfile, master: FloatArray) -> FloatArray:
     rows = master.reshape(-1, master.shape[-1])
     least, greatest = (rows[0, 0], rows[0, -1]) if len(rows) == 1 else (rows[:, 0].min(), rows[:, -1].max())
     first, last = (math.floor((float(x) - profile.start) / profile.length) for x in (least, greatest))
-    table = np.tile(table, last + 1 - first)
-    table[-1] += np.repeat(np.arange(first, last + 1) * profile.length, profile.pieces)
+    table = np.concatenate([table] * (last + 1 - first), axis=1)
+    table[-1] += (np.arange(first, last + 1) * profile.length).repeat(profile.pieces)
     bounds = np.zeros((len(rows), table.shape[1] + 1), dtype=np.intp)
     for row, bound in zip(rows, bounds, strict=True):
         bound[1:-1] = row.searchsorted(table[-1, 1:])
@@ -45,5 +45,10 @@ def deviation(profile: CamProfile, master: FloatArray) -> FloatArray:
 @lru_cache(maxsize=8)
 def straightened(profile: CamProfile) -> FloatArray:
     """Coefficients of the profile minus the straight line, ascending powers, and last the start of each piece; a row each."""
-    straight = profile.shift(slave=-float(profile.coefficients[0, 0])).add_line(-profile.mean_ratio)
-    return np.concatenate([straight.coefficients.T, straight.breaks[None, :-1]])
+    slope, start, table = -profile.mean_ratio, profile.breaks[:-1], profile.coefficients.T
+    found = np.zeros((max(len(table), 2) + 1, profile.pieces))
+    found[: len(table)], found[-1] = table, start
+    found[0] -= table[0, 0]
+    found[0] += slope * (start - start[0])
+    found[1] += slope
+    return found
