@@ -74,10 +74,8 @@ _HEAD, _MIDDLE, _END = COLUMNS[:5], COLUMNS[5:18], ("binding", "folder")
 _STATUS = {"passed": "passed", "check_failed": "check failed", "infeasible": "infeasible", "failed": "solver failed"}
 
 
-def html_pieces(
-    book: Book, counts: Counts, limits: Iterable[Sequence[Cell]], designs: Iterable[Sequence[Cell]]
-) -> Iterator[str]:
-    """Write the page piece by piece; every text is escaped."""
+def html_pieces(book: Book, counts: Counts, limits: Iterable[Sequence[Cell]], designs: Iterable[str]) -> Iterator[str]:
+    """Write the page piece by piece, its designs as `design_row` writes them; every text is escaped."""
     name = escape(book.name)
     yield '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
     yield f'<meta name="viewport" content="width=device-width">\n<title>{name}: recipe book</title>\n'
@@ -92,7 +90,7 @@ def html_pieces(
     )
     yield from _table(book, LIMIT_COLUMNS, map(_limit, limits))
     yield "<h2>Designs</h2>\n"
-    yield from _table(book, (*_HEAD, *_MIDDLE, *_END), map(_design, designs))
+    yield from _table(book, (*_HEAD, *_MIDDLE, *_END), designs)
     yield "</body>\n</html>\n"
 
 
@@ -134,7 +132,7 @@ def _limit(row: Sequence[Cell]) -> str:
     return f"<tr>{''.join(map(_cell, LIMIT_COLUMNS, row))}</tr>\n"
 
 
-def _design(row: Sequence[Cell]) -> str:
+def design_row(row: Sequence[Cell]) -> str:
     """Write a row of the designs; where there is no design its reason takes the place of the numbers."""
     cells = dict(zip(COLUMNS, row, strict=True))
     head = "".join(_cell(column, cells[column]) for column in _HEAD)
