@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import json
-
 from camwright.answers.axis import axis_answer, robust_answer
 from camwright.answers.measures import agreement_answer, objective_answer
+from camwright.house.json_text import to_lines
 from camwright.house.provenance import SCHEMA_VERSION, provenance
 from camwright.jobs.numbers import job_numbers
 from camwright.studies.design import Design
@@ -25,4 +24,4 @@ def design_text(design: Design) -> str:
         "job": {"toml": design.job.text, "si": job_numbers(design.job)},
         "provenance": provenance(design.job.sha256),
     }
-    return json.dumps(data, indent=1, allow_nan=False) + "\n"
+    return to_lines(data) + "\n"

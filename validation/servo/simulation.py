@@ -181,9 +181,7 @@ class _Clocks:
     def grid(self, more: int = 0) -> FloatArray:
         """Lay out the samples of all phases (m), memory first, ascending: shape ``(servos, (past + samples + more) phases)``."""
         before, after = self.past * self.phases, (self.samples + more) * self.phases
-        found = np.empty((len(self.first), before + after))
-        for row, first in zip(found, self.first.tolist(), strict=True):
-            row[:] = np.arange(first - before, first + after)
+        found = self.first[:, None] + np.arange(-before, after)
         found *= self.step[:, None]
         found += self.origin
         return found
