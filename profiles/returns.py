@@ -7,6 +7,7 @@ import numpy as np
 from camwright.profiles.errors import InputError
 from camwright.profiles.laws import LAWS, law
 from camwright.profiles.polynomial.profile import CamProfile, join
+from camwright.profiles.polynomial.rows import ascending
 from camwright.profiles.task import Task
 
 BASELINES: tuple[str, ...] = ("linear_return", *(name for name in LAWS if name != "linear"))
@@ -129,7 +130,7 @@ def tabulate_crank(cycle: CamProfile, points: int = 360) -> CamProfile:
     # the speed between two middles is the straight line; at the seam the cycle repeats
     around = np.concatenate([[middle[-1] - cycle.length], middle, [middle[0] + cycle.length]])
     pace = np.concatenate([[speed[-1]], speed, [speed[0]]])
-    breaks = np.unique(np.concatenate([[cycle.start], middle, [cycle.end]]))
+    breaks = ascending(np.concatenate([[cycle.start], middle, [cycle.end]]))
     at = np.interp(breaks, around, pace)
     rise = np.diff(breaks) * 0.5 * (at[:-1] + at[1:])
     # differences and straight lines do not add up to the turn; S3's drive closes the cycle by the last value

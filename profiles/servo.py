@@ -185,6 +185,7 @@ def closed_loop(servo: Servo) -> tuple[FloatArray, FloatArray]:
     return a, np.outer(plant.input, servo.drive)
 
 
+@lru_cache(maxsize=64)  # every check asks for the same few
 def spectral_radius(servo: Servo) -> float:
     """Largest magnitude of the closed loop's poles in the z-plane; the servo is stable below 1.
 

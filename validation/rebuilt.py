@@ -8,6 +8,7 @@ import numpy as np
 
 from camwright.profiles.cut import Cut
 from camwright.profiles.errors import InputError
+from camwright.profiles.polynomial import rows
 from camwright.profiles.polynomial.profile import CamProfile, Extremum, FloatArray
 from camwright.profiles.servo import Servo, spectral_radius
 from camwright.profiles.task import Task
@@ -291,7 +292,7 @@ def _places(run: CamProfile, start: float, end: float) -> FloatArray:
     """Master positions between two, dense on every piece."""
     inner = run.breaks[(run.breaks > start) & (run.breaks < end)]
     breaks = np.concatenate([[start], inner, [end]])
-    return np.unique(np.concatenate([(breaks[:-1, None] + np.diff(breaks)[:, None] * _NODES).ravel(), [end]]))
+    return rows.ascending(np.concatenate([(breaks[:-1, None] + np.diff(breaks)[:, None] * _NODES).ravel(), [end]]))
 
 
 def _limits(

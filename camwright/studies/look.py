@@ -16,6 +16,7 @@ from camwright.profiles.errors import InfeasibleError, InputError, SolverError
 from camwright.profiles.line import STEADY
 from camwright.profiles.objective import MotionObjective
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
+from camwright.profiles.polynomial.rows import ascending
 from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
 from camwright.studies.least_length import BEYOND, STEEP
@@ -155,7 +156,7 @@ def _missed_at(profile: CamProfile, task: Task, servo: Servo) -> Callable[[Float
     That is the error in the shear zone, and at the end of the sync zone, where the axis must have settled, too.
     """
     cut = task.cut
-    places = np.unique([cut.shear_zone_at, max(cut.shear_zone_at, cut.sync_zone - cut.shear_zone)])
+    places = ascending(np.array([cut.shear_zone_at, max(cut.shear_zone_at, cut.sync_zone - cut.shear_zone)]))
 
     def missed(line_speeds: FloatArray) -> FloatArray:
         zones = np.tile(places, len(line_speeds)), np.full(len(places) * len(line_speeds), cut.shear_zone)

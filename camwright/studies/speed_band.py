@@ -11,6 +11,7 @@ import numpy as np
 from camwright.jobs.job import Job
 from camwright.jobs.servos import servos_of
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
+from camwright.profiles.polynomial.rows import ascending
 from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
 from camwright.studies.speed_scan import NAMES, TOLERANCE, SpeedScan
@@ -224,7 +225,7 @@ def _nodes(own: float, sure: float, top: float) -> FloatArray:
         if low < high:
             count = math.ceil(math.log(high / low) / math.log(step))
             nodes += np.geomspace(low, high, count + 1)[1:-1].tolist()
-    return np.unique([*nodes, *([own] if lowest <= own <= top else [])])
+    return ascending(np.array([*nodes, *([own] if lowest <= own <= top else [])]))
 
 
 def _with_extrema(scan: SpeedScan, speeds: FloatArray, rows: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -255,9 +256,12 @@ def _finer(scan: SpeedScan, speeds: FloatArray, rows: FloatArray) -> tuple[Float
 
 def _merged(scan: SpeedScan, speeds: FloatArray, rows: FloatArray, more: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Look at more line speeds."""
-    new = np.unique(more)
-    speeds, first = np.unique(np.concatenate([speeds, new]), return_index=True)
-    return speeds, np.concatenate([rows, scan.excess(new, PHASES)])[first]
+    new = ascending(more)
+    every = np.concatenate([speeds, new])
+    order = np.argsort(every, kind="stable")
+    every = every[order]
+    first = np.concatenate([[True], every[1:] != every[:-1]])
+    return every[first], np.concatenate([rows, scan.excess(new, PHASES)])[order[first]]
 
 
 def _assembled(scan: SpeedScan, speeds: FloatArray, rows: FloatArray, at_top: str) -> SpeedBand:

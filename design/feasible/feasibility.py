@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 from camwright.design.returns.curve_limits import motor_limits
 from camwright.design.returns.possible import is_possible
@@ -32,6 +33,8 @@ EDGE = 1e-12
 PEAK = 1e-6
 # "Unlimited", as a multiple of the limit.
 FREE = 1e6
+# The shortest cut is looked for up to this multiple of its sync zone.
+LONGEST = 1024.0
 # A search for an edge starts with steps of this factor.
 STRIDE = 4.0
 
@@ -111,6 +114,28 @@ def feasible_lengths(*tasks: Task) -> Callable[[float], bool]:
     """
     asked = [(demand, task.cut.sync_zone) for task in tasks for demand in demands(task)]
     return lambda length: any(length > zone and demand.met(length=length - zone) for demand, zone in asked)
+
+
+def shortest_length(task: Task) -> float | None:
+    """Shortest cut length (m) with which some motion keeps the limits, as `feasible_lengths`; None if none up to `LONGEST` zones is known.
+
+    It is the same whatever the task's own cut length, so tasks that differ in nothing else share it.
+    """
+    asked = tuple(Demand(replace(demand.problem, length=1.0), demand.shares) for demand in demands(task))
+    return _shortest(asked, task.cut.sync_zone)
+
+
+@lru_cache(maxsize=256)
+def _shortest(asked: tuple[Demand, ...], zone: float) -> float | None:
+    def works(length: float) -> bool:
+        return any(demand.met(length=length - zone) for demand in asked)
+
+    good = 2.0 * zone
+    while not works(good):
+        good *= 2.0
+        if good > LONGEST * zone:
+            return None
+    return halved(works, good, 0.5 * good)[0]
 
 
 def margin(task: Task) -> float:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
-from camwright.design.feasible.feasibility import edge, feasible_lengths
+from camwright.design.feasible.feasibility import edge, feasible_lengths, shortest_length
 from camwright.design.feasible.refusal import require_feasible
 from camwright.design.line.forms import keeps_ramp
 from camwright.design.optimise import solve
@@ -49,7 +49,7 @@ def redesigned(task: Task) -> MarkRange:
     # a motion within the motor's curve need not lie in one of its rectangles: then no other length is sure
     require_feasible(task.with_limits(motor_speed_limits(task.machine, task.limits)))
     if not task.line.ramps:
-        return _ends(task, feasible_lengths(task))
+        return _ends(task, feasible_lengths(task), shortest_length(task))
     if not keeps_ramp(task.sync, task):
         return MarkRange(0.0, 0.0)
     return _ends(task, feasible_lengths(*_reserved(task)))
@@ -93,11 +93,12 @@ def designs(task: Task, shift: float) -> bool:
     return True
 
 
-def _ends(task: Task, works: Callable[[float], bool]) -> MarkRange:
+def _ends(task: Task, works: Callable[[float], bool], known: float | None = None) -> MarkRange:
+    """Find the ends of what works; the shortest length is looked for where none is known that is no longer than the job's."""
     length, zone = task.cut.length, task.cut.sync_zone
     if not works(length):
         return MarkRange(0.0, 0.0)
-    shortest = edge(works, length, zone) or length
+    shortest = (edge(works, length, zone) or length) if known is None or known > length else known
     early = min(shortest - length, 0.0)
     if can_stand(stand(task)):
         return MarkRange(early, None)  # it can wait as long as it must

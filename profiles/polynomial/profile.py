@@ -305,7 +305,7 @@ class CamProfile:
         if not len(may):
             return np.zeros(0)
         found = self.breaks[may, None] + roots_between(table[may], np.zeros(len(may)), width[may])
-        return np.unique(found[~np.isnan(found)])
+        return rows.ascending(found[~np.isnan(found)])
 
     def mean_square(self, order: int, start: float | None = None, end: float | None = None) -> float:
         """Mean of the squared derivative over a part of the domain, exactly (Gauss-Legendre of sufficient degree)."""
@@ -407,7 +407,7 @@ class CamProfile:
         away = np.abs(self.breaks[:, None] - places).min(axis=0)
         apart = [x for x, off in zip(places.tolist(), away.tolist(), strict=True) if off > least]
         kept = [x for i, x in enumerate(apart) if i == 0 or x - apart[i - 1] > least]
-        return self.recut(np.union1d(self.breaks, kept)) if kept else self
+        return self.recut(rows.ascending(np.concatenate([self.breaks, kept]))) if kept else self
 
     def repeat(self, cycles: int) -> CamProfile:
         """Repeat the cycle, the slave advancing by `advance` each time."""

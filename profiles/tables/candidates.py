@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
+from camwright.profiles.polynomial.rows import ascending
 from camwright.profiles.tables.cam_table import TableUnits, Unit, sample_profile
 from camwright.profiles.tables.interpolation import quintics
 from camwright.profiles.tables.target import Target
@@ -48,7 +49,7 @@ def required_points(profile: CamProfile, zones: Sequence[float] | FloatArray) ->
     for at in zones:
         nearest = float(profile.breaks[np.abs(profile.breaks - at).argmin()])
         found.append(nearest if abs(nearest - at) <= _SAME * profile.length else float(at))
-    return np.unique(found)
+    return ascending(found)
 
 
 def candidates(
@@ -94,7 +95,7 @@ def _thinned(profile: CamProfile, required: FloatArray, gap: float) -> FloatArra
     for at in profile.breaks.tolist():
         if min(abs(other - at) for other in kept) > gap:
             kept.append(at)
-    return np.unique(kept)
+    return ascending(kept)
 
 
 def _pieces(
@@ -103,7 +104,7 @@ def _pieces(
     """Give the breaks if quintics carry the pieces; else points from the zones' ends on, each where it is missed most."""
     most = points or min(target.max_points or MOST_PIECES, MOST_PIECES)
     least = target.least_step * profile.length
-    x = np.union1d(profile.breaks, required)
+    x = ascending(np.concatenate([profile.breaks, required]))
     if profile.degree <= _EXACT_DEGREE and len(x) <= most and np.diff(x).min() >= least:
         while len(x) < (points or target.min_points):
             x = _inserted(profile, x, int(np.argmax(np.diff(x))))

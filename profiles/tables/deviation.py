@@ -9,6 +9,7 @@ from functools import lru_cache
 import numpy as np
 
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
+from camwright.profiles.polynomial.rows import ascending
 
 _NODES = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, 17))
 """Where each common piece is looked at, as parts of it: dense at its ends, where polynomials have their extremes."""
@@ -73,7 +74,7 @@ def glance(profile: CamProfile, rebuilt: CamProfile, peak: float) -> Deviation:
 def _worst(profile: CamProfile, rebuilt: CamProfile, nodes: FloatArray) -> tuple[list[float], float]:
     """Greatest deviations of position, ratio and ratio slope at places of the pieces, and the profile's greatest slope."""
     start, end = max(profile.start, rebuilt.start), min(profile.end, rebuilt.end)
-    breaks = np.union1d(profile.breaks, rebuilt.breaks)
+    breaks = ascending(np.concatenate([profile.breaks, rebuilt.breaks]))
     breaks = np.concatenate([[start], breaks[(breaks > start) & (breaks < end)], [end]])
     middle = 0.5 * (breaks[1:] + breaks[:-1])
     x = breaks[:-1] + np.diff(breaks) * nodes[:, None]

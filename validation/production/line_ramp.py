@@ -195,7 +195,7 @@ def _middles(profile: CamProfile) -> FloatArray:
 
 def _parts(profile: CamProfile) -> _Pieces:
     """Split a profile where its ratio or its ratio slope changes sign."""
-    return _pieces(profile.split(np.union1d(profile.roots(1), profile.roots(2))))
+    return _pieces(profile.split(rows.ascending(np.concatenate([profile.roots(1), profile.roots(2)]))))
 
 
 def _by_acceleration(parts: _Pieces, limit: float, speeds: Sequence[float]) -> list[list[Allowed]]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -52,6 +53,7 @@ class Tracking:
     gain: float
 
 
+@lru_cache(maxsize=32)  # a property of the servo alone
 def tracking(servo: Servo) -> Tracking:
     """Sum up how a stable servo follows.
 
