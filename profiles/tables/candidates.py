@@ -49,7 +49,7 @@ def required_points(profile: CamProfile, zones: Sequence[float] | FloatArray) ->
     for at in zones:
         nearest = float(profile.breaks[np.abs(profile.breaks - at).argmin()])
         found.append(nearest if abs(nearest - at) <= _SAME * profile.length else float(at))
-    return ascending(found)
+    return ascending(np.array(found))
 
 
 def candidates(
