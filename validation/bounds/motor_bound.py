@@ -42,7 +42,7 @@ BELOW = 0.985
 PLACES = 2001
 """Places of the path at which the inertia is taken."""
 NEAR = 1e-2
-"""Share of the mean square below which no value function is asked: it is made no better than to twice that."""
+"""Share of the mean square below which no value function is asked: it is made no better than to 1.5 times that."""
 WAITING = 0.1
 """Share of the mean square below which the convex programme shows that time is wasted: a value function is asked first."""
 LOOSE = 0.05

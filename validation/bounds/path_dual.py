@@ -23,24 +23,29 @@ import numpy as np
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.validation.bounds.path_spline import PathSpline, Tube
 from camwright.validation.bounds.path_task import PathTask
+from camwright.validation.bounds.path_weights import square_weights
 
 ASKED = (60, 18)
-"""Places at which the inequality is asked for."""
+"""Places along the path and across it at which the inequality of energy or peak is asked for."""
+ASKED_SQUARE = (60, 24)
+"""Those of the squared torque: a second round is seldom asked."""
 LOOKED = (320, 90)
 """Places at which it is looked at afterwards."""
 ROUNDS, MORE = 2, 300
 """How often the places where it is broken most are added, and how many of them."""
 SMALL = 1e-3
 """What broken inequalities may cost, as a share of the bound."""
-LEVELS = 5
+SMALL_SQUARE, MORE_COLUMNS = 1e-2, 20
+"""The same of the squared torque; how many columns of places are added."""
+LEVELS = 6
 """How many levels are tried for the greatest that is proved."""
 GOOD, GAIN = 0.95, 5e-3
 """Share of the level beyond which another is tried only if the last raised what is proved by so much of it."""
 HOPELESS, TOWARDS = 0.8, 0.6
 """Share of the level tried next where little was proved; how far between what is proved and what is not the others lie."""
 ACCURACY = 1e-4
-"""Accuracy of the cone programmes (scaled): what they leave broken is looked at afterwards."""
-ENOUGH = {"square": 0.98, "drawn": 0.985, "peak": 0.0}
+"""Accuracy of the linear programmes (scaled): what they leave broken is looked at afterwards."""
+ENOUGH = {"square": 0.985, "drawn": 0.985, "peak": 0.0}
 """Share of a level that need not be made any better, nor parted any finer; a peak's is proved or not."""
 MOST = 1.1
 """Multiple of the level that is asked for at most: where no motion at all is in a tube its spline would run away."""
@@ -185,24 +190,48 @@ def _bound(task: PathTask, tube: Tube, kind: str, level: float, least: float) ->
     What comes to less than ``least`` even if it were not broken is not made any better, nor what is near enough to the level.
     """
     spline = PathSpline(task, tube)
-    x, energy = (part.ravel() for part in spline.places(*ASKED))
     far_x, far_energy = spline.places(*LOOKED)
     ends = spline.ends()
+    if kind == "square":
+        return _square_bound(spline, far_x, far_energy, level, least)
+    x, energy = (part.ravel() for part in spline.places(*ASKED))
     value, unit = -math.inf, task.time if kind == "peak" else level
     for _ in range(ROUNDS):
-        weights = _best(spline, x, energy, kind, level)
-        if weights is None:
+        found = _best(spline, x, energy, kind, level)
+        if found is None:
             break
-        broken = _broken(spline, far_x, far_energy, weights, kind, level)
-        # a motion passes each place once, at the worst energy at most
-        worst_there = np.maximum(broken.max(axis=0), 0.0)
-        cost = float(np.trapezoid(worst_there, far_x[0])) * spline.whole
-        value = max(value, float(ends @ weights) - cost)
+        broken = _broken(spline, far_x, far_energy, found, kind, level)
+        cost = _cost(spline, far_x, broken)
+        value = max(value, float(ends @ found) - cost)
         if cost <= SMALL * unit or value + cost < least or value >= ENOUGH[kind] * level:
             break
         worst = np.argsort(broken, axis=None)[-MORE:]
         x, energy = np.append(x, far_x.ravel()[worst]), np.append(energy, far_energy.ravel()[worst])
     return value
+
+
+def _square_bound(spline: PathSpline, far_x: FloatArray, far_energy: FloatArray, level: float, least: float) -> float:
+    """Bound of the squared torque, as `_bound`: its places lie in columns, and so do those that are added where it is broken most."""
+    ends, value = spline.ends(), -math.inf
+    places, energy = spline.places(*ASKED_SQUARE)
+    x = places[0]
+    for _ in range(ROUNDS):
+        weights = square_weights(spline, x, energy, level)
+        broken = _broken(spline, far_x, far_energy, weights, "square", level)
+        cost = _cost(spline, far_x, broken)
+        value = max(value, float(ends @ weights) - cost)
+        if cost <= SMALL_SQUARE * level or value + cost < least or value >= ENOUGH["square"] * level:
+            break
+        worst = np.argsort(broken.max(axis=0))[-MORE_COLUMNS:]
+        highest = np.argsort(broken[:, worst], axis=0)[-ASKED_SQUARE[1] :]
+        x = np.append(x, far_x[0, worst])
+        energy = np.column_stack([energy, np.take_along_axis(far_energy[:, worst], highest, axis=0)])
+    return value
+
+
+def _cost(spline: PathSpline, x: FloatArray, broken: FloatArray) -> float:
+    """Most that a broken inequality can cost: a motion passes each place once, at the worst energy at most."""
+    return float(np.trapezoid(np.maximum(broken.max(axis=0), 0.0), x[0])) * spline.whole
 
 
 def _broken(
@@ -218,7 +247,7 @@ def _broken(
 
 
 def _best(spline: PathSpline, x: FloatArray, energy: FloatArray, kind: str, level: float) -> FloatArray | None:
-    """Solve the cone programme on given places; None where the solver does not end."""
+    """Solve the linear programme of energy or peak on given places; None where the solver does not end."""
     import clarabel
     from scipy.sparse import csc_array, csr_array, eye_array, vstack
 
@@ -236,12 +265,7 @@ def _best(spline: PathSpline, x: FloatArray, energy: FloatArray, kind: str, leve
         of, starts = np.repeat(columns, len(each), axis=0), np.arange(len(each) * count + 1) * columns.shape[1]
         return csr_array((np.stack(each, axis=1).ravel(), of.ravel(), starts), shape=(len(each) * count, size))
 
-    if kind == "square":
-        steep = -0.5 * slope * (math.sqrt(per_place) * energy**0.25)[:, None]
-        blocks = [rows(-0.5 * linear, -0.5 * linear, steep)]
-        right = np.tile([0.5, -0.5, 0.0], count)
-        cones = [clarabel.SecondOrderConeT(3)] * count
-    elif kind == "drawn":
+    if kind == "drawn":
         rises, least = spline.rises()
         rises, most = rises * unit / level, -least / level
         blocks = [rows(-linear), csr_array(rises), csr_array(-rises)]

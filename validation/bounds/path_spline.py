@@ -56,7 +56,7 @@ class PathSpline:
         """Inertia at shares of the path."""
         return np.interp(x * self.whole, self._s, self._task.inertia)
 
-    def _rubbed(self, x: FloatArray) -> FloatArray:
+    def rubbed(self, x: FloatArray) -> FloatArray:
         """Energy that friction takes per stretched length, at shares of the path."""
         return self._task.friction * np.sqrt(self.inertia(x) / 2)
 
@@ -69,12 +69,39 @@ class PathSpline:
         (i, at_x), (j, at_y) = _local(KNOTS[0], x), _local(KNOTS[1], y)
         columns = (i[:, None, None] + np.arange(4)[:, None]) * (KNOTS[1] + 3) + j[:, None, None] + np.arange(4)
         slope = _products(at_x[0], at_y[1] * steep[:, None])
-        linear = _products(at_x[1], at_y[0]) / self.whole - self._rubbed(x)[:, None] * slope
+        linear = _products(at_x[1], at_y[0]) / self.whole - self.rubbed(x)[:, None] * slope
         return (
             np.column_stack([columns.reshape(len(x), -1), np.full(len(x), self.size - 1)]),
             np.column_stack([linear, self.inertia(x) / 2 / np.sqrt(energy)]),
             np.column_stack([slope, np.zeros(len(x))]),
         )
+
+    def factors(self, x: FloatArray, energy: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Give the splines at places, those along the path apart from those across it.
+
+        Parameters
+        ----------
+        x
+            Shares of the path, one of each column.
+        energy
+            Kinetic energies (J), a column for each.
+
+        Returns
+        -------
+        along, across
+            Derivatives by the stretched length and values, (2, columns, splines along); values and derivatives by the kinetic energy,
+            (2, columns, heights, splines across).
+        """
+        y, steep = self._across(energy.T)
+        found = []
+        for count, at in zip(KNOTS, (x, y.ravel()), strict=True):
+            first, local = _local(count, at)
+            each = np.zeros((2, len(at), count + 3))
+            np.put_along_axis(each, np.broadcast_to(first[:, None] + np.arange(4), local.shape), local, 2)
+            found.append(each)
+        along, across = found
+        scale = np.array([1.0, 1.0 / self.whole])[:, None, None]
+        return (scale * along)[::-1], across.reshape(2, *y.shape, -1) * np.stack([np.ones_like(y), steep])[..., None]
 
     def values(self, x: FloatArray, energy: FloatArray, weights: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Give what the two sums come to with weights, at places as `places` gives them, without their rows."""
@@ -94,7 +121,7 @@ class PathSpline:
         linear = zero + d * (one + d * (two + d * three))
         _, one, two, three = np.moveaxis(value[column, j], -1, 0)
         slope = (one + d * (2.0 * two + d * 3.0 * three)) * steep
-        linear += weights[-1] * self.inertia(x[0]) / 2 / np.sqrt(energy) - self._rubbed(x[0]) * slope
+        linear += weights[-1] * self.inertia(x[0]) / 2 / np.sqrt(energy) - self.rubbed(x[0]) * slope
         return linear, slope
 
     @property
