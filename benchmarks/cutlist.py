@@ -25,9 +25,9 @@ from time import process_time
 
 import numpy as np
 
-from camwright.design.production.line_plan import fastest_line
+from camwright.design.production.line_plan import fastest_plan
 from camwright.jobs.job import Job, load_job
-from camwright.production.cams import highest_speed, list_cam
+from camwright.production.cams import highest_for_gap, list_cam
 from camwright.production.changes import find_changes
 from camwright.production.cut_list import line_of, study_list
 from camwright.production.simulation import Disturbances, simulate_shift
@@ -69,7 +69,7 @@ def plans(draw: np.random.Generator) -> tuple[float, bool]:
         count = int(draw.integers(2, 15))
         lengths, highest = draw.uniform(0.2, 1.5, count), draw.uniform(0.2, 2.5, count)
         ramp = float(draw.uniform(0.1, 5.0))
-        worst = max(worst, fastest_line(lengths, highest, ramp).time / dense(lengths, highest, ramp) - 1.0)
+        worst = max(worst, fastest_plan(lengths, highest, ramp).time / dense(lengths, highest, ramp) - 1.0)
     return worst, worst <= SLOWER
 
 
@@ -132,7 +132,7 @@ def meetings(draw: np.random.Generator, count: int) -> tuple[int, bool]:
         lengths = np.unique(np.round(draw.uniform(least, most, count), 4)).tolist()
         cams = [
             list_cam(number, job, length, top, min(top, job.cut.line_speed), STEADY)
-            for number, (length, top) in enumerate(((each, highest_speed(job, each)) for each in lengths), start=1)
+            for number, (length, top) in enumerate(((each, highest_for_gap(job, each)) for each in lengths), start=1)
         ]
         for (one, other), change in find_changes(cams, np.zeros(1, dtype=np.intp), stand_in(job)).items():
             before, after = cams[one - 1].running, cams[other - 1].running

@@ -78,7 +78,7 @@ def place_sync(
 
     def at(angle: float) -> float:
         placed = task.placed_at(angle)
-        return cost(placed) if is_smooth(placed) else math.inf
+        return cost(placed) if can_be_carried(placed) else math.inf
 
     costs = [at(float(angle)) for angle in angles]
     if not any(math.isfinite(value) for value in costs):
@@ -115,7 +115,7 @@ def place_beside(placed: Task, cost: Callable[[Task], float], rounds: int) -> Ta
     return best[1]
 
 
-def is_smooth(placed: Task) -> bool:
+def can_be_carried(placed: Task) -> bool:
     """Tell whether the sync zone of a place can be carried as polynomials: beside a dead centre a crank's is too abrupt."""
     try:
         return math.isfinite(placed.slave_at_sync_end)

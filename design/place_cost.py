@@ -36,11 +36,11 @@ def place_for(task: Task, objective: CommandObjective) -> Placement:
     InputError
         The sync zone fits nowhere.
     """
-    found = place_sync(task, lambda placed: cost_at(placed, objective), *look(objective))
+    found = place_sync(task, lambda placed: cost_at(placed, objective), *looks_of(objective))
     return Placement(task.placed_midway(), math.inf, 1) if found is None else found
 
 
-def look(objective: CommandObjective) -> tuple[int, float]:
+def looks_of(objective: CommandObjective) -> tuple[int, float]:
     """How many places are looked at first for an objective, and how accurate the place is (rad)."""
     peak = objective == "peak_acceleration" or objective == "peak_jerk"
     return (PEAK_PLACES, PEAK_RESOLUTION) if peak else (PLACES, RESOLUTION)

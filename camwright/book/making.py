@@ -26,7 +26,7 @@ from camwright.profiles.errors import InfeasibleError, InputError, SolverError
 from camwright.profiles.mark_range import MarkRange
 from camwright.profiles.polynomial.profile import CamProfile
 from camwright.stored.design_text import design_text
-from camwright.studies.axis_study import axis_study, solve_job, sync_error
+from camwright.studies.axis_study import axis_study, greatest_sync_error, solve_job
 from camwright.studies.design import Design
 from camwright.studies.reach import highest_speed
 from camwright.studies.speed_band import SpeedBand, job_band
@@ -195,7 +195,9 @@ def _exported(number: int, design: Design, targets: Sequence[str], limit: Limit 
         following_error=servo.peak_following_error if servo else None,
         settling=servo.settling if servo else None,
         shear_zone_error=servo.shear_zone_error if servo else None,
-        worst_shear_zone_error=sync_error(design.profile, design.job) if len(servos_of(design.job)) > 1 else None,
+        worst_shear_zone_error=greatest_sync_error(design.profile, design.job)
+        if len(servos_of(design.job)) > 1
+        else None,
         failed_checks=tuple(failed),
         tables=tuple((result.target.name, result.table.points) for result in results if result.passed),
         reason="; ".join(f"{name}: {fault}" for name, faults in refused.items() for fault in faults),

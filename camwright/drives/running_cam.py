@@ -17,7 +17,7 @@ from camwright.profiles.tables.cam_table import CamTable
 from camwright.profiles.tables.count_grid import (
     Counted,
     evened,
-    rounded_to,
+    grain_of,
     smoothed,
     spacing_rounded_to,
     without_rounding,
@@ -108,7 +108,7 @@ def running_cam(
     except InputError as error:  # another period
         raise InputError(*(f"{place}: {fault}" for fault in error.faults)) from error
     count = 0.0 if counted is None else counted.count * whole.units.slave.size
-    grain = rounded_to(whole.table.y) * whole.units.slave.size
+    grain = grain_of(whole.table.y) * whole.units.slave.size
     rebuilt, notes = aligned(
         rebuilt.shift(-rebuilt.start), placed, seen=_smooth(whole, counted), count=count, grain=grain, tick=tick
     )

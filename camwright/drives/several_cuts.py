@@ -8,7 +8,7 @@ import numpy as np
 
 from camwright.profiles.polynomial.profile import FloatArray
 from camwright.profiles.tables.cam_table import CamTable
-from camwright.profiles.tables.count_grid import rounded_to
+from camwright.profiles.tables.count_grid import grain_of
 from camwright.validation.servo.axis_run import hermite
 
 _MOST = 64
@@ -23,7 +23,7 @@ _STRAIGHT = 8.0
 
 def cuts_of(table: CamTable) -> int:
     """Count the cuts in a table of counts: the parts into which it falls that are all alike, to its rounding."""
-    allowed = _COUNTS * rounded_to(table.y)
+    allowed = _COUNTS * grain_of(table.y)
     if not (table.travel_known and allowed > 0.0):
         return 1
     x, y = table.x - table.x[0], table.y - table.y[0]

@@ -16,7 +16,7 @@ from camwright.house.numbers import Shown
 from camwright.house.pictures import Band, DrawnLine, DrawnMarks, Frame, Item, Note, Picture, Shape, Tick, ticks
 from camwright.profiles.objective import CommandObjective
 from camwright.profiles.polynomial.profile import FloatArray
-from camwright.studies.tradeoff import Row, TradeOff, words
+from camwright.studies.tradeoff import Row, TradeOff, measure_words
 
 _SAME = 2e-3
 """Share of the panel within which points count as one and share a label."""
@@ -133,7 +133,7 @@ def _panel(result: TradeOff, rows: Sequence[Row], measure: CommandObjective, top
         if tip is not None:
             items.append(DrawnLine(low + np.array([place, tip / size]) * (high - low), "#8c8c8c", 0.6))
     return Frame(
-        LEFT, top, size[0], _PANEL, low, high, items, f"{words(measure)} ({across.printed}){note}",
+        LEFT, top, size[0], _PANEL, low, high, items, f"{measure_words(measure)} ({across.printed}){note}",
         f"peak acceleration ({up.printed})", grid=True, xticks=x.ticks(int(size[0] / _APART)), yticks=y.ticks(8),
     )  # fmt: skip
 
@@ -159,7 +159,7 @@ def _mark(kind: str, points: FloatArray, label: str = "") -> DrawnMarks:
 def _label(row: Row) -> str:
     """Name of a point: what is least in it, or the law."""
     if row.kind == "objective":
-        return f"minimised {words(row.name)}"
+        return f"minimised {measure_words(row.name)}"
     return title(row.name).split(" (")[0].split(",")[0]
 
 

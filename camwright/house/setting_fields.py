@@ -85,11 +85,11 @@ def tables_in(annotation: Any) -> list[type[Table]]:
     )
 
 
-def place_of(path: Path) -> str:
+def table_place(path: Path) -> str:
     """Write the name of a table, or of one of several that share a name: ``[servo.tolerance]``, ``[[rule]] 2``."""
     for at, part in enumerate(path):
         if isinstance(part, int):
-            rest = f" {place_of(path[at + 1 :])}" if path[at + 1 :] else ""
+            rest = f" {table_place(path[at + 1 :])}" if path[at + 1 :] else ""
             return f"[[{'.'.join(map(str, path[:at]))}]] {part + 1}{rest}"
     return f"[{'.'.join(map(str, path))}]"
 

@@ -10,7 +10,7 @@ from typing import Any, TypeVar, get_args, get_origin
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from camwright.house.setting_fields import Path, Settings, Table, place_of, tables_in
+from camwright.house.setting_fields import Path, Settings, Table, table_place, tables_in
 from camwright.house.unit_keys import plain_keys
 from camwright.house.units import shown
 
@@ -80,7 +80,7 @@ def _tag_fault(error: ErrorDetails, where: str, inner: list[type[Table]]) -> str
 
 def _key_fault(path: Path, known: list[str]) -> str:
     """Say that there is no such key, and which are known."""
-    key, before = str(path[-1]), f"{place_of(path[:-1])} " if path[:-1] else ""
+    key, before = str(path[-1]), f"{table_place(path[:-1])} " if path[:-1] else ""
     near = difflib.get_close_matches(key[:100], known, n=1, cutoff=0.5)
     advice = f"did you mean {near[0]}?" if near else f"the keys here are {', '.join(known)}"
     return f"{before}{shown(key)[1:-1]}: there is no such key; {advice}"
@@ -117,17 +117,17 @@ def _tags(table: type[Table], key: str) -> tuple[str, ...]:
 def _where(path: Path, *, is_table: bool) -> str:
     """Write the place of a key or table."""
     if isinstance(path[-1], int):
-        return place_of(path) if is_table else f"{_where(path[:-1], is_table=False)}, row {path[-1] + 1}"
+        return table_place(path) if is_table else f"{_where(path[:-1], is_table=False)}, row {path[-1] + 1}"
     if not path[:-1]:
-        return place_of(path) if is_table else str(path[-1])
-    return f"{place_of(path[:-1])} {path[-1]}"
+        return table_place(path) if is_table else str(path[-1])
+    return f"{table_place(path[:-1])} {path[-1]}"
 
 
 def _advice(path: Path, table: type[Table], inner: list[type[Table]], settings: Settings) -> str:
     """Say what to write for a key or table that is missing."""
     key = str(path[-1])
     if inner:
-        return f"add the table {place_of(path)}"
+        return f"add the table {table_place(path)}"
     entry = table.model_json_schema()["properties"][key]
     examples = entry.get("examples", entry.get("enum"))
     return (

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from functools import cache
 from typing import Any, Literal, get_args, get_origin
 
-from camwright.house.setting_fields import Path, Table, place_of, tables_in
+from camwright.house.setting_fields import Path, Table, table_place, tables_in
 from camwright.house.units import dimension_of, shown
 
 _POWER = re.compile(r"(?<=[A-Za-z])([23])(?=[_/]|$)")
@@ -44,7 +44,7 @@ def _plain(models: list[type[Table]], data: dict[str, Any], path: Path, faults: 
         name, meant, fault = _renamed(_fitting(models, data), key, value, data)
         found[name] = meant
         if fault:
-            faults.append(f"{place_of(path)} {fault}" if path else fault)
+            faults.append(f"{table_place(path)} {fault}" if path else fault)
     return found
 
 

@@ -78,7 +78,7 @@ def list_job(job: Job) -> Job:
     return replace(job, cut=replace(job.cut, sync_time=None, shear_time=None)) if job.cut.timed else job
 
 
-def highest_speed(job: Job, length: float) -> float:
+def highest_for_gap(job: Job, length: float) -> float:
     """Highest line speed of a perfect axis for a gap, on a line that keeps its speed (m/s); 0 where none works."""
     task = job.task.from_return().with_length(length).with_line(STEADY)
     return (max_line_speed(placed_fastest(task)) or 0.0) * (1.0 - _INSIDE)
@@ -121,7 +121,7 @@ def list_cam(number: int, job: Job, length: float, perfect: float, top: float, l
     length
         The gap (m).
     perfect
-        What `highest_speed` gives for it (m/s).
+        What `highest_for_gap` gives for it (m/s).
     top
         Line speed that it is designed for (m/s).
     line

@@ -111,7 +111,7 @@ def unit_of(column: Column) -> str | None:
     return found[1] if found else None
 
 
-def measured(sheet: Sheet, at: int, name: str, kind: str, header: str) -> FloatArray:
+def column_in_si(sheet: Sheet, at: int, name: str, kind: str, header: str) -> FloatArray:
     """Read a column of numbers into SI units.
 
     Parameters

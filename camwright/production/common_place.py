@@ -11,7 +11,7 @@ import numpy as np
 from camwright.design.production.common_place import CommonPlace, common_place
 from camwright.jobs.job import Job
 from camwright.jobs.wording import in_job_words
-from camwright.production.cams import highest_speed, list_job, ramping_speed
+from camwright.production.cams import highest_for_gap, list_job, ramping_speed
 from camwright.profiles.cut_list import CutList
 from camwright.profiles.objective import of_command
 from camwright.profiles.task import Task
@@ -69,6 +69,6 @@ def placed_alike(job: Job, asked: CutList) -> PlacedAlike:
         return PlacedAlike(job, None)
     job, tasks = list_job(job), []
     for length in np.unique(asked.gaps).tolist():
-        speed = min(job.cut.line_speed, max(highest_speed(job, length), 1e-9))
+        speed = min(job.cut.line_speed, max(highest_for_gap(job, length), 1e-9))
         tasks.append(job.task.from_return().with_length(length).at_speed(ramping_speed(job, length, speed)))
     return placed_for(job, tasks)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from camwright.house.progress import Step, ignore
 from camwright.jobs.job import Job
-from camwright.production.cams import ListCam, highest_speed, list_cam, list_job
+from camwright.production.cams import ListCam, highest_for_gap, list_cam, list_job
 from camwright.production.changes import Change, find_changes
 from camwright.production.line_speeds import given_line_tops, line_speed_tops, plan_line
 from camwright.production.list_checks import (
@@ -186,7 +186,7 @@ def plan_list(job: Job, asked: CutList, line: LineRun | None = None, step: Step 
     order = np.argsort(first, kind="stable")
     lengths, of = lengths[order], np.argsort(order)[inverse].astype(np.intp)
     step("finding the highest line speeds")
-    perfect = np.array([highest_speed(job, length) for length in lengths.tolist()])
+    perfect = np.array([highest_for_gap(job, length) for length in lengths.tolist()])
     require_possible(job, asked, of, perfect)
     step("finding which cams run while the line ramps")
     tops = np.minimum(perfect, job.cut.line_speed)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from camwright.design.production.line_plan import fastest_line
+from camwright.design.production.line_plan import fastest_plan
 from camwright.design.production.smooth_line import smooth_line
 from camwright.house.numbers import with_unit
 from camwright.jobs.job import Job
@@ -35,7 +35,7 @@ def plan_line(line: Line, lengths: FloatArray, highest: FloatArray, steady: NDAr
     """
     ramp = line.acceleration or 0.0
     if line.jerk is None:
-        return fastest_line(lengths, highest, ramp)
+        return fastest_plan(lengths, highest, ramp)
     return smooth_line(lengths, highest, ramp, line.jerk, steady)
 
 
@@ -125,7 +125,7 @@ def _ramping(
     places = np.stack([ends[:-1], 0.5 * (ends[:-1] + ends[1:]), ends[1:]])
     slower = np.zeros(len(tops), dtype=bool)
     while True:
-        plan = fastest_line(gaps, np.where(slower, found, tops)[of], ramp)
+        plan = fastest_plan(gaps, np.where(slower, found, tops)[of], ramp)
         at = plan.speed(plan.when(places))
         ramping = np.zeros(len(tops), dtype=bool)
         ramping[np.unique(of[at.max(axis=0) > at.min(axis=0) * (1.0 + _STEADY)])] = True

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from camwright.house.units import KINDS, exact_quantity
-from camwright.production.columns import columns, measured, read_table_text, role, unit_of
+from camwright.production.columns import column_in_si, columns, read_table_text, role, unit_of
 from camwright.profiles.cut_list import PIECE_KINDS, CutList, ListRow, PieceKind
 from camwright.profiles.errors import InputError
 from camwright.profiles.line_run import LineRun
@@ -91,8 +91,8 @@ def parse_line_run(text: str, place: str) -> LineRun:
     """Read the speed of the line from its text; as `read_line_run`."""
     sheet = read_sheet(text, place, role, LINE_HEADER, "table of line speeds")
     at = columns(sheet, ("time", "speed", "acceleration"), needed=2, header=LINE_HEADER)
-    time = measured(sheet, at["time"], "time", "time", LINE_HEADER)
-    time, speed = time - time[0], measured(sheet, at["speed"], "speed", "speed", LINE_HEADER)
+    time = column_in_si(sheet, at["time"], "time", "time", LINE_HEADER)
+    time, speed = time - time[0], column_in_si(sheet, at["speed"], "speed", "speed", LINE_HEADER)
     if len(time) < 2:
         raise InputError(f"{place}: one row; the speed of the line needs two at least, the first at its start")
     for row, line in enumerate(sheet.lines):
@@ -111,7 +111,7 @@ def parse_line_run(text: str, place: str) -> LineRun:
             )
     if "acceleration" not in at:
         return LineRun(time, speed)
-    acceleration = measured(sheet, at["acceleration"], "acceleration", "acceleration", LINE_HEADER)
+    acceleration = column_in_si(sheet, at["acceleration"], "acceleration", "acceleration", LINE_HEADER)
     off = np.abs(np.diff(speed) - 0.5 * np.diff(time) * (acceleration[:-1] + acceleration[1:]))
     wrong = np.flatnonzero(off > _UNLIKE * max(float(speed.max()), 1e-9))
     if len(wrong):

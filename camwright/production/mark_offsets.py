@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from camwright.production.columns import columns, measured, read_table_text, role
+from camwright.production.columns import column_in_si, columns, read_table_text, role
 from camwright.profiles.errors import InputError
 from camwright.profiles.tables.delimited import read_sheet
 
@@ -83,7 +83,7 @@ def _read(path: Path) -> tuple[list[float], list[float]]:
     sheet = read_sheet(text, str(path), role, OFFSETS_HEADER, "file of offsets")
     at = columns(sheet, ("speed", "offset"), needed=2, header=OFFSETS_HEADER)
     speeds, offsets = (
-        measured(sheet, at[name], name, kind, OFFSETS_HEADER)
+        column_in_si(sheet, at[name], name, kind, OFFSETS_HEADER)
         for name, kind in (("speed", "speed"), ("offset", "length"))
     )
     wrong = (speeds < 0) | (speeds >= _GREATEST) | (np.abs(offsets) >= _GREATEST)

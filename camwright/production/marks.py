@@ -134,7 +134,7 @@ def marks(job: Job, delay: int = 0, step: Step = ignore) -> Marks:
     solution = solve_or_advise(job)
     placed = replace(job, machine=solution.machine)
     step("finding what it bears at each line speed")
-    by_speed = at_speeds(solution.profile, placed)
+    by_speed = marks_at_speeds(solution.profile, placed)
     alone = held(placed.task, acceleration_alone=True)
     phase, offset = (find(solution.profile, placed.task, alone) for find in (phase_range, offset_range))
     assert phase is not None  # noqa: S101 - a phase of the master is in sync on every machine
@@ -147,7 +147,7 @@ def marks(job: Job, delay: int = 0, step: Step = ignore) -> Marks:
     return Marks(placed, solution.profile, by_speed, phase, offset, proved, delay)
 
 
-def at_speeds(cam: CamProfile, job: Job) -> tuple[ByMethod, ...]:
+def marks_at_speeds(cam: CamProfile, job: Job) -> tuple[ByMethod, ...]:
     """Find what a cam bears at shares of the line speed; the job's machine is placed."""
     return tuple(at_speed(cam, job, share * job.cut.line_speed) for share in SHARES)
 

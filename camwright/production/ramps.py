@@ -10,7 +10,7 @@ from camwright.design.production.ramps import (
     Arcs,
     balanced,
     can_stand,
-    fastest_line,
+    highest_that_works,
     least_arcs,
     ramp_in,
     ramp_out,
@@ -192,7 +192,7 @@ def ramps(
     if first is None or last is None or not zone_kept(at) or not at.parked_within:
         raise refused(at, free=free)
     step("finding where they end")
-    arcs, fastest = least_arcs(at), fastest_line(at, can_stand)
+    arcs, fastest = least_arcs(at), highest_that_works(at, can_stand)
     return Ramps(placed, at, aim, first, last, arcs, fastest, latency)
 
 
@@ -226,7 +226,7 @@ def _placed(job: Job, cam: CamProfile | None) -> tuple[Job, CamProfile | None]:
 
 def fastest_standing(job: Job) -> float | None:
     """Highest line speed at which the slave of a placed machine can come to rest between two cuts (m/s); None where none was found."""
-    return fastest_line(stand(job.task), can_stand)
+    return highest_that_works(stand(job.task), can_stand)
 
 
 def _zone_of(profile: CamProfile, placed: Job) -> CamProfile:

@@ -31,7 +31,7 @@ from camwright.recipes.production import marks_of, start_stop
 from camwright.recipes.ramps import ramp_record
 from camwright.recipes.working_range import working_range
 from camwright.stored.design_file import StoredDesign
-from camwright.studies.axis_study import sync_error
+from camwright.studies.axis_study import greatest_sync_error
 from camwright.studies.line_ramps import line_ramps
 from camwright.studies.speed_band import job_band
 from camwright.validation.check import Check
@@ -95,7 +95,7 @@ def _objective(job: Job, profile: CamProfile, report: ValidationReport) -> Recip
     """Give the value of the job's objective for a cam, whoever made it."""
     objective = OBJECTIVES[job.objective]
     if objective.of == "axis":
-        value = sync_error(profile, job)
+        value = greatest_sync_error(profile, job)
     else:
         value = getattr(report.motor if objective.of == "motor" else report.motion, objective.name)
     return RecipeObjective(objective.name, value, objective.unit(job.machine.slave_unit))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import astuple
 
 from camwright.house.numbers import in_print, shown, unit_shown, with_unit
-from camwright.production.marks import at_speeds
+from camwright.production.marks import marks_at_speeds
 from camwright.production.ramps import Ramps, fastest_standing, ramps
 from camwright.profiles.errors import InfeasibleError
 from camwright.profiles.mark_range import MarkRange
@@ -55,7 +55,7 @@ def marks_of(design: StoredDesign) -> tuple[MarksAt, ...]:
             _ends(each.master_phase),
             None if each.slave_offset is None else _ends(each.slave_offset),
         )
-        for each in at_speeds(design.profile, design.job)
+        for each in marks_at_speeds(design.profile, design.job)
     )
 
 

@@ -150,7 +150,7 @@ def cam_for_one_speed(job: Job) -> tuple[CamProfile, Task] | None:
     return solution.profile, job.task.with_machine(solution.machine)
 
 
-def sync_error(profile: CamProfile, job: Job) -> float | None:
+def greatest_sync_error(profile: CamProfile, job: Job) -> float | None:
     """Greatest sync error of the axis in the shear zone (m) with a job's servo and at the corners of its ranges; ``None`` without bound.
 
     A servo-aware job's line speeds count too.

@@ -8,7 +8,7 @@ from camwright.jobs.job import Job
 from camwright.jobs.servos import servos_of
 from camwright.profiles.objective import OBJECTIVES, ObjectiveName
 from camwright.profiles.polynomial.profile import CamProfile
-from camwright.studies.axis_study import sync_error
+from camwright.studies.axis_study import greatest_sync_error
 from camwright.studies.within_limits import keeps_limits
 from camwright.validation.motion import MotionMeasures, measure_motion, measure_tool
 from camwright.validation.motor import MotorMeasures, measure_motor
@@ -74,5 +74,5 @@ def measured(name: str, profile: CamProfile, job: Job) -> Measured:
         measure_motor(profile, job.task),
         servo_response(profile, job.task, job.servo),
         keeps_limits(profile, motion, job),
-        sync_error(profile, job) if len(servos_of(job)) > 1 else None,
+        greatest_sync_error(profile, job) if len(servos_of(job)) > 1 else None,
     )

@@ -15,7 +15,7 @@ from camwright.jobs.wording import place_of
 from camwright.profiles.errors import CamwrightError, Covered, InfeasibleError, SolverError, Suggestion
 from camwright.profiles.objective import OBJECTIVES
 from camwright.profiles.servo import mean_lag
-from camwright.studies.axis_study import beyond_reach, solve_job, sync_error
+from camwright.studies.axis_study import beyond_reach, greatest_sync_error, solve_job
 from camwright.studies.covering import Uncovered
 from camwright.studies.family_bands import family_bands, placed_for_all
 from camwright.studies.reach import stand_in, verdict
@@ -144,7 +144,7 @@ def _passes(job: Job) -> bool:
         return False
     if job.servo_tolerance is None:
         return True
-    worst = sync_error(solution.profile, job)
+    worst = greatest_sync_error(solution.profile, job)
     return worst is not None and worst <= job.cut.sync_tolerance * (1 + 1e-6)
 
 

@@ -124,7 +124,7 @@ def trade_off(job: Job, step: Step = ignore) -> TradeOff:
     failures: list[Failure] = []
     placed = job
     for objective in objectives:
-        step(f"solving for the least {words(objective)}")
+        step(f"solving for the least {measure_words(objective)}")
         try:
             solution = solve(job.task, objective, suggest=False)
         except InfeasibleError:
@@ -145,7 +145,7 @@ def trade_off(job: Job, step: Step = ignore) -> TradeOff:
     return TradeOff(placed, measures, tuple(rows), tuple(failures))
 
 
-def words(name: str) -> str:
+def measure_words(name: str) -> str:
     """Write the name of an objective or measure in words."""
     return name.replace("_", " ").replace("rms", "RMS")
 

@@ -70,7 +70,7 @@ def preview(text: str, laws: Sequence[str] = (), place: float | None = None) -> 
     }
 
 
-def designed(text: str, laws: Sequence[str] = ()) -> dict[str, Any]:
+def drawn_design(text: str, laws: Sequence[str] = ()) -> dict[str, Any]:
     """Draw a design: what is shown once it is proved.
 
     Parameters

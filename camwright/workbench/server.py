@@ -41,7 +41,7 @@ from camwright.workbench.calls import (
 from camwright.workbench.files import PageFiles
 from camwright.workbench.guard import Guard
 from camwright.workbench.overlay import overlay
-from camwright.workbench.preview import designed, preview
+from camwright.workbench.preview import drawn_design, preview
 from camwright.workbench.runner import JOB_FILE, Ran, Runner, StaleError
 from camwright.workbench.saving import Saved
 from camwright.workbench.servo import servo_view
@@ -187,7 +187,7 @@ def _preview(body: dict[str, Any]) -> Callable[[], dict[str, Any]]:
 
 def _cam(body: dict[str, Any]) -> Callable[[], dict[str, Any]]:
     text, laws = text_of(body, "design"), laws_of(body)
-    return lambda: designed(text, laws)
+    return lambda: drawn_design(text, laws)
 
 
 def _servo(body: dict[str, Any]) -> Callable[[], dict[str, Any]]:

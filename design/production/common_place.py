@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from camwright.design.optimise import solve
 from camwright.design.place import place_sync
-from camwright.design.place_cost import cost_at, look, place_for
+from camwright.design.place_cost import cost_at, looks_of, place_for
 from camwright.profiles.errors import InputError
 from camwright.profiles.objective import CommandObjective
 from camwright.profiles.task import Task
@@ -70,7 +70,7 @@ def common_place(tasks: Sequence[Task], objective: CommandObjective) -> CommonPl
         costs = (cost_at(task.placed_at(placed.machine.place), objective) for task in chosen)
         return max(cost / max(least, 1e-300) for cost, least in zip(costs, own, strict=True))
 
-    found = place_sync(chosen[0], worst, *look(objective))
+    found = place_sync(chosen[0], worst, *looks_of(objective))
     place = chosen[0].placed_midway().machine.place if found is None else found.task.machine.place
     increase, length = -math.inf, chosen[0].cut.length
     for task in chosen:

@@ -22,7 +22,7 @@ _SHORTEST = 1e-9
 """Corners less than this apart (s) are one."""
 
 
-def fastest_line(lengths: FloatArray, highest: FloatArray, acceleration: float) -> LineRun:
+def fastest_plan(lengths: FloatArray, highest: FloatArray, acceleration: float) -> LineRun:
     """Run the line over pieces as fast as their highest speeds and its own ramp allow.
 
     The line comes at the highest speed of the first piece and leaves at that of the last, as far as its neighbours let it.
@@ -49,7 +49,7 @@ def fastest_line(lengths: FloatArray, highest: FloatArray, acceleration: float) 
     Examples
     --------
     >>> import numpy as np
-    >>> run = fastest_line(np.array([1.0, 1.0]), np.array([2.0, 1.0]), 1.5)
+    >>> run = fastest_plan(np.array([1.0, 1.0]), np.array([2.0, 1.0]), 1.5)
     >>> [round(speed, 9) for speed in run.speeds.tolist()], round(run.time, 9)
     ([2.0, 1.0, 1.0], 1.666666667)
     """

@@ -8,8 +8,8 @@ from camwright.design.production.ramps import (
     balanced,
     can_stand,
     can_start_and_stop,
-    fastest_line,
     has_room,
+    highest_that_works,
     least_arcs,
     zone_kept,
 )
@@ -127,7 +127,7 @@ def _ways_out(at: Stand, *, free: bool) -> list[tuple[Suggestion, Value, str]]:
         size, name = (1e3, "mm") if unit == "m" else (math.degrees(1.0), "deg")
         words = f"park {'earlier' if earlier else 'later'}, at {{offer}} (--park)"
         found.append((Suggestion("park", park * size, name), Value(park, unit, 7), words))
-    speed = fastest_line(at, can_stand if free else has_room)
+    speed = highest_that_works(at, can_stand if free else has_room)
     if speed is not None and speed < at.task.cut.line_speed:
         told = rounded_to(speed * 60, _DIGITS, up=False)
         slower = at.at_speed(told / 60)

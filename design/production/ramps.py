@@ -148,7 +148,7 @@ def balanced(at: Stand) -> Stand:
     return at.parked_at(at.zone_start - least.run_up.arc - 0.5 * (whole - least.whole))
 
 
-def fastest_line(at: Stand, works: Callable[[Stand], bool]) -> float | None:
+def highest_that_works(at: Stand, works: Callable[[Stand], bool]) -> float | None:
     """Highest line speed at which something works that works at every lower one too (m/s); None if it works at none."""
     speed = at.task.cut.line_speed
 

@@ -13,7 +13,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
-from camwright.design.production.line_plan import fastest_line
+from camwright.design.production.line_plan import fastest_plan
 from camwright.design.returns.ipopt import QUIET
 from camwright.profiles.errors import InputError, SolverError
 from camwright.profiles.line_run import LineRun
@@ -60,7 +60,7 @@ def smooth_line(
     Parameters
     ----------
     lengths, highest, acceleration
-        As of `camwright.design.production.line_plan.fastest_line`.
+        As of `camwright.design.production.line_plan.fastest_plan`.
     jerk
         Greatest jerk of the line (m/s³), positive.
     steady
@@ -74,7 +74,7 @@ def smooth_line(
     Raises
     ------
     InputError
-        As of `fastest_line`, or the speed changes more often than `MOST_CHANGES`.
+        As of `fastest_plan`, or the speed changes more often than `MOST_CHANGES`.
     SolverError
         The solver failed.
 
@@ -95,7 +95,7 @@ def smooth_line(
     firsts = np.concatenate([[0], new])
     ways = np.add.reduceat(lengths, firsts)
     tops, still = highest[firsts], kept[firsts]
-    ramps = fastest_line(ways, tops, acceleration)  # refuses what is no plan
+    ramps = fastest_plan(ways, tops, acceleration)  # refuses what is no plan
     if len(ways) == 1:
         return ramps
     places, of = _nodes(ways, ramps, acceleration, jerk)

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from camwright.design.feasible.feasibility import is_feasible
-from camwright.design.place import Placement, is_smooth
+from camwright.design.place import Placement, can_be_carried
 from camwright.design.returns.problem import return_problem
 from camwright.design.torque.finish import finish
 from camwright.design.torque.guesses import ANYHOW, from_path
@@ -71,7 +71,7 @@ def place_by_objective(task: Task, aim: Aim, curve: MotorCurve | None = None) ->
     room = MARGIN * (greatest - least)
     looked = np.linspace(least + room, greatest - room, PLACES)
     looked = np.sort(np.concatenate([looked, _edges(task, looked)]))
-    tasks = [placed for placed in (task.placed_at(float(place)) for place in looked) if is_smooth(placed)]
+    tasks = [placed for placed in (task.placed_at(float(place)) for place in looked) if can_be_carried(placed)]
     if len(tasks) < LEAST_PLACES:
         return None
     places = np.array([placed.machine.place for placed in tasks])
@@ -112,7 +112,7 @@ def _edges(task: Task, places: FloatArray) -> list[float]:
 
     def feasible(place: float) -> bool:
         placed = task.placed_at(place)
-        return is_smooth(placed) and is_feasible(placed)
+        return can_be_carried(placed) and is_feasible(placed)
 
     able = [feasible(float(place)) for place in places]
     found = []

@@ -61,7 +61,7 @@ def evened(table: CamTable) -> CamTable | None:
     off = table.x - (table.x[0] + h * np.arange(table.points))
     if float(np.ptp(np.diff(table.x))) <= _UNEVEN * h:
         return None
-    grain = grid_of(table.x) or rounded_to(table.x)
+    grain = grid_of(table.x) or grain_of(table.x)
     if not float(np.ptp(off)) <= 1.001 * grain < _COARSEST * h:
         return None
     begin = float(table.x[0]) + 0.5 * float(off.max() + off.min())
@@ -141,7 +141,7 @@ def grid_of(y: FloatArray) -> float | None:
     return None
 
 
-def rounded_to(y: FloatArray) -> float:
+def grain_of(y: FloatArray) -> float:
     """Find what positions are rounded to: the greatest power of ten, or count, of which they are multiples.
 
     Where they are written with a floating point it is the last digit of the greatest. 0 for none, and for so few points that whole
@@ -179,7 +179,7 @@ def _last_digit(y: FloatArray) -> float:
 def spacing_rounded_to(x: FloatArray) -> float:
     """Find what master positions are rounded to: no more than evenly spaced ones miss even spacing by, nor `_FINE` of the cycle."""
     steps = np.diff(x)
-    return min(rounded_to(x), float(np.ptp(steps)), _FINE * float(x[-1] - x[0]))
+    return min(grain_of(x), float(np.ptp(steps)), _FINE * float(x[-1] - x[0]))
 
 
 def _refined(ordered: FloatArray, rough: float) -> float | None:

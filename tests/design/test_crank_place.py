@@ -10,7 +10,7 @@ import pytest
 
 from camwright.design.feasible.feasibility import is_feasible, least_limit
 from camwright.design.optimise import solve
-from camwright.design.place import is_smooth, place_sync
+from camwright.design.place import can_be_carried, place_sync
 from camwright.design.place_cost import cost_at, place_for
 from camwright.profiles.cut import Cut
 from camwright.profiles.limits import Limits
@@ -108,6 +108,6 @@ def test_places_whose_sync_zone_is_too_abrupt_are_passed_over() -> None:
     cut = Cut(2.62, 0.4, 0.38817596318564507, 0.07, 0.3, 7e-3)
     least, greatest = crank.place_range(cut)
     beside = Task(crank, cut, LIMITS).placed_at(least + 0.01 * (greatest - least))
-    assert not is_smooth(beside)
+    assert not can_be_carried(beside)
     for objective in ("rms_jerk", "peak_jerk"):
         assert solve(Task(crank, cut, LIMITS), objective).machine.placed

@@ -20,7 +20,7 @@ from camwright.validation.motor import motor_torque
 from camwright.validation.servo.response import servo_response
 from camwright.validation.servo.simulation import simulate
 from camwright.workbench.overlay import overlay
-from camwright.workbench.preview import designed, preview
+from camwright.workbench.preview import drawn_design, preview
 from camwright.workbench.sampling import samples
 from camwright.workbench.servo import servo_view
 
@@ -34,7 +34,7 @@ def example(name: str) -> Job:
 @pytest.mark.parametrize("name", ["chasing-shear", "flying-saw"])
 def test_once_proved_the_design_is_drawn_and_not_what_stood_in_for_it(name: str) -> None:
     result = optimise(example(name))
-    shown = designed(design_text(result))
+    shown = drawn_design(design_text(result))
     assert shown["exact"] is True
     x = np.array(shown["samples"]["x_m"])
     scale = np.abs(shown["samples"]["y"]).max()

@@ -70,12 +70,12 @@ def bend(program: NcProgram, plan: BendPlan, springback: Springback) -> FloatArr
 def prove(program: NcProgram, plan: BendPlan, springback: Springback) -> BendingProof:
     """Bend a rule as the program says and compare it with the drawing."""
     points = bend(program, plan, springback)
-    deviation, worst = compare(points, plan)
+    deviation, worst = greatest_distance(points, plan)
     closing = float(np.hypot(*(points[-1] - points[0]))) if plan.outline.closed else None
     return BendingProof(points, deviation, worst, closing, program.rule_length)
 
 
-def compare(points: FloatArray, plan: BendPlan) -> tuple[float, FloatArray]:
+def greatest_distance(points: FloatArray, plan: BendPlan) -> tuple[float, FloatArray]:
     """Find the largest distance between a bent rule and its outline, each part with its own counterpart.
 
     Corners and ends are compared point with point; that bounds the distance of the straight lines between them. Arcs

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from camwright.cli.views.parts import View, new_table, new_text, stacked
 from camwright.house.numbers import number
-from camwright.studies.tradeoff import TradeOff, words
+from camwright.studies.tradeoff import TradeOff, measure_words
 
 
 def tradeoff_view(result: TradeOff) -> View:
@@ -12,18 +12,20 @@ def tradeoff_view(result: TradeOff) -> View:
     heads = ["minimised, or law"]
     for name in result.measures:
         unit = result.unit(name).replace("^2", "²").replace("^3", "³")
-        heads.append(f"{words(name).replace('acceleration', 'acc.')}\n{unit}")
-    table = new_table(f"Objectives and laws, by {words(result.sorted_by)}; × the best", heads, heads[:1])
+        heads.append(f"{measure_words(name).replace('acceleration', 'acc.')}\n{unit}")
+    table = new_table(f"Objectives and laws, by {measure_words(result.sorted_by)}; × the best", heads, heads[:1])
     for row in result.rows:
-        title = words(row.name) if row.kind == "objective" else row.name
+        title = measure_words(row.name) if row.kind == "objective" else row.name
         cells = [_cell(row.values[measure], result.cost(row, measure)) for measure in result.measures]
         style = "bold" if row.kind == "objective" else ""
         table.add_row(title + ("" if row.within_limits else " †"), *cells, style=style)
     for failure in result.failures:
-        table.add_row(words(failure.name), "failed", *[""] * (len(result.measures) - 1), style="bold")
+        table.add_row(measure_words(failure.name), "failed", *[""] * (len(result.measures) - 1), style="bold")
     broken = any(not row.within_limits for row in result.rows)
     notes = [new_text("† breaks a limit of the job; not counted as the best")] if broken else []
-    notes += [new_text(f"minimised {words(failure.name)}, failed: {failure.reason}") for failure in result.failures]
+    notes += [
+        new_text(f"minimised {measure_words(failure.name)}, failed: {failure.reason}") for failure in result.failures
+    ]
     return stacked(table, *notes)
 
 

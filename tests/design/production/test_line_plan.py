@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from camwright.design.feasible.extremes import max_line_speed
-from camwright.design.production.line_plan import HARDEST, fastest_line
+from camwright.design.production.line_plan import HARDEST, fastest_plan
 from camwright.jobs.job import load_job
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import FloatArray
@@ -37,7 +37,7 @@ def the_list() -> tuple[FloatArray, FloatArray]:
 
 @pytest.mark.parametrize(("ramp", "time"), [(0.2, 4.813), (0.5, 4.269), (1.0, 4.051), (2.0, 3.942)])
 def test_times_of_the_list_by_the_lines_ramp(ramp: float, time: float) -> None:
-    assert fastest_line(*the_list(), ramp).time == pytest.approx(time, abs=5e-4)
+    assert fastest_plan(*the_list(), ramp).time == pytest.approx(time, abs=5e-4)
 
 
 def test_time_at_the_slowest_pieces_speed() -> None:
@@ -70,7 +70,7 @@ pieces = st.lists(st.tuples(st.floats(0.2, 1.5), st.floats(0.2, 2.5)), min_size=
 @given(pieces, st.floats(0.1, 5.0))
 def test_never_slower_than_a_dense_dynamic_programme(found: list[tuple[float, float]], ramp: float) -> None:
     lengths, highest = (np.array(column) for column in zip(*found, strict=True))
-    plan = fastest_line(lengths, highest, ramp)
+    plan = fastest_plan(lengths, highest, ramp)
     twin = dense(lengths, highest, ramp)
     assert plan.time <= twin * 1.001
     assert plan.time >= twin * 0.97  # the grid is coarse; the twin is never quicker than the truth
@@ -80,7 +80,7 @@ def test_never_slower_than_a_dense_dynamic_programme(found: list[tuple[float, fl
 @given(pieces, st.floats(0.05, 50.0))
 def test_a_plan_keeps_speeds_and_ramp(found: list[tuple[float, float]], ramp: float) -> None:
     lengths, highest = (np.array(column) for column in zip(*found, strict=True))
-    plan = fastest_line(lengths, highest, ramp)
+    plan = fastest_plan(lengths, highest, ramp)
     assert plan.length == pytest.approx(lengths.sum(), rel=1e-9)
     assert (np.diff(plan.times) > 0).all()
     assert np.abs(np.diff(plan.speeds)).max() <= ramp * np.diff(plan.times).max() * (1 + 1e-6) + 1e-9
@@ -100,4 +100,4 @@ def test_what_is_no_plan_is_refused() -> None:
         (one[:0], one[:0], 1.0),
     ):
         with pytest.raises(InputError, match="a plan of the line needs at least one piece"):
-            fastest_line(lengths, highest, ramp)
+            fastest_plan(lengths, highest, ramp)

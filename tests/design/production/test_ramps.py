@@ -10,7 +10,7 @@ from camwright.design.production.ramps import (
     balanced,
     can_stand,
     can_start_and_stop,
-    fastest_line,
+    highest_that_works,
     least_arcs,
     ramp_in,
     ramp_out,
@@ -49,12 +49,12 @@ def test_the_machine_of_the_paper() -> None:
     assert there.park == pytest.approx(-0.2)
     least = least_arcs(there).run_up
     assert (least.arc * 1e3, least.master * 1e3) == pytest.approx((36.296, 72.593), abs=1e-3)
-    assert fastest_line(there, can_stand) * 60 == pytest.approx(138.24, abs=5e-3)
+    assert highest_that_works(there, can_stand) * 60 == pytest.approx(138.24, abs=5e-3)
 
 
 def test_standstill_is_the_time_to_reach_the_speed() -> None:
     """A knife stands between two cuts as long as v t_a(v) <= H."""
-    v = fastest_line(at(PAPER), can_stand)
+    v = highest_that_works(at(PAPER), can_stand)
     assert v * (v / 30.0 + 30.0 / 3000.0) == pytest.approx(PAPER.height, rel=1e-9)
 
 

@@ -9,7 +9,7 @@ import cvxpy
 import numpy as np
 import pytest
 
-from camwright.design.production.line_plan import fastest_line
+from camwright.design.production.line_plan import fastest_plan
 from camwright.design.production.smooth_line import MOST_CHANGES, smooth_line
 from camwright.profiles.errors import InputError
 from camwright.profiles.line_run import LineRun
@@ -27,7 +27,7 @@ def test_one_change_of_the_speed_is_a_double_s() -> None:
 def test_a_jerk_without_limit_is_the_plan_without_one() -> None:
     lengths, highest = np.array([1.8, 0.9, 1.8]), np.array([80, 47.66, 80]) / 60
     assert smooth_line(lengths, highest, 1.0, 1e4).time == pytest.approx(
-        fastest_line(lengths, highest, 1.0).time, rel=1e-4
+        fastest_plan(lengths, highest, 1.0).time, rel=1e-4
     )
     one = smooth_line(lengths, np.full(3, 1.2), 1.0, 5.0)
     assert one.time == pytest.approx(lengths.sum() / 1.2)
@@ -75,7 +75,7 @@ def test_a_plan_keeps_speeds_ramp_and_jerk(number: int) -> None:
     lengths, highest, acceleration, jerk = lists(6)[number]
     run = smooth_line(lengths, highest, acceleration, jerk)
     require_kept(run, lengths, highest, acceleration, jerk)
-    assert run.time >= fastest_line(lengths, highest, acceleration).time * (1 - 1e-9)
+    assert run.time >= fastest_plan(lengths, highest, acceleration).time * (1 - 1e-9)
     assert run.speed([0.0, run.time]).tolist() == [run.speeds[0], run.speeds[-1]]
     assert run.accelerations is not None
     assert run.accelerations[[0, -1]].tolist() == [0.0, 0.0]

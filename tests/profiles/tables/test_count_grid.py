@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from camwright.profiles.tables.cam_table import make_table
-from camwright.profiles.tables.count_grid import evened, grid_of, rounded_to, without_rounding
+from camwright.profiles.tables.count_grid import evened, grain_of, grid_of, without_rounding
 
 
 def cam(points: int) -> tuple[np.ndarray, np.ndarray]:
@@ -29,7 +29,7 @@ def test_points_that_stand_close_together_are_no_counts() -> None:
     """Groups of points about places a tenth apart lie on a grid of tenths, to a twentieth; but points that differ are no one count."""
     y = np.sort(np.concatenate([0.1 * k + np.linspace(-0.004, 0.004, 20) for k in range(5)]))
     assert grid_of(y) is None or grid_of(y) < 0.001
-    assert rounded_to(y) < 0.001
+    assert grain_of(y) < 0.001
 
 
 def test_the_rounding_is_taken_off() -> None:
@@ -58,10 +58,10 @@ def test_what_is_fine_enough_is_left_alone() -> None:
 def test_the_last_digit_of_floating_numbers_is_that_of_the_greatest(size: float) -> None:
     _, y = cam(721)
     short = np.array([float(f"{value:.6g}") for value in 400.0 * y])
-    assert rounded_to(short) == pytest.approx(1e-3)
+    assert grain_of(short) == pytest.approx(1e-3)
     single = (400.0 * y).astype(np.float32).astype(np.float64)
-    assert rounded_to(single * size) == pytest.approx(size * 2.0**-15, rel=1e-6)
-    assert rounded_to(400.0 * y * np.sqrt(2.0)) == 0.0
+    assert grain_of(single * size) == pytest.approx(size * 2.0**-15, rel=1e-6)
+    assert grain_of(400.0 * y * np.sqrt(2.0)) == 0.0
 
 
 def test_the_rounding_of_even_master_positions_is_taken_off() -> None:

@@ -25,7 +25,7 @@ from camwright.profiles.errors import InputError
 from camwright.validation.bender.virtual_bender import (
     BendingProof,
     bend,
-    compare,
+    greatest_distance,
     prove,
 )
 
@@ -129,7 +129,7 @@ def test_rounding_is_shared_by_both_ends_of_a_long_side(table: Springback):
 def test_place_of_the_worst_deviation():
     outline = outline_of([[0, 0], [1, 0], [1, 1]])
     plan = plan_bends(outline, FewestBends(1e-3), LEAST)
-    away, place = compare(np.array([[0, 0], [1.0, 0.25], [1, 1.0]]), plan)
+    away, place = greatest_distance(np.array([[0, 0], [1.0, 0.25], [1, 1.0]]), plan)
     assert away == 0.25
     assert place.tolist() == [1.0, 0.25]
 
@@ -139,7 +139,7 @@ def test_joints_that_are_not_bent_are_compared():
     outline = outline_of([[0, 0], [1, 0.001], [2, 0]])
     plan = plan_bends(outline, FewestBends(1e-3), math.radians(1.0))
     assert plan.bends == 0
-    away, place = compare(np.array([[0, 0], [2.0, 0]]), plan)
+    away, place = greatest_distance(np.array([[0, 0], [2.0, 0]]), plan)
     assert away == pytest.approx(1e-3)
     assert place == pytest.approx([1, 0])
 
