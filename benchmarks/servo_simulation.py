@@ -33,7 +33,7 @@ from camwright.profiles.servo import Servo, sample_plant
 from camwright.profiles.task import Task
 from camwright.validation.servo.axis_run import ServoRun
 from camwright.validation.servo.lifting import SUBSTEPS, lift
-from camwright.validation.servo.simulation import memory, simulate, whole_cycle
+from camwright.validation.servo.simulation import lifted_cycle, memory, simulate
 from camwright.validation.servo.sweep import sweep_servos
 
 FREE = Limits(math.inf, math.inf, math.inf)
@@ -140,7 +140,7 @@ def times(profile: CamProfile, servo: Servo) -> tuple[float, float, float]:
         for _ in range(RUNS):
             memory.cache_clear()
             lift.cache_clear()
-            whole_cycle.cache_clear()
+            lifted_cycle.cache_clear()
             start = process_time()
             simulate(profile, CUT, servo)
             first = min(first, process_time() - start)

@@ -9,7 +9,7 @@ import numpy as np
 from camwright.profiles.cut import Cut
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 from camwright.profiles.servo import Servo
-from camwright.validation.servo.periodic import deviation
+from camwright.validation.servo.periodic import periodic_part
 
 _PHASES = 4096
 
@@ -37,7 +37,7 @@ def sampled_peaks(run: CamProfile, cut: Cut, servo: Servo) -> tuple[tuple[float,
     x = np.concatenate([np.linspace(0.0, cut.length, _PHASES, endpoint=False), joins[joins >= 0.0]])
     x.sort()
     # the straight line that a deviation leaves out has no second difference
-    y = [deviation(run, x + k * step) for k in range(4)]
+    y = [periodic_part(run, x + k * step) for k in range(4)]
     y = [after - before for before, after in pairwise(y)]
     found = []
     for order in (2, 3):

@@ -58,7 +58,7 @@ Verdict = tuple[Failure, float]
 """What fails; and by how much the sync error misses its tolerance, as the logarithm of a share: infinite where that is not what decides."""
 
 
-def named(failure: Failure) -> str:
+def failure_name(failure: Failure) -> str:
     """Tell what fails."""
     return failure if isinstance(failure, str) else failure()
 
@@ -94,7 +94,7 @@ class Look:
         """What it comes to, by all checks where the sync error does not decide."""
         if self.out:
             return self.failed, self.missed
-        failed = named(self.failed)
+        failed = failure_name(self.failed)
         if (self.missed > 0.0) != bool(failed):
             return failed, math.copysign(math.inf, 1.0 if failed else -1.0)
         return failed, self.missed if self.missed > -_ROOM else max(self.missed, ramp_missed(self.task))

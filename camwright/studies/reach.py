@@ -21,7 +21,7 @@ from camwright.profiles.servo import Servo
 from camwright.profiles.task import Task
 from camwright.studies.axis_study import shares_of
 from camwright.studies.least_length import AWARE_STEEP, STEEP, SketchedFirst, least_length, nowhere
-from camwright.studies.look import RAMP, Failure, Looks, Verdict, look, named, ramp_missed
+from camwright.studies.look import RAMP, Failure, Looks, Verdict, failure_name, look, ramp_missed
 from camwright.validation.report import judge
 
 ACCURACY, RAMPED_ACCURACY, SERVO_AWARE_ACCURACY = 1e-4, 1e-3, 5e-3
@@ -260,10 +260,10 @@ def _steady_edge(looks: Looks, least: float, accuracy: float, near: float | None
     found, failed = _edge(looks.in_sync, least, accuracy, near, steep, looks.expected)
     if found is not None and (above := looks.above_hole(found)):
         found, failed = _edge(looks.in_sync, least, accuracy, above)
-    if looks.last_held is not None and named(looks.last_held.failed):
+    if looks.last_held is not None and failure_name(looks.last_held.failed):
         return _edge(looks.whole, least, accuracy, found)
     if found is not None and failed == TOLERANCE:  # nothing beyond was looked at
-        failed = named(looks.in_sync(found * (1.0 + accuracy))[0]) or TOLERANCE
+        failed = failure_name(looks.in_sync(found * (1.0 + accuracy))[0]) or TOLERANCE
     return found, failed
 
 
@@ -297,7 +297,7 @@ def _ramped_edge(
         return found, failed
     found *= 1.0 - back
     tries = _TRIES if accuracy <= RAMPED_ACCURACY else 0
-    while tries and found is not None and (fails := named(verdict(job, at(found), objective, thorough=True)[0])):
+    while tries and found is not None and (fails := failure_name(verdict(job, at(found), objective, thorough=True)[0])):
         tries -= 1
         found, failed = (found * (1.0 - 0.5 * accuracy) if tries and found > least else None), fails
     return found, failed
@@ -392,7 +392,9 @@ def binding_of(job: Job, task: Task, beside: AxisProgramme | None = None) -> str
         return "speed"
     if math.isinf(missed):
         blind = replace(job, servo_aware=False, cut=replace(job.cut, shaped=False))
-        return named(verdict(blind, task.with_cut(replace(task.cut, shaped=False)), stand_in(job))[0]) or TOLERANCE
+        return (
+            failure_name(verdict(blind, task.with_cut(replace(task.cut, shaped=False)), stand_in(job))[0]) or TOLERANCE
+        )
     error_alone = AxisProgramme(replace(free, shares=(1.0,)))
     return AXIS_RATIO if _asks_ratio(job) and _missed(error_alone, ratio=False) <= 0.0 else TOLERANCE
 
@@ -434,10 +436,10 @@ def _edge(
     ends = first, 1.0 / least
     found = least_length(missed, first if near is None else 1.0 / near, ends, accuracy, steep, expected)
     if found is None:
-        return None, named(failures[max(failures)])
+        return None, failure_name(failures[max(failures)])
     if found <= first:
         return 1.0, ""
-    return 1.0 / found, named(
+    return 1.0 / found, failure_name(
         failures[max(failures)]
     ) if failures else TOLERANCE  # unseen, it is near enough to its tolerance
 

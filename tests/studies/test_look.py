@@ -14,7 +14,7 @@ from camwright.jobs.job import Job, load_job
 from camwright.profiles.task import Task
 from camwright.studies import look as looks
 from camwright.studies.axis_study import solve_job
-from camwright.studies.look import Look, look, named
+from camwright.studies.look import Look, failure_name, look
 from camwright.studies.reach import ACCURACY, highest_speed, stand_in, verdict
 
 KNIFE, SEALER = load_job("examples/paper-600.toml"), load_job("examples/thick-product.toml")
@@ -74,7 +74,9 @@ def test_line_speeds_above_a_hole_count() -> None:
     found, failed = highest_speed(job, fastest_line(job.task)[0])
     assert found == pytest.approx(2.5835, abs=2e-3)
     assert failed == "crossing"
-    passes = [not named(verdict(job, job.task.designed_at(speed), stand_in(job))[0]) for speed in (1.8, 2.1, 2.5)]
+    passes = [
+        not failure_name(verdict(job, job.task.designed_at(speed), stand_in(job))[0]) for speed in (1.8, 2.1, 2.5)
+    ]
     assert passes == [True, False, True]
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from camwright.profiles.polynomial.profile import CamProfile, FloatArray
 
 
-def deviation(profile: CamProfile, master: FloatArray) -> FloatArray:
+def periodic_part(profile: CamProfile, master: FloatArray) -> FloatArray:
     """Repeated profile minus the straight line through its start, which is periodic in the cut length.
 
     As the master only rises, the points of a piece follow one another: the breaks are looked up among the points, not

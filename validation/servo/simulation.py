@@ -29,7 +29,7 @@ from camwright.profiles.servo import Servo, spectral_radius
 from camwright.validation.motion import require_period
 from camwright.validation.servo.axis_run import AxisRun, ServoRun
 from camwright.validation.servo.lifting import SUBSTEPS, Lifted, follow, lift
-from camwright.validation.servo.periodic import deviation
+from camwright.validation.servo.periodic import periodic_part
 from camwright.validation.servo.slow_axis import SlowAxis
 
 PHASES = 16
@@ -207,7 +207,7 @@ def _clocks(cut: Cut, speeds: FloatArray, lifted: Lifted, part: Part, phases: in
 
 
 @lru_cache(maxsize=8)  # many profiles are simulated with one cut and servo
-def whole_cycle(cut: Cut, servo: Servo) -> tuple[Lifted, _Clocks, FloatArray]:
+def lifted_cycle(cut: Cut, servo: Servo) -> tuple[Lifted, _Clocks, FloatArray]:
     """Lift a servo, and lay its samples over the whole cycle, a sample more at the end; fewer phases where there are too many samples."""
     phases = _phases(cut, servo)
     lifted = lift(servo.loop, memory(servo.loop), (1, 0))
@@ -246,10 +246,10 @@ def simulate(profile: CamProfile, cut: Cut, servo: Servo) -> ServoRun:
     slow = slow_cycle(profile, cut, servo)
     if slow is not None:
         return slow_run(profile, *slow.at(slow.samples()))
-    lifted, clocks, grid = whole_cycle(cut, servo)
-    periodic = deviation(profile, grid)
+    lifted, clocks, grid = lifted_cycle(cut, servo)
+    periodic = periodic_part(profile, grid)
     shift = _shift(cut, servo, cut.line_speed)
-    seen = deviation(profile, grid - shift) if shift else periodic
+    seen = periodic_part(profile, grid - shift) if shift else periodic
     after = clocks.past * clocks.phases
     starts = grid[:, after : after + clocks.phases]
     ratio, axis = _axes(profile, (servo,), np.array([cut.line_speed]), lifted, starts, seen[:, : -clocks.phases])
@@ -274,7 +274,7 @@ def slow_run(profile: CamProfile, master: FloatArray, found: FloatArray) -> Serv
     """Put what a `slow_cycle` gives at some of its samples beside the command, as `simulate` does at all of them."""
     ratio, axis = found
     zero, slope = _mean_line(profile)
-    return ServoRun(master, axis, ratio, deviation(profile, master) + (slope * master + zero), even=False)
+    return ServoRun(master, axis, ratio, periodic_part(profile, master) + (slope * master + zero), even=False)
 
 
 def simulate_part(
@@ -315,7 +315,7 @@ def simulate_part(
     shift = np.fmod(speeds * [servo.delay for servo in servos], cut.length)  # as `_shift`
     # one grid for all, if it is
     alike = all(each.min() == each.max() for each in (clocks.step, clocks.first, shift))
-    seen = deviation(profile, (grid - shift[:, None])[: 1 if alike else len(servos)])
+    seen = periodic_part(profile, (grid - shift[:, None])[: 1 if alike else len(servos)])
     starts = grid[:, clocks.past * phases : (clocks.past + 1) * phases]
     found = _axes(profile, servos, speeds, lifted, starts, seen)
     spacing = np.repeat(clocks.step * (phases / lifted.parts), phases)[:, None]

@@ -50,9 +50,9 @@ def both(monkeypatch: pytest.MonkeyPatch, measure):  # type: ignore[no-untyped-d
     for most in (0.0, math.inf):
         with monkeypatch.context() as patch:
             whole(patch, most)
-            simulation.whole_cycle.cache_clear()
+            simulation.lifted_cycle.cache_clear()
             found.append(measure())
-    simulation.whole_cycle.cache_clear()
+    simulation.lifted_cycle.cache_clear()
     return found
 
 
@@ -74,9 +74,9 @@ def test_every_sample_of_the_closed_form_is_that_of_the_simulation(monkeypatch: 
     assert slow is not None
     whole(monkeypatch, math.inf)
     monkeypatch.setattr(simulation, "_MOST_VALUES", 0)  # as few phases
-    simulation.whole_cycle.cache_clear()
+    simulation.lifted_cycle.cache_clear()
     run = simulate(profile, SLOW, replace(PAPER, dead_time=0.0013))
-    simulation.whole_cycle.cache_clear()
+    simulation.lifted_cycle.cache_clear()
     samples = np.arange(run.master.shape[1] // SUBSTEPS)
     found = slow_run(profile, *slow.at(samples))
     assert np.abs(found.master - run.master).max() <= ROUNDING
