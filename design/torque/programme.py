@@ -131,12 +131,15 @@ class TorqueProgramme:
         self._task, self._zone = task, zone
         looks = 0 if zone is None else zone.points
         kept = _kept_solver(TorqueForm.of(task), pattern, counts, looks, accuracy, iterations, near)
-        layout = self._layout = kept.layout
-        self._watched = kept.watched
+        self._kept = kept
         self._numbers = TorqueNumbers.of(task)
-        pace = self._numbers.pace
-        self._units = np.repeat([pace**2, pace, *np.ones(len(layout.sizes) - 2)], layout.sizes)
+        pace, sizes = self._numbers.pace, kept.layout.sizes
+        self._units = np.repeat([pace**2, pace, *np.ones(len(sizes) - 2)], sizes)
         self._limits = self._rows(kept)
+
+    @property
+    def _layout(self) -> Layout:
+        return self._kept.layout
 
     def _state(self, guess: Guess) -> FloatArray:
         ends = np.array(guess.ends if self._zone is not None and guess.ends is not None else [])
@@ -244,9 +247,9 @@ class TorqueProgramme:
         if ceiling is not None:
             upper[bound] = ceiling / (1.0 if self._task.aim == "load" else units[0])
             start[bound] = upper[bound]
-        self._watched.watch.most = MOST_AT_FIRST if rough else MOST_MULTIPLIER
+        self._kept.watched.watch.most = MOST_AT_FIRST if rough else MOST_MULTIPLIER
         try:
-            answer = self._watched.solver(
+            answer = self._kept.watched.solver(
                 x0=start / self._units,
                 p=parameters,
                 lbx=lower / self._units,
@@ -256,7 +259,7 @@ class TorqueProgramme:
             )
         except RuntimeError:  # a number that is none, on the way or in the guess: no answer from this start
             return TorqueAnswer(guess, math.inf, math.inf, False, 0)
-        statistics = self._watched.solver.stats()
+        statistics = self._kept.watched.solver.stats()
         flat: FloatArray = np.asarray(answer["x"], dtype=np.float64).ravel() * self._units
         history = statistics.get("iterations", {})
         residual = max(
