@@ -35,11 +35,12 @@ def plain_keys(model: type[Table], data: dict[str, Any]) -> tuple[dict[str, Any]
 
 def _plain(models: list[type[Table]], data: dict[str, Any], path: Path, faults: list[str]) -> dict[str, Any]:
     """Rename the keys of a table, and of the tables in it."""
-    fields = {key: each for model in _fitting(models, data) for key, each in model.model_fields.items()}
+    fields = [_tables_of(model) for model in _fitting(models, data)]
     found: dict[str, Any] = {}
     for key, value in data.items():
-        if key in fields:
-            found[key] = _inside(tables_in(fields[key].annotation), value, [*path, key], faults)
+        tables = next((each[key] for each in reversed(fields) if key in each), None)
+        if tables is not None:
+            found[key] = _inside(tables, value, [*path, key], faults)
             continue
         name, meant, fault = _renamed(_fitting(models, data), key, value, data)
         found[name] = meant
@@ -61,10 +62,22 @@ def _fitting(models: list[type[Table]], data: dict[str, Any]) -> list[type[Table
     """Choose among tables that are told apart by a word those whose word it is; all where none is."""
 
     def fits(model: type[Table]) -> bool:
-        words = {key: f.annotation for key, f in model.model_fields.items() if get_origin(f.annotation) is Literal}
-        return all(key not in data or data[key] in get_args(annotation) for key, annotation in words.items())
+        return all(key not in data or data[key] in words for key, words in _words_of(model).items())
 
     return [model for model in models if fits(model)] or models
+
+
+@cache  # a book reads a job for every combination
+def _tables_of(model: type[Table]) -> dict[str, list[type[Table]]]:
+    """List the tables that each key of a table may hold."""
+    return {key: tables_in(each.annotation) for key, each in model.model_fields.items()}
+
+
+@cache
+def _words_of(model: type[Table]) -> dict[str, tuple[Any, ...]]:
+    """List the words that a table may hold under those of its keys that take nothing else."""
+    fields = model.model_fields.items()
+    return {key: get_args(each.annotation) for key, each in fields if get_origin(each.annotation) is Literal}
 
 
 def _renamed(models: list[type[Table]], key: str, value: Any, data: dict[str, Any]) -> tuple[str, Any, str]:
