@@ -268,14 +268,7 @@ class Reader:
             return Struct(dict[str, Value](numbers), line)
         self.words.expect("(")
         if not (self.words.now.kind == "name" and self.words.after.text == ":="):
-            inner = self.value(depth + 1)
-            if self.words.accept(")"):
-                return inner
-            while not self.words.accept(")"):  # an expression
-                if self.words.now.kind == "end":
-                    raise self.words.refusal("a bracket is never closed")
-                self.value(depth + 1) if self.words.now.text in ("(", "[") else self.words.step()
-            return Other(line)
+            return self.expression(depth, line)
         members: dict[str, Value] = {}
         while True:
             name = self.words.step().text.lower()
@@ -289,6 +282,17 @@ class Reader:
                 raise self.words.refusal(f"a member's name is missing before {shown(self.words.now.text)}")
         self.words.expect(")")
         return Struct(members, line)
+
+    def expression(self, depth: int, line: int) -> Value:
+        """Read what stands in a bracket that holds no members, up to where it closes."""
+        inner = self.value(depth + 1)
+        if self.words.accept(")"):
+            return inner
+        while not self.words.accept(")"):
+            if self.words.now.kind == "end":
+                raise self.words.refusal("a bracket is never closed")
+            self.value(depth + 1) if self.words.now.text in ("(", "[") else self.words.step()
+        return Other(line)
 
     def array(self, depth: int) -> list[Value]:
         """``[1, 2, 3(0.0)]``, a number before a bracket repeating what stands inside."""
