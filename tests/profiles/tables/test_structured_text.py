@@ -7,7 +7,7 @@ import pytest
 
 from camwright.profiles.errors import InputError
 from camwright.profiles.tables.st_words import Words
-from camwright.profiles.tables.structured_text import parse
+from camwright.profiles.tables.structured_text import Other, parse
 
 _PIECES = (
     *(
@@ -67,3 +67,18 @@ def test_a_list_of_structures_is_not_read_word_by_word() -> None:
     words = Words("(a := 1.0, B := -2e-3) , c", "file")
     assert words.members() == {"a": 1.0, "b": -2e-3}
     assert (words.now.text, words.after.text) == (",", "c")
+
+
+@pytest.mark.parametrize(
+    ("text", "line"), [("a := (1 + 2;\nb := 3;\n", 2), ("a := (b + 2", 1), ("a := (1 2 (3);", 1), ("a := ((1);", 1)]
+)
+def test_a_bracket_that_is_never_closed_is_refused(text: str, line: int) -> None:
+    with pytest.raises(InputError) as caught:
+        parse(text, "here")
+    assert str(caught.value) == f"here, line {line}: a bracket is never closed"
+
+
+@pytest.mark.parametrize(("text", "value"), [("((1.5))", 1.5), ("(1 + (2 * [3, 4]) - 4)", Other(1))])
+def test_a_bracket_around_no_members_holds_a_number_or_an_expression(text: str, value: object) -> None:
+    (assignment,) = parse(f"a := {text};", "here").assignments
+    assert assignment.value == value
