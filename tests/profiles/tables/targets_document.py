@@ -76,6 +76,8 @@ drive does, judges it, and sets it beside the optimum of the same job: a table, 
 that state no units `--units` tells them, with `cycle` as the master's unit where it is counted in steps of the table, and
 quantities like `0.5 um` or `0.0001 deg`; without it the table's period is taken for the cut length and its advance for the
 pitch. The cycle is begun where the cam fits the job's sync zone best, wherever the file begins, and a note says where.
+A shaped command is put where its axis fits the shear zone; for one line speed alone that leaves its place open by millimetres, so the
+file's own zero is kept where the axis is in tolerance, and a note says how far it is open.
 Every assumption is a note, one sentence, with the option that gives the truth. Where a layout has no room for a head, the text that
 camwright writes beside the table tells its units. Tables that run once (of `ramps`, `cutlist`, `family`) and those that the controller
 adds (`--speed-tables`) say so in their heads, and are refused by that: an audit judges cycles. Tables of counts are judged as when they
