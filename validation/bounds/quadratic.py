@@ -45,13 +45,18 @@ def multipliers(
     low, high = bottom[limited], top[limited]
     across = equations.T.tocsc()
 
-    def factored(stiff: FloatArray) -> Any:
-        """Factors of the system of a Newton step."""
-        return splu(block_array([[diags_array(stiff), -across], [equations, None]], format="csc"))
-
     # what meets the equations with the least weight, and least in shares of what the limits leave
     stiff, room = weight.copy(), np.maximum(high - low, NARROW)
     stiff[limited] += 1.0 / room**2
+    counts = stiff != 0.0
+    system = block_array([[diags_array(stiff), -across], [equations, None]], format="csc")
+    own = system.indices == np.repeat(np.arange(system.shape[1]), np.diff(system.indptr))  # on the diagonal
+
+    def factored(stiff: FloatArray) -> Any:
+        """Factors of the system of a Newton step, of which nothing but the diagonal changes."""
+        system.data[own] = stiff[counts]
+        return splu(system)
+
     try:
         x, prices = np.split(factored(stiff).solve(np.concatenate([np.zeros(len(weight)), goal])), [len(weight)])
     except RuntimeError:  # singular
