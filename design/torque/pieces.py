@@ -15,6 +15,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
+from camwright.design.torque.columns import Steps
 from camwright.profiles.polynomial.profile import FloatArray
 
 NONE = ca.SX(0, 1)
@@ -68,24 +69,24 @@ class ProgrammePiece:
         return ca.vertcat(ca.SX.eye(self.unknowns.numel()), ca.jacobian(self.made, self.unknowns))
 
     @cached_property
-    def value(self) -> Any:
+    def value(self) -> Steps:
         """Function of unknowns and what is given: cost and rows."""
-        return ca.Function("value", [self.unknowns, self.given], self._plain(self.cost, self.rows))
+        return Steps([self.unknowns, self.given], self._plain(self.cost, self.rows))
 
     @cached_property
-    def slope(self) -> Any:
+    def slope(self) -> Steps:
         """Function that has the cost and its gradient."""
         slope = self.chain.T @ ca.gradient(self.cost, ca.vertcat(self.unknowns, self.between))
-        return ca.Function("slope", [self.unknowns, self.given], self._plain(self.cost, ca.densify(slope)))
+        return Steps([self.unknowns, self.given], self._plain(self.cost, ca.densify(slope)))
 
     @cached_property
-    def bend(self) -> tuple[Any, Any]:
+    def bend(self) -> tuple[Steps, Any]:
         """Function that has the rows and what their Jacobian holds, and its pattern."""
         bend = ca.jacobian(self.rows, ca.vertcat(self.unknowns, self.between)) @ self.chain
-        return ca.Function("bend", [self.unknowns, self.given], self._plain(self.rows, _held(bend))), bend.sparsity()
+        return Steps([self.unknowns, self.given], self._plain(self.rows, _held(bend))), bend.sparsity()
 
     @cached_property
-    def curve(self) -> tuple[Any, Any]:
+    def curve(self) -> tuple[Steps, Any]:
         """Function that has what the upper triangle of the Lagrangian's Hessian holds, of multipliers too, and its pattern.
 
         By the chain rule through what lies between: half of the work of differentiating it as a whole.
@@ -98,7 +99,7 @@ class ProgrammePiece:
         bend = self.chain.T @ whole @ self.chain + ca.substitute(own, paid, slope[count:])
         upper: Any = ca.triu(bend)
         held = self._plain(_held(upper))
-        return ca.Function("curve", [self.unknowns, self.given, of_cost, of_rows], held), upper.sparsity()
+        return Steps([self.unknowns, self.given, of_cost, of_rows], held), upper.sparsity()
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,13 +134,12 @@ class Laid:
         each = np.repeat([0.0, np.inf], [self.piece.equal.numel(), self.piece.above.numel()])
         return np.tile(each, self.count)
 
-    def gathered(self, x: Any, p: Any) -> tuple[Any, Any]:
-        """Unknowns and numbers of the piece, a column for each place."""
-        z, w = (
-            ca.reshape(of[where.ravel(order="F").tolist()], *where.shape)
+    def gathered(self, x: Any, p: Any) -> list[list[Any]]:
+        """Unknowns and numbers of the piece, each a column of a number for each place, or the one that is the same at all."""
+        return [
+            [of[[int(row[0])] if (row == row[0]).all() else row.tolist()] for row in where]
             for of, where in ((x, self.unknowns), (p, self.given))
-        )
-        return z, w
+        ]
 
 
 def programme(laid: list[Laid], unknowns: int, parameters: int) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -154,27 +154,27 @@ def programme(laid: list[Laid], unknowns: int, parameters: int) -> tuple[dict[st
     costs, costs_too, values, values_too, slopes, bends, curves = ([] for _ in range(7))
     slope_at, bend_at, curve_at = [], [], []
     for each, begin, end in zip(laid, first_row[:-1], first_row[1:], strict=True):
-        z, w = each.gathered(x, p)
-        cost, value = each.piece.value.map(each.count)(z, w)
-        costs.append(ca.sum2(cost))
-        values.append(ca.vec(value))
-        cost, slope = each.piece.slope.map(each.count)(z, w)
-        costs_too.append(ca.sum2(cost))
-        slopes.append(ca.vec(slope))
-        slope_at.append(each.unknowns.ravel(order="F"))
-        function, pattern = each.piece.bend
-        value, bend = function.map(each.count)(z, w)
-        values_too.append(ca.vec(value))
-        bends.append(ca.vec(bend))
-        own, column = (np.array(part, dtype=np.intp)[:, None] for part in pattern.get_triplet())
-        height = each.piece.rows.numel()
-        row = begin + height * np.arange(each.count)[None, :] + own
-        bend_at.append((row + rows * each.unknowns[column[:, 0]]).ravel(order="F"))
-        function, pattern = each.piece.curve
-        multipliers = ca.reshape(of_rows[int(begin) : int(end)], height, each.count)
-        curves.append(ca.vec(function.map(each.count)(z, w, ca.repmat(of_cost, 1, each.count), multipliers)))
+        count, height, own = each.count, each.piece.rows.numel(), each.gathered(x, p)
+        (cost,), value = each.piece.value.at(count, own)
+        costs.append(ca.sum1(cost))
+        values.append(_by_place(value))
+        (cost,), slope = each.piece.slope.at(count, own)
+        costs_too.append(ca.sum1(cost))
+        slopes += slope
+        slope_at.append(each.unknowns.ravel())
+        steps, pattern = each.piece.bend
+        value, bend = steps.at(count, own)
+        values_too.append(_by_place(value))
+        bends += bend
+        row, column = (np.array(part, dtype=np.intp)[:, None] for part in pattern.get_triplet())
+        row = begin + height * np.arange(count)[None, :] + row
+        bend_at.append((row + rows * each.unknowns[column[:, 0]]).ravel())
+        steps, pattern = each.piece.curve
+        multipliers = [of_rows[int(begin) + k : int(end) : height] for k in range(height)]
+        (curve,) = steps.at(count, [*own, [of_cost], multipliers])
+        curves += curve
         one, other = (each.unknowns[list(part)] for part in pattern.get_triplet())
-        curve_at.append((np.minimum(one, other) + unknowns * np.maximum(one, other)).ravel(order="F"))
+        curve_at.append((np.minimum(one, other) + unknowns * np.maximum(one, other)).ravel())
     f, g = sum(costs), ca.vertcat(*values)
     slope = _added(slopes, slope_at, unknowns, 1)
     bend = _added(bends, bend_at, rows, unknowns)
@@ -187,6 +187,11 @@ def programme(laid: list[Laid], unknowns: int, parameters: int) -> tuple[dict[st
             "hess_lag", [x, p, of_cost, of_rows], [curve], [*names, "lam_f", "lam_g"], ["triu_hess_gamma_x_x"]
         ),
     }
+
+
+def _by_place(rows: list[Any]) -> Any:
+    """Rows of a number for each place as one column, place by place."""
+    return ca.vec(ca.horzcat(*rows).T)
 
 
 def _held(matrix: Any) -> Any:
