@@ -37,7 +37,7 @@ def sampled_peaks(run: CamProfile, cut: Cut, servo: Servo) -> tuple[tuple[float,
     x = np.concatenate([np.linspace(0.0, cut.length, _PHASES, endpoint=False), joins[joins >= 0.0]])
     x.sort()
     # the straight line that a deviation leaves out has no second difference
-    y = [periodic_part(run, x + k * step) for k in range(4)]
+    y = list(periodic_part(run, x + step * np.arange(4)[:, None]))
     y = [after - before for before, after in pairwise(y)]
     found = []
     for order in (2, 3):

@@ -149,18 +149,19 @@ def sync_ratio_error(profile: CamProfile, task: Task) -> Extremum:
     worst = Extremum(0.0, cut.sync_parts[0][0])
     for start, end in cut.sync_parts:
         part = profile.restrict(start + edge, min(end, profile.end) - edge)
-        for found in _tool_in_sync(part, profile, task).extrema(0):
+        for found in _tool_in_sync(part, profile, task):
             error = abs(found.value / cut.sync_ratio - 1.0)
             if error > worst.value:
                 worst = Extremum(error, found.at)
     return worst
 
 
-def _tool_in_sync(part: CamProfile, profile: CamProfile, task: Task) -> CamProfile:
-    """Ratio of the tool over the master in a part of the sync zone."""
+def _tool_in_sync(part: CamProfile, profile: CamProfile, task: Task) -> tuple[Extremum, Extremum]:
+    """Least and greatest ratio of the tool over the master in a part of the sync zone."""
     if task.straight:  # so the tool's ratio to the slave is constant too: what the sync zone says
         per_slave = task.cut.sync_ratio / float(task.sync(0.0, 1))
-        return part.derivative().scale(slave=per_slave)
+        least, greatest = part.extrema(1)
+        return Extremum(per_slave * least.value, least.at), Extremum(per_slave * greatest.value, greatest.at)
     start = task.slave_zero(profile)
     if (
         part.end > 0.5 * task.cut.length
@@ -170,7 +171,7 @@ def _tool_in_sync(part: CamProfile, profile: CamProfile, task: Task) -> CamProfi
     def ratio(y: FloatArray, slope: FloatArray, _: FloatArray) -> FloatArray:
         return np.asarray(task.machine.tool_ratio(start + y) * slope)
 
-    return compose(ratio, part)
+    return compose(ratio, part).extrema(0)
 
 
 def measure_motion(profile: CamProfile, task: Task) -> MotionMeasures:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import math
+from json.encoder import encode_basestring_ascii
 from typing import Any
 
 _encoded = json.JSONEncoder(allow_nan=False).encode
@@ -24,10 +26,10 @@ def to_lines(value: Any, depth: int = 0) -> str:
     """
     begin, end = "\n" + " " * (depth + 1), "\n" + " " * depth
     if isinstance(value, dict) and value:
-        entries = (f"{_encoded(key)}: {to_lines(entry, depth + 1)}" for key, entry in value.items())
+        entries = (f"{encode_basestring_ascii(key)}: {to_lines(entry, depth + 1)}" for key, entry in value.items())
         return "{" + begin + f",{begin}".join(entries) + end + "}"
     if isinstance(value, list | tuple) and value:
-        if all(type(entry) is float for entry in value):
-            return "[" + begin + _encoded(value)[1:-1].replace(", ", f",{begin}") + end + "]"
         return "[" + begin + f",{begin}".join(to_lines(entry, depth + 1) for entry in value) + end + "]"
-    return _encoded(value)
+    if isinstance(value, float) and math.isfinite(value):
+        return float.__repr__(value)
+    return encode_basestring_ascii(value) if isinstance(value, str) else _encoded(value)

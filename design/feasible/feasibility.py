@@ -83,6 +83,7 @@ class Demand:
         return is_possible(resolved(problem))
 
 
+@lru_cache(maxsize=32)  # a design asks, and then what is possible beside it
 def demands(task: Task) -> tuple[Demand, ...]:
     """Make a job's demand on each of the limits that its motor's curve stands for.
 
