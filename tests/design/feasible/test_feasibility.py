@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from camwright.design.feasible.feasibility import edge, is_feasible
+from camwright.design.feasible.feasibility import edge, feasible_lengths, is_feasible, shortest_length
 from camwright.design.feasible.refusal import require_feasible
 from camwright.profiles.closed_forms.reach import greatest_reach
 from camwright.profiles.cut import Cut
@@ -149,3 +149,19 @@ def test_rounding_goes_one_way(value: float, digits: int, up: bool) -> None:
     slack = 1e-6 * 10.0 ** (1 - digits) * 1.01  # what already stands on the digit stays there
     assert rounded >= value * (1 - slack) if up else rounded <= value * (1 + slack)
     assert float(f"{rounded:.{digits}g}") == pytest.approx(rounded, rel=1e-12)
+
+
+@pytest.mark.parametrize("line_speed", [0.5, 1.0, 2.0])
+def test_the_shortest_cut_is_the_same_for_every_cut_length(line_speed: float) -> None:
+    tasks = [Task(KNIFE, replace(CUT, length=length, line_speed=line_speed), LIMITS) for length in (0.3, 0.41, 0.9)]
+    shortest = shortest_length(tasks[0])
+    assert shortest is not None
+    assert [shortest_length(task) for task in tasks] == [shortest] * 3
+    works = feasible_lengths(tasks[1])
+    assert works(shortest)
+    assert not works(math.nextafter(shortest, 0.0))
+    assert edge(works, 4.0, CUT.sync_zone) == pytest.approx(shortest, rel=1e-14)
+
+
+def test_no_shortest_cut_is_told_where_no_limits_are_enough() -> None:
+    assert shortest_length(Task(KNIFE, CUT, replace(LIMITS, speed=0.5))) is None

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from itertools import pairwise
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import pytest
@@ -17,6 +17,7 @@ from scipy.interpolate import PPoly
 
 from camwright.profiles.errors import InputError
 from camwright.profiles.polynomial.profile import CamProfile, join, steps
+from camwright.profiles.polynomial.rows import ascending
 
 FloatArray = NDArray[np.float64]
 
@@ -452,3 +453,17 @@ def test_a_roll_to_the_end_but_for_rounding_is_none() -> None:
     rolled = profile.roll(np.nextafter(0.6, 0.0))
     assert rolled.breaks.tolist() == profile.breaks.tolist()
     assert rolled.repeat(3).length == pytest.approx(1.8)
+
+
+@given(profiles(), st.integers(0, 5), st.sampled_from(["left", "right"]))
+def test_one_place_has_the_value_that_it_has_among_others(
+    profile: CamProfile, order: int, side: Literal["left", "right"]
+) -> None:
+    places = np.concatenate([profile.breaks, 0.5 * (profile.breaks[1:] + profile.breaks[:-1])])
+    assert [float(profile(x, order, side=side)) for x in places.tolist()] == profile(places, order, side=side).tolist()
+    assert profile(float(profile.end), outside="repeat") == profile(np.array([profile.end]), outside="repeat")[0]
+
+
+@given(st.lists(st.sampled_from([0.0, 1.0, 2.5, -3.0, 1e-9])))
+def test_numbers_ascend_each_once(numbers: list[float]) -> None:
+    assert ascending(np.array(numbers)).tolist() == np.unique(np.array(numbers)).tolist()
