@@ -15,6 +15,7 @@ from camwright.profiles.limits import Limits
 from camwright.profiles.machines import RotaryKnife
 from camwright.profiles.task import Task
 from camwright.validation.motor import measure_motor
+from tests.pace import in_time
 
 
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
@@ -47,7 +48,7 @@ def test_a_way_out_that_leaves_no_room_is_designed_in_seconds() -> None:
     limits = Limits(0.8028154754380027, 3.1305399977212267, 219.61729090575534, reversal=True)
     begun = process_time()
     solution = solve(Task(machine, cut, limits), "peak_torque")
-    assert process_time() - begun < 20.0
+    assert in_time(process_time() - begun, 20.0)
     assert np.isfinite(solution.minimised)
 
 
@@ -65,7 +66,7 @@ def test_a_peak_that_its_mesh_cannot_reach_costs_seconds_not_minutes() -> None:
     task = Task(machine, cut, limits)
     begun = process_time()
     solution = solve(task, "peak_torque")
-    assert process_time() - begun < 8.0
+    assert in_time(process_time() - begun, 8.0)
     measured = measure_motor(solution.profile, task.with_machine(solution.machine))
     assert measured.peak_torque is not None
     assert np.isfinite(measured.peak_torque)

@@ -26,6 +26,7 @@ from camwright.validation.servo.monte_carlo import shear_zone_errors
 from camwright.validation.servo.response import greatest_sync_error, servo_response, shear_zone_of
 from camwright.validation.servo.simulation import SUBSTEPS, simulate, slow_cycle, slow_run
 from camwright.validation.servo.slow_axis import Samples, SlowAxis
+from tests.pace import in_time
 
 FREE = Limits(math.inf, math.inf, math.inf)
 PAPER = Servo(120.0, 0.7, 35.0, 0.004, 1.0)
@@ -158,7 +159,7 @@ def test_any_line_speed_takes_little_time_and_memory(line_speed: float, length: 
     response = servo_response(profile, task, servo)
     took, most = time.process_time() - began, tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
-    assert took < 3.0
+    assert in_time(took, 3.0)
     assert most < 100e6
     if servo.position_gain == 35.0 and line_speed < 0.1:
         # at constant speed without dead time the axis is on the command; in the return it is late by what the acceleration takes
@@ -208,7 +209,7 @@ def test_a_table_of_many_pieces_is_no_harder() -> None:
     cut = replace(SLOW, line_speed=1e-4, sync_zone=0.1, shear_zone_at=0.05)
     began = time.process_time()
     response = servo_response(profile, Task(RotaryKnife(0.4), cut, FREE), PAPER)
-    assert time.process_time() - began < 5.0
+    assert in_time(time.process_time() - began, 5.0)
     assert response.peak_following_error > 0.0
 
 
