@@ -274,6 +274,8 @@ def _zones(task: TorqueTask, zone: Zone, starts: FloatArray, ends: FloatArray) -
     """Torque, velocity, weight and greatest share of a limit of zones between pairs of slave coordinates, at their points; a row each."""
     shares, form = zone_looks(zone.points)[0], TorqueForm.of(task)
     count, points = len(starts), len(shares)
+    if not count:  # CasADi maps a function over no points to an error
+        return [np.empty((0, points))] * 4
     numbers = np.tile(np.array(TorqueNumbers.of(task).flat)[:, None], count * points)
     found = _zone_function(form, count * points)(
         np.repeat(starts, points)[None, :], np.repeat(ends, points)[None, :], np.tile(shares, count)[None, :], numbers

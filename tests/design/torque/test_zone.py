@@ -83,3 +83,10 @@ def test_zones_that_are_looked_at_together_cost_what_each_does(aim: Aim) -> None
     alone = [zone_floors(asked(aim), ZONE, starts[[k]], ends[[k]])[0] for k in range(3)]
     assert together == pytest.approx(alone, rel=1e-14)
     assert np.ptp(together) > 0.1 * together.max()
+
+
+def test_no_zones_need_nothing() -> None:
+    """Where none of the places keeps the limits, none is left to look at."""
+    none = np.empty(0)
+    assert zone_floors(asked("rms_torque"), ZONE, none, none).shape == (0,)
+    assert greatest_share(asked("rms_torque"), ZONE, none, none).shape == (0,)
