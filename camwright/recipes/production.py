@@ -104,17 +104,21 @@ def _table_blocks(recipe: Recipe, words: Catalogue) -> list[Block]:
     written = any(table.files for record in motions for table in record.tables)
     cells: dict[str, list[str]] = {}
     reasons: dict[str, str] = {}
+    withheld: dict[str, None] = {}
     for number, record in enumerate(motions):
         for table in record.tables:
             failed = [words.named("check", check.name) for check in table.checks if not check.passed]
             why = ", ".join(failed) or words("start.no_cam")
-            told = str(len(table.points.master)) if table.files else f"✗ {why}"
-            cells.setdefault(table.target, [words("nothing")] * len(motions))[number] = told
+            cell = str(len(table.points.master)) if table.files else "✗"
+            cells.setdefault(table.target, [words("nothing")] * len(motions))[number] = cell
+            if not table.files:  # told below: cells of numbers are not broken, and a narrow screen has no room for it
+                withheld[f"{table.target} ✗ {why}"] = None
         for refusal in record.refused:
             cells.setdefault(refusal.target, [words("nothing")] * len(motions))
             reasons.setdefault(refusal.target, "; ".join(refusal.reasons))
     head = [words("start.target"), *(words(_MOTIONS[record.motion]) for record in motions)]
-    not_taken = [
+    not_taken = [text_block(each) for each in withheld]
+    not_taken += [
         text_block(words("start.refused", target=target, reasons=reason)) for target, reason in reasons.items()
     ]
     return [

@@ -41,7 +41,8 @@ def test_the_sheet_says_so_and_the_folder_is_verified(failed: MadeRecipe, tmp_pa
     files = recipe_files(failed)
     page = files["recipe.html"].decode()
     words = catalogue("en")
-    assert page.count(f"✗ {words('start.no_cam')}") == 2 * 3
+    assert page.count(">✗</td>") == 2 * 3
+    assert page.count(f"✗ {words('start.no_cam')}") == 2
     assert page.count(words("import.not_released")) == 2
     assert words("start.files") not in page
     for path, data in files.items():
